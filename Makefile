@@ -1,0 +1,60 @@
+# Two commands for a newcomer: `make demo` and `make test`. Each sets up all it
+# needs in .venv; the others are for people who change the code.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.drake_haptics
+CORE := $(wildcard drake_haptics/core/*.cc drake_haptics/core/*.h) drake_haptics/core/CMakeLists.txt
+
+.PHONY: demo test lint unit format build clean
+.DEFAULT_GOAL := demo
+
+demo: $(STAMP)
+	$(BIN)/drake-haptics run cup_spoon
+
+test: lint unit
+
+unit: $(STAMP)-test
+	$(BIN)/python -m pytest -n 2 tests
+
+lint: $(STAMP)-test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/clang-format --dry-run -Werror drake_haptics/core/*.cc drake_haptics/core/*.h tests/core/*.cc tests/core/*.h
+
+format: $(STAMP)-test
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+	$(BIN)/clang-format -i drake_haptics/core/*.cc drake_haptics/core/*.h tests/core/*.cc tests/core/*.h
+
+# Rebuilds the C++ core after an edit, without a fresh build environment.
+build: $(STAMP)-test
+	$(BIN)/pip install --quiet "scikit-build-core>=0.11" "nanobind>=2.7" "cmeel-eigen>=3.4"
+	$(BIN)/pip install --quiet --no-build-isolation --no-deps -e .
+
+$(VENV)/bin/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || { \
+	  echo "drake_haptics needs Python 3.10 or newer; '$(PYTHON)' is $$($(PYTHON) --version 2>&1)."; \
+	  echo "Name another one: make demo PYTHON=python3.12"; exit 1; }
+	@printf '#include <span>\ntemplate <class T> concept Any = true;\nint main() {}\n' > .compiler-check.cc; \
+	$${CXX:-c++} -std=c++20 -fsyntax-only .compiler-check.cc >/dev/null 2>&1; ok=$$?; rm -f .compiler-check.cc; \
+	if [ $$ok -ne 0 ]; then \
+	  echo "drake_haptics needs a C++20 compiler and found none (tried '$${CXX:-c++}')."; \
+	  echo "On Debian or Ubuntu: sudo apt-get install g++. On macOS: xcode-select --install."; \
+	  echo "Or name one: CXX=clang++ make demo"; exit 1; fi
+	$(PYTHON) -m venv $(VENV)
+
+$(STAMP): pyproject.toml $(CORE) | $(VENV)/bin/python
+	@echo "Setting up $(VENV): Drake and the C++ core, a few minutes the first time."
+	$(BIN)/pip install --quiet --disable-pip-version-check -e .
+	@touch $@
+
+$(STAMP)-test: pyproject.toml $(CORE) | $(VENV)/bin/python
+	@echo "Setting up $(VENV): Drake, the C++ core and the test tools, a few minutes the first time."
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[test]"
+	@touch $@ $(STAMP)
+
+clean:
+	rm -rf $(VENV) build

@@ -1,0 +1,1 @@
+"""Six-degree-of-freedom haptic rendering of arbitrary meshes, as Drake systems."""

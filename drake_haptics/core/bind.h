@@ -1,0 +1,15 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <Eigen/Core>
+
+/// Each bind_<topic>.cc adds one topic to the Python module `_core`.
+namespace drake_haptics {
+
+void BindPolytope(nanobind::module_& m);
+void BindDecomposition(nanobind::module_& m);
+void BindQuery(nanobind::module_& m);
+void BindForce(nanobind::module_& m);
+
+}  // namespace drake_haptics

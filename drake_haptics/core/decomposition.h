@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "polytope.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+using Triangle = Eigen::Vector3i;
+
+/// A mesh and the convex pieces that stand for its surface.
+struct Decomposition {
+  std::vector<Vec3> vertices;       ///< of the mesh, m, in the object's frame
+  std::vector<Triangle> triangles;  ///< counter-clockwise seen from outside
+  /// For each piece, the polytope that a query runs on.
+  std::vector<Polytope> pieces;
+  /// Piece of each triangle; -1 where pieces were not made from triangles.
+  std::vector<int> piece_of_triangle;
+};
+
+/// Called now and then with the share done in [0, 1]; false stops the work.
+using Progress = std::function<bool(double)>;
+
+/// Convex surface decomposition (paper, 5.3.1; Ehmann and Lin 2001): patches
+/// grown breadth first over the dual graph for as long as the patch is convex
+/// and its hull stays inside the solid. See decomposition.cc for the rules.
+/// `solid` tells for each triangle whether it bounds a solid (its component is
+/// closed and wound outward); the patches of others are kept flat-sided, since
+/// they have no inside. Deterministic.
+/// @throws std::invalid_argument for bad indices or values,
+///         std::runtime_error when `progress` asked to stop.
+Decomposition DecomposeSurface(std::span<const Vec3> vertices,
+                               std::span<const Triangle> triangles,
+                               std::span<const std::uint8_t> solid,
+                               const Progress& progress = {});
+
+/// The same result from known labels (a cache), without the search.
+Decomposition AssembleSurfacePieces(std::span<const Vec3> vertices,
+                                    std::span<const Triangle> triangles,
+                                    std::span<const int> piece_of_triangle);
+
+/// Pieces made elsewhere (CoACD, or one hull): facets within `tolerance` (m)
+/// of the mesh, and facing as it does, are original, all others virtual.
+Decomposition AdoptConvexPieces(std::span<const Vec3> vertices,
+                                std::span<const Triangle> triangles,
+                                std::span<const std::vector<Vec3>> pieces,
+                                double tolerance);
+
+}  // namespace drake_haptics

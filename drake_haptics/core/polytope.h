@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "types.h"
+
+namespace drake_haptics {
+
+/// A convex polytope of dimension 0 to 3 with all its adjacency in contiguous
+/// arrays. Immutable once built, so that any number of queries may share it.
+///
+/// A flat polytope (dimension 2) is a convex polygon with two facets: facet 0
+/// is its front, facet 1 its back with the opposite normal. A segment
+/// (dimension 1) has two vertices and one edge, a point one vertex.
+///
+/// "Surface" is what the polytope stands for. For a polytope on its own that
+/// is its whole boundary. For a piece of a decomposed mesh it is the patch of
+/// the mesh that the piece was made from: the features of the hull which are
+/// not on the mesh are virtual (paper, 5.3.1), and the surface goes on beyond
+/// the piece, as the directions in `ring` and `wings` tell.
+struct Polytope {
+  struct Edge {
+    int v0 = -1, v1 = -1;       ///< end vertices
+    int left = -1, right = -1;  ///< facets beside it; -1 on a segment
+    bool original = true;       ///< lies on an edge of the surface
+    /// In each surface face beside the edge, the unit direction that is
+    /// perpendicular to the edge and points away from it. The surface is
+    /// locally supported by direction n at the edge when n ⟂ edge and
+    /// n · wing <= 0 for each wing. Zero vectors where there is no face.
+    std::array<Vec3, 2> wings{Vec3::Zero(), Vec3::Zero()};
+  };
+
+  struct Facet {
+    Vec3 normal = Vec3::Zero();  ///< unit, outward
+    double offset = 0;           ///< normal · x = offset on the facet, m
+    bool original = true;        ///< lies on the surface
+  };
+
+  int dimension = 0;
+  std::vector<Vec3> vertices;  ///< extreme points only
+  std::vector<Edge> edges;
+  std::vector<Facet> facets;
+
+  /// Vertex loops of the facets, counter-clockwise seen from outside.
+  std::vector<int> facet_loop_start{0};
+  std::vector<int> facet_loop;
+  /// Edge k of facet f's loop joins loop vertices k and k + 1.
+  std::vector<int> facet_loop_edge;
+
+  /// Neighbours of each vertex along edges, and the edges that lead there.
+  std::vector<int> neighbor_start{0};
+  std::vector<int> neighbor;
+  std::vector<int> neighbor_edge;
+
+  /// Facets around each vertex.
+  std::vector<int> vertex_facet_start{0};
+  std::vector<int> vertex_facet;
+
+  /// Unit directions from each vertex along all edges of the surface there.
+  /// The surface is locally supported by n at the vertex when n · r <= 0 for
+  /// each r of its ring.
+  std::vector<int> ring_start{0};
+  std::vector<Vec3> ring;
+
+  Vec3 centroid = Vec3::Zero();  ///< mean of the vertices
+  double radius = 0;             ///< of the ball about the centroid, m
+
+  int num_vertices() const { return static_cast<int>(vertices.size()); }
+
+  std::span<const int> neighbors_of(int v) const {
+    return {neighbor.data() + neighbor_start[v],
+            neighbor.data() + neighbor_start[v + 1]};
+  }
+  std::span<const int> neighbor_edges_of(int v) const {
+    return {neighbor_edge.data() + neighbor_start[v],
+            neighbor_edge.data() + neighbor_start[v + 1]};
+  }
+  std::span<const int> facets_of(int v) const {
+    return {vertex_facet.data() + vertex_facet_start[v],
+            vertex_facet.data() + vertex_facet_start[v + 1]};
+  }
+  std::span<const Vec3> ring_of(int v) const {
+    return {ring.data() + ring_start[v], ring.data() + ring_start[v + 1]};
+  }
+  std::span<const int> loop_of(int f) const {
+    return {facet_loop.data() + facet_loop_start[f],
+            facet_loop.data() + facet_loop_start[f + 1]};
+  }
+};
+
+/// Builds the convex hull of `points` (one or more, any dimension, duplicates
+/// and inner points allowed) as a polytope on its own: every feature original,
+/// rings and wings along its own edges and facets. Coplanar triangles are
+/// merged into one facet, collinear and inner points are dropped. A set whose
+/// thickness is below `flatness` times its size is flattened.
+/// @param points positions, m; the order decides the order of the result.
+/// @throws std::invalid_argument if empty or not finite.
+Polytope MakePolytope(std::span<const Vec3> points, double flatness = 1e-12);
+
+}  // namespace drake_haptics

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+/// The core: everything that must finish inside one tick. It knows neither
+/// Drake nor Python. Lengths in m, angles in rad, forces in N, torques in N·m.
+namespace drake_haptics {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+/// Pose X_AB of a frame B in a frame A: p_A = R p_B + p. R is a rotation.
+struct Pose {
+  Mat3 R = Mat3::Identity();
+  Vec3 p = Vec3::Zero();
+
+  Vec3 operator*(const Vec3& point) const { return R * point + p; }
+  Pose operator*(const Pose& other) const {
+    return {R * other.R, R * other.p + p};
+  }
+  Pose inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
+};
+
+/// What a feature of a polytope is.
+enum class FeatureKind : std::int32_t { kVertex = 0, kEdge = 1, kFacet = 2 };
+
+/// A vertex, edge or facet of a polytope as one integer: index * 4 + kind.
+/// Negative means none.
+class Feature {
+ public:
+  Feature() = default;
+  Feature(FeatureKind kind, int index)
+      : code_(index * 4 + static_cast<std::int32_t>(kind)) {}
+
+  bool is_none() const { return code_ < 0; }
+  FeatureKind kind() const { return static_cast<FeatureKind>(code_ & 3); }
+  int index() const { return code_ >> 2; }
+  std::int32_t code() const { return code_; }
+  bool operator==(const Feature&) const = default;
+
+ private:
+  std::int32_t code_ = -1;
+};
+
+}  // namespace drake_haptics

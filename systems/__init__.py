@@ -1,0 +1,1 @@
+"""The LeafSystems of the haptic loop, one per file."""
