@@ -1,0 +1,281 @@
+"""Scenes: what is held, what it meets, who holds it, and with which gains.
+
+A scene is a YAML file read into the dataclasses below. Every field has its unit
+in its name or its docstring, every default works, and an unknown key is an error.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from pydrake.common.yaml import yaml_load_file, yaml_load_typed
+from pydrake.math import RigidTransform, RollPitchYaw
+
+from drake_haptics.scene_check import SceneError, check_keys, check_values
+
+__all__ = [
+    "Contact",
+    "Coupling",
+    "Device",
+    "EnvironmentObject",
+    "Hand",
+    "HandPath",
+    "Pose",
+    "Scene",
+    "SceneError",
+    "Tool",
+    "Waypoint",
+    "load_scene",
+]
+
+
+@dataclass
+class Pose:
+    """A pose X_AB of a frame B in a frame A.
+
+    Attributes:
+        position_m: x, y, z of B's origin in A, m.
+        rpy_deg: roll, pitch, yaw of B in A, degrees, in Drake's (space-fixed
+            x-y-z) order.
+    """
+
+    position_m: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
+    rpy_deg: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
+
+    def to_rigid_transform(self) -> RigidTransform:
+        """Returns X_AB."""
+        return RigidTransform(RollPitchYaw(np.deg2rad(self.rpy_deg)), self.position_m)
+
+
+@dataclass
+class Tool:
+    """The tool in the hand: a mesh with a mass.
+
+    Its inertia is that of the mesh filled with one density.
+
+    Attributes:
+        mesh: Path of the mesh, relative to the scene file, absolute, or
+            `package://drake_haptics/...`.
+        scale: Metres per unit of the mesh file.
+        decomposition: How the mesh is cut into convex pieces: a method of
+            `drake_haptics.decomposition.decompose`.
+        mass_kg: Mass, kg.
+        grasp: X_HT, the pose of the tool's frame in the handle's.
+    """
+
+    mesh: str = ""
+    scale: float = 1.0
+    decomposition: str = "surface"
+    mass_kg: float = 0.1
+    grasp: Pose = field(default_factory=Pose)
+
+
+@dataclass
+class EnvironmentObject:
+    """An object that stands still in the world.
+
+    Attributes:
+        name: Unique among the scene's objects.
+        mesh: As for the tool.
+        scale: Metres per unit of the mesh file.
+        decomposition: As for the tool.
+        pose: X_WO, the pose of the object's frame in the world.
+    """
+
+    name: str = ""
+    mesh: str = ""
+    scale: float = 1.0
+    decomposition: str = "surface"
+    pose: Pose = field(default_factory=Pose)
+
+
+@dataclass
+class Contact:
+    """How contact is found and answered.
+
+    Attributes:
+        tolerance_m: Pieces nearer than this push each other apart, m (the
+            paper's t).
+        cluster_size_m: Contacts nearer than this count as one, m (the paper's δ).
+        stiffness_N_per_m: Force per metre below the tolerance, N/m (k of Eq. 6).
+        damping_Ns_per_m: Force per speed of approach, N·s/m (k_v of Eq. 6).
+    """
+
+    tolerance_m: float = 2e-3
+    cluster_size_m: float = 5e-3
+    stiffness_N_per_m: float = 2e4
+    damping_Ns_per_m: float = 5.0
+
+
+@dataclass
+class Coupling:
+    """The spring and damper between the handle and the tool.
+
+    The device feels at most this stiffness, whatever the contact's. The defaults
+    are stable on the shipped device, with and without a hand.
+
+    Attributes:
+        stiffness_N_per_m: N/m.
+        damping_Ns_per_m: N·s/m.
+        rotational_stiffness_Nm_per_rad: N·m/rad.
+        rotational_damping_Nms_per_rad: N·m·s/rad.
+    """
+
+    stiffness_N_per_m: float = 800.0
+    damping_Ns_per_m: float = 2.0
+    rotational_stiffness_Nm_per_rad: float = 1.0
+    rotational_damping_Nms_per_rad: float = 0.004
+
+
+@dataclass
+class Device:
+    """The device that is held.
+
+    Attributes:
+        preset: Name of a file in models/devices.
+        base: X_WB, the pose of the device's base in the world. Where not given,
+            the middle of its workspace is put at the middle of the hand's path.
+        rate_hz: Ticks per second of the haptic loop, Hz.
+        max_force_N: Largest force shown, N; the preset's where not given.
+        max_torque_Nm: Largest torque shown, N·m; the preset's where not given.
+    """
+
+    preset: str = "phantom_premium_1_5_6dof"
+    base: Pose | None = None
+    rate_hz: float = 1000.0
+    max_force_N: float | None = None
+    max_torque_Nm: float | None = None
+
+
+@dataclass
+class Waypoint:
+    """Where the hand wants the tool to be at a time.
+
+    Attributes:
+        time_s: Time from the start of the path, s.
+        position_m: Position of the tool's origin in the world, m.
+        rpy_deg: Roll, pitch, yaw of the tool's frame in the world, degrees.
+    """
+
+    time_s: float = 0.0
+    position_m: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
+    rpy_deg: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
+
+
+@dataclass
+class HandPath:
+    """Where the hand wants the tool to go; its spring decides how firmly.
+
+    Attributes:
+        periodic: Whether the path starts again at its last waypoint, which must
+            then be at the first one's pose. Else the hand rests at the last.
+        waypoints: In order of time, the first at 0 s; neighbours turned by less
+            than 120°.
+    """
+
+    periodic: bool = False
+    waypoints: list[Waypoint] = field(default_factory=list)
+
+
+@dataclass
+class Hand:
+    """The simulated hand on a simulated device.
+
+    Attributes:
+        grip: Name of a grip: none, light, nominal or firm.
+        path: Where the hand wants the tool to go.
+    """
+
+    grip: str = "nominal"
+    path: HandPath = field(default_factory=HandPath)
+
+
+@dataclass
+class Scene:
+    """A whole scene.
+
+    Attributes:
+        description: One sentence for people.
+        tool: What is in the hand.
+        environment: What it meets; at least one object.
+        contact: How contact is found and answered.
+        coupling: Between the handle and the tool.
+        device: What is held.
+        hand: Who holds it.
+    """
+
+    description: str = ""
+    tool: Tool = field(default_factory=Tool)
+    environment: list[EnvironmentObject] = field(default_factory=list)
+    contact: Contact = field(default_factory=Contact)
+    coupling: Coupling = field(default_factory=Coupling)
+    device: Device = field(default_factory=Device)
+    hand: Hand = field(default_factory=Hand)
+
+    @classmethod
+    def for_meshes(
+        cls,
+        tool_path: str | Path,
+        environment_path: str | Path,
+        *,
+        tool_scale: float = 1.0,
+        environment_scale: float = 1.0,
+    ) -> Scene:
+        """Makes a scene of two meshes of one's own.
+
+        The environment's frame is the world's. The tool starts above the middle
+        of it, comes down, touches, and scrapes in a circle, pressed by the hand's
+        spring with a few newtons, for ever.
+
+        Args:
+            tool_path: Mesh of the tool.
+            environment_path: Mesh of what it meets.
+            tool_scale: Metres per unit of the tool's file.
+            environment_scale: Metres per unit of the environment's file.
+
+        Raises:
+            SceneError: The tool does not fit into the device's workspace.
+            drake_haptics.mesh.MeshError: A mesh cannot be treated.
+        """
+        from drake_haptics.automatic_scene import make_scene_for_meshes
+
+        return make_scene_for_meshes(
+            Path(tool_path), Path(environment_path), tool_scale, environment_scale
+        )
+
+
+def load_scene(path: str | Path) -> Scene:
+    """Reads and checks a scene file.
+
+    Args:
+        path: The YAML file. Relative mesh paths in it are taken from its folder.
+
+    Returns:
+        The scene, with mesh paths that no longer depend on the folder.
+
+    Raises:
+        SceneError: The file cannot be read, has a key or a value that means
+            nothing, or describes something physically impossible. The message
+            names the file and the key.
+    """
+    path = Path(path)
+    try:
+        data = yaml_load_file(str(path))
+    except Exception as error:  # Drake passes on whatever its YAML parser raises.
+        raise SceneError(f"{path}: cannot be read as YAML: {error}") from error
+    try:
+        check_keys(Scene, data)
+        scene: Scene = yaml_load_typed(schema=Scene, filename=str(path))
+        check_values(scene)
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from error
+    for part in [scene.tool, *scene.environment]:
+        part.mesh = _absolute(part.mesh, path.parent)
+    return scene
+
+
+def _absolute(mesh: str, folder: Path) -> str:
+    """Returns a mesh path that holds from any folder; package URLs stay."""
+    return mesh if "://" in mesh else str((folder / mesh).resolve())
