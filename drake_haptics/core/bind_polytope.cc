@@ -1,7 +1,116 @@
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/vector.h>
+
 #include "bind.h"
+#include "bind_array.h"
+#include "polytope.h"
+
+namespace nb = nanobind;
 
 namespace drake_haptics {
+namespace {
 
-void BindPolytope(nanobind::module_& m) {}
+std::vector<std::vector<int>> FacetLoops(const Polytope& P) {
+  std::vector<std::vector<int>> loops;
+  for (int f = 0; f < static_cast<int>(P.facets.size()); ++f) {
+    const auto loop = P.loop_of(f);
+    loops.emplace_back(loop.begin(), loop.end());
+  }
+  return loops;
+}
+
+}  // namespace
+
+void BindPolytope(nb::module_& m) {
+  nb::class_<Polytope>(m, "Polytope",
+                       "Convex hull of points, with the adjacency that the "
+                       "contact query walks on. Immutable.")
+      .def(
+          "__init__",
+          [](Polytope* self, PointsArg vertices) {
+            const std::vector<Vec3> points = ToPoints(vertices);
+            nb::gil_scoped_release release;
+            new (self) Polytope(MakePolytope(points));
+          },
+          nb::arg("vertices"),
+          "Builds the hull of (n, 3) points, m. Coplanar triangles become one "
+          "facet; points that are not extreme are dropped; sets that are flat, "
+          "straight or a single point are valid.\n\n"
+          "Raises:\n    ValueError: no points, or not finite.")
+      .def_ro("dimension", &Polytope::dimension,
+              "0 point, 1 segment, 2 flat polygon, 3 solid.")
+      .def_prop_ro(
+          "vertices", [](const Polytope& P) { return ToArray3(P.vertices); },
+          "(n, 3) extreme points, m, in the order of the input.")
+      .def_prop_ro("facets", &FacetLoops,
+                   "Vertex loops, counter-clockwise seen from outside.")
+      .def_prop_ro(
+          "facet_normals",
+          [](const Polytope& P) {
+            return ToArray3(P.facets, &Polytope::Facet::normal);
+          },
+          "(m, 3) unit outward normals.")
+      .def_prop_ro(
+          "facet_offsets",
+          [](const Polytope& P) {
+            return ToArray<double>(P.facets, &Polytope::Facet::offset);
+          },
+          "(m,) plane offsets, m: normal · x = offset.")
+      .def_prop_ro(
+          "facet_original",
+          [](const Polytope& P) {
+            return ToArray<bool>(P.facets, &Polytope::Facet::original);
+          },
+          "(m,) whether a facet lies on the surface that the polytope is a "
+          "piece of.")
+      .def_prop_ro(
+          "edges",
+          [](const Polytope& P) {
+            return ToRows<int, 2>(P.edges, [](const Polytope::Edge& e, int k) {
+              return k == 0 ? e.v0 : e.v1;
+            });
+          },
+          "(k, 2) end vertices.")
+      .def_prop_ro(
+          "edge_facets",
+          [](const Polytope& P) {
+            return ToRows<int, 2>(P.edges, [](const Polytope::Edge& e, int k) {
+              return k == 0 ? e.left : e.right;
+            });
+          },
+          "(k, 2) facets left and right of each edge; -1 on a segment.")
+      .def_prop_ro(
+          "edge_original",
+          [](const Polytope& P) {
+            return ToArray<bool>(P.edges, &Polytope::Edge::original);
+          },
+          "(k,) whether an edge lies on an edge of the surface.")
+      .def_prop_ro(
+          "edge_wings",
+          [](const Polytope& P) {
+            return ToRows<double, 6>(P.edges,
+                                     [](const Polytope::Edge& e, int k) {
+                                       return e.wings[k / 3][k % 3];
+                                     });
+          },
+          "(k, 6) two unit directions in the surface beside each edge, away "
+          "from it; zero where the surface ends.")
+      .def(
+          "ring",
+          [](const Polytope& P, int vertex) {
+            if (vertex < 0 || vertex >= P.num_vertices()) {
+              throw nb::index_error("no such vertex");
+            }
+            const auto ring = P.ring_of(vertex);
+            return ToArray3(std::vector<Vec3>(ring.begin(), ring.end()));
+          },
+          nb::arg("vertex"),
+          "(r, 3) unit directions of the surface's edges at a vertex.")
+      .def_prop_ro(
+          "centroid", [](const Polytope& P) { return P.centroid; },
+          "(3,) mean of the vertices, m.")
+      .def_ro("radius", &Polytope::radius,
+              "Radius of the ball about the centroid, m.");
+}
 
 }  // namespace drake_haptics

@@ -1,1 +1,164 @@
 #include "polytope.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <tuple>
+
+#include "hull_shape.h"
+
+namespace drake_haptics {
+namespace {
+
+// Squares of coordinates must not overflow.
+constexpr double kLargest = 1e100;
+
+void CheckFinite(std::span<const Vec3> points) {
+  if (points.empty()) {
+    throw std::invalid_argument("a polytope needs one point or more");
+  }
+  for (const Vec3& p : points) {
+    if (!(p.cwiseAbs().maxCoeff() < kLargest)) {
+      throw std::invalid_argument(
+          "a polytope's coordinates must be finite and below 1e100 m");
+    }
+  }
+}
+
+// Turns ragged lists given as (owner, item) pairs in order of `owners` into CSR
+// arrays: counts first, then a running sum.
+std::vector<int> StartsFromOwners(std::span<const int> owners, int num_owners) {
+  std::vector<int> start(num_owners + 1, 0);
+  for (const int owner : owners) ++start[owner + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  return start;
+}
+
+void AddFacets(const HullShape& shape, Polytope* P) {
+  for (const HullShape::Polygon& polygon : shape.polygons) {
+    double offset = -std::numeric_limits<double>::infinity();
+    for (const int point : polygon.loop) {
+      const int v = static_cast<int>(
+          std::lower_bound(shape.extreme.begin(), shape.extreme.end(), point) -
+          shape.extreme.begin());
+      offset = std::max(offset, polygon.normal.dot(P->vertices[v]));
+      P->facet_loop.push_back(v);
+    }
+    P->facets.push_back({polygon.normal, offset, true});
+    P->facet_loop_start.push_back(static_cast<int>(P->facet_loop.size()));
+  }
+}
+
+// One edge for each pair of opposite steps of the loops, in the order and the
+// direction in which the loops meet it first.
+void AddEdges(Polytope* P) {
+  struct Step {
+    int low, high, facet, slot, from;
+  };
+  std::vector<Step> steps;
+  steps.reserve(P->facet_loop.size());
+  for (int f = 0; f < static_cast<int>(P->facets.size()); ++f) {
+    const auto loop = P->loop_of(f);
+    for (int k = 0; k < static_cast<int>(loop.size()); ++k) {
+      const auto [low, high] =
+          std::minmax({loop[k], loop[(k + 1) % loop.size()]});
+      steps.push_back({low, high, f, P->facet_loop_start[f] + k, loop[k]});
+    }
+  }
+  std::sort(steps.begin(), steps.end(), [](const Step& s, const Step& t) {
+    return std::tie(s.low, s.high, s.slot) < std::tie(t.low, t.high, t.slot);
+  });
+  // Pairs, by the slot that comes first.
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t i = 0; i + 1 < steps.size(); i += 2) {
+    pairs.emplace_back(steps[i].slot, static_cast<int>(i));
+  }
+  std::sort(pairs.begin(), pairs.end());
+  P->facet_loop_edge.resize(P->facet_loop.size());
+  for (const auto& [slot, i] : pairs) {
+    const Step &first = steps[i], &second = steps[i + 1];
+    Polytope::Edge edge;
+    edge.v0 = first.from;
+    edge.v1 = second.from;
+    edge.left = first.facet;
+    edge.right = second.facet;
+    P->facet_loop_edge[first.slot] = static_cast<int>(P->edges.size());
+    P->facet_loop_edge[second.slot] = static_cast<int>(P->edges.size());
+    P->edges.push_back(edge);
+  }
+}
+
+void AddWings(Polytope* P) {
+  for (Polytope::Edge& edge : P->edges) {
+    if (edge.left < 0) continue;
+    const Vec3 along = P->vertices[edge.v1] - P->vertices[edge.v0];
+    edge.wings[0] = P->facets[edge.left].normal.cross(along).stableNormalized();
+    edge.wings[1] =
+        -P->facets[edge.right].normal.cross(along).stableNormalized();
+  }
+}
+
+void AddNeighborsAndRings(Polytope* P) {
+  std::vector<int> ends;
+  for (const Polytope::Edge& edge : P->edges) {
+    ends.push_back(edge.v0);
+    ends.push_back(edge.v1);
+  }
+  P->neighbor_start = StartsFromOwners(ends, P->num_vertices());
+  P->neighbor.resize(ends.size());
+  P->neighbor_edge.resize(ends.size());
+  P->ring_start = P->neighbor_start;
+  P->ring.resize(ends.size());
+  std::vector<int> next = P->neighbor_start;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const int v = ends[i], w = ends[i ^ 1], slot = next[v]++;
+    P->neighbor[slot] = w;
+    P->neighbor_edge[slot] = static_cast<int>(i / 2);
+    P->ring[slot] = (P->vertices[w] - P->vertices[v]).stableNormalized();
+  }
+}
+
+void AddVertexFacets(Polytope* P) {
+  P->vertex_facet_start = StartsFromOwners(P->facet_loop, P->num_vertices());
+  P->vertex_facet.resize(P->facet_loop.size());
+  std::vector<int> next = P->vertex_facet_start;
+  for (int f = 0; f < static_cast<int>(P->facets.size()); ++f) {
+    for (const int v : P->loop_of(f)) P->vertex_facet[next[v]++] = f;
+  }
+}
+
+void AddBall(Polytope* P) {
+  // Divided first, so that the sum of huge coordinates cannot overflow.
+  for (const Vec3& v : P->vertices) P->centroid += v / P->num_vertices();
+  for (const Vec3& v : P->vertices) {
+    P->radius = std::max(P->radius, (v - P->centroid).norm());
+  }
+}
+
+}  // namespace
+
+Polytope MakePolytope(std::span<const Vec3> points, double flatness) {
+  CheckFinite(points);
+  const HullShape shape = FindHullShape(points, flatness);
+  Polytope P;
+  P.dimension = shape.dimension;
+  for (const int i : shape.extreme) P.vertices.push_back(points[i]);
+  AddFacets(shape, &P);
+  AddEdges(&P);
+  if (P.dimension == 1) {
+    Polytope::Edge edge;
+    edge.v0 = 0;
+    edge.v1 = 1;
+    P.edges.push_back(edge);
+  }
+  AddWings(&P);
+  AddNeighborsAndRings(&P);
+  AddVertexFacets(&P);
+  AddBall(&P);
+  return P;
+}
+
+}  // namespace drake_haptics

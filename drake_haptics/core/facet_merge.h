@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "convex_hull.h"
+#include "hull_shape.h"
+
+namespace drake_haptics {
+
+/// Merges the triangles of a hull that are coplanar within `tolerance` (m) into
+/// polygons and drops the points inside of polygons and on straight edges.
+/// A polygon takes the plane of its largest triangle, which supports the whole
+/// hull exactly. If the tolerance cannot be met by a valid surface (which only
+/// noise of the tolerance's own size can cause) the triangles stay apart.
+std::vector<HullShape::Polygon> MergeCoplanar(
+    std::span<const Vec3> points, std::span<const HullTriangle> triangles,
+    double tolerance);
+
+}  // namespace drake_haptics

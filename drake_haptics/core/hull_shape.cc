@@ -1,0 +1,201 @@
+#include "hull_shape.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "convex_hull.h"
+#include "facet_merge.h"
+#include "predicates.h"
+
+namespace drake_haptics {
+namespace {
+
+// Points that span the set, each the farthest from the span of the former.
+struct Spanning {
+  int dimension = 0;
+  std::array<int, 4> point{0, 0, 0, 0};
+};
+
+template <typename Measure>
+std::pair<int, double> Farthest(std::span<const Vec3> points,
+                                const Measure& measure) {
+  int best = 0;
+  double most = -1;
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+    const double value = measure(points[i]);
+    if (value > most) {
+      most = value;
+      best = i;
+    }
+  }
+  return {best, most};
+}
+
+Spanning FindSpanning(std::span<const Vec3> points, const Vec3& extent,
+                      double tolerance) {
+  Spanning result;
+  int axis = 0;
+  const double size = extent.maxCoeff(&axis);
+  if (size <= tolerance) return result;
+  auto& p = result.point;
+  p[0] = Farthest(points, [&](const Vec3& q) { return 2 - q[axis]; }).first;
+  p[1] = Farthest(points, [&](const Vec3& q) { return 2 + q[axis]; }).first;
+  result.dimension = 1;
+
+  const Vec3 base = points[p[0]];
+  const Vec3 along = (points[p[1]] - base).normalized();
+  const auto [third, width] = Farthest(
+      points, [&](const Vec3& q) { return (q - base).cross(along).norm(); });
+  if (width <= tolerance) return result;
+  p[2] = third;
+  result.dimension = 2;
+
+  const Vec3 normal =
+      TriangleCross(base, points[p[1]], points[p[2]]).normalized();
+  const auto [fourth, height] = Farthest(
+      points, [&](const Vec3& q) { return std::abs(normal.dot(q - base)); });
+  p[3] = fourth;
+  const bool flat =
+      height <= tolerance ||
+      Orient3d(base, points[p[1]], points[p[2]], points[p[3]]) == 0;
+  if (!flat) result.dimension = 3;
+  return result;
+}
+
+// Drops corners that stand out of the line of their neighbours by less than
+// the tolerance. Neighbours never go in the same pass, so that a fine polygon
+// cannot melt away.
+void DropStraightCorners(std::span<const Vec3> points, double tolerance,
+                         std::vector<int>* loop) {
+  bool dropped = true;
+  while (dropped && loop->size() > 2) {
+    dropped = false;
+    std::vector<int> kept;
+    for (std::size_t k = 0; k < loop->size(); ++k) {
+      const Vec3& before = points[kept.empty() ? loop->back() : kept.back()];
+      const Vec3& after = points[(*loop)[(k + 1) % loop->size()]];
+      const Vec3 chord = after - before;
+      const double deviation =
+          chord.cross(points[(*loop)[k]] - before).norm() /
+          std::max(chord.norm(), std::numeric_limits<double>::min());
+      const bool may_drop =
+          k == 0 || kept.empty() || kept.back() == (*loop)[k - 1];
+      if (may_drop && deviation <= tolerance && k + 1 < loop->size()) {
+        dropped = true;
+      } else {
+        kept.push_back((*loop)[k]);
+      }
+    }
+    *loop = std::move(kept);
+  }
+}
+
+std::vector<int> FlatLoop(std::span<const Vec3> points, const Vec3& normal,
+                          const Vec3& along, double tolerance) {
+  const Vec3 across = normal.cross(along);
+  std::vector<Eigen::Vector2d> projected;
+  projected.reserve(points.size());
+  for (const Vec3& p : points) {
+    projected.emplace_back(along.dot(p), across.dot(p));
+  }
+  std::vector<int> loop = ExactConvexPolygon(projected);
+  DropStraightCorners(points, tolerance, &loop);
+  return loop;
+}
+
+std::vector<HullShape::Polygon> Polygons(std::span<const Vec3> points,
+                                         const Spanning& spanning,
+                                         double tolerance) {
+  const auto& p = spanning.point;
+  if (spanning.dimension == 3) {
+    return MergeCoplanar(points, ExactConvexHull(points, p), tolerance);
+  }
+  const Vec3 normal =
+      TriangleCross(points[p[0]], points[p[1]], points[p[2]]).normalized();
+  const Vec3 along = (points[p[1]] - points[p[0]]).normalized();
+  const std::vector<int> loop = FlatLoop(points, normal, along, tolerance);
+  std::vector<int> back = loop;
+  std::reverse(back.begin() + 1, back.end());
+  return {{normal, loop}, {-normal, back}};
+}
+
+std::vector<int> ExtremePoints(const Spanning& spanning,
+                               std::span<const HullShape::Polygon> polygons) {
+  std::vector<int> extreme(spanning.point.begin(),
+                           spanning.point.begin() + spanning.dimension + 1);
+  if (!polygons.empty()) extreme.clear();
+  for (const HullShape::Polygon& polygon : polygons) {
+    extreme.insert(extreme.end(), polygon.loop.begin(), polygon.loop.end());
+  }
+  std::sort(extreme.begin(), extreme.end());
+  extreme.erase(std::unique(extreme.begin(), extreme.end()), extreme.end());
+  return extreme;
+}
+
+// Indices of distinct points, the first of each kind, ascending.
+std::vector<int> DistinctPoints(std::span<const Vec3> points) {
+  std::vector<int> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto less = [&](int i, int j) {
+    const Vec3 &p = points[i], &q = points[j];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (p[axis] != q[axis]) return p[axis] < q[axis];
+    }
+    return i < j;
+  };
+  std::sort(order.begin(), order.end(), less);
+  const auto last = std::unique(order.begin(), order.end(), [&](int i, int j) {
+    return points[i] == points[j];
+  });
+  order.erase(last, order.end());
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+}  // namespace
+
+HullShape FindHullShape(std::span<const Vec3> points, double flatness) {
+  double magnitude = 0;
+  for (const Vec3& p : points) {
+    magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
+  }
+  const double scale = PowerOfTwoScale(magnitude);
+  std::vector<Vec3> normalized;
+  normalized.reserve(points.size());
+  for (const Vec3& p : points) {
+    normalized.push_back(NormalizeForPredicates(p, scale));
+  }
+  const std::vector<int> source = DistinctPoints(normalized);
+  std::vector<Vec3> distinct;
+  distinct.reserve(source.size());
+  for (const int i : source) distinct.push_back(normalized[i]);
+
+  Vec3 low = distinct[0], high = distinct[0];
+  for (const Vec3& p : distinct) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Vec3 extent = high - low;
+  // Coordinates are below 1 now: their own round-off is half an epsilon.
+  const double tolerance = std::max(
+      flatness * extent.norm(),
+      4 * std::numeric_limits<double>::epsilon() *
+          std::max(high.cwiseAbs().maxCoeff(), low.cwiseAbs().maxCoeff()));
+
+  const Spanning spanning = FindSpanning(distinct, extent, tolerance);
+  HullShape shape;
+  shape.dimension = spanning.dimension;
+  if (spanning.dimension >= 2) {
+    shape.polygons = Polygons(distinct, spanning, tolerance);
+  }
+  shape.extreme = ExtremePoints(spanning, shape.polygons);
+  for (int& i : shape.extreme) i = source[i];
+  for (HullShape::Polygon& polygon : shape.polygons) {
+    for (int& i : polygon.loop) i = source[i];
+  }
+  return shape;
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "types.h"
+
+namespace drake_haptics {
+
+/// The convex hull of a point set as polygons over its extreme points: what a
+/// polytope is made from.
+struct HullShape {
+  struct Polygon {
+    Vec3 normal;            ///< unit, outward
+    std::vector<int> loop;  ///< points, counter-clockwise seen from outside
+  };
+  int dimension = 0;
+  std::vector<int> extreme;       ///< indices of the extreme points, ascending
+  std::vector<Polygon> polygons;  ///< dimension 2: front and back
+};
+
+/// @param points positions, finite and at least one.
+/// @param flatness thickness relative to the size below which the set is flat.
+///        The same bound, against a facet's plane, merges triangles to facets.
+///        It never falls below the round-off of the coordinates themselves.
+HullShape FindHullShape(std::span<const Vec3> points, double flatness);
+
+}  // namespace drake_haptics
