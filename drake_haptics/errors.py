@@ -1,0 +1,17 @@
+"""What a user did or gave that cannot be used, as opposed to a defect of ours."""
+
+
+class UserError(ValueError):
+    """Base of all errors whose message is meant for the person at the keyboard.
+
+    The command line prints the message alone and exits with status 1; every
+    other exception keeps its traceback, because it is a defect of the program.
+    """
+
+
+class MeshError(UserError):
+    """A mesh that cannot be used; says what is wrong and what to do."""
+
+
+class DecompositionFileError(UserError):
+    """A stored decomposition that is damaged, foreign or of another version."""

@@ -1,0 +1,126 @@
+"""Reads triangles from files, as they are, before any check or repair."""
+
+from __future__ import annotations
+
+import logging
+import os
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from drake_haptics.errors import MeshError
+from drake_haptics.units import unit_of_name
+
+
+@dataclass(frozen=True)
+class RawMesh:
+    """What a file holds, in the file's own unit.
+
+    Attributes:
+        vertices: (n, 3) positions in the file's unit.
+        triangles: (m, 3) vertex indices.
+        parts: how many placed geometries were merged.
+        unit: the unit that the file itself states, None if it states none.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    parts: int = 1
+    unit: str | None = None
+
+
+def read_mesh_file(path: str | os.PathLike[str]) -> RawMesh:
+    """Reads every triangle of a file, scenes with their transforms applied.
+
+    Args:
+        path: any format that trimesh reads (obj, stl, ply, off, glb, gltf, ...),
+            or .npz with arrays V (n, 3) and F (m, 3).
+
+    Raises:
+        MeshError: if the file is absent, unreadable or has no triangles.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise MeshError(f"{path}: no such file")
+    if path.is_dir():
+        raise MeshError(f"{path}: is a folder; name a mesh file inside it")
+    if path.suffix.lower() == ".npz":
+        return _read_npz(path)
+    return _read_with_trimesh(path)
+
+
+def _read_npz(path: Path) -> RawMesh:
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            missing = [key for key in ("V", "F") if key not in archive]
+            if missing:
+                raise MeshError(
+                    f"{path}: holds no array {' and no array '.join(missing)}; a mesh "
+                    f"in .npz needs V (n, 3) and F (m, 3), this one has "
+                    f"{', '.join(archive.files) or 'nothing'}"
+                )
+            return RawMesh(archive["V"], archive["F"])
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        if isinstance(error, MeshError):
+            raise
+        raise MeshError(f"{path}: cannot be read as .npz: {error}") from error
+
+
+def _read_with_trimesh(path: Path) -> RawMesh:
+    import trimesh  # half a second: only for those who read such a file
+
+    logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # we report ourselves
+    formats = trimesh.available_formats()
+    if path.suffix.lower().lstrip(".") not in formats:
+        raise MeshError(
+            f"{path}: trimesh reads no format {path.suffix or '(no suffix)'} here; "
+            f"it reads {', '.join(sorted(formats))} and this program .npz. Convert "
+            f"the file, or install the reader that trimesh asks for"
+        )
+    try:
+        scene = trimesh.load_scene(path, process=False)
+    except Exception as error:  # each of trimesh's readers raises what it likes
+        raise MeshError(
+            f"{path}: cannot be read as {path.suffix}: {type(error).__name__}: {error}"
+        ) from error
+    return _merge_scene(path, scene)
+
+
+def _merge_scene(path: Path, scene: Any) -> RawMesh:
+    vertices: list[np.ndarray] = []
+    triangles: list[np.ndarray] = []
+    start = 0
+    for node in scene.graph.nodes_geometry:
+        X_WG, name = scene.graph[node]
+        geometry = scene.geometry[name]
+        faces = getattr(geometry, "faces", None)
+        if faces is None or len(faces) == 0:
+            continue  # point clouds and paths have no triangles
+        p_GV = np.asarray(geometry.vertices, dtype=np.float64)
+        F = np.asarray(faces, dtype=np.int64)
+        if not np.array_equal(X_WG, np.eye(4)):
+            p_GV = p_GV @ X_WG[:3, :3].T + X_WG[:3, 3]
+            if np.linalg.det(X_WG[:3, :3]) < 0:
+                F = F[:, ::-1]  # a mirror turns the winding round
+        if F.min() < 0 or F.max() >= len(p_GV):
+            raise MeshError(
+                f"{path}: a triangle names vertex "
+                f"{int(F.max() if F.max() >= len(p_GV) else F.min())}, but there are "
+                f"only {len(p_GV)} vertices; the file is damaged: export it again"
+            )
+        vertices.append(p_GV)
+        triangles.append(F + start)
+        start += len(p_GV)
+    if not triangles:
+        raise MeshError(
+            f"{path}: has no triangles; point clouds and curves have no surface"
+        )
+    return RawMesh(
+        np.concatenate(vertices),
+        np.concatenate(triangles),
+        len(triangles),
+        unit_of_name(scene.units),
+    )

@@ -1,0 +1,203 @@
+"""The report on a mesh: what was found, what was done, in words and as data."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import rich.box
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.table import Table
+from rich.text import Text
+
+
+class Severity(str, Enum):
+    """How much a finding matters.
+
+    NOTE: says something about the file; its surface is unchanged.
+    QUESTION: possibly a mistake that only its author can judge.
+    REPAIRED: a defect of the surface, repaired.
+    DEFECT: a defect of the surface, left as it is.
+    """
+
+    NOTE = "note"
+    QUESTION = "question"
+    REPAIRED = "repaired"
+    DEFECT = "defect"
+
+
+_COLORS = {
+    Severity.NOTE: "cyan",
+    Severity.QUESTION: "magenta",
+    Severity.REPAIRED: "yellow",
+    Severity.DEFECT: "red",
+}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing found in a mesh.
+
+    Attributes:
+        code: stable name, such as "duplicate-faces".
+        severity: how much it matters.
+        count: how many of them.
+        message: what was found.
+        action: what was done about it.
+    """
+
+    code: str
+    severity: Severity
+    count: int
+    message: str
+    action: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns plain data for JSON."""
+        return {
+            "code": self.code,
+            "severity": self.severity.value,
+            "count": self.count,
+            "message": self.message,
+            "action": self.action,
+        }
+
+
+@dataclass(frozen=True)
+class MeshReport:
+    """What a mesh is, and every finding of its intake.
+
+    Attributes:
+        source: file or name of the mesh.
+        metres_per_unit: factor from the file's unit to metres.
+        vertices: count after intake.
+        triangles: count after intake.
+        components: count of connected parts.
+        solids: how many of them bound a solid.
+        one_sided_triangles: triangles of parts that bound no solid.
+        extent: (x, y, z) size of the bounding box, m.
+        area: of the surface, m².
+        volume: of the solids, m³, counted once for each; cavities subtract.
+        findings: in the order in which they were made.
+    """
+
+    source: str
+    metres_per_unit: float
+    vertices: int
+    triangles: int
+    components: int
+    solids: int
+    one_sided_triangles: int
+    extent: tuple[float, float, float]
+    area: float
+    volume: float
+    findings: tuple[Finding, ...]
+
+    @property
+    def unclean(self) -> tuple[Finding, ...]:
+        """The findings that a strict intake refuses: repairs and defects."""
+        refused = (Severity.REPAIRED, Severity.DEFECT)
+        return tuple(f for f in self.findings if f.severity in refused)
+
+    @property
+    def refusal(self) -> str:
+        """Why a strict intake refuses the mesh; for one that is unclean."""
+        found = "; ".join(finding.message for finding in self.unclean)
+        return (
+            f"{self.source}: refused, because a strict intake repairs nothing: "
+            f"{found}. Repair the file, or read it without strict"
+        )
+
+    @property
+    def verdict(self) -> str:
+        """One sentence: what the mesh is good for."""
+        if self.solids == self.components:
+            plural = "one solid" if self.solids == 1 else f"{self.solids} solids"
+            return f"Usable as {plural}: closed and wound outward."
+        if self.solids == 0:
+            return (
+                "Usable as an open surface: no part of it bounds a solid, so every "
+                "piece is one-sided and nothing can be inside."
+            )
+        share = self.one_sided_triangles / self.triangles
+        return (
+            f"Usable in part as a solid: {self.solids} of {self.components} parts "
+            f"bound a solid; the others ({share:.0%} of the triangles) are open "
+            f"surfaces whose pieces are one-sided."
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns plain data for JSON; lengths in m, areas in m², volumes in m³."""
+        return {
+            "source": self.source,
+            "metres_per_unit": self.metres_per_unit,
+            "vertices": self.vertices,
+            "triangles": self.triangles,
+            "components": self.components,
+            "solids": self.solids,
+            "one_sided_triangles": self.one_sided_triangles,
+            "extent_m": list(self.extent),
+            "area_m2": self.area,
+            "volume_m3": self.volume,
+            "verdict": self.verdict,
+            "findings": [finding.to_dict() for finding in self.findings],
+        }
+
+    def __rich_console__(
+        self, console: Console, options: ConsoleOptions
+    ) -> RenderResult:
+        yield Text(self.source, style="bold")
+        yield self._facts()
+        yield Text()
+        if self.findings:
+            yield from self._findings()
+            yield Text()
+        yield Text(self.verdict, style="bold")
+
+    def _facts(self) -> Table:
+        table = Table.grid(padding=(0, 2))
+        table.add_row("  size", "{} x {} x {}".format(*map(length, self.extent)))
+        table.add_row(
+            "  surface",
+            f"{_count(self.triangles, 'triangle')}, "
+            f"{_count(self.vertices, 'vertex', 'vertices')}, "
+            f"{_count(self.components, 'part')}, {self.area:.4g} m²",
+        )
+        if self.solids:
+            table.add_row("  volume", f"{self.volume:.4g} m³")
+        return table
+
+    def _findings(self) -> Iterator[Table]:
+        table = Table(box=rich.box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+        table.add_column("  finding", no_wrap=True)
+        table.add_column("found", ratio=1)
+        table.add_column("done", ratio=1)
+        for finding in self.findings:
+            color = _COLORS[finding.severity]
+            table.add_row(
+                f"  [{color}]{finding.severity.value:<8}[/] {finding.code}",
+                Text(finding.message),
+                Text(finding.action),
+            )
+        yield table
+
+    def __str__(self) -> str:
+        out = io.StringIO()
+        Console(file=out, width=100, color_system=None).print(self)
+        return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
+
+
+def length(metres: float) -> str:
+    """Writes a length in the unit that people would use for it."""
+    if metres >= 1 or metres == 0:
+        return f"{metres:.4g} m"
+    if metres >= 1e-3:
+        return f"{metres * 1e3:.4g} mm"
+    return f"{metres * 1e6:.4g} µm"
+
+
+def _count(number: int, singular: str, plural: str | None = None) -> str:
+    return f"{number:,} {singular if number == 1 else plural or singular + 's'}"
