@@ -67,9 +67,6 @@ class Component:
 class Mesh:
     """A triangle mesh that passed the intake; all arrays are read-only.
 
-    Components share no vertices; each vertex is used. Reading the arrays of a
-    `Mesh` again by `from_arrays` gives the same arrays.
-
     Attributes:
         vertices: (n, 3) float64, m.
         triangles: (m, 3) int32, counter-clockwise seen from outside.

@@ -1,0 +1,38 @@
+"""`drake-haptics check MESH`."""
+
+from __future__ import annotations
+
+import click
+from rich.console import Console
+
+from drake_haptics.cli.mesh_options import json_option, unit_options, write_json
+from drake_haptics.mesh import MeshError, load_mesh
+
+
+@click.command()
+@click.argument("mesh", type=click.Path())
+@unit_options
+@click.option(
+    "--strict", is_flag=True, help="Fail if the mesh has a defect, repairable or not."
+)
+@json_option
+def check(
+    mesh: str,
+    unit: str | None,
+    scale: float | None,
+    strict: bool,
+    json_file: str | None,
+) -> None:
+    """Report what a mesh file is, what is wrong with it and what is done about it.
+
+    Exits with 0 if the mesh can be used, with 1 if it cannot.
+    """
+    report = load_mesh(mesh, unit=unit, scale=scale).report
+    if json_file is not None:
+        write_json(report.to_dict(), json_file)
+    if json_file != "-":
+        console = Console(highlight=False)
+        console.width = max(80, min(console.width, 110))
+        console.print(report)
+    if strict and report.unclean:
+        raise MeshError(report.refusal)

@@ -1,0 +1,46 @@
+"""What `check` and `decompose` share: reading a mesh, writing JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+from drake_haptics.units import METRES_PER_UNIT
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def unit_options(function: _Function) -> _Function:
+    """Adds --unit and --scale."""
+    scale = click.option(
+        "--scale", type=float, help="Metres per unit of the file, instead of --unit."
+    )
+    unit = click.option(
+        "--unit",
+        help=f"Length unit of the file: {', '.join(METRES_PER_UNIT)}.  [default: m]",
+    )
+    return unit(scale(function))
+
+
+def json_option(function: _Function) -> _Function:
+    """Adds --json FILE, where - is stdout."""
+    return click.option(
+        "--json",
+        "json_file",
+        type=click.Path(dir_okay=False, allow_dash=True),
+        metavar="FILE",
+        help="Also write the report as JSON; - writes it to stdout, alone.",
+    )(function)
+
+
+def write_json(data: dict[str, Any], file: str) -> None:
+    """Writes JSON to a file or, for "-", to stdout."""
+    text = json.dumps(data, indent=2, allow_nan=False)
+    if file == "-":
+        click.echo(text)
+        return
+    with open(file, "w", encoding="utf-8") as stream:
+        stream.write(text + "\n")

@@ -1,0 +1,33 @@
+"""One colour scheme for both viewers: (red, green, blue, alpha) in [0, 1]."""
+
+from __future__ import annotations
+
+import colorsys
+
+Color = tuple[float, float, float, float]
+
+NEAR_CONTACT: Color = (0.16, 0.70, 0.32, 1.0)
+PENETRATING_CONTACT: Color = (0.86, 0.16, 0.16, 1.0)
+TOOL: Color = (0.93, 0.62, 0.22, 1.0)
+ENVIRONMENT: Color = (0.62, 0.68, 0.76, 1.0)
+HANDLE_GHOST: Color = (0.25, 0.47, 0.85, 0.35)
+COUPLING_LINE: Color = (0.98, 0.82, 0.20, 1.0)
+VIRTUAL_FACET: Color = (0.25, 0.25, 0.28, 0.30)
+BACKGROUND_TOP: Color = (0.97, 0.97, 0.98, 1.0)
+BACKGROUND_BOTTOM: Color = (0.86, 0.88, 0.91, 1.0)
+
+_GOLDEN_RATIO = (1 + 5**0.5) / 2
+
+
+def piece_color(index: int) -> Color:
+    """Returns the colour of a convex piece.
+
+    Hues advance by the golden ratio, so that neighbours in the order differ as
+    much as possible for any number of pieces; value and saturation alternate
+    with periods 3 and 4 to tell apart hues that come near again.
+    """
+    hue = (index / _GOLDEN_RATIO) % 1.0
+    saturation = (0.55, 0.70, 0.45)[index % 3]
+    value = (0.92, 0.80, 0.98, 0.70)[index % 4]
+    red, green, blue = colorsys.hsv_to_rgb(hue, saturation, value)
+    return (red, green, blue, 1.0)
