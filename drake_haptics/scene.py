@@ -4,8 +4,6 @@ A scene is a YAML file read into the dataclasses below. Every field has its unit
 in its name or its docstring, every default works, and an unknown key is an error.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -222,7 +220,7 @@ class Scene:
         *,
         tool_scale: float = 1.0,
         environment_scale: float = 1.0,
-    ) -> Scene:
+    ) -> "Scene":
         """Makes a scene of two meshes of one's own.
 
         The environment's frame is the world's. The tool starts above the middle

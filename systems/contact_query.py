@@ -1,0 +1,117 @@
+"""Finds all contacts between the tool and its surroundings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pydrake.common.value import AbstractValue, Value
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import Context, InputPort, LeafSystem, OutputPort
+
+from drake_haptics._core import ContactTracker, Decomposition
+from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.scratch import declare_scratch, get_scratch
+
+
+@dataclass(frozen=True)
+class ContactObject:
+    """Something the tool can meet.
+
+    Attributes:
+        name: Unique among the objects; part of port names.
+        decomposition: Its convex pieces, in its frame O.
+        X_WO: Its pose, if it never moves; None gives it input ports instead.
+    """
+
+    name: str
+    decomposition: Decomposition
+    X_WO: RigidTransform | None = None
+
+
+class ContactQuery(LeafSystem):
+    """Contacts between the convex pieces of the tool and of the objects.
+
+    For each pair of pieces nearer than the tolerance there is one contact: signed
+    distance in m (negative: penetration depth), unit normal from the object into
+    the tool, both witness points in the world in m, both features.
+
+    .. pydrake_system::
+
+        name: ContactQuery
+        input_ports:
+        - X_WTool
+        - X_WO_<name of each object that moves>
+        output_ports:
+        - contacts
+
+    `X_WTool` and `X_WO_<name>` are poses [qw qx qy qz x y z] in the world, m.
+    `contacts` is a `drake_haptics._core.ContactSet`, immutable.
+
+    The search starts from its last answer in the same Context (paper, 5.2). Objects
+    with a pose of their own are placed once, when a Context is made.
+    """
+
+    def __init__(
+        self,
+        tool: Decomposition,
+        objects: Sequence[ContactObject],
+        tolerance_m: float,
+    ):
+        """Constructs the system.
+
+        Args:
+            tool: Convex pieces of the tool, in its frame.
+            objects: What it can meet, in the order of `ContactSet.object_index`.
+            tolerance_m: Pairs up to this distance are contacts, m.
+
+        Raises:
+            ValueError: The tolerance is negative or a name is used twice.
+        """
+        super().__init__()
+        if not tolerance_m >= 0.0:
+            raise ValueError(f"tolerance_m must not be negative, is {tolerance_m}")
+        if len({item.name for item in objects}) < len(objects):
+            raise ValueError("two objects have the same name")
+        self._tool = tool
+        self._objects = tuple(objects)
+        self._tolerance_m = tolerance_m
+        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._X_WO = {
+            i: self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
+            for i, item in enumerate(objects)
+            if item.X_WO is None
+        }
+        self._tracker = declare_scratch(self, "tracker", self._make_tracker)
+        self._contacts = self.DeclareAbstractOutputPort(
+            "contacts",
+            Value[object],
+            self._calc_contacts,
+            {self.all_input_ports_ticket()},
+        )
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self._X_WTool
+
+    def get_object_pose_input_port(self, name: str) -> InputPort:
+        """Returns the input `X_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"X_WO_{name}")
+
+    def get_contacts_output_port(self) -> OutputPort:
+        """Returns the output `contacts`."""
+        return self._contacts
+
+    def _make_tracker(self) -> ContactTracker:
+        decompositions = [item.decomposition for item in self._objects]
+        tracker = ContactTracker(self._tool, decompositions, self._tolerance_m)
+        for i, item in enumerate(self._objects):
+            if item.X_WO is not None:
+                tracker.set_object_pose(i, pose_to_vector(item.X_WO))
+        return tracker
+
+    def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
+        tracker = get_scratch(self._tracker, context)
+        for i, port in self._X_WO.items():
+            tracker.set_object_pose(i, port.Eval(context))
+        contacts.set_value(tracker.query(self._X_WTool.Eval(context)))

@@ -1,0 +1,116 @@
+"""The tool as a rigid body with an implicit step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    DiscreteValues,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+)
+
+from drake_haptics._core import RigidToolDynamics
+from drake_haptics.pose_vector import pose_to_vector
+
+
+class HapticTool(LeafSystem):
+    """A free rigid body that linearized backward Euler moves once per tick.
+
+    The step takes each force with its stiffness and damping, so that contact of
+    any stiffness is stable (Otaduy and Lin 2006): with the sum of all models
+    [F; K; B], (M + h B + h² K) dV = h (F - h K V).
+
+    .. pydrake_system::
+
+        name: HapticTool
+        input_ports:
+        - <name of each wrench>
+        output_ports:
+        - X_WTool
+        - V_WTool
+
+    Each input is a wrench model (78) as `PenaltyForce` documents it; one that is
+    not connected counts as zero.
+
+    * `X_WTool` (7) is the pose [qw qx qy qz x y z] in the world, m.
+    * `V_WTool` (6) is the spatial velocity [ω; v] of the tool's origin in the
+      world, rad/s and m/s.
+
+    The state is one discrete group (13), [X_WTool; V_WTool], updated every period
+    from 0 s on.
+    """
+
+    def __init__(
+        self,
+        dynamics: RigidToolDynamics,
+        period_s: float,
+        wrench_names: Sequence[str],
+        X_WT: RigidTransform,
+    ):
+        """Constructs the system.
+
+        Args:
+            dynamics: Mass and inertia.
+            period_s: The tick, s.
+            wrench_names: A name for each input port.
+            X_WT: Default pose; the tool starts at rest.
+
+        Raises:
+            ValueError: The period is not positive.
+        """
+        super().__init__()
+        if not period_s > 0.0:
+            raise ValueError(f"period_s must be positive, is {period_s}")
+        self._dynamics = dynamics
+        self._period_s = period_s
+        self._wrenches = [
+            self.DeclareVectorInputPort(name, 78) for name in wrench_names
+        ]
+        state = self.DeclareDiscreteState(
+            np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
+        )
+        from_state = {self.discrete_state_ticket(state)}
+        self._X_WTool = self.DeclareVectorOutputPort(
+            "X_WTool", 7, self._calc_X_WTool, from_state
+        )
+        self._V_WTool = self.DeclareVectorOutputPort(
+            "V_WTool", 6, self._calc_V_WTool, from_state
+        )
+        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+
+    def get_wrench_input_port(self, name: str) -> InputPort:
+        """Returns the input of a wrench."""
+        return self.GetInputPort(name)
+
+    def get_pose_output_port(self) -> OutputPort:
+        """Returns the output `X_WTool`."""
+        return self._X_WTool
+
+    def get_velocity_output_port(self) -> OutputPort:
+        """Returns the output `V_WTool`."""
+        return self._V_WTool
+
+    def _calc_X_WTool(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(context.get_discrete_state_vector().value()[:7])
+
+    def _calc_V_WTool(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(context.get_discrete_state_vector().value()[7:])
+
+    def _update(self, context: Context, next_state: DiscreteValues) -> None:
+        wrench_model = np.zeros(78)
+        for port in self._wrenches:
+            if port.HasValue(context):
+                wrench_model += port.Eval(context)
+        next_state.set_value(
+            self._dynamics.step(
+                context.get_discrete_state_vector().value(),
+                wrench_model,
+                self._period_s,
+            )
+        )

@@ -1,0 +1,179 @@
+"""Answers contact clusters with forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pydrake.common.value import AbstractValue, Value
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+    ValueProducer,
+)
+
+from drake_haptics._core import penalty_force
+from drake_haptics.systems.contact_query import ContactObject
+
+
+class PenaltyForce(LeafSystem):
+    """Elastic force below the tolerance, with damping that never pulls.
+
+    Each cluster pushes with (k (t - d) - k_v v) n at its point, v the speed of
+    separation along n (paper, Eq. 6-10), where damping acts on approach only.
+
+    .. pydrake_system::
+
+        name: PenaltyForce
+        input_ports:
+        - clusters
+        - X_WTool
+        - V_WTool
+        - X_WO_<name of each object that moves>
+        - V_WO_<name of each object that moves>
+        output_ports:
+        - wrench_model
+        - F_Tool_W
+        - contact_wrench
+
+    Poses are [qw qx qy qz x y z], m. `V_WTool` and `V_WO_<name>` are spatial
+    velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
+
+    * `clusters` is a `drake_haptics._core.ClusterSet`.
+    * `wrench_model` (78) is [F; K; B]: the wrench on the tool at its origin in the
+      world, N·m and N, and its 6 x 6 stiffness and damping, row-major, with
+      F(δ, V + dV) ≈ F - K δ - B dV, δ = [rotation vector; translation] of the tool.
+    * `F_Tool_W` (6) is its F, [τ; f].
+    * `contact_wrench` is the `drake_haptics._core.PenaltyWrench` with the force of
+      each cluster and the wrench on each object.
+    """
+
+    def __init__(
+        self,
+        objects: Sequence[ContactObject],
+        stiffness_N_per_m: float,
+        damping_Ns_per_m: float,
+        tolerance_m: float,
+    ):
+        """Constructs the system.
+
+        Args:
+            objects: Those of the `ContactQuery`, in the same order.
+            stiffness_N_per_m: k, N/m.
+            damping_Ns_per_m: k_v, N·s/m.
+            tolerance_m: t, the tolerance of the query, m.
+
+        Raises:
+            ValueError: A gain or the tolerance is negative.
+        """
+        super().__init__()
+        for name, value in {
+            "stiffness_N_per_m": stiffness_N_per_m,
+            "damping_Ns_per_m": damping_Ns_per_m,
+            "tolerance_m": tolerance_m,
+        }.items():
+            if not value >= 0.0:
+                raise ValueError(f"{name} must not be negative, is {value}")
+        self._gains = (stiffness_N_per_m, damping_Ns_per_m, tolerance_m)
+        self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())
+        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
+        self._moving = [
+            (
+                i,
+                self.DeclareVectorInputPort(f"X_WO_{item.name}", 7),
+                self.DeclareVectorInputPort(f"V_WO_{item.name}", 6),
+            )
+            for i, item in enumerate(objects)
+            if item.X_WO is None
+        ]
+        # Poses and velocities of objects at rest are read nowhere else.
+        self._p_WO = np.zeros((len(objects), 3))
+        self._V_WO = np.zeros((len(objects), 6))
+        for i, item in enumerate(objects):
+            if item.X_WO is not None:
+                self._p_WO[i] = item.X_WO.translation()
+        # One call of the core serves all ports.
+        self._wrench = self.DeclareCacheEntry(
+            "contact_wrench",
+            ValueProducer(Value[object], self._calc_wrench),
+            {self.all_input_ports_ticket()},
+        )
+        from_wrench = {self._wrench.ticket()}
+        self._wrench_model = self.DeclareVectorOutputPort(
+            "wrench_model", 78, self._calc_wrench_model, from_wrench
+        )
+        self._F_Tool_W = self.DeclareVectorOutputPort(
+            "F_Tool_W", 6, self._calc_F_Tool_W, from_wrench
+        )
+        self._contact_wrench = self.DeclareAbstractOutputPort(
+            "contact_wrench",
+            Value[object],
+            self._calc_contact_wrench,
+            from_wrench,
+        )
+
+    def get_clusters_input_port(self) -> InputPort:
+        """Returns the input `clusters`."""
+        return self._clusters
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self._X_WTool
+
+    def get_tool_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_WTool`."""
+        return self._V_WTool
+
+    def get_object_pose_input_port(self, name: str) -> InputPort:
+        """Returns the input `X_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"X_WO_{name}")
+
+    def get_object_velocity_input_port(self, name: str) -> InputPort:
+        """Returns the input `V_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"V_WO_{name}")
+
+    def get_wrench_model_output_port(self) -> OutputPort:
+        """Returns the output `wrench_model`."""
+        return self._wrench_model
+
+    def get_tool_wrench_output_port(self) -> OutputPort:
+        """Returns the output `F_Tool_W`."""
+        return self._F_Tool_W
+
+    def get_contact_wrench_output_port(self) -> OutputPort:
+        """Returns the output `contact_wrench`."""
+        return self._contact_wrench
+
+    def _calc_wrench(self, context: Context, wrench: AbstractValue) -> None:
+        p_WO, V_WO = self._p_WO, self._V_WO
+        if self._moving:
+            p_WO, V_WO = p_WO.copy(), V_WO.copy()
+            for i, X_WO, V_WOi in self._moving:
+                p_WO[i] = X_WO.Eval(context)[4:]
+                V_WO[i] = V_WOi.Eval(context)
+        stiffness, damping, tolerance = self._gains
+        wrench.set_value(
+            penalty_force(
+                self._clusters.Eval(context),
+                self._X_WTool.Eval(context)[4:],
+                self._V_WTool.Eval(context),
+                p_WO,
+                V_WO,
+                stiffness,
+                damping,
+                tolerance,
+            )
+        )
+
+    def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._wrench.Eval(context).wrench_model)
+
+    def _calc_F_Tool_W(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._wrench.Eval(context).F_Tool_W)
+
+    def _calc_contact_wrench(self, context: Context, output: AbstractValue) -> None:
+        output.set_value(self._wrench.Eval(context))

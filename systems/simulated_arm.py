@@ -1,0 +1,108 @@
+"""A simulated haptic arm, held by a simulated hand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from pydrake.math import RigidTransform
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import SpatialInertia, UnitInertia
+from pydrake.systems.framework import Diagram, DiagramBuilder
+
+from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.systems.arm_inverse_kinematics import solve_arm_positions
+from drake_haptics.systems.hand_grip import HandGrip
+from drake_haptics.systems.hand_impedance import HandImpedance
+from drake_haptics.systems.hand_path import HandPath
+
+
+class SimulatedArm(Diagram):
+    """A device backend: a `MultibodyPlant` arm whose handle a hand holds.
+
+    The arm moves in continuous time: a discrete plant would hide the instability of
+    a sampled loop. It starts at rest with its handle where the hand wants it.
+    Gravity is off, as on a device that compensates its own weight.
+
+    .. pydrake_system::
+
+        name: SimulatedArm
+        input_ports:
+        - F_applied
+        output_ports:
+        - X_WH
+        - V_WH
+
+    The ports are those of `HandImpedance`.
+    """
+
+    def __init__(
+        self,
+        model: Path,
+        handle_link: str,
+        X_WB: RigidTransform,
+        path: HandPath,
+        X_PH: RigidTransform,
+        grip: HandGrip | None,
+    ):
+        """Constructs the arm.
+
+        Args:
+            model: SDF of an arm of six revolute joints with the links `base` and:
+            handle_link: the one that is held.
+            X_WB: Where the base stands.
+            path: Where the hand wants P to go.
+            X_PH: Where it wants the handle in P.
+            grip: How it holds; None leaves the arm free.
+
+        Raises:
+            UnreachableError: The path starts out of the arm's reach.
+        """
+        super().__init__()
+        builder = DiagramBuilder()
+        plant = builder.AddNamedSystem("arm", make_arm_plant(model, X_WB))
+        handle = plant.GetBodyByName(handle_link)
+        if grip is not None:
+            hand = plant.AddRigidBody(
+                "hand",
+                SpatialInertia(
+                    grip.mass_kg,
+                    np.zeros(3),
+                    UnitInertia(*[grip.inertia_kgm2 / grip.mass_kg] * 3),
+                ),
+            )
+            plant.WeldFrames(handle.body_frame(), hand.body_frame())
+        plant.Finalize()
+        X_WH = vector_to_pose(path.calc(0.0)[0]) @ X_PH
+        q_rest = np.zeros(plant.num_positions())
+        plant.SetDefaultPositions(solve_arm_positions(plant, handle, X_WH, q_rest))
+        hand_impedance = builder.AddNamedSystem(
+            "hand_impedance",
+            HandImpedance(plant, handle, path, X_PH, grip.gains if grip else None),
+        )
+        builder.Connect(
+            plant.get_state_output_port(), hand_impedance.get_arm_state_input_port()
+        )
+        builder.Connect(
+            hand_impedance.get_generalized_force_output_port(),
+            plant.get_applied_generalized_force_input_port(),
+        )
+        builder.ExportInput(hand_impedance.get_applied_wrench_input_port(), "F_applied")
+        builder.ExportOutput(hand_impedance.get_handle_pose_output_port(), "X_WH")
+        builder.ExportOutput(hand_impedance.get_handle_velocity_output_port(), "V_WH")
+        builder.BuildInto(self)
+
+
+def make_arm_plant(model: Path, X_WB: RigidTransform) -> MultibodyPlant:
+    """Returns an arm, not finalized, continuous, without gravity.
+
+    Args:
+        model: SDF with a link `base`.
+        X_WB: Where that link stands.
+    """
+    plant = MultibodyPlant(0.0)
+    Parser(plant).AddModels(str(model))
+    plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("base"), X_WB)
+    plant.mutable_gravity_field().set_gravity_vector(np.zeros(3))
+    return plant
