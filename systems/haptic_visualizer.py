@@ -5,39 +5,30 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-import numpy as np
 from pydrake.common.value import Value
-from pydrake.geometry import Meshcat, Rgba, Sphere
-from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.geometry import Meshcat
+from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context, InputPort, LeafSystem
 
 from drake_haptics._core import Decomposition
-from drake_haptics.arrow_pool import ArrowPool
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.haptic_picture import HapticPicture
 
-# An exact binary fraction, so that frames fall on the same instants for ever.
+# An exact binary fraction, so that frames stay on the grid for ever.
 _PERIOD_S = 1 / 32
 # Drawing takes at most this share of clock time; the rest is the loop's.
 _LARGEST_SHARE = 0.05
-_MAX_CONTACTS = 64
-_MAX_CLUSTERS = 16
-
-_TOOL = Rgba(0.98, 0.72, 0.25)
-# Seen through, because much of what happens is inside.
-_ENVIRONMENT = Rgba(0.70, 0.77, 0.86, 0.45)
-_HANDLE = Rgba(0.20, 0.40, 0.90, 0.25)
-_COUPLING = Rgba(0.15, 0.35, 0.95)
-_NEAR = Rgba(0.05, 0.65, 0.20)
-_PENETRATING = Rgba(0.90, 0.10, 0.08)
+# A run faster than real time shows no more frames per second of clock time.
+_SHORTEST_FRAME_S = 1 / 50
 
 
 class HapticVisualizer(LeafSystem):
     """Tool, objects, handle, contacts and forces in Meshcat, live or recorded.
 
-    * The tool, and as its ghost where the handle wants it: X_WH X_HT.
+    * The tool, and as a ghost where the handle wants it: X_WH X_HT.
     * The coupling: a line from the handle to the place in the tool that it holds,
-      and an arrow of the force on the handle.
+      and an arrow of the force on the hand.
     * Each contact: a small arrow from its point along the normal, which points from
       the object into the tool; green near, red penetrating.
     * Each cluster: a larger arrow, as long as its force is large.
@@ -54,13 +45,13 @@ class HapticVisualizer(LeafSystem):
         - F_display
         - X_WO_<name of each object that moves>
 
-    Poses are [qw qx qy qz x y z], m; `F_display` is [τ; f], N·m and N; `contacts`,
-    `clusters` and `contact_wrench` are the outputs of `ContactQuery`,
-    `ContactClustering` and `PenaltyForce`.
+    Poses are [qw qx qy qz x y z], m. `F_display` is the wrench [τ; f] on the handle
+    at Ho in the world, N·m and N. `contacts`, `clusters` and `contact_wrench` are the
+    outputs of `ContactQuery`, `ContactClustering` and `PenaltyForce`.
 
-    It draws 32 times per simulated second while a browser is connected. Drawing takes at
-    most one twentieth of clock time: where a frame is slow to draw, the next ones are
-    left out. A recording is complete, whatever that takes.
+    It draws 32 times per simulated second while a browser is connected. Drawing takes
+    at most one twentieth of clock time: after a frame that was slow to draw, the next
+    ones are left out. A recording is complete, whatever time that takes.
     """
 
     def __init__(
@@ -73,15 +64,14 @@ class HapticVisualizer(LeafSystem):
         """Constructs the system and sends the geometry.
 
         Args:
-            meshcat: Where to draw, under "/haptics".
+            meshcat: Where to draw, below "/haptics".
             tool: The tool, in its frame T.
             objects: Those of the `ContactQuery`.
             X_HT: Pose of the tool in the handle at rest.
         """
         super().__init__()
         self._meshcat = meshcat
-        self._X_HT = X_HT
-        self._X_TH = X_HT.inverse()
+        self._picture = HapticPicture(meshcat, tool, objects, X_HT)
         self._recording = False
         self._first_frame = False
         self._not_before_s = 0.0
@@ -99,7 +89,6 @@ class HapticVisualizer(LeafSystem):
             if item.X_WO is None
         }
         self.DeclarePeriodicPublishEvent(_PERIOD_S, 0.0, self._publish)
-        self._send_geometry(tool, objects)
 
     def get_handle_pose_input_port(self) -> InputPort:
         """Returns the input `X_WH`."""
@@ -127,7 +116,11 @@ class HapticVisualizer(LeafSystem):
 
     def get_object_pose_input_port(self, name: str) -> InputPort:
         """Returns the input `X_WO_<name>` of an object that moves."""
-        return self._X_WO[name]
+        return self.GetInputPort(f"X_WO_{name}")
+
+    def ColorPieces(self) -> None:
+        """Colours tool and objects by their convex pieces."""
+        self._picture.color_pieces()
 
     def StartRecording(self) -> None:
         """Records every frame from now on into Meshcat's animation."""
@@ -144,28 +137,34 @@ class HapticVisualizer(LeafSystem):
         """Sends the animation to the browser and into `Meshcat.StaticHtml`."""
         self._meshcat.PublishRecording()
 
-    def _send_geometry(
-        self, tool: Decomposition, objects: Sequence[ContactObject]
-    ) -> None:
-        """Sends all that will ever be seen; later only poses and properties change."""
-        size = float(np.linalg.norm(np.ptp(tool.vertices, axis=0)))
-        # Arrows have a size that suits the tool's: that of 1 N.
-        self._arrow_m = 0.11 * size
-        self._send_mesh("tool", tool, _TOOL)
-        self._send_mesh("handle", tool, _HANDLE)
-        for item in objects:
-            self._send_mesh(f"objects/{item.name}", item.decomposition, _ENVIRONMENT)
-            if item.X_WO is not None:
-                self._meshcat.SetTransform(f"{_ROOT}/objects/{item.name}", item.X_WO)
-        self._meshcat.SetObject(f"{_ROOT}/grip", Sphere(0.025 * size), _HANDLE)
-        self._coupling = ArrowPool(
-            self._meshcat, f"{_ROOT}/coupling", 1, [_COUPLING], headless=True
-        )
-        self._display = ArrowPool(self._meshcat, f"{_ROOT}/force", 1, [_COUPLING])
-        colors = [_NEAR, _PENETRATING]
-        self._contact_arrows = ArrowPool(
-            self._meshcat, f"{_ROOT}/contacts", _MAX_CONTACTS, colors
-        )
-        self._cluster_arrows = ArrowPool(
-            self._meshcat, f"{_ROOT}/clusters", _MAX_CLUSTERS, colors
-        )
+    def _publish(self, context: Context) -> None:
+        """Draws a frame, if someone sees it and there is time."""
+        if self._recording:
+            self._draw(context)
+            if self._first_frame:
+                self._picture.write_visibility(context.get_time())
+                self._first_frame = False
+            return
+        start_s = time.perf_counter()
+        if start_s < self._not_before_s or not self._meshcat.GetNumActiveConnections():
+            return
+        self._draw(context)
+        taken_s = time.perf_counter() - start_s
+        pause_s = max(taken_s / _LARGEST_SHARE, _SHORTEST_FRAME_S)
+        self._not_before_s = start_s + pause_s
+
+    def _draw(self, context: Context) -> None:
+        """Draws a frame."""
+        time_s = context.get_time()
+        X_WH = vector_to_pose(self._X_WH.Eval(context))
+        X_WTool = vector_to_pose(self._X_WTool.Eval(context))
+        picture = self._picture
+        picture.place_tool(X_WH, X_WTool, time_s)
+        for name, port in self._X_WO.items():
+            picture.place_object(name, vector_to_pose(port.Eval(context)), time_s)
+        f_H_W = self._F_display.Eval(context)[3:]
+        picture.draw_display_force(X_WH.translation(), f_H_W, time_s)
+        picture.draw_contacts(self._contacts.Eval(context), time_s)
+        f_Cluster_W = self._contact_wrench.Eval(context).f_Cluster_W
+        picture.draw_clusters(self._clusters.Eval(context), f_Cluster_W, time_s)
+        self._meshcat.SetSimulationTime(time_s)

@@ -1,0 +1,123 @@
+"""Arrows in Meshcat that can be recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+
+import numpy as np
+from pydrake.geometry import Meshcat, Rgba
+from pydrake.math import RigidTransform, RotationMatrix
+
+_SIDES = 12
+# (radius, height) of an arrow of length 1 along z, from its tail to its tip.
+_PROFILE = ((0.0, 0.0), (0.075, 0.0), (0.075, 0.60), (0.20, 0.60), (0.0, 1.0))
+
+
+class ArrowPool:
+    """A fixed number of arrows, made once, then moved, scaled, shown and hidden.
+
+    A Meshcat recording holds poses and properties over time but no geometry, so an
+    arrow that is to come and go must exist from the start. The same calls draw the
+    live picture.
+
+    Each slot has one arrow per colour, of which at most one is visible. Whatever is
+    drawn under the same key stays in the same slot, so that a recording, which is
+    interpolated between frames, does not sweep arrows across the scene.
+    """
+
+    def __init__(
+        self, meshcat: Meshcat, path: str, capacity: int, colors: Sequence[Rgba]
+    ):
+        """Sends the arrows to Meshcat, hidden.
+
+        Args:
+            meshcat: Where to draw.
+            path: Folder of the arrows in the scene tree.
+            capacity: How many arrows can be seen at once.
+            colors: What an arrow can be coloured.
+        """
+        self._meshcat = meshcat
+        self._num_colors = len(colors)
+        self._slots = [f"{path}/{i}" for i in range(capacity)]
+        self._slot_of_key: dict[Hashable, int] = {}
+        # Colour shown in each slot; None where hidden.
+        self._shown: list[int | None] = [None] * capacity
+        vertices, triangles = _make_arrow()
+        for slot in self._slots:
+            for color, rgba in enumerate(colors):
+                child = f"{slot}/{color}"
+                meshcat.SetTriangleMesh(child, vertices, triangles, rgba)
+                meshcat.SetProperty(child, "visible", False)
+
+    def draw(
+        self,
+        keys: Sequence[Hashable],
+        p_W: np.ndarray,
+        vectors_W: np.ndarray,
+        colors: Sequence[int] | np.ndarray,
+        time_s: float,
+    ) -> None:
+        """Shows these arrows and no others; the first ones if there are too many.
+
+        Args:
+            keys: (n,) what each arrow stands for, each once.
+            p_W: (n, 3) tails, m.
+            vectors_W: (n, 3) from tail to tip, m, none of them zero.
+            colors: (n,) indices into the pool's colours.
+            time_s: Time in the recording, s.
+        """
+        keys = keys[: len(self._slots)]
+        self._assign_slots(keys)
+        visible: list[int | None] = [None] * len(self._slots)
+        for key, p, vector, color in zip(keys, p_W, vectors_W, colors, strict=False):
+            i = self._slot_of_key[key]
+            visible[i] = int(color)
+            X_WArrow = RigidTransform(RotationMatrix.MakeFromOneVector(vector, 2), p)
+            self._meshcat.SetTransform(self._slots[i], X_WArrow, time_s)
+            scale = [float(np.linalg.norm(vector))] * 3
+            self._meshcat.SetProperty(self._slots[i], "scale", scale, time_s)
+        for i, shown in enumerate(visible):
+            self._show(i, shown, time_s)
+
+    def write_visibility(self, time_s: float) -> None:
+        """Sends again what is visible, for the first frame of a recording."""
+        for slot, shown in zip(self._slots, self._shown, strict=True):
+            for color in range(self._num_colors):
+                self._meshcat.SetProperty(
+                    f"{slot}/{color}", "visible", color == shown, time_s
+                )
+
+    def _assign_slots(self, keys: Sequence[Hashable]) -> None:
+        """Keeps the slots of keys seen before, gives new keys free ones."""
+        kept = {k: self._slot_of_key[k] for k in keys if k in self._slot_of_key}
+        free = iter(sorted(set(range(len(self._slots))) - set(kept.values())))
+        self._slot_of_key = {k: kept[k] if k in kept else next(free) for k in keys}
+
+    def _show(self, slot: int, color: int | None, time_s: float) -> None:
+        """Makes one colour of a slot visible; sends only what changes."""
+        before = self._shown[slot]
+        if color == before:
+            return
+        for changed, visible in ((before, False), (color, True)):
+            if changed is not None:
+                path = f"{self._slots[slot]}/{changed}"
+                self._meshcat.SetProperty(path, "visible", visible, time_s)
+        self._shown[slot] = color
+
+
+def _make_arrow() -> tuple[np.ndarray, np.ndarray]:
+    """Returns vertices (3, n) and triangles (3, m) of an arrow of length 1 along z."""
+    angle = 2 * np.pi * np.arange(_SIDES) / _SIDES
+    rings = [
+        np.column_stack([r * np.cos(angle), r * np.sin(angle), np.full(_SIDES, z)])
+        for r, z in _PROFILE
+    ]
+    triangles = []
+    for ring in range(len(_PROFILE) - 1):
+        for i in range(_SIDES):
+            a, b = ring * _SIDES + i, ring * _SIDES + (i + 1) % _SIDES
+            triangles += [(a, b, b + _SIDES), (a, b + _SIDES, a + _SIDES)]
+    return (
+        np.asfortranarray(np.vstack(rings).T),
+        np.asfortranarray(np.array(triangles, dtype=np.int32).T),
+    )

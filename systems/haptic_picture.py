@@ -1,0 +1,188 @@
+"""What the haptic loop looks like in Meshcat."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pydrake.geometry import Cylinder, Meshcat, Rgba, Sphere
+from pydrake.math import RigidTransform, RotationMatrix
+
+from drake_haptics import colors
+from drake_haptics._core import ClusterSet, ContactSet, Decomposition
+from drake_haptics.systems.arrow_pool import ArrowPool
+from drake_haptics.systems.contact_query import ContactObject
+
+_ROOT = "/haptics"
+_MAX_CONTACTS = 64
+_MAX_CLUSTERS = 16
+# Objects are seen through, because much of what happens is inside.
+_ENVIRONMENT_ALPHA = 0.45
+# Lengths as shares of the tool's size (the diagonal of its box), so that tools of any
+# size give a readable picture.
+_CONTACT_ARROW = 0.06
+_ARROW_OF_ONE_NEWTON = 0.10
+_SHORTEST_FORCE_ARROW = 0.07
+_LONGEST_FORCE_ARROW = 0.45
+_GRIP_RADIUS = 0.022
+_LINE_RADIUS = 0.006
+
+
+class HapticPicture:
+    """The objects of the picture: made once, then moved, scaled, shown and hidden.
+
+    All of them are below "/haptics" in the scene tree: `tool`, `handle`, `grip`,
+    `coupling`, `force`, `contacts`, `clusters` and `objects/<name>`.
+    """
+
+    def __init__(
+        self,
+        meshcat: Meshcat,
+        tool: Decomposition,
+        objects: Sequence[ContactObject],
+        X_HT: RigidTransform,
+    ):
+        """Sends the geometry.
+
+        Args:
+            meshcat: Where to draw.
+            tool: The tool, in its frame T.
+            objects: What it meets; those that never move are placed.
+            X_HT: Pose of the tool in the handle at rest.
+        """
+        self._meshcat = meshcat
+        self._meshes = {"tool": tool}
+        self._X_HT = X_HT
+        self._p_TH = X_HT.inverse().translation()
+        self._size_m = float(np.linalg.norm(np.ptp(tool.vertices, axis=0)))
+        self._send_mesh("tool", tool, Rgba(*colors.TOOL))
+        self._send_mesh("handle", tool, Rgba(*colors.HANDLE_GHOST))
+        environment = Rgba(*colors.ENVIRONMENT[:3], _ENVIRONMENT_ALPHA)
+        for item in objects:
+            path = f"objects/{item.name}"
+            self._meshes[path] = item.decomposition
+            self._send_mesh(path, item.decomposition, environment)
+            if item.X_WO is not None:
+                meshcat.SetTransform(f"{_ROOT}/{path}", item.X_WO)
+        line = Rgba(*colors.COUPLING_LINE)
+        meshcat.SetObject(f"{_ROOT}/grip", Sphere(_GRIP_RADIUS * self._size_m), line)
+        meshcat.SetObject(
+            f"{_ROOT}/coupling", Cylinder(_LINE_RADIUS * self._size_m, 1.0), line
+        )
+        self._force = ArrowPool(meshcat, f"{_ROOT}/force", 1, [line])
+        pair = [Rgba(*colors.NEAR_CONTACT), Rgba(*colors.PENETRATING_CONTACT)]
+        self._contacts = ArrowPool(meshcat, f"{_ROOT}/contacts", _MAX_CONTACTS, pair)
+        self._clusters = ArrowPool(meshcat, f"{_ROOT}/clusters", _MAX_CLUSTERS, pair)
+
+    def color_pieces(self) -> None:
+        """Colours tool and objects by their convex pieces, for good."""
+        for name, mesh in self._meshes.items():
+            palette = np.array([colors.piece_color(i) for i in range(len(mesh.pieces))])
+            corners = palette[mesh.piece_of_triangle, :3].repeat(3, axis=0)
+            self._meshcat.SetTriangleColorMesh(
+                f"{_ROOT}/{name}",
+                np.asfortranarray(mesh.vertices[mesh.triangles].reshape(-1, 3).T),
+                np.asfortranarray(
+                    np.arange(len(corners), dtype=np.int32).reshape(-1, 3).T
+                ),
+                np.asfortranarray(corners.T),
+            )
+
+    def place_object(self, name: str, X_WO: RigidTransform, time_s: float) -> None:
+        """Places an object that moves."""
+        self._meshcat.SetTransform(f"{_ROOT}/objects/{name}", X_WO, time_s)
+
+    def place_tool(
+        self, X_WH: RigidTransform, X_WTool: RigidTransform, time_s: float
+    ) -> None:
+        """Places the tool, its ghost in the handle, and the line that couples them."""
+        self._meshcat.SetTransform(f"{_ROOT}/tool", X_WTool, time_s)
+        self._meshcat.SetTransform(f"{_ROOT}/handle", X_WH @ self._X_HT, time_s)
+        self._meshcat.SetTransform(f"{_ROOT}/grip", X_WH, time_s)
+        p_WH = X_WH.translation()
+        line = X_WTool @ self._p_TH - p_WH
+        length = float(np.linalg.norm(line))
+        if length > 1e-9:
+            X_WLine = RigidTransform(
+                RotationMatrix.MakeFromOneVector(line, 2), p_WH + line / 2
+            )
+            path = f"{_ROOT}/coupling"
+            self._meshcat.SetTransform(path, X_WLine, time_s)
+            self._meshcat.SetProperty(path, "scale", [1.0, 1.0, length], time_s)
+
+    def draw_display_force(
+        self, p_WH: np.ndarray, f_H_W: np.ndarray, time_s: float
+    ) -> None:
+        """Draws the force (3,) N that the hand feels, at the handle (3,) m."""
+        self._draw_forces(self._force, ["force"], p_WH[None], f_H_W[None], [0], time_s)
+
+    def draw_contacts(self, contacts: ContactSet, time_s: float) -> None:
+        """Draws a small arrow along each contact's normal, the deepest if too many."""
+        distance = contacts.distance
+        order = np.argsort(distance)[:_MAX_CONTACTS]
+        keys = list(
+            zip(
+                contacts.object_index[order].tolist(),
+                contacts.piece_A[order].tolist(),
+                contacts.piece_B[order].tolist(),
+                strict=True,
+            )
+        )
+        length = _CONTACT_ARROW * self._size_m
+        self._contacts.draw(
+            keys,
+            contacts.p_WC[order],
+            length * contacts.nhat_BA_W[order],
+            distance[order] < 0,
+            time_s,
+        )
+
+    def draw_clusters(
+        self, clusters: ClusterSet, f_Cluster_W: np.ndarray, time_s: float
+    ) -> None:
+        """Draws the force (k, 3) N of each cluster, at its point."""
+        keys = list(range(len(clusters)))
+        penetrating = clusters.distance < 0
+        self._draw_forces(
+            self._clusters, keys, clusters.p_WC, f_Cluster_W, penetrating, time_s
+        )
+
+    def write_visibility(self, time_s: float) -> None:
+        """Sends again what is visible, for the first frame of a recording."""
+        for pool in (self._force, self._contacts, self._clusters):
+            pool.write_visibility(time_s)
+
+    def _draw_forces(
+        self,
+        pool: ArrowPool,
+        keys: Sequence[object],
+        p_W: np.ndarray,
+        f_W: np.ndarray,
+        colors_of: Sequence[int] | np.ndarray,
+        time_s: float,
+    ) -> None:
+        """Draws forces as arrows; those too small to have a direction are left out."""
+        force = np.linalg.norm(f_W, axis=1)
+        felt = np.flatnonzero(force > 1e-6)
+        length = np.clip(
+            _ARROW_OF_ONE_NEWTON * force[felt],
+            _SHORTEST_FORCE_ARROW,
+            _LONGEST_FORCE_ARROW,
+        )
+        scale = self._size_m * length / force[felt]
+        pool.draw(
+            [keys[i] for i in felt],
+            p_W[felt],
+            scale[:, None] * f_W[felt],
+            np.asarray(colors_of)[felt],
+            time_s,
+        )
+
+    def _send_mesh(self, name: str, mesh: Decomposition, rgba: Rgba) -> None:
+        """Sends the surface of a decomposition."""
+        self._meshcat.SetTriangleMesh(
+            f"{_ROOT}/{name}",
+            np.asfortranarray(mesh.vertices.T),
+            np.asfortranarray(mesh.triangles.T),
+            rgba,
+        )
