@@ -1,7 +1,214 @@
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/vector.h>
+
+#include <stdexcept>
+
 #include "bind.h"
+#include "bind_columns.h"
+#include "clustering.h"
+#include "penalty_force.h"
+#include "rigid_tool.h"
+#include "virtual_coupling.h"
+#include "wrench_model.h"
+
+namespace nb = nanobind;
 
 namespace drake_haptics {
+namespace {
 
-void BindForce(nanobind::module_& m) {}
+using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using Rows6 = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
+
+template <typename Rows, typename Item>
+Rows ToRowMatrix(const std::vector<Item>& items) {
+  Rows rows(items.size(), Rows::ColsAtCompileTime);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    rows.row(i) = items[i].transpose();
+  }
+  return rows;
+}
+
+void BindClustering(nb::module_& m) {
+  nb::class_<ClusterSet> set(
+      m, "ClusterSet",
+      "Representative contacts of one tick, as read-only columns over k "
+      "clusters. Immutable; copies are the object itself.");
+  set.def("__len__", [](const ClusterSet& s) { return s.clusters.size(); });
+  constexpr auto kItems = &ClusterSet::clusters;
+  DefColumn<kItems, &Cluster::distance>(
+      &set, "distance", "(k,) smallest distance of the members (Eq. 5), m.");
+  DefColumn<kItems, &Cluster::nhat_BA_W>(
+      &set, "nhat_BA_W", "(k, 3) weighted mean directions (Eq. 3), unit.");
+  DefColumn<kItems, &Cluster::p_WC>(
+      &set, "p_WC", "(k, 3) weighted mean positions (Eq. 4), m.");
+  DefColumn<kItems, &Cluster::object>(&set, "object_index",
+                                      "(k,) object of each cluster.");
+  DefColumn<kItems, &Cluster::num_contacts>(&set, "num_contacts",
+                                            "(k,) members.");
+  set.def_prop_ro(
+      "label",
+      [](nb::handle self) {
+        const auto& label = nb::cast<const ClusterSet&>(self).label;
+        const std::size_t shape[1] = {label.size()};
+        return nb::cast(nb::ndarray<nb::numpy, const std::int32_t, nb::ndim<1>>(
+            label.data(), 1, shape, self));
+      },
+      "(n,) cluster of each contact.");
+  DefFrozenCopy(&set);
+  m.def(
+      "cluster_contacts",
+      [](const ContactSet& contacts, double delta, double tolerance) {
+        ClusterSet clusters;
+        ClusterContacts(contacts.contacts, delta, tolerance, &clusters);
+        return clusters;
+      },
+      nb::arg("contacts"), nb::arg("delta"), nb::arg("tolerance"),
+      "Groups contacts with an octree of leaf size `delta` (m) and represents "
+      "each group by one contact (paper, 4.2, Eq. 1 to 5). Members weigh "
+      "`tolerance` (m) − distance.\n\n"
+      "Raises:\n    ValueError: delta <= 0 or tolerance < 0.");
+}
+
+void BindPenaltyForce(nb::module_& m) {
+  nb::class_<PenaltyWrench> wrench(
+      m, "PenaltyWrench",
+      "The wrenches of all clusters. Immutable; copies are the object itself.");
+  wrench.def_prop_ro(
+      "wrench_model", [](const PenaltyWrench& w) { return ToVector(w.tool); },
+      "(78,) wrench on the tool at To in W with its linear model: [F (6); K "
+      "(36, by rows); B (36, by rows)], rotational first.");
+  wrench.def_prop_ro(
+      "F_Tool_W", [](const PenaltyWrench& w) { return w.tool.F; },
+      "(6,) wrench on the tool at To, [N·m; N].");
+  wrench.def_prop_ro(
+      "F_objects_W",
+      [](const PenaltyWrench& w) { return ToRowMatrix<Rows6>(w.F_objects_W); },
+      "(m, 6) wrench on each object at its origin, [N·m; N].");
+  wrench.def_prop_ro(
+      "f_cluster_W",
+      [](const PenaltyWrench& w) { return ToRowMatrix<Rows3>(w.f_cluster_W); },
+      "(k, 3) force of each cluster on the tool, N.");
+  DefFrozenCopy(&wrench);
+  m.def(
+      "penalty_force",
+      [](const ClusterSet& clusters, const Vec3& p_WTo, const Vec6& V_WTool,
+         const Rows3& p_WO, const Rows6& V_WO, double stiffness, double damping,
+         double tolerance) {
+        if (p_WO.rows() != V_WO.rows()) {
+          throw std::invalid_argument(
+              "p_WO and V_WO must have one row for each object");
+        }
+        std::vector<MovingFrame> objects;
+        for (Eigen::Index i = 0; i < p_WO.rows(); ++i) {
+          objects.push_back({p_WO.row(i), V_WO.row(i)});
+        }
+        return ComputePenaltyWrench(clusters.clusters, {p_WTo, V_WTool},
+                                    objects, {stiffness, damping, tolerance});
+      },
+      nb::arg("clusters"), nb::arg("p_WTo"), nb::arg("V_WTool"),
+      nb::arg("p_WO"), nb::arg("V_WO"), nb::arg("stiffness"),
+      nb::arg("damping"), nb::arg("tolerance"),
+      "Penalty wrenches of the clusters (paper, Eq. 6 to 10): k (t − d) along "
+      "the normal, plus damping while approaching; never a pull.\n\n"
+      "Args:\n"
+      "    p_WTo: (3,) tool's origin, m.\n"
+      "    V_WTool: (6,) its spatial velocity [rad/s; m/s].\n"
+      "    p_WO: (m, 3) objects' origins, m.\n"
+      "    V_WO: (m, 6) their spatial velocities.\n"
+      "    stiffness: k, N/m.\n"
+      "    damping: k_v, N·s/m.\n"
+      "    tolerance: t, m.\n\n"
+      "Raises:\n"
+      "    ValueError: a gain is negative or not finite, or rows do not "
+      "match.\n"
+      "    IndexError: a cluster names an object that has no row.");
+}
+
+void BindCoupling(nb::module_& m) {
+  nb::class_<CouplingGains>(m, "CouplingGains",
+                            "Spring and damper of the virtual coupling.")
+      .def(
+          "__init__",
+          [](CouplingGains* self, double k, double b, double kr, double br) {
+            for (const double gain : {k, b, kr, br}) {
+              if (!std::isfinite(gain) || gain < 0) {
+                throw std::invalid_argument(
+                    "coupling gains must be finite and at least 0");
+              }
+            }
+            new (self) CouplingGains{k, b, kr, br};
+          },
+          nb::arg("stiffness_N_per_m"), nb::arg("damping_Ns_per_m"),
+          nb::arg("rotational_stiffness_Nm_per_rad"),
+          nb::arg("rotational_damping_Nms_per_rad"))
+      .def_ro("stiffness_N_per_m", &CouplingGains::stiffness)
+      .def_ro("damping_Ns_per_m", &CouplingGains::damping)
+      .def_ro("rotational_stiffness_Nm_per_rad",
+              &CouplingGains::rotational_stiffness)
+      .def_ro("rotational_damping_Nms_per_rad",
+              &CouplingGains::rotational_damping);
+  m.def(
+      "coupling_wrench",
+      [](const PoseVector& q_WH, const Vec6& V_WH, const PoseVector& q_HT,
+         const PoseVector& q_WTool, const Vec6& V_WTool,
+         const CouplingGains& gains) {
+        const CouplingWrench wrench =
+            ComputeCoupling(q_WH, V_WH, q_HT, q_WTool, V_WTool, gains);
+        Eigen::Matrix<double, kWrenchModelSize + 6, 1> out;
+        out << ToVector(wrench.tool), wrench.F_display;
+        return out;
+      },
+      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WTool"),
+      nb::arg("V_WTool"), nb::arg("gains"),
+      "Wrenches of the virtual coupling between handle H and tool.\n\n"
+      "Args:\n"
+      "    q_WH, q_HT, q_WTool: (7,) poses [qw qx qy qz x y z]: handle, the "
+      "tool's place in it, tool.\n"
+      "    V_WH, V_WTool: (6,) spatial velocities [rad/s; m/s].\n\n"
+      "Returns:\n"
+      "    (84,): wrench model on the tool at To (78), then the reaction on "
+      "the handle at Ho in W (6).");
+}
+
+void BindRigidTool(nb::module_& m) {
+  nb::class_<ToolInertia>(m, "RigidToolDynamics",
+                          "A free rigid tool, advanced implicitly.")
+      .def(
+          "__init__",
+          [](ToolInertia* self, double mass, const Vec3& p_TTcm,
+             const Mat3& I_TTcm_T) {
+            const ToolInertia inertia{mass, p_TTcm, I_TTcm_T};
+            RequirePhysical(inertia);
+            new (self) ToolInertia(inertia);
+          },
+          nb::arg("mass_kg"), nb::arg("p_TTcm"), nb::arg("I_TTcm_T"),
+          "Tool of `mass_kg`, centre of mass (3,) m and rotational inertia "
+          "about it (3, 3) kg·m², both in the tool's frame.\n\n"
+          "Raises:\n    ValueError: not a physical inertia.")
+      .def(
+          "step",
+          [](const ToolInertia& self, const Eigen::Matrix<double, 13, 1>& state,
+             const WrenchModelVector& wrench, double h) {
+            const ToolState next =
+                StepTool(self, {state.head<7>(), state.tail<6>()},
+                         FromVector(wrench), h);
+            Eigen::Matrix<double, 13, 1> out;
+            out << next.q_WT, next.V_WT;
+            return out;
+          },
+          nb::arg("state"), nb::arg("wrench_model"), nb::arg("h"),
+          "Advances the state (13,) = [pose (7); spatial velocity (6)] by one "
+          "linearized backward Euler step of h seconds under a wrench model "
+          "(78,).");
+}
+
+}  // namespace
+
+void BindForce(nb::module_& m) {
+  BindClustering(m);
+  BindPenaltyForce(m);
+  BindCoupling(m);
+  BindRigidTool(m);
+}
 
 }  // namespace drake_haptics

@@ -24,6 +24,12 @@ struct Pose {
   Pose inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
 };
 
+/// X_AB from poses in the world: the difference of the origins is formed first,
+/// so that a scene far from the world's origin loses no precision.
+inline Pose RelativePose(const Pose& X_WA, const Pose& X_WB) {
+  return {X_WA.R.transpose() * X_WB.R, X_WA.R.transpose() * (X_WB.p - X_WA.p)};
+}
+
 /// What a feature of a polytope is.
 enum class FeatureKind : std::int32_t { kVertex = 0, kEdge = 1, kFacet = 2 };
 

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "convex_pair.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+/// One contact between a piece of the tool (A) and a piece of an object (B),
+/// in the world frame. Words and signs are those of Drake's
+/// SignedDistancePair.
+struct Contact {
+  double distance = 0;  ///< m; > 0 apart, < 0 penetrating
+  Vec3 nhat_BA_W;       ///< unit, out of B into A
+  Vec3 p_WCa;           ///< witness point on A, m
+  Vec3 p_WCb;           ///< witness point on B, m
+  Vec3 p_WC;            ///< their mean (Eq. 1), m
+  std::int32_t object = 0;
+  std::int32_t piece_A = 0;
+  std::int32_t piece_B = 0;
+  std::int32_t feature_A = 0;  ///< Feature::code()
+  std::int32_t feature_B = 0;
+  std::int32_t status = 0;  ///< ContactStatus
+};
+
+/// The contact of a pair as seen in the world, object and pieces left at zero.
+Contact InWorld(const PairContact& pair, const Pose& X_WA);
+
+/// The contacts of one tick, ordered by object, piece of A, piece of B.
+struct ContactSet {
+  std::vector<Contact> contacts;
+  double query_seconds = 0;  ///< time that the query took inside the core
+};
+
+}  // namespace drake_haptics

@@ -1,0 +1,229 @@
+#include "convex_pair.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "surface_support.h"
+#include "witness.h"
+
+namespace drake_haptics {
+namespace {
+
+// Hubs looked at for a facet that both surfaces carry, on the first tick of an
+// overlap and on later ones.
+constexpr int kColdPromotionHubs = 64;
+constexpr int kWarmPromotionHubs = 12;
+// Closer than this share of the size, distance and depth are both computed.
+constexpr double kJoinShare = 1e-9;
+// How far beyond a feature's sides a held contact may slide, as a share of the
+// size: the press is over once the tool has left the features sideways.
+constexpr double kHeldSlideShare = 1e-2;
+
+Feature SimplexFeature(const Polytope& polytope, const Simplex& simplex,
+                       int Hub::* side, const Vec3& n) {
+  int vertices[4];
+  for (int i = 0; i < simplex.size; ++i) {
+    vertices[i] = simplex.hubs[i].*side;
+  }
+  return FeatureOfVertices(polytope, vertices, simplex.size, n);
+}
+
+bool BetterOf(const Depth& second, const Depth& first) {
+  if (second.status == DepthStatus::kNoFacet) return false;
+  if (first.status == DepthStatus::kNoFacet) return true;
+  if (second.best.support != first.best.support) {
+    return second.best.support > first.best.support;
+  }
+  return second.best.h > first.best.h;
+}
+
+class Query {
+ public:
+  Query(const PosedPair& pair, double tolerance, SurfaceRule rule,
+        PairState* state, DepthWorkspace* workspace)
+      : pair_(pair),
+        tolerance_(tolerance),
+        surface_only_(rule == SurfaceRule::kSurfaceOnly),
+        state_(*state),
+        workspace_(*workspace) {}
+
+  std::optional<PairContact> Run() {
+    if (!state_.in_contact && IsBeyondLastNormal()) return std::nullopt;
+    separation_ = ComputeSeparation(pair_, state_.simplex, tolerance_);
+    state_.simplex = separation_.simplex;
+    std::optional<PairContact> contact;
+    switch (separation_.status) {
+      case SeparationStatus::kApart:
+        contact = Near();
+        break;
+      case SeparationStatus::kTouching:
+        contact = Overlapping();
+        break;
+      case SeparationStatus::kBeyond:
+        if (surface_only_ && state_.in_contact) contact = Held();
+    }
+    Remember(contact);
+    return contact;
+  }
+
+ private:
+  // Last tick's normal often still proves that the pair is out of reach.
+  bool IsBeyondLastNormal() {
+    return state_.n.squaredNorm() > 0 &&
+           SupportGap(pair_, state_.n, &state_.hub) > tolerance_;
+  }
+
+  std::optional<PairContact> Near() {
+    if (separation_.distance < kJoinShare * pair_.scale()) {
+      return Overlapping();
+    }
+    PairContact contact = Apart();
+    if (surface_only_ && !IsSupported(contact)) {
+      if (state_.in_contact) return Held();
+      return std::nullopt;
+    }
+    return contact;
+  }
+
+  PairContact Apart() const {
+    const Vec3& n = separation_.n;
+    const Vec3 n_B = pair_.X_AB.R.transpose() * n;
+    return {separation_.distance,
+            n,
+            separation_.p_a,
+            separation_.p_b,
+            SimplexFeature(pair_.A, separation_.simplex, &Hub::a, -n),
+            SimplexFeature(pair_.B, separation_.simplex, &Hub::b, n_B),
+            ContactStatus::kNear};
+  }
+
+  bool IsSupported(const PairContact& contact) const {
+    return ClassifySupport(pair_.A, contact.feature_A, -contact.n) ==
+               SurfaceSupport::kSupported &&
+           ClassifySupport(pair_.B, contact.feature_B,
+                           pair_.X_AB.R.transpose() * contact.n) ==
+               SurfaceSupport::kSupported;
+  }
+
+  std::optional<PairContact> Overlapping() {
+    const Depth depth = state_.in_contact ? WarmDepth() : ColdDepth();
+    const bool apart = separation_.status == SeparationStatus::kApart;
+    if (apart && (depth.status == DepthStatus::kNoFacet ||
+                  depth.best.h <= separation_.distance)) {
+      const PairContact contact = Apart();
+      if (!surface_only_ || IsSupported(contact)) return contact;
+    }
+    if (depth.status == DepthStatus::kNoFacet) return Grazing();
+    if (surface_only_ && depth.best.support == SurfaceSupport::kVirtual) {
+      return std::nullopt;
+    }
+    const Witness witness =
+        WitnessOfFeatures(pair_, depth.best.feature_A, depth.best.feature_B,
+                          depth.best.n, depth.best.h);
+    ContactStatus status =
+        depth.best.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating;
+    if (depth.status == DepthStatus::kBounded &&
+        depth.best.support != SurfaceSupport::kOriginal) {
+      status = ContactStatus::kBounded;
+    }
+    return PairContact{depth.best.h, depth.best.n,         witness.p_a,
+                       witness.p_b,  depth.best.feature_A, depth.best.feature_B,
+                       status};
+  }
+
+  Depth WarmDepth() {
+    Hub hub = state_.hub;
+    SupportGap(pair_, state_.n, &hub);
+    return WalkDepth(pair_, hub, kWarmPromotionHubs, &workspace_);
+  }
+
+  // The starts of paper 5.2.2: the last known normal, if any, and the line
+  // that joins the centroids.
+  Depth ColdDepth() {
+    Vec3 between = pair_.A.centroid - pair_.X_AB * pair_.B.centroid;
+    if (!(between.norm() > 1e-12 * pair_.scale())) between = Vec3::UnitX();
+    Hub hub;
+    SupportGap(pair_, between, &hub);
+    Depth depth = WalkDepth(pair_, hub, kColdPromotionHubs, &workspace_);
+    if (state_.n.squaredNorm() > 0) {
+      hub = state_.hub;
+      SupportGap(pair_, state_.n, &hub);
+      const Depth other =
+          WalkDepth(pair_, hub, kColdPromotionHubs, &workspace_);
+      if (BetterOf(other, depth)) depth = other;
+    }
+    return depth;
+  }
+
+  // Two sets in one line or point: they overlap by nothing across it.
+  std::optional<PairContact> Grazing() {
+    const Vec3 along = pair_.A.num_vertices() > 1
+                           ? Vec3(pair_.A.vertices[1] - pair_.A.vertices[0])
+                       : pair_.B.num_vertices() > 1
+                           ? Vec3(pair_.b(1) - pair_.b(0))
+                           : Vec3::UnitX();
+    Vec3 n = state_.n - along * (along.dot(state_.n) / along.squaredNorm());
+    if (!(n.norm() > 1e-6)) n = along.unitOrthogonal();
+    n.normalize();
+    const Vec3 p = pair_.a(0);
+    return PairContact{0.0,
+                       n,
+                       p,
+                       p,
+                       {FeatureKind::kVertex, 0},
+                       {FeatureKind::kVertex, 0},
+                       ContactStatus::kPenetrating};
+  }
+
+  // The pair was in contact and its hulls are apart now, yet the gap along the
+  // way in is negative: the tool went through a shallow piece. The depth is
+  // measured along the surface's own normals, and the way out is the way in.
+  std::optional<PairContact> Held() {
+    Hub hub = state_.hub;
+    if (!(SupportGap(pair_, state_.n, &hub) < 0)) return std::nullopt;
+    const Depth depth = WalkDepth(pair_, hub, kWarmPromotionHubs, &workspace_);
+    if (depth.status == DepthStatus::kNoFacet ||
+        depth.best.support != SurfaceSupport::kSupported ||
+        !(depth.best.h < 0) || depth.best.n.dot(state_.n) < 0.5) {
+      return std::nullopt;
+    }
+    const Witness witness =
+        WitnessOfFeatures(pair_, depth.best.feature_A, depth.best.feature_B,
+                          depth.best.n, depth.best.h);
+    if (LateralOffset(pair_, depth.best.feature_A, depth.best.feature_B,
+                      witness) > kHeldSlideShare * pair_.scale()) {
+      return std::nullopt;
+    }
+    return PairContact{depth.best.h,         depth.best.n,
+                       witness.p_a,          witness.p_b,
+                       depth.best.feature_A, depth.best.feature_B,
+                       ContactStatus::kHeld};
+  }
+
+  void Remember(const std::optional<PairContact>& contact) {
+    state_.in_contact = contact.has_value();
+    if (contact) {
+      state_.n = contact->n;
+    } else if (separation_.status != SeparationStatus::kTouching) {
+      state_.n = separation_.n;
+    }
+    if (state_.n.squaredNorm() > 0) SupportGap(pair_, state_.n, &state_.hub);
+  }
+
+  const PosedPair& pair_;
+  const double tolerance_;
+  const bool surface_only_;
+  PairState& state_;
+  DepthWorkspace& workspace_;
+  Separation separation_;
+};
+
+}  // namespace
+
+std::optional<PairContact> QueryPair(const PosedPair& pair, double tolerance,
+                                     SurfaceRule rule, PairState* state,
+                                     DepthWorkspace* workspace) {
+  return Query(pair, tolerance, rule, state, workspace).Run();
+}
+
+}  // namespace drake_haptics

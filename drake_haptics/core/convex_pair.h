@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+
+#include "depth_walk.h"
+#include "separation.h"
+#include "support.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+/// How the answer of a pair was reached.
+enum class ContactStatus : std::int32_t {
+  kNear = 0,         ///< apart; closest features
+  kPenetrating = 1,  ///< overlapping; locally optimal depth
+  kHeld = 2,         ///< passed behind the surface it had pressed on
+  kBounded = 3       ///< a search met its bound; best answer seen
+};
+
+/// One contact of a pair of polytopes, in A's frame. Signs are those of
+/// Drake's SignedDistancePair.
+struct PairContact {
+  double distance = 0;      ///< m; negative is the penetration depth
+  Vec3 n = Vec3::UnitX();   ///< unit, from B into A
+  Vec3 p_a = Vec3::Zero();  ///< witness point of A, m
+  Vec3 p_b = Vec3::Zero();  ///< witness point of B: p_a − p_b = distance · n
+  Feature feature_A;
+  Feature feature_B;
+  ContactStatus status = ContactStatus::kNear;
+};
+
+/// What a pair remembers from one tick to the next.
+struct PairState {
+  Simplex simplex;        ///< of the last separation query
+  Vec3 n = Vec3::Zero();  ///< last normal, in A's frame; zero if none
+  Hub hub;                ///< supports along the last normal
+  bool in_contact = false;
+};
+
+/// Which contacts of a pair count.
+enum class SurfaceRule {
+  kWholeBoundary,  ///< the polytopes are the solids: every contact counts
+  kSurfaceOnly     ///< the polytopes are pieces of surfaces: a contact must be
+                   ///< carried by the meshes that they stand for
+};
+
+/// Answers the pair at its present pose, warm from `state`, and renews it.
+/// Apart: the distance and closest features. Overlapping: the locally optimal
+/// penetration depth (paper, 5.2), tracked from the last answer. The two join
+/// at zero, where the larger support gap of both is the answer.
+///
+/// Under kSurfaceOnly a contact apart counts where both meshes are locally
+/// supported along its normal, so that seams of a decomposition are never
+/// felt; a pair that was in contact and has passed behind the surface stays in
+/// contact along the way it went in (DESIGN, section 5).
+/// @param tolerance contacts farther apart than this (m) are none.
+std::optional<PairContact> QueryPair(const PosedPair& pair, double tolerance,
+                                     SurfaceRule rule, PairState* state,
+                                     DepthWorkspace* workspace);
+
+}  // namespace drake_haptics

@@ -1,0 +1,176 @@
+#include "depth_walk.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "gauss_overlay.h"
+
+namespace drake_haptics {
+namespace {
+
+constexpr double kNone = -std::numeric_limits<double>::infinity();
+// A facet is shallower only by more than this share of the size; within it
+// two facets are a tie, and the walk stays where it is.
+constexpr double kTieShare = 1e-12;
+// Bound on a whole walk, far above what any start needs.
+constexpr int kMaxHubs = 1024;
+
+// The vertices of a feature.
+struct Corners {
+  int count;
+  const int* vertices;
+  int storage[2];
+
+  Corners(const Polytope& polytope, Feature feature) {
+    switch (feature.kind()) {
+      case FeatureKind::kVertex:
+        storage[0] = feature.index();
+        count = 1;
+        vertices = storage;
+        break;
+      case FeatureKind::kEdge:
+        storage[0] = polytope.edges[feature.index()].v0;
+        storage[1] = polytope.edges[feature.index()].v1;
+        count = 2;
+        vertices = storage;
+        break;
+      default: {
+        const auto loop = polytope.loop_of(feature.index());
+        count = static_cast<int>(loop.size());
+        vertices = loop.data();
+      }
+    }
+  }
+  Corners(const Corners&) = delete;
+  Corners& operator=(const Corners&) = delete;
+};
+
+class Walk {
+ public:
+  Walk(const PosedPair& pair, int max_promotion_hubs, DepthWorkspace* workspace)
+      : pair_(pair),
+        max_promotion_hubs_(max_promotion_hubs),
+        workspace_(*workspace) {
+    workspace_.visited.clear();
+    workspace_.candidates.clear();
+    workspace_.closed.clear();
+  }
+
+  Depth Run(const Hub& start) {
+    Visit(start);
+    Depth result;
+    result.hub = start;
+    // Each round looks around one facet: the best supported one, or while
+    // there is none, the best of the others not yet looked around.
+    for (;;) {
+      const int target = best_ >= 0 ? best_ : BestOpen();
+      if (target < 0) break;
+      const int before = best_;
+      const bool complete = VisitHubsOf(target, &result.hub);
+      if (!complete) {
+        result.status = DepthStatus::kBounded;
+        break;
+      }
+      if (best_ >= 0 && best_ == before) {
+        result.status = DepthStatus::kLocalMinimum;
+        break;
+      }
+      if (best_ < 0) workspace_.closed[target] = 1;
+    }
+    result.num_hubs = static_cast<int>(workspace_.visited.size());
+    const int answer = best_ >= 0 ? best_ : BestUnsupported();
+    if (answer < 0) return result;
+    result.best = workspace_.candidates[answer];
+    if (result.status == DepthStatus::kNoFacet) {
+      result.status = DepthStatus::kLocalMinimum;
+    }
+    const Corners a(pair_.A, result.best.feature_A);
+    const Corners b(pair_.B, result.best.feature_B);
+    result.hub = {a.vertices[0], b.vertices[0]};
+    return result;
+  }
+
+ private:
+  void Visit(const Hub& hub) {
+    workspace_.visited.push_back(hub);
+    const std::size_t first = workspace_.candidates.size();
+    // With a supported answer at hand only better ones are of interest.
+    const double floor = best_ >= 0 ? workspace_.candidates[best_].h : kNone;
+    OverlayGaussRegions(pair_, hub, floor, &workspace_);
+    workspace_.closed.resize(workspace_.candidates.size(), 0);
+    const double tie = kTieShare * pair_.scale();
+    for (std::size_t i = first; i < workspace_.candidates.size(); ++i) {
+      const DepthCandidate& candidate = workspace_.candidates[i];
+      if (candidate.support != SurfaceSupport::kSupported) continue;
+      if (best_ < 0 || candidate.h > workspace_.candidates[best_].h + tie) {
+        best_ = static_cast<int>(i);
+      }
+    }
+  }
+
+  // Looks at all hubs of a facet; false where the bound stopped it.
+  bool VisitHubsOf(int target, Hub* last) {
+    const Feature feature_A = workspace_.candidates[target].feature_A;
+    const Feature feature_B = workspace_.candidates[target].feature_B;
+    const Corners a(pair_.A, feature_A);
+    const Corners b(pair_.B, feature_B);
+    for (int i = 0; i < a.count; ++i) {
+      for (int j = 0; j < b.count; ++j) {
+        const Hub hub{a.vertices[i], b.vertices[j]};
+        const auto& visited = workspace_.visited;
+        if (std::find(visited.begin(), visited.end(), hub) != visited.end()) {
+          continue;
+        }
+        const int bound = best_ >= 0 ? kMaxHubs : max_promotion_hubs_;
+        if (static_cast<int>(visited.size()) >= bound) return false;
+        Visit(hub);
+        *last = hub;
+      }
+    }
+    return true;
+  }
+
+  int BestOpen() const {
+    int best = -1;
+    for (std::size_t i = 0; i < workspace_.candidates.size(); ++i) {
+      if (workspace_.closed[i]) continue;
+      if (best < 0 ||
+          workspace_.candidates[i].h > workspace_.candidates[best].h) {
+        best = static_cast<int>(i);
+      }
+    }
+    return best;
+  }
+
+  int BestUnsupported() const {
+    int best = -1;
+    for (std::size_t i = 0; i < workspace_.candidates.size(); ++i) {
+      const DepthCandidate& candidate = workspace_.candidates[i];
+      if (best < 0) {
+        best = static_cast<int>(i);
+        continue;
+      }
+      const DepthCandidate& other = workspace_.candidates[best];
+      if (candidate.support > other.support ||
+          (candidate.support == other.support && candidate.h > other.h)) {
+        best = static_cast<int>(i);
+      }
+    }
+    return best;
+  }
+
+  const PosedPair& pair_;
+  const int max_promotion_hubs_;
+  DepthWorkspace& workspace_;
+  int best_ = -1;  // the best candidate that both surfaces support
+};
+
+}  // namespace
+
+Depth WalkDepth(const PosedPair& pair, const Hub& start, int max_promotion_hubs,
+                DepthWorkspace* workspace) {
+  return Walk(pair, max_promotion_hubs, workspace).Run(start);
+}
+
+}  // namespace drake_haptics

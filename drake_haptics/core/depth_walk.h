@@ -1,0 +1,60 @@
+#pragma once
+
+#include <vector>
+
+#include "support.h"
+#include "surface_support.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+/// A facet of the Minkowski difference A ⊖ B that is near a hub: the contact
+/// which separating the pair along n would leave.
+struct DepthCandidate {
+  double h = 0;            ///< support gap along n, m; −h is the depth
+  Vec3 n = Vec3::UnitX();  ///< unit, from B into A, in A's frame
+  Feature feature_A;       ///< facet, vertex or edge of A
+  Feature feature_B;       ///< vertex, facet or edge of B
+  SurfaceSupport support = SurfaceSupport::kVirtual;
+};
+
+/// How a walk ended.
+enum class DepthStatus {
+  kLocalMinimum,  ///< no facet around any of the answer's hubs is shallower
+  kBounded,       ///< the bound on hubs was met; the best one seen
+  kNoFacet        ///< the Minkowski difference has no facet here (flat in it)
+};
+
+struct Depth {
+  DepthStatus status = DepthStatus::kNoFacet;
+  DepthCandidate best;
+  Hub hub;           ///< one hub of the answer: the next walk's start
+  int num_hubs = 0;  ///< hubs looked at
+};
+
+/// Buffers of a walk, kept between ticks so that a warm walk allocates nothing.
+struct DepthWorkspace {
+  std::vector<Hub> visited;
+  std::vector<DepthCandidate> candidates;
+  std::vector<Vec3> edges_A, edges_B, facets_A, facets_B;
+  std::vector<int> closed;
+};
+
+/// Walks on the surface of A ⊖ B from a vertex hub pair to a locally optimal
+/// penetration depth (paper, 5.2). At each hub the Gauss regions of the two
+/// vertices are overlaid on the sphere, with signs of dot and triple products
+/// instead of the paper's projection to z = 1, which degenerates for flat
+/// hulls; the corners of the overlay are the VF, FV and EE facets around the
+/// hub. The walk moves to the shallowest facet that both surfaces carry, until
+/// no hub of that facet knows a better one.
+///
+/// Facets on virtual features are passed over: where none of the facets seen
+/// so far is carried by both surfaces, the walk goes on over the next best
+/// ones (the promotion of paper 5.3.2) up to the bound.
+/// @param start a hub whose Gauss regions overlap: supports along a direction.
+/// @param max_promotion_hubs bound on the hubs looked at while no supported
+///     facet is known.
+Depth WalkDepth(const PosedPair& pair, const Hub& start, int max_promotion_hubs,
+                DepthWorkspace* workspace);
+
+}  // namespace drake_haptics

@@ -1,0 +1,186 @@
+#include "piece_tree.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+
+namespace drake_haptics {
+namespace {
+
+using Node = PieceTree::Node;
+
+// How many neighbours on the space-filling curve compete to be merged.
+constexpr int kSearchRadius = 16;
+
+Node Leaf(const Polytope& piece, int index) {
+  Vec3 low = piece.vertices[0], high = low;
+  for (const Vec3& v : piece.vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  Node node;
+  node.center = (low + high) / 2;
+  node.half = (high - low) / 2;
+  node.piece = index;
+  return node;
+}
+
+Node Merge(const Node& p, const Node& q) {
+  const Vec3 low = (p.center - p.half).cwiseMin(q.center - q.half);
+  const Vec3 high = (p.center + p.half).cwiseMax(q.center + q.half);
+  Node node;
+  node.center = (low + high) / 2;
+  node.half = (high - low) / 2;
+  return node;
+}
+
+double MergedArea(const Node& p, const Node& q) {
+  const Vec3 h = Merge(p, q).half;
+  return h.x() * h.y() + h.y() * h.z() + h.z() * h.x();
+}
+
+// Spreads the low 21 bits of x to every third bit.
+std::uint64_t Spread(std::uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffff;
+  x = (x | x << 16) & 0x1f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  x = (x | x << 2) & 0x1249249249249249;
+  return x;
+}
+
+// Position on the Morton curve through the given box.
+std::uint64_t CurveKey(const Vec3& p, const Vec3& low, const Vec3& size) {
+  std::uint64_t key = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double share = size[i] > 0 ? (p[i] - low[i]) / size[i] : 0.0;
+    const auto cell = static_cast<std::uint64_t>(share * 0x1fffff);
+    key |= Spread(cell) << i;
+  }
+  return key;
+}
+
+// Indices of the leaves in the order of the curve.
+std::vector<int> CurveOrder(const std::vector<Node>& leaves) {
+  Vec3 low = leaves[0].center, high = low;
+  for (const Node& leaf : leaves) {
+    low = low.cwiseMin(leaf.center);
+    high = high.cwiseMax(leaf.center);
+  }
+  std::vector<std::uint64_t> keys;
+  for (const Node& leaf : leaves) {
+    keys.push_back(CurveKey(leaf.center, low, high - low));
+  }
+  std::vector<int> order(leaves.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&keys](int i, int j) { return keys[i] < keys[j]; });
+  return order;
+}
+
+// For each active node the one nearby on the curve that it fits best with.
+std::vector<int> BestPartners(const std::vector<Node>& nodes,
+                              const std::vector<int>& active) {
+  const int count = static_cast<int>(active.size());
+  std::vector<int> partner(count, -1);
+  for (int i = 0; i < count; ++i) {
+    double best = std::numeric_limits<double>::infinity();
+    for (int j = std::max(0, i - kSearchRadius);
+         j <= std::min(count - 1, i + kSearchRadius); ++j) {
+      if (j == i) continue;
+      const double area = MergedArea(nodes[active[i]], nodes[active[j]]);
+      if (area < best) {
+        best = area;
+        partner[i] = j;
+      }
+    }
+  }
+  return partner;
+}
+
+// One round of merging: pairs that chose each other become one node. The
+// closest pair of all always does, so each round makes progress; where a tie
+// keeps every pair from being mutual, the first two are merged.
+std::vector<int> MergeRound(const std::vector<int>& active,
+                            std::vector<Node>* nodes) {
+  const std::vector<int> partner = BestPartners(*nodes, active);
+  std::vector<int> next;
+  const auto merge = [&](int i, int j) {
+    Node node = Merge((*nodes)[active[i]], (*nodes)[active[j]]);
+    node.left = active[i];
+    node.right = active[j];
+    nodes->push_back(node);
+    next.push_back(static_cast<int>(nodes->size()) - 1);
+  };
+  for (int i = 0; i < static_cast<int>(active.size()); ++i) {
+    const int j = partner[i];
+    if (partner[j] != i) {
+      next.push_back(active[i]);
+    } else if (i < j) {
+      merge(i, j);
+    }
+  }
+  if (next.size() == active.size()) {
+    next.clear();
+    merge(0, 1);
+    next.insert(next.end(), active.begin() + 2, active.end());
+  }
+  return next;
+}
+
+double Size(const Node& node) { return node.half.sum(); }
+
+}  // namespace
+
+PieceTree::PieceTree(std::span<const Polytope> pieces) {
+  if (pieces.empty()) return;
+  std::vector<Node> leaves;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    leaves.push_back(Leaf(pieces[i], static_cast<int>(i)));
+  }
+  nodes_.reserve(2 * leaves.size());
+  for (const int i : CurveOrder(leaves)) nodes_.push_back(leaves[i]);
+  std::vector<int> active(nodes_.size());
+  std::iota(active.begin(), active.end(), 0);
+  while (active.size() > 1) active = MergeRound(active, &nodes_);
+}
+
+void CollectPairs(const PieceTree& A, const PieceTree& B, const Pose& X_AB,
+                  double tolerance, std::vector<PiecePair>* stack,
+                  std::vector<PiecePair>* pairs) {
+  if (A.empty() || B.empty()) return;
+  const Mat3& R = X_AB.R;
+  const Mat3 R_T = R.transpose();
+  const Mat3 reach = R.cwiseAbs();
+  const Mat3 reach_T = reach.transpose();
+  // Boxes are apart if one of their six face normals separates them.
+  const auto within = [&](const Node& a, const Node& b) {
+    const Vec3 c = X_AB * b.center - a.center;
+    const Vec3 on_A = a.half + reach * b.half;
+    if (((c.cwiseAbs() - on_A).array() > tolerance).any()) return false;
+    const Vec3 on_B = b.half + reach_T * a.half;
+    return !(((R_T * c).cwiseAbs() - on_B).array() > tolerance).any();
+  };
+  stack->clear();
+  stack->push_back({A.root(), B.root()});
+  while (!stack->empty()) {
+    const PiecePair top = stack->back();
+    stack->pop_back();
+    const Node& a = A.node(top.a);
+    const Node& b = B.node(top.b);
+    if (!within(a, b)) continue;
+    if (a.is_leaf() && b.is_leaf()) {
+      pairs->push_back({a.piece, b.piece});
+    } else if (b.is_leaf() || (!a.is_leaf() && Size(a) >= Size(b))) {
+      stack->push_back({a.left, top.b});
+      stack->push_back({a.right, top.b});
+    } else {
+      stack->push_back({top.a, b.left});
+      stack->push_back({top.a, b.right});
+    }
+  }
+}
+
+}  // namespace drake_haptics

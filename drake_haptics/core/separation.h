@@ -1,0 +1,35 @@
+#pragma once
+
+#include "simplex.h"
+#include "support.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+/// How a separation query ended.
+enum class SeparationStatus {
+  kApart,    ///< the closest points are exact to round-off
+  kBeyond,   ///< apart by more than the limit; the normal proves it
+  kTouching  ///< overlapping, or apart by less than round-off
+};
+
+/// Closest points of two polytopes, in A's frame.
+struct Separation {
+  SeparationStatus status = SeparationStatus::kTouching;
+  double distance = 0;      ///< m; a lower bound where kBeyond
+  Vec3 n = Vec3::UnitX();   ///< unit, from B into A; unset where kTouching
+  Vec3 p_a = Vec3::Zero();  ///< closest point of A, m; unset where kBeyond
+  Vec3 p_b = Vec3::Zero();  ///< closest point of B, m; unset where kBeyond
+  Simplex simplex;          ///< the features; also the next query's start
+};
+
+/// Computes the distance of the pair by the method of Gilbert, Johnson and
+/// Keerthi (1988) on supports that climb from the last answer. Starts from the
+/// vertices of `start` (may be empty), evaluated at the present pose. Ends on
+/// the duality gap |v| − h(v/|v|), on a repeated vertex, or after a bounded
+/// number of rounds with the best answer so far.
+/// @param limit distance (m) beyond which the exact answer is not wanted.
+Separation ComputeSeparation(const PosedPair& pair, const Simplex& start,
+                             double limit);
+
+}  // namespace drake_haptics

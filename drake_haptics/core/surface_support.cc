@@ -1,0 +1,80 @@
+#include "surface_support.h"
+
+#include <algorithm>
+
+namespace drake_haptics {
+namespace {
+
+// Sine of the angle by which the surface may rise above the supporting plane:
+// wide enough for the noise of single-precision mesh files, too narrow to be
+// felt.
+constexpr double kSlack = 1e-3;
+
+int FindEdge(const Polytope& polytope, int v0, int v1) {
+  const auto neighbors = polytope.neighbors_of(v0);
+  const auto found = std::find(neighbors.begin(), neighbors.end(), v1);
+  if (found == neighbors.end()) return -1;
+  return polytope.neighbor_edges_of(v0)[found - neighbors.begin()];
+}
+
+bool FacetHolds(const Polytope& polytope, int facet, int vertex) {
+  const auto loop = polytope.loop_of(facet);
+  return std::find(loop.begin(), loop.end(), vertex) != loop.end();
+}
+
+}  // namespace
+
+SurfaceSupport ClassifySupport(const Polytope& polytope, Feature feature,
+                               const Vec3& n) {
+  switch (feature.kind()) {
+    case FeatureKind::kFacet:
+      return polytope.facets[feature.index()].original
+                 ? SurfaceSupport::kSupported
+                 : SurfaceSupport::kVirtual;
+    case FeatureKind::kEdge: {
+      const Polytope::Edge& edge = polytope.edges[feature.index()];
+      if (!edge.original) return SurfaceSupport::kVirtual;
+      const bool supported =
+          n.dot(edge.wings[0]) <= kSlack && n.dot(edge.wings[1]) <= kSlack;
+      return supported ? SurfaceSupport::kSupported : SurfaceSupport::kOriginal;
+    }
+    default: {
+      // Vertices are never created by a decomposition: all are original.
+      const auto ring = polytope.ring_of(feature.index());
+      const bool supported =
+          std::all_of(ring.begin(), ring.end(),
+                      [&n](const Vec3& r) { return n.dot(r) <= kSlack; });
+      return supported ? SurfaceSupport::kSupported : SurfaceSupport::kOriginal;
+    }
+  }
+}
+
+Feature FeatureOfVertices(const Polytope& polytope, const int* vertices,
+                          int count, const Vec3& n) {
+  int distinct[4] = {};
+  int size = 0;
+  for (int i = 0; i < count; ++i) {
+    if (std::find(distinct, distinct + size, vertices[i]) == distinct + size) {
+      distinct[size++] = vertices[i];
+    }
+  }
+  if (size == 1) return {FeatureKind::kVertex, distinct[0]};
+  if (size == 2) {
+    const int edge = FindEdge(polytope, distinct[0], distinct[1]);
+    if (edge >= 0) return {FeatureKind::kEdge, edge};
+  }
+  Feature best(FeatureKind::kVertex, distinct[0]);
+  double best_facing = -2;
+  for (const int facet : polytope.facets_of(distinct[0])) {
+    const double facing = n.dot(polytope.facets[facet].normal);
+    if (facing > best_facing &&
+        std::all_of(distinct + 1, distinct + size,
+                    [&](int v) { return FacetHolds(polytope, facet, v); })) {
+      best_facing = facing;
+      best = {FeatureKind::kFacet, facet};
+    }
+  }
+  return best;
+}
+
+}  // namespace drake_haptics

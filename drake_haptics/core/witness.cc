@@ -1,0 +1,83 @@
+#include "witness.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace drake_haptics {
+namespace {
+
+struct Segment {
+  Vec3 p, q;
+};
+
+Segment EdgeOfA(const PosedPair& pair, Feature feature) {
+  const auto& edge = pair.A.edges[feature.index()];
+  return {pair.a(edge.v0), pair.a(edge.v1)};
+}
+
+Segment EdgeOfB(const PosedPair& pair, Feature feature) {
+  const auto& edge = pair.B.edges[feature.index()];
+  return {pair.b(edge.v0), pair.b(edge.v1)};
+}
+
+// The point of segment s's line that is nearest to the other line.
+Vec3 Nearest(const Segment& s, const Segment& other) {
+  const Vec3 d = s.q - s.p;
+  const Vec3 e = other.q - other.p;
+  const Vec3 cross = d.cross(e);
+  const double t = (other.p - s.p).cross(e).dot(cross) / cross.squaredNorm();
+  return s.p + t * d;
+}
+
+double OutsideSegment(const Segment& s, const Vec3& point) {
+  const Vec3 d = s.q - s.p;
+  const double length = d.norm();
+  const double t = (point - s.p).dot(d) / length;
+  return std::max({0.0, -t, t - length});
+}
+
+// How far a point (in the polytope's frame) lies beyond a facet's sides.
+double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point) {
+  const auto loop = polytope.loop_of(facet);
+  const Vec3& normal = polytope.facets[facet].normal;
+  double outside = 0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vec3& p = polytope.vertices[loop[k]];
+    const Vec3& q = polytope.vertices[loop[(k + 1) % loop.size()]];
+    const Vec3 outward = (q - p).cross(normal).normalized();
+    outside = std::max(outside, outward.dot(point - p));
+  }
+  return outside;
+}
+
+}  // namespace
+
+Witness WitnessOfFeatures(const PosedPair& pair, Feature feature_A,
+                          Feature feature_B, const Vec3& n, double h) {
+  if (feature_A.kind() == FeatureKind::kVertex) {
+    const Vec3 p_a = pair.a(feature_A.index());
+    return {p_a, p_a - h * n};
+  }
+  if (feature_B.kind() == FeatureKind::kVertex) {
+    const Vec3 p_b = pair.b(feature_B.index());
+    return {p_b + h * n, p_b};
+  }
+  const Vec3 p_a = Nearest(EdgeOfA(pair, feature_A), EdgeOfB(pair, feature_B));
+  return {p_a, p_a - h * n};
+}
+
+double LateralOffset(const PosedPair& pair, Feature feature_A,
+                     Feature feature_B, const Witness& witness) {
+  if (feature_B.kind() == FeatureKind::kFacet) {
+    return OutsideFacet(pair.B, feature_B.index(),
+                        pair.X_AB.inverse() * witness.p_b);
+  }
+  if (feature_A.kind() == FeatureKind::kFacet) {
+    return OutsideFacet(pair.A, feature_A.index(), witness.p_a);
+  }
+  return std::max(OutsideSegment(EdgeOfA(pair, feature_A), witness.p_a),
+                  OutsideSegment(EdgeOfB(pair, feature_B), witness.p_b));
+}
+
+}  // namespace drake_haptics

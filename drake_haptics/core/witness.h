@@ -1,0 +1,25 @@
+#pragma once
+
+#include "support.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+/// Witness points of a contact, in A's frame (m): p_a − p_b = h n.
+struct Witness {
+  Vec3 p_a;
+  Vec3 p_b;
+};
+
+/// The witness points of a facet of A ⊖ B: the vertex of a vertex–facet pair
+/// with its foot on the facet's plane, or the points where two crossing edges
+/// pass each other.
+Witness WitnessOfFeatures(const PosedPair& pair, Feature feature_A,
+                          Feature feature_B, const Vec3& n, double h);
+
+/// How far (m) the witness lies outside its features, measured along the
+/// contact's plane; zero where the contact is within both.
+double LateralOffset(const PosedPair& pair, Feature feature_A,
+                     Feature feature_B, const Witness& witness);
+
+}  // namespace drake_haptics
