@@ -4,17 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import cast
 
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
-from drake_haptics._core import Decomposition, RigidToolDynamics
-from drake_haptics.scene import Contact, Coupling, Scene
+from drake_haptics import _core
+from drake_haptics.decomposition import Decomposition, Method, decompose
+from drake_haptics.mass_properties import calc_mass_properties
+from drake_haptics.mesh import load_mesh
+from drake_haptics.scene import Contact, Coupling, EnvironmentObject, Scene, Tool
+from drake_haptics.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.systems.contact_clustering import ContactClustering
 from drake_haptics.systems.contact_query import ContactObject, ContactQuery
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.haptic_tool import HapticTool
+from drake_haptics.systems.haptic_visualizer import HapticVisualizer
 from drake_haptics.systems.penalty_force import PenaltyForce
 from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
@@ -49,24 +56,26 @@ class HapticDiagram:
         scene: What it was built from.
         period_s: The tick, s.
         loop: The systems of the loop.
-        tool: The tool's convex pieces (`drake_haptics.decomposition.Decomposition`).
+        tool: The tool's mesh and convex pieces.
         environment: The same for each object of the scene, in its order.
+        visualizer: Draws it; None without a Meshcat.
     """
 
     diagram: Diagram
     scene: Scene
     period_s: float
     loop: HapticLoop
-    tool: object
-    environment: tuple[object, ...]
+    tool: Decomposition
+    environment: tuple[Decomposition, ...]
+    visualizer: HapticVisualizer | None
 
 
 def AddHapticLoop(
     builder: DiagramBuilder,
     *,
     device: HapticDevice,
-    tool: Decomposition,
-    tool_dynamics: RigidToolDynamics,
+    tool: _core.Decomposition,
+    tool_dynamics: _core.RigidToolDynamics,
     objects: Sequence[ContactObject],
     contact: Contact,
     coupling: Coupling,
@@ -81,7 +90,7 @@ def AddHapticLoop(
 
     Args:
         builder: Gets the systems, the device among them.
-        device: Not yet in the builder.
+        device: Not yet in a builder.
         tool: Pieces of the tool, in its frame T.
         tool_dynamics: Mass and inertia of the tool.
         objects: What the tool meets.
@@ -89,15 +98,88 @@ def AddHapticLoop(
         coupling: Gains between handle and tool.
         X_HT: Pose of the tool in the handle at rest.
         X_WT: Where the tool starts.
-        period_s: The tick, s.
+        period_s: The tick, s; also the device's.
 
     Returns:
         The systems.
 
     Raises:
-        ValueError: A gain, size or pose is out of range.
+        ValueError: A gain or size is out of range, or two objects share a name.
     """
-    raise NotImplementedError
+    loop = HapticLoop(
+        device=builder.AddNamedSystem("device", device),
+        virtual_coupling=builder.AddNamedSystem(
+            "virtual_coupling",
+            VirtualCoupling(
+                _core.CouplingGains(
+                    coupling.stiffness_N_per_m,
+                    coupling.damping_Ns_per_m,
+                    coupling.rotational_stiffness_Nm_per_rad,
+                    coupling.rotational_damping_Nms_per_rad,
+                ),
+                X_HT,
+            ),
+        ),
+        haptic_tool=builder.AddNamedSystem(
+            "haptic_tool",
+            HapticTool(tool_dynamics, period_s, ["coupling", "contact"], X_WT),
+        ),
+        contact_query=builder.AddNamedSystem(
+            "contact_query", ContactQuery(tool, objects, contact.tolerance_m)
+        ),
+        contact_clustering=builder.AddNamedSystem(
+            "contact_clustering",
+            ContactClustering(contact.cluster_size_m, contact.tolerance_m),
+        ),
+        penalty_force=builder.AddNamedSystem(
+            "penalty_force",
+            PenaltyForce(
+                objects,
+                contact.stiffness_N_per_m,
+                contact.damping_Ns_per_m,
+                contact.tolerance_m,
+            ),
+        ),
+    )
+    _connect(builder, loop)
+    return loop
+
+
+def _connect(builder: DiagramBuilder, loop: HapticLoop) -> None:
+    """Connects the systems of a loop with each other."""
+    device, tool = loop.device, loop.haptic_tool
+    coupling, force = loop.virtual_coupling, loop.penalty_force
+    X_WTool, V_WTool = tool.get_pose_output_port(), tool.get_velocity_output_port()
+    for output, input in [
+        (device.get_handle_pose_output_port(), coupling.get_handle_pose_input_port()),
+        (
+            device.get_handle_velocity_output_port(),
+            coupling.get_handle_velocity_input_port(),
+        ),
+        (X_WTool, coupling.get_tool_pose_input_port()),
+        (V_WTool, coupling.get_tool_velocity_input_port()),
+        (
+            coupling.get_display_wrench_output_port(),
+            device.get_display_wrench_input_port(),
+        ),
+        (
+            coupling.get_wrench_model_output_port(),
+            tool.get_wrench_input_port("coupling"),
+        ),
+        (X_WTool, loop.contact_query.get_tool_pose_input_port()),
+        (
+            loop.contact_query.get_contacts_output_port(),
+            loop.contact_clustering.get_contacts_input_port(),
+        ),
+        (
+            loop.contact_clustering.get_clusters_output_port(),
+            force.get_clusters_input_port(),
+        ),
+        (X_WTool, force.get_tool_pose_input_port()),
+        (V_WTool, force.get_tool_velocity_input_port()),
+        (force.get_wrench_model_output_port(), tool.get_wrench_input_port("contact")),
+    ]:
+        builder.Connect(output, input)
 
 
 def BuildHapticDiagram(
@@ -120,6 +202,94 @@ def BuildHapticDiagram(
 
     Raises:
         SceneError: A value is impossible or the hand's path cannot be reached.
-        drake_haptics.mesh.MeshError: A mesh cannot be treated.
+        MeshError: A mesh cannot be treated.
     """
-    raise NotImplementedError
+    # First what is quick to fail.
+    period_s = 1.0 / scene.device.rate_hz
+    path = make_hand_path(scene.hand.path)
+    device = make_simulated_device(scene, path)
+    tool = _decompose("tool", scene.tool, progress)
+    environment = tuple(
+        _decompose(item.name, item, progress) for item in scene.environment
+    )
+    objects = [
+        ContactObject(item.name, part.core, item.pose.to_rigid_transform())
+        for item, part in zip(scene.environment, environment, strict=True)
+    ]
+    p_TTcm, I_TTcm_T = calc_mass_properties(tool.mesh, scene.tool.mass_kg)
+    X_HT = scene.tool.grasp.to_rigid_transform()
+    builder = DiagramBuilder()
+    loop = AddHapticLoop(
+        builder,
+        device=device,
+        tool=tool.core,
+        tool_dynamics=_core.RigidToolDynamics(scene.tool.mass_kg, p_TTcm, I_TTcm_T),
+        objects=objects,
+        contact=scene.contact,
+        coupling=scene.coupling,
+        X_HT=X_HT,
+        X_WT=path.start,
+        period_s=period_s,
+    )
+    visualizer = None
+    if meshcat is not None:
+        visualizer = builder.AddNamedSystem(
+            "haptic_visualizer", HapticVisualizer(meshcat, tool.core, objects, X_HT)
+        )
+        _connect_visualizer(builder, loop, visualizer)
+    return HapticDiagram(
+        diagram=builder.Build(),
+        scene=scene,
+        period_s=period_s,
+        loop=loop,
+        tool=tool,
+        environment=environment,
+        visualizer=visualizer,
+    )
+
+
+def _decompose(
+    name: str,
+    item: Tool | EnvironmentObject,
+    progress: Callable[[str, float], None] | None,
+) -> Decomposition:
+    """Loads and cuts the mesh of an object of a scene."""
+    mesh = load_mesh(item.mesh, scale=item.scale)
+    return decompose(
+        mesh,
+        cast(Method, item.decomposition),
+        progress=partial(progress, name) if progress else None,
+    )
+
+
+def _connect_visualizer(
+    builder: DiagramBuilder, loop: HapticLoop, visualizer: HapticVisualizer
+) -> None:
+    """Connects what is drawn."""
+    for output, input in [
+        (
+            loop.device.get_handle_pose_output_port(),
+            visualizer.get_handle_pose_input_port(),
+        ),
+        (
+            loop.haptic_tool.get_pose_output_port(),
+            visualizer.get_tool_pose_input_port(),
+        ),
+        (
+            loop.contact_query.get_contacts_output_port(),
+            visualizer.get_contacts_input_port(),
+        ),
+        (
+            loop.contact_clustering.get_clusters_output_port(),
+            visualizer.get_clusters_input_port(),
+        ),
+        (
+            loop.penalty_force.get_contact_wrench_output_port(),
+            visualizer.get_contact_wrench_input_port(),
+        ),
+        (
+            loop.virtual_coupling.get_display_wrench_output_port(),
+            visualizer.get_display_wrench_input_port(),
+        ),
+    ]:
+        builder.Connect(output, input)

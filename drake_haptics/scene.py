@@ -11,6 +11,7 @@ import numpy as np
 from pydrake.common.yaml import yaml_load_file, yaml_load_typed
 from pydrake.math import RigidTransform, RollPitchYaw
 
+import drake_haptics
 from drake_haptics.scene_check import SceneError, check_keys, check_values
 
 __all__ = [
@@ -27,6 +28,8 @@ __all__ = [
     "Waypoint",
     "load_scene",
 ]
+
+_PACKAGE_URL = "package://drake_haptics/"
 
 
 @dataclass
@@ -275,5 +278,7 @@ def load_scene(path: str | Path) -> Scene:
 
 
 def _absolute(mesh: str, folder: Path) -> str:
-    """Returns a mesh path that holds from any folder; package URLs stay."""
-    return mesh if "://" in mesh else str((folder / mesh).resolve())
+    """Returns a mesh path that holds from any folder."""
+    if mesh.startswith(_PACKAGE_URL):
+        return str(Path(drake_haptics.__file__).parent / mesh[len(_PACKAGE_URL) :])
+    return str((folder / mesh).resolve())

@@ -8,11 +8,13 @@ import math
 import typing
 from typing import TYPE_CHECKING, Any
 
+from drake_haptics.errors import UserError
+
 if TYPE_CHECKING:
     from drake_haptics.scene import HandPath, Scene
 
 
-class SceneError(ValueError):
+class SceneError(UserError):
     """A scene that cannot be used. The message names the key."""
 
 

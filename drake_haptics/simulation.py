@@ -2,16 +2,41 @@
 
 from __future__ import annotations
 
+import gc
+import math
+import time
 from collections.abc import Callable
 
-from pydrake.systems.framework import Context
+import numpy as np
+from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
+from pydrake.systems.framework import Context, EventStatus
 
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.run_statistics import RunStatistics
 
 
 class RunError(RuntimeError):
-    """A run was stopped because a value was no longer finite."""
+    """A run was stopped because a value was no longer finite.
+
+    Attributes:
+        statistics: Of the run up to there.
+    """
+
+    def __init__(self, message: str, statistics: RunStatistics):
+        super().__init__(message)
+        self.statistics = statistics
+
+
+def make_simulator(haptic: HapticDiagram) -> Simulator:
+    """Returns a simulator at time 0 that integrates one step per tick.
+
+    The step is fixed and of second order: the stiffest motion of a shipped arm in
+    a shipped grip is slow against a tick (tests/test_simulated_arm.py).
+    """
+    simulator = Simulator(haptic.diagram)
+    ResetIntegratorFromFlags(simulator, "runge_kutta2", haptic.period_s)
+    simulator.get_mutable_integrator().set_fixed_step_mode(True)
+    return simulator
 
 
 def run(
@@ -26,7 +51,8 @@ def run(
     Args:
         haptic: What `BuildHapticDiagram` returned.
         duration_s: Simulated time, s; until Ctrl-C where not given.
-        realtime: Whether to wait so that simulated time is clock time.
+        realtime: Whether to wait so that simulated time is clock time. Time lost
+            to a stall is not caught up: a device must never be hurried.
         on_tick: Called after every tick with the diagram's context, to be read
             only. Its time counts in the tick.
 
@@ -34,6 +60,97 @@ def run(
         What was measured. Ctrl-C ends a run early and is not an error.
 
     Raises:
-        RunError: The tool or the device got a value that is not finite.
+        RunError: The tool or the handle has a pose or velocity that is not finite.
     """
-    raise NotImplementedError
+    simulator = make_simulator(haptic)
+    statistics = RunStatistics(haptic.period_s)
+    measure = _make_measure(haptic, simulator.get_context(), statistics)
+    pace_s = haptic.period_s if realtime else 0.0
+    # Collecting garbage over all of pydrake's objects takes many ticks; frozen, they
+    # are left alone.
+    gc.collect()
+    gc.freeze()
+    try:
+        simulator.Initialize()
+        simulator.set_monitor(_make_monitor(measure, on_tick, pace_s))
+        simulator.AdvanceTo(math.inf if duration_s is None else duration_s)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        gc.unfreeze()
+    return statistics
+
+
+def _make_monitor(
+    measure: Callable[[Context, float], None],
+    on_tick: Callable[[Context], None] | None,
+    pace_s: float,
+) -> Callable[[Context], EventStatus]:
+    """Returns what the simulator calls after each tick."""
+    start_s = time.perf_counter()
+    due_s = start_s
+
+    def monitor(context: Context) -> EventStatus:
+        nonlocal start_s, due_s
+        now_s = time.perf_counter()
+        measure(context, now_s - start_s)
+        start_s = now_s
+        if on_tick is not None:
+            on_tick(context)
+        if pace_s > 0.0:
+            now_s = time.perf_counter()
+            due_s = max(due_s + pace_s, now_s)
+            time.sleep(due_s - now_s)
+            # Waiting belongs to no tick.
+            start_s += time.perf_counter() - now_s
+        return EventStatus.Succeeded()
+
+    return monitor
+
+
+def _make_measure(
+    haptic: HapticDiagram, root: Context, statistics: RunStatistics
+) -> Callable[[Context, float], None]:
+    """Returns what reads a tick's values from the context into the statistics."""
+    loop = haptic.loop
+    tool_context = loop.haptic_tool.GetMyContextFromRoot(root)
+    device_context = loop.device.GetMyContextFromRoot(root)
+    query_context = loop.contact_query.GetMyContextFromRoot(root)
+    clustering_context = loop.contact_clustering.GetMyContextFromRoot(root)
+    X_WTool = loop.haptic_tool.get_pose_output_port()
+    V_WTool = loop.haptic_tool.get_velocity_output_port()
+    X_WH = loop.device.get_handle_pose_output_port()
+    V_WH = loop.device.get_handle_velocity_output_port()
+    F_applied = loop.device.get_applied_wrench_output_port()
+    status = loop.device.get_status_output_port()
+    contacts_port = loop.contact_query.get_contacts_output_port()
+    clusters_port = loop.contact_clustering.get_clusters_output_port()
+
+    def measure(context: Context, tick_s: float) -> None:
+        for name, port, port_context in (
+            ("the tool's pose", X_WTool, tool_context),
+            ("the tool's velocity", V_WTool, tool_context),
+            ("the handle's pose", X_WH, device_context),
+            ("the handle's velocity", V_WH, device_context),
+        ):
+            if not math.isfinite(sum(port.Eval(port_context).tolist())):
+                raise RunError(
+                    f"stopped at {context.get_time():.4f} s: {name} is not finite",
+                    statistics,
+                )
+        # What the next tick needs of these is cached, so they cost nothing twice.
+        contacts = contacts_port.Eval(query_context)
+        clusters = clusters_port.Eval(clustering_context)
+        wrench = F_applied.Eval(device_context).tolist()
+        statistics.add(
+            tick_s=tick_s,
+            query_s=contacts.query_seconds,
+            contacts=len(contacts),
+            clusters=len(clusters),
+            penetration_m=-float(np.min(contacts.distance, initial=0.0)),
+            force_N=math.hypot(*wrench[3:]),
+            torque_Nm=math.hypot(*wrench[:3]),
+            status=status.Eval(device_context)[0],
+        )
+
+    return measure

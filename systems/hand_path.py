@@ -9,7 +9,7 @@ import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.trajectories import PiecewisePolynomial
 
-from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
 
 # Neighbouring quaternions are interpolated along their chord; beyond this angle
 # the speed of turning along it would vary too much.
@@ -63,6 +63,11 @@ class HandPath:
     def duration_s(self) -> float:
         """Time of the last waypoint, s."""
         return self._times[-1]
+
+    @property
+    def start(self) -> RigidTransform:
+        """X_WP at the start."""
+        return vector_to_pose(self.calc(0.0)[0])
 
     def calc(self, time_s: float) -> tuple[np.ndarray, np.ndarray]:
         """Returns X_WP as [qw qx qy qz x y z] and V_WP = [ω; v] at a time.

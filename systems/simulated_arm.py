@@ -11,7 +11,6 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import SpatialInertia, UnitInertia
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
-from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.systems.arm_inverse_kinematics import solve_arm_positions
 from drake_haptics.systems.hand_grip import HandGrip
 from drake_haptics.systems.hand_impedance import HandImpedance
@@ -66,6 +65,7 @@ class SimulatedArm(Diagram):
         if grip is not None:
             hand = plant.AddRigidBody(
                 "hand",
+                handle.model_instance(),
                 SpatialInertia(
                     grip.mass_kg,
                     np.zeros(3),
@@ -74,12 +74,12 @@ class SimulatedArm(Diagram):
             )
             plant.WeldFrames(handle.body_frame(), hand.body_frame())
         plant.Finalize()
-        X_WH = vector_to_pose(path.calc(0.0)[0]) @ X_PH
+        X_WH = path.start @ X_PH
         q_rest = np.zeros(plant.num_positions())
         plant.SetDefaultPositions(solve_arm_positions(plant, handle, X_WH, q_rest))
         hand_impedance = builder.AddNamedSystem(
             "hand_impedance",
-            HandImpedance(plant, handle, path, X_PH, grip.gains if grip else None),
+            HandImpedance(plant, handle, path, X_PH, grip.make_gains() if grip else None),
         )
         builder.Connect(
             plant.get_state_output_port(), hand_impedance.get_arm_state_input_port()
