@@ -22,7 +22,7 @@ def check_branching(triangles: np.ndarray, findings: list[Finding]) -> None:
                 Severity.DEFECT,
                 branching,
                 f"{branching:,} edges join three or more triangles",
-                "cut: the surface is taken as separate parts that meet there",
+                "the surface is cut there into separate parts",
             )
         )
 
@@ -47,7 +47,7 @@ def check_holes(
             num_open,
             f"{num_open:,} open edges form {loops:,} rim(s) of holes or sheets in "
             f"{open_parts:,} part(s)",
-            "left open: these parts bound no solid, their pieces are one-sided",
+            "left open; these parts bound no solid, their pieces are one-sided",
         )
     )
 
@@ -73,7 +73,7 @@ def check_components(
                 Severity.DEFECT,
                 twisted,
                 f"{twisted} part(s) have only one side, as a Möbius strip",
-                "left as wound: they bound no solid, their pieces are one-sided",
+                "left as wound; they bound no solid, their pieces are one-sided",
             )
         )
     hollow = int((closed & ~solid).sum())
@@ -84,7 +84,7 @@ def check_components(
                 Severity.DEFECT,
                 hollow,
                 f"{hollow} closed part(s) enclose no volume (a sheet folded on itself)",
-                "left as they are: they bound no solid, their pieces are one-sided",
+                "left as they are; they bound no solid, their pieces are one-sided",
             )
         )
     if len(closed) > 1:
@@ -120,7 +120,7 @@ def check_size(
                 Severity.QUESTION,
                 1,
                 f"the file states its unit as {ignored_unit}, but was read as metres",
-                f"nothing: state the unit {ignored_unit} if that is right",
+                f"nothing was changed; state the unit {ignored_unit} if that is right",
             )
         )
     largest = float(extent.max())
@@ -134,6 +134,6 @@ def check_size(
             1,
             f"{length(largest)} is {size} for something to touch "
             f"(1 unit of the file was taken as {length(metres_per_unit)})",
-            "nothing: state the unit or the scale if it is not",
+            "nothing was changed; is the unit right?",
         )
     )

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-import rich.box
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
@@ -30,10 +28,10 @@ class Severity(str, Enum):
 
 
 _COLORS = {
-    Severity.NOTE: "cyan",
+    Severity.DEFECT: "red",
     Severity.QUESTION: "magenta",
     Severity.REPAIRED: "yellow",
-    Severity.DEFECT: "red",
+    Severity.NOTE: "cyan",
 }
 
 
@@ -64,6 +62,11 @@ class Finding:
             "message": self.message,
             "action": self.action,
         }
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> Finding:
+        """Reads what `to_dict` returned."""
+        return Finding(**{**data, "severity": Severity(data["severity"])})
 
 
 @dataclass(frozen=True)
@@ -146,6 +149,24 @@ class MeshReport:
             "findings": [finding.to_dict() for finding in self.findings],
         }
 
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> MeshReport:
+        """Reads what `to_dict` returned."""
+        x, y, z = data["extent_m"]
+        return MeshReport(
+            source=data["source"],
+            metres_per_unit=data["metres_per_unit"],
+            vertices=data["vertices"],
+            triangles=data["triangles"],
+            components=data["components"],
+            solids=data["solids"],
+            one_sided_triangles=data["one_sided_triangles"],
+            extent=(x, y, z),
+            area=data["area_m2"],
+            volume=data["volume_m3"],
+            findings=tuple(map(Finding.from_dict, data["findings"])),
+        )
+
     def __rich_console__(
         self, console: Console, options: ConsoleOptions
     ) -> RenderResult:
@@ -153,7 +174,7 @@ class MeshReport:
         yield self._facts()
         yield Text()
         if self.findings:
-            yield from self._findings()
+            yield self._findings()
             yield Text()
         yield Text(self.verdict, style="bold")
 
@@ -170,19 +191,16 @@ class MeshReport:
             table.add_row("  volume", f"{self.volume:.4g} m³")
         return table
 
-    def _findings(self) -> Iterator[Table]:
-        table = Table(box=rich.box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-        table.add_column("  finding", no_wrap=True)
-        table.add_column("found", ratio=1)
-        table.add_column("done", ratio=1)
-        for finding in self.findings:
-            color = _COLORS[finding.severity]
-            table.add_row(
-                f"  [{color}]{finding.severity.value:<8}[/] {finding.code}",
-                Text(finding.message),
-                Text(finding.action),
-            )
-        yield table
+    def _findings(self) -> Table:
+        """The findings, the most important first."""
+        table = Table.grid(padding=(0, 2))
+        order = list(_COLORS)
+        for finding in sorted(self.findings, key=lambda f: order.index(f.severity)):
+            sentence = Text(f"{finding.message}: {finding.action} ")
+            sentence.append(f"[{finding.code}]", style="dim")
+            severity = Text(f"  {finding.severity.value}", _COLORS[finding.severity])
+            table.add_row(severity, sentence)
+        return table
 
     def __str__(self) -> str:
         out = io.StringIO()

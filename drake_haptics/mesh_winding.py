@@ -191,6 +191,6 @@ def _report(
                 Severity.NOTE,
                 int(cavity.sum()),
                 f"{int(cavity.sum())} closed part(s) inside another are wound inward",
-                "kept: they are the walls of cavities",
+                "kept, as the walls of cavities",
             )
         )

@@ -31,8 +31,6 @@ def check(
     if json_file is not None:
         write_json(report.to_dict(), json_file)
     if json_file != "-":
-        console = Console(highlight=False)
-        console.width = max(80, min(console.width, 110))
-        console.print(report)
+        Console(highlight=False).print(report)
     if strict and report.unclean:
         raise MeshError(report.refusal)

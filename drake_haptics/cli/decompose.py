@@ -1,0 +1,108 @@
+"""`drake-haptics decompose MESH`."""
+
+from __future__ import annotations
+
+import signal
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from drake_haptics.cli.mesh_options import json_option, unit_options, write_json
+from drake_haptics.decomposition import METHODS, Decomposition, Method
+from drake_haptics.decomposition import decompose as decompose_mesh
+from drake_haptics.mesh import Mesh, load_mesh
+
+
+@click.command()
+@click.argument("mesh", type=click.Path())
+@unit_options
+@click.option(
+    "--method",
+    type=click.Choice(METHODS),
+    default="surface",
+    show_default=True,
+    help="surface: exact cover; hull: one hull per part; coacd: few rough pieces.",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False),
+    metavar="FILE",
+    help="Write mesh and pieces to an .npz file.",
+)
+@click.option(
+    "--no-cache", is_flag=True, help="Neither use nor keep results on the disk."
+)
+@click.option(
+    "--show", is_flag=True, help="Show the pieces in the browser until Ctrl-C."
+)
+@click.option(
+    "--html",
+    type=click.Path(dir_okay=False),
+    metavar="FILE",
+    help="Write the view of the pieces as one self-contained web page.",
+)
+@json_option
+def decompose(
+    mesh: str,
+    unit: str | None,
+    scale: float | None,
+    method: Method,
+    output: str | None,
+    no_cache: bool,
+    show: bool,
+    html: str | None,
+    json_file: str | None,
+) -> None:
+    """Cut the surface of a mesh into convex pieces, and report them."""
+    taken_in = load_mesh(mesh, unit=unit, scale=scale)
+    result = _with_progress(taken_in, method, cache=not no_cache)
+    if output is not None:
+        result.save(output)
+    if json_file is not None:
+        data = {**result.report.to_dict(), "mesh": taken_in.report.to_dict()}
+        write_json(data, json_file)
+    if json_file != "-":
+        _print_report(result)
+    if show or html is not None:
+        _view(result, show, html)
+
+
+def _with_progress(mesh: Mesh, method: Method, cache: bool) -> Decomposition:
+    console = Console(stderr=True)
+    columns = (TextColumn("decomposing"), BarColumn(), TimeElapsedColumn())
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as bar:
+        task = bar.add_task("", total=1.0)
+
+        def show_share(share: float) -> None:
+            bar.update(task, completed=share)
+
+        return decompose_mesh(mesh, method, progress=show_share, cache=cache)
+
+
+def _print_report(result: Decomposition) -> None:
+    console = Console(highlight=False)
+    console.print(result.report)
+    unclean = len(result.mesh.report.unclean)
+    if unclean:
+        console.print(
+            f"  {unclean} defect(s) of the mesh were repaired or left; "
+            f"drake-haptics check names them."
+        )
+
+
+def _view(result: Decomposition, show: bool, html: str | None) -> None:
+    from drake_haptics.viewer import DecompositionViewer  # starts a web server
+
+    viewer = DecompositionViewer(result)
+    if html is not None:
+        viewer.write_html(html)
+    if show:
+        click.echo(f"Open {viewer.url} in a browser; Ctrl-C ends.", err=True)
+        try:
+            signal.pause()
+        except KeyboardInterrupt:
+            click.echo(err=True)

@@ -1,0 +1,165 @@
+"""Decomposition of a mesh into the convex pieces that contacts are found on."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from drake_haptics import _core
+from drake_haptics.coacd_backend import coacd_hulls, coacd_parameters
+from drake_haptics.decomposition_cache import cache_key, load_cached, store_cached
+from drake_haptics.decomposition_file import read_decomposition, write_decomposition
+from drake_haptics.decomposition_report import DecompositionReport
+from drake_haptics.errors import UserError
+from drake_haptics.mesh import Mesh
+from drake_haptics.piece_data import ConvexHulls, PatchLabels, PieceData
+
+Method = Literal["surface", "hull", "coacd"]
+METHODS: tuple[Method, ...] = get_args(Method)
+Progress = Callable[[float], None]
+
+# Within this share of the mesh's size a facet of a piece is on the mesh: round-off
+# for hulls of the mesh's own vertices, CoACD's remeshing for its pieces.
+_ON_MESH = {"hull": 1e-9, "coacd": 5e-3}
+
+
+@dataclass(frozen=True, eq=False)
+class Decomposition:
+    """A mesh and its convex pieces.
+
+    Attributes:
+        mesh: the mesh.
+        core: the pieces as the core uses them.
+        method: by which they were found.
+        report: counts and time.
+    """
+
+    mesh: Mesh
+    core: _core.Decomposition
+    method: Method
+    report: DecompositionReport
+    _data: PieceData
+
+    @property
+    def pieces(self) -> list[_core.Polytope]:
+        """The convex pieces; facets that are not on the mesh are marked."""
+        return self.core.pieces
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes mesh and pieces to an .npz file, whole or not at all.
+
+        Raises:
+            OSError: if the system refuses.
+        """
+        write_decomposition(Path(path), self.mesh, self.method, self._data)
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Decomposition:
+        """Reads what `save` wrote.
+
+        Raises:
+            DecompositionFileError: if the file is damaged, foreign or of another
+                version of the format.
+            OSError: if it cannot be opened.
+        """
+        mesh, method, data = read_decomposition(Path(path))
+        return _assemble(mesh, _checked_method(method), data, from_cache=True)
+
+
+def decompose(
+    mesh: Mesh,
+    method: Method = "surface",
+    *,
+    progress: Progress | None = None,
+    cache: bool = True,
+) -> Decomposition:
+    """Cuts a mesh into convex pieces.
+
+    Args:
+        mesh: from `load_mesh` or `Mesh.from_arrays`.
+        method: "surface" covers the mesh exactly: patches grown for as long as
+            they are convex and their hulls stay inside the solid (Kim, Otaduy, Lin
+            and Manocha 2003, section 5.3.1); a convex solid gives one piece. Pieces
+            of a surface that bounds no solid are one-sided. "hull" is one convex
+            hull for each component: it fills hollows. "coacd" fills solids
+            approximately with few pieces (optional extra); it fills cavities.
+        progress: called now and then with the share done, from 0 to 1. An
+            exception that it raises stops the work and comes out here.
+        cache: use and keep results on disk, see `decomposition_cache`.
+
+    Raises:
+        UserError: if the method is unknown or its optional package is missing.
+    """
+    method = _checked_method(method)
+    report_share = progress or (lambda share: None)
+    parameters = _parameters(method)
+    key = cache_key(mesh, method, parameters) if cache else ""
+    data = load_cached(key, mesh) if cache else None
+    from_cache = data is not None
+    if data is None:
+        data = _find_pieces(mesh, method, report_share)
+        if cache:
+            store_cached(key, data)
+    report_share(1.0)
+    return _assemble(mesh, method, data, from_cache)
+
+
+def _checked_method(method: str) -> Method:
+    if method not in METHODS:
+        known = ", ".join(METHODS)
+        raise UserError(f"unknown decomposition method {method!r}; known: {known}")
+    return method
+
+
+def _parameters(method: Method) -> dict[str, Any]:
+    return coacd_parameters() if method == "coacd" else {}
+
+
+def _find_pieces(mesh: Mesh, method: Method, progress: Progress) -> PieceData:
+    start = time.perf_counter()
+    if method == "surface":
+
+        def step(share: float) -> bool:
+            progress(share)
+            return True
+
+        core = _core.decompose_surface(mesh.vertices, mesh.triangles, mesh.solid, step)
+        seconds = time.perf_counter() - start
+        return PatchLabels(np.array(core.piece_of_triangle, dtype=np.int32), seconds)
+    if method == "hull":
+        hulls = [_points(mesh, index) for index in range(len(mesh.components))]
+    else:
+        hulls = coacd_hulls(mesh, progress)
+    tolerance = _ON_MESH[method] * float(np.linalg.norm(mesh.report.extent))
+    return ConvexHulls.of(hulls, tolerance, time.perf_counter() - start)
+
+
+def _points(mesh: Mesh, component: int) -> np.ndarray:
+    triangles = mesh.triangles[mesh.component_of_triangle == component]
+    return mesh.vertices[np.unique(triangles)]
+
+
+def _assemble(
+    mesh: Mesh, method: Method, data: PieceData, from_cache: bool
+) -> Decomposition:
+    core = data.assemble(mesh)
+    originals = [np.asarray(piece.facet_original) for piece in core.pieces]
+    report = DecompositionReport(
+        source=mesh.report.source,
+        method=method,
+        triangles=len(mesh.triangles),
+        one_sided_triangles=mesh.report.one_sided_triangles,
+        pieces=len(core.pieces),
+        flat_pieces=sum(piece.dimension < 3 for piece in core.pieces),
+        facets=sum(map(len, originals)),
+        virtual_facets=sum(int((~original).sum()) for original in originals),
+        seconds=data.seconds,
+        from_cache=from_cache,
+    )
+    return Decomposition(mesh, core, method, report, data)

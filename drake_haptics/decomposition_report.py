@@ -1,0 +1,76 @@
+"""The report on a decomposition, in words and as data."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.table import Table
+from rich.text import Text
+
+
+@dataclass(frozen=True)
+class DecompositionReport:
+    """What a mesh was cut into.
+
+    Attributes:
+        source: file or name of the mesh.
+        method: "surface", "hull" or "coacd".
+        triangles: of the mesh.
+        one_sided_triangles: those that bound no solid.
+        pieces: convex pieces.
+        flat_pieces: those of them without volume (coplanar patches).
+        facets: of all pieces.
+        virtual_facets: those of them that are not on the mesh.
+        seconds: that finding the pieces took, s.
+        from_cache: the pieces were found earlier and read from the cache or a file.
+    """
+
+    source: str
+    method: str
+    triangles: int
+    one_sided_triangles: int
+    pieces: int
+    flat_pieces: int
+    facets: int
+    virtual_facets: int
+    seconds: float
+    from_cache: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns plain data for JSON."""
+        return asdict(self)
+
+    def __rich_console__(
+        self, console: Console, options: ConsoleOptions
+    ) -> RenderResult:
+        yield Text(self.source, style="bold")
+        table = Table.grid(padding=(0, 2))
+        flat = f", {self.flat_pieces:,} of them flat" if self.flat_pieces else ""
+        table.add_row(
+            "  pieces",
+            f"{self.pieces:,} from {self.triangles:,} triangles{flat} "
+            f"(method {self.method})",
+        )
+        table.add_row(
+            "  facets",
+            f"{self.facets:,}, {self.virtual_facets:,} of them virtual "
+            f"(not on the mesh)",
+        )
+        when = "found earlier in" if self.from_cache else "found in"
+        table.add_row("  time", f"{when} {self.seconds:.3g} s")
+        yield table
+        if self.one_sided_triangles:
+            share = self.one_sided_triangles / self.triangles
+            yield Text(
+                f"  {self.one_sided_triangles:,} triangles ({share:.0%}) bound no "
+                f"solid: their pieces are one-sided, nothing can be inside them.",
+                style="yellow",
+            )
+
+    def __str__(self) -> str:
+        out = io.StringIO()
+        Console(file=out, width=100, color_system=None).print(self)
+        return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
