@@ -98,11 +98,10 @@ class Query {
   }
 
   bool IsSupported(const PairContact& contact) const {
-    return ClassifySupport(pair_.A, contact.feature_A, -contact.n) ==
-               SurfaceSupport::kSupported &&
-           ClassifySupport(pair_.B, contact.feature_B,
+    return ClassifySupport(pair_.A, contact.feature_A, contact.n, pair_.B,
+                           contact.feature_B,
                            pair_.X_AB.R.transpose() * contact.n) ==
-               SurfaceSupport::kSupported;
+           SurfaceSupport::kSupported;
   }
 
   std::optional<PairContact> Overlapping() {

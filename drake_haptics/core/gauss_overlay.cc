@@ -26,14 +26,6 @@ bool InRegionOfB(const std::vector<Vec3>& edges, const Vec3& n, double slack) {
                      [&](const Vec3& e) { return n.dot(e) <= slack; });
 }
 
-SurfaceSupport Both(const PosedPair& pair, Feature a, Feature b,
-                    const Vec3& n) {
-  const SurfaceSupport of_A = ClassifySupport(pair.A, a, -n);
-  if (of_A == SurfaceSupport::kVirtual) return of_A;
-  return std::min(of_A,
-                  ClassifySupport(pair.B, b, pair.X_AB.R.transpose() * n));
-}
-
 }  // namespace
 
 void OverlayGaussRegions(const PosedPair& pair, const Hub& hub, double floor,
@@ -59,7 +51,8 @@ void OverlayGaussRegions(const PosedPair& pair, const Hub& hub, double floor,
   }
 
   const auto append = [&](double h, const Vec3& n, Feature a, Feature b) {
-    workspace->candidates.push_back({h, n, a, b, Both(pair, a, b, n)});
+    workspace->candidates.push_back(
+        {h, n, a, b, ClassifySupport(A, a, n, B, b, R.transpose() * n)});
   };
   for (const int f : A.facets_of(hub.a)) {
     const Vec3 n = -A.facets[f].normal;

@@ -9,6 +9,8 @@ namespace {
 // wide enough for the noise of single-precision mesh files, too narrow to be
 // felt.
 constexpr double kSlack = 1e-3;
+// The same at a vertex that meets a facet.
+constexpr double kFacetPartnerSlack = 0.5;
 
 int FindEdge(const Polytope& polytope, int v0, int v1) {
   const auto neighbors = polytope.neighbors_of(v0);
@@ -22,10 +24,12 @@ bool FacetHolds(const Polytope& polytope, int facet, int vertex) {
   return std::find(loop.begin(), loop.end(), vertex) != loop.end();
 }
 
-}  // namespace
-
-SurfaceSupport ClassifySupport(const Polytope& polytope, Feature feature,
-                               const Vec3& n) {
+// Support of one side; n points out of the polytope, in its frame.
+SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
+                            const Vec3& n, double vertex_slack) {
+  const auto supported_if = [](bool condition) {
+    return condition ? SurfaceSupport::kSupported : SurfaceSupport::kOriginal;
+  };
   switch (feature.kind()) {
     case FeatureKind::kFacet:
       return polytope.facets[feature.index()].original
@@ -34,19 +38,33 @@ SurfaceSupport ClassifySupport(const Polytope& polytope, Feature feature,
     case FeatureKind::kEdge: {
       const Polytope::Edge& edge = polytope.edges[feature.index()];
       if (!edge.original) return SurfaceSupport::kVirtual;
-      const bool supported =
-          n.dot(edge.wings[0]) <= kSlack && n.dot(edge.wings[1]) <= kSlack;
-      return supported ? SurfaceSupport::kSupported : SurfaceSupport::kOriginal;
+      return supported_if(n.dot(edge.wings[0]) <= kSlack &&
+                          n.dot(edge.wings[1]) <= kSlack);
     }
     default: {
       // Vertices are never created by a decomposition: all are original.
       const auto ring = polytope.ring_of(feature.index());
-      const bool supported =
+      return supported_if(
           std::all_of(ring.begin(), ring.end(),
-                      [&n](const Vec3& r) { return n.dot(r) <= kSlack; });
-      return supported ? SurfaceSupport::kSupported : SurfaceSupport::kOriginal;
+                      [&](const Vec3& r) { return n.dot(r) <= vertex_slack; }));
     }
   }
+}
+
+double VertexSlack(Feature partner) {
+  return partner.kind() == FeatureKind::kFacet ? kFacetPartnerSlack : kSlack;
+}
+
+}  // namespace
+
+SurfaceSupport ClassifySupport(const Polytope& A, Feature feature_A,
+                               const Vec3& n_A, const Polytope& B,
+                               Feature feature_B, const Vec3& n_B) {
+  const SurfaceSupport of_A =
+      ClassifySide(A, feature_A, -n_A, VertexSlack(feature_B));
+  if (of_A == SurfaceSupport::kVirtual) return of_A;
+  return std::min(of_A,
+                  ClassifySide(B, feature_B, n_B, VertexSlack(feature_A)));
 }
 
 Feature FeatureOfVertices(const Polytope& polytope, const int* vertices,

@@ -12,13 +12,19 @@ enum class SurfaceSupport {
   kSupported = 2  ///< on the mesh, and the mesh around it stays behind it
 };
 
-/// Tells whether the mesh, not only the piece, is locally supported by the
-/// unit direction n (in the polytope's frame, pointing out of it) at the
-/// feature. A contact between solids that is a local minimum of the distance
-/// is supported on both sides; a contact at the seam of two pieces, where the
-/// surface goes on, is not.
-SurfaceSupport ClassifySupport(const Polytope& polytope, Feature feature,
-                               const Vec3& n);
+/// Tells how the surfaces of both polytopes carry a contact between a feature
+/// of A and a feature of B along the unit normal, given in A's frame as n_A and
+/// in B's as n_B, from B into A.
+///
+/// A contact between solids that is a local minimum of the distance is
+/// supported: the surface of A around its feature stays on A's side of the
+/// plane, that of B on B's side. At the seam of two pieces, where the surface
+/// goes on, it is not. Against a facet the vertex may be one beside the
+/// nearest: n is a normal of the surface then, and the neighbours of a nearest
+/// vertex share the load when faces meet nearly flush.
+SurfaceSupport ClassifySupport(const Polytope& A, Feature feature_A,
+                               const Vec3& n_A, const Polytope& B,
+                               Feature feature_B, const Vec3& n_B);
 
 /// The smallest feature that holds the given vertices (one to four, repeats
 /// allowed); of several facets the one that faces the direction n most.
