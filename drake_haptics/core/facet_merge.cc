@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "predicates.h"
-
 namespace drake_haptics {
 namespace {
 
@@ -45,26 +43,16 @@ class Merger {
       : points_(points),
         triangles_(triangles),
         group_(triangles.size(), -1),
-        runs_(points.size(), 0) {
-    normals_.reserve(triangles.size());
-    for (const HullTriangle& t : triangles) {
-      normals_.push_back(TriangleCross(points[t.vertex[0]], points[t.vertex[1]],
-                                       points[t.vertex[2]]));
-    }
-    area_.reserve(triangles.size());
-    for (Vec3& normal : normals_) {
-      area_.push_back(normal.norm());
-      normal /= area_.back();
-    }
-  }
+        runs_(points.size(), 0) {}
 
   // Flood from the largest triangles, always against the seed's plane, so that
   // a gently curved surface does not melt into one facet.
   void Group(double tolerance) {
     std::vector<int> order(triangles_.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](int i, int j) { return area_[i] > area_[j]; });
+    std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
+      return triangles_[i].area > triangles_[j].area;
+    });
     for (const int seed : order) {
       if (group_[seed] < 0) Flood(seed, tolerance);
     }
@@ -93,7 +81,7 @@ class Merger {
     }
     std::vector<Polygon> polygons;
     for (std::size_t g = 0; g < seeds_.size(); ++g) {
-      polygons.push_back({normals_[seeds_[g]], {}});
+      polygons.push_back({triangles_[seeds_[g]].normal, {}});
       // Further cycles would be holes.
       if (TraceBoundary(start[g], &polygons[g].loop) != num_boundary_edges[g]) {
         return {};
@@ -106,7 +94,7 @@ class Merger {
     std::vector<Polygon> polygons;
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       const auto& v = triangles_[t].vertex;
-      polygons.push_back({normals_[t], {v[0], v[1], v[2]}});
+      polygons.push_back({triangles_[t].normal, {v[0], v[1], v[2]}});
     }
     return polygons;
   }
@@ -116,14 +104,15 @@ class Merger {
     const int group = static_cast<int>(seeds_.size());
     seeds_.push_back(seed);
     group_[seed] = group;
-    const Vec3& normal = normals_[seed];
+    const Vec3& normal = triangles_[seed].normal;
     const Vec3& base = points_[triangles_[seed].vertex[0]];
     std::vector<int> stack{seed};
     while (!stack.empty()) {
       const int t = stack.back();
       stack.pop_back();
       for (const int next : triangles_[t].neighbor) {
-        if (group_[next] >= 0 || normals_[next].dot(normal) <= 0) continue;
+        if (group_[next] >= 0 || triangles_[next].normal.dot(normal) <= 0)
+          continue;
         const auto& v = triangles_[next].vertex;
         if (std::all_of(v.begin(), v.end(), [&](int i) {
               return std::abs(normal.dot(points_[i] - base)) <= tolerance;
@@ -168,8 +157,6 @@ class Merger {
 
   std::span<const Vec3> points_;
   std::span<const HullTriangle> triangles_;
-  std::vector<Vec3> normals_;
-  std::vector<double> area_;
   std::vector<int> group_;
   std::vector<int> seeds_;
   std::vector<int> runs_;

@@ -6,63 +6,13 @@
 #include <numeric>
 
 #include "convex_hull.h"
+#include "convex_polygon.h"
 #include "facet_merge.h"
 #include "predicates.h"
+#include "spanning.h"
 
 namespace drake_haptics {
 namespace {
-
-// Points that span the set, each the farthest from the span of the former.
-struct Spanning {
-  int dimension = 0;
-  std::array<int, 4> point{0, 0, 0, 0};
-};
-
-template <typename Measure>
-std::pair<int, double> Farthest(std::span<const Vec3> points,
-                                const Measure& measure) {
-  int best = 0;
-  double most = -1;
-  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-    const double value = measure(points[i]);
-    if (value > most) {
-      most = value;
-      best = i;
-    }
-  }
-  return {best, most};
-}
-
-Spanning FindSpanning(std::span<const Vec3> points, const Vec3& extent,
-                      double tolerance) {
-  Spanning result;
-  int axis = 0;
-  const double size = extent.maxCoeff(&axis);
-  if (size <= tolerance) return result;
-  auto& p = result.point;
-  p[0] = Farthest(points, [&](const Vec3& q) { return 2 - q[axis]; }).first;
-  p[1] = Farthest(points, [&](const Vec3& q) { return 2 + q[axis]; }).first;
-  result.dimension = 1;
-
-  const Vec3 base = points[p[0]];
-  const Vec3 along = (points[p[1]] - base).normalized();
-  const auto [third, width] = Farthest(
-      points, [&](const Vec3& q) { return (q - base).cross(along).norm(); });
-  if (width <= tolerance) return result;
-  p[2] = third;
-  result.dimension = 2;
-
-  const Vec3 normal =
-      TriangleCross(base, points[p[1]], points[p[2]]).normalized();
-  const auto [fourth, height] = Farthest(
-      points, [&](const Vec3& q) { return std::abs(normal.dot(q - base)); });
-  p[3] = fourth;
-  const bool flat =
-      height <= tolerance ||
-      Orient3d(base, points[p[1]], points[p[2]], points[p[3]]) == 0;
-  if (!flat) result.dimension = 3;
-  return result;
-}
 
 // Drops corners that stand out of the line of their neighbours by less than
 // the tolerance. Neighbours never go in the same pass, so that a fine polygon
@@ -110,7 +60,7 @@ std::vector<HullShape::Polygon> Polygons(std::span<const Vec3> points,
                                          double tolerance) {
   const auto& p = spanning.point;
   if (spanning.dimension == 3) {
-    return MergeCoplanar(points, ExactConvexHull(points, p), tolerance);
+    return MergeCoplanar(points, ConvexHull(points, p).Triangles(), tolerance);
   }
   const Vec3 normal =
       TriangleCross(points[p[0]], points[p[1]], points[p[2]]).normalized();
@@ -156,7 +106,7 @@ std::vector<int> DistinctPoints(std::span<const Vec3> points) {
 
 }  // namespace
 
-HullShape FindHullShape(std::span<const Vec3> points, double flatness) {
+HullShape FindHullShape(std::span<const Vec3> points, double tolerance) {
   double magnitude = 0;
   for (const Vec3& p : points) {
     magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
@@ -172,23 +122,14 @@ HullShape FindHullShape(std::span<const Vec3> points, double flatness) {
   distinct.reserve(source.size());
   for (const int i : source) distinct.push_back(normalized[i]);
 
-  Vec3 low = distinct[0], high = distinct[0];
-  for (const Vec3& p : distinct) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const Vec3 extent = high - low;
-  // Coordinates are below 1 now: their own round-off is half an epsilon.
-  const double tolerance = std::max(
-      flatness * extent.norm(),
-      4 * std::numeric_limits<double>::epsilon() *
-          std::max(high.cwiseAbs().maxCoeff(), low.cwiseAbs().maxCoeff()));
-
-  const Spanning spanning = FindSpanning(distinct, extent, tolerance);
+  // The coordinates are below 1 now; so is the round-off they came with.
+  const double thickness =
+      std::max(tolerance * scale, 4 * std::numeric_limits<double>::epsilon());
+  const Spanning spanning = FindSpanning(distinct, thickness);
   HullShape shape;
   shape.dimension = spanning.dimension;
   if (spanning.dimension >= 2) {
-    shape.polygons = Polygons(distinct, spanning, tolerance);
+    shape.polygons = Polygons(distinct, spanning, thickness);
   }
   shape.extreme = ExtremePoints(spanning, shape.polygons);
   for (int& i : shape.extreme) i = source[i];

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "polytope.h"
 #include "types.h"
 
 namespace drake_haptics {
@@ -19,10 +20,14 @@ struct HullShape {
   std::vector<Polygon> polygons;  ///< dimension 2: front and back
 };
 
-/// @param points positions, finite and at least one.
-/// @param flatness thickness relative to the size below which the set is flat.
-///        The same bound, against a facet's plane, merges triangles to facets.
-///        It never falls below the round-off of the coordinates themselves.
-HullShape FindHullShape(std::span<const Vec3> points, double flatness);
+/// @param points positions, m, finite and at least one.
+/// @param tolerance thickness, m, below which the set is flat. The same bound,
+///        against a facet's plane, merges triangles to facets. It is never
+///        taken below the round-off of the coordinates themselves.
+HullShape FindHullShape(std::span<const Vec3> points, double tolerance);
+
+/// The polytope of a shape that was found for the same points: vertex i is the
+/// point extreme[i]. Every feature original.
+Polytope MakePolytope(std::span<const Vec3> points, const HullShape& shape);
 
 }  // namespace drake_haptics

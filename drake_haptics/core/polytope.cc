@@ -89,6 +89,7 @@ void AddEdges(Polytope* P) {
     P->facet_loop_edge[second.slot] = static_cast<int>(P->edges.size());
     P->edges.push_back(edge);
   }
+  if (P->dimension == 1) P->edges.push_back({.v0 = 0, .v1 = 1});
 }
 
 void AddWings(Polytope* P) {
@@ -140,25 +141,25 @@ void AddBall(Polytope* P) {
 
 }  // namespace
 
-Polytope MakePolytope(std::span<const Vec3> points, double flatness) {
-  CheckFinite(points);
-  const HullShape shape = FindHullShape(points, flatness);
+Polytope MakePolytope(std::span<const Vec3> points, const HullShape& shape) {
   Polytope P;
   P.dimension = shape.dimension;
   for (const int i : shape.extreme) P.vertices.push_back(points[i]);
   AddFacets(shape, &P);
   AddEdges(&P);
-  if (P.dimension == 1) {
-    Polytope::Edge edge;
-    edge.v0 = 0;
-    edge.v1 = 1;
-    P.edges.push_back(edge);
-  }
   AddWings(&P);
   AddNeighborsAndRings(&P);
   AddVertexFacets(&P);
   AddBall(&P);
   return P;
+}
+
+Polytope MakePolytope(std::span<const Vec3> points, double flatness) {
+  CheckFinite(points);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) box.extend(p);
+  return MakePolytope(points,
+                      FindHullShape(points, flatness * box.sizes().norm()));
 }
 
 }  // namespace drake_haptics
