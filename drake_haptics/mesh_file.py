@@ -47,6 +47,8 @@ def read_mesh_file(path: str | os.PathLike[str]) -> RawMesh:
         raise MeshError(f"{path}: no such file")
     if path.is_dir():
         raise MeshError(f"{path}: is a folder; name a mesh file inside it")
+    if path.stat().st_size == 0:
+        raise MeshError(f"{path}: is empty (0 bytes): export it again")
     if path.suffix.lower() == ".npz":
         return _read_npz(path)
     return _read_with_trimesh(path)
@@ -84,7 +86,9 @@ def _read_with_trimesh(path: Path) -> RawMesh:
         scene = trimesh.load_scene(path, process=False)
     except Exception as error:  # each of trimesh's readers raises what it likes
         raise MeshError(
-            f"{path}: cannot be read as {path.suffix}: {type(error).__name__}: {error}"
+            f"{path}: cannot be read as {path.suffix} "
+            f"({type(error).__name__}: {error}); the file is damaged or is not what "
+            f"its name says: export it again"
         ) from error
     return _merge_scene(path, scene)
 

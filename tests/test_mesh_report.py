@@ -1,0 +1,69 @@
+"""The mesh report: complete as data, readable as text."""
+
+import json
+
+import numpy as np
+import pytest
+from mesh_samples import box, joined
+
+from drake_haptics.mesh import Mesh
+from drake_haptics.mesh_report import MeshReport, Severity, length
+
+
+@pytest.fixture
+def dirty():
+    V, F = joined(box((0.1, 0.1, 0.1)), box((0.1, 0.1, 0.1), at=(0.2, 0, 0)))
+    F = np.concatenate([F[:-1], F[:1]])  # a hole in the second, a face twice
+    return Mesh.from_arrays(V, F, name="two boxes").report
+
+
+def test_data_survive_json(dirty):
+    data = json.loads(json.dumps(dirty.to_dict(), allow_nan=False))
+    assert MeshReport.from_dict(data) == dirty
+    assert data["components"] == 2 and data["solids"] == 1
+    assert data["one_sided_triangles"] == 11
+    np.testing.assert_allclose(data["extent_m"], (0.3, 0.1, 0.1))
+    assert data["volume_m3"] == pytest.approx(1e-3)
+    assert {f["code"]: f["severity"] for f in data["findings"]} == {
+        "duplicate-faces": "repaired",
+        "holes": "defect",
+        "many-parts": "note",
+    }
+
+
+def test_text_names_every_finding_and_what_was_done(dirty):
+    text = str(dirty)
+    assert text.startswith("two boxes\n")
+    flat = " ".join(text.split())
+    for finding in dirty.findings:
+        assert f"{finding.message}: {finding.action} [{finding.code}]" in flat
+    assert "300 mm x 100 mm x 100 mm" in flat
+    assert "Usable in part as a solid: 1 of 2 parts" in flat
+    assert max(map(len, text.splitlines())) <= 100
+
+
+def test_the_worst_comes_first(dirty):
+    lines = [line.split()[0] for line in str(dirty).splitlines() if "[" in line]
+    assert lines == ["defect", "repaired", "note"]
+
+
+def test_only_repairs_and_defects_are_unclean(dirty):
+    assert [f.code for f in dirty.unclean] == ["duplicate-faces", "holes"]
+    assert all(f.severity is not Severity.NOTE for f in dirty.unclean)
+
+
+@pytest.mark.parametrize(
+    ("triangles", "words"),
+    [(slice(0, 12), "one solid"), (slice(1, 12), "open surface")],
+)
+def test_verdict(triangles, words):
+    V, F = box()
+    assert words in Mesh.from_arrays(V, F[triangles]).report.verdict
+
+
+@pytest.mark.parametrize(
+    ("metres", "text"),
+    [(0, "0 m"), (1.5, "1.5 m"), (0.25, "250 mm"), (2e-3, "2 mm"), (5e-5, "50 µm")],
+)
+def test_length(metres, text):
+    assert length(metres) == text
