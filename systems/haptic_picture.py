@@ -10,6 +10,7 @@ from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_haptics import colors
 from drake_haptics._core import ClusterSet, ContactSet, Decomposition
+from drake_haptics.piece_surfaces import piece_surfaces
 from drake_haptics.systems.arrow_pool import ArrowPool
 from drake_haptics.systems.contact_query import ContactObject
 
@@ -77,15 +78,12 @@ class HapticPicture:
     def color_pieces(self) -> None:
         """Colours tool and objects by their convex pieces, for good."""
         for name, mesh in self._meshes.items():
-            palette = np.array([colors.piece_color(i) for i in range(len(mesh.pieces))])
-            corners = palette[mesh.piece_of_triangle, :3].repeat(3, axis=0)
+            drawn, _ = piece_surfaces(mesh.pieces)
             self._meshcat.SetTriangleColorMesh(
                 f"{_ROOT}/{name}",
-                np.asfortranarray(mesh.vertices[mesh.triangles].reshape(-1, 3).T),
-                np.asfortranarray(
-                    np.arange(len(corners), dtype=np.int32).reshape(-1, 3).T
-                ),
-                np.asfortranarray(corners.T),
+                np.asfortranarray(drawn.vertices.T),
+                np.asfortranarray(drawn.faces.T.astype(np.int32)),
+                np.asfortranarray(drawn.colors.T),
             )
 
     def place_object(self, name: str, X_WO: RigidTransform, time_s: float) -> None:

@@ -1,0 +1,23 @@
+"""`drake-haptics scenes`."""
+
+from __future__ import annotations
+
+import click
+from rich.console import Console
+from rich.table import Table
+
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import list_scenes
+
+
+@click.command()
+def scenes() -> None:
+    """List the scenes that come along."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    table.add_column("scene", no_wrap=True)
+    table.add_column("what happens")
+    for name, path in list_scenes().items():
+        table.add_row(name, load_scene(path).description)
+    console = Console(highlight=False)
+    console.print(table)
+    console.print("\nTo run one: drake-haptics run SCENE", style="dim")

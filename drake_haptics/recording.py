@@ -1,0 +1,51 @@
+"""Writes what Meshcat shows, with its animation, as one file."""
+
+from __future__ import annotations
+
+import html
+from pathlib import Path
+
+from pydrake.geometry import Meshcat
+
+from drake_haptics import colors
+
+_LEGEND = (
+    (colors.TOOL, "tool"),
+    (colors.HANDLE_GHOST, "where the handle wants it"),
+    (colors.COUPLING_LINE, "coupling, force on the hand"),
+    (colors.NEAR_CONTACT, "near contact"),
+    (colors.PENETRATING_CONTACT, "penetrating contact"),
+)
+
+
+def write_recording(meshcat: Meshcat, path: Path, title: str) -> None:
+    """Writes the page as one HTML file that needs nothing else.
+
+    Args:
+        meshcat: Whose recording has been published.
+        path: The file to write.
+        title: Heading of the legend.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    rows = "".join(
+        f'<div><span style="display:inline-block;width:0.8em;height:0.8em;'
+        f"margin-right:0.6em;border-radius:50%;background:{_css(color)}"
+        f'"></span>{html.escape(text)}</div>'
+        for color, text in _LEGEND
+    )
+    legend = (
+        '<div id="legend" style="position:fixed;left:1.2em;bottom:1.2em;'
+        "padding:0.8em 1.1em;font:13px/1.6 sans-serif;color:#333;"
+        'background:rgba(255,255,255,0.75);border-radius:0.5em">'
+        f"<b>{html.escape(title)}</b>{rows}</div>"
+    )
+    page = meshcat.StaticHtml().replace("</body>", f"{legend}</body>", 1)
+    path.write_text(page, encoding="utf-8")
+
+
+def _css(color: colors.Color) -> str:
+    """Returns a colour as CSS writes it."""
+    red, green, blue, alpha = color
+    return f"rgba({255 * red:.0f},{255 * green:.0f},{255 * blue:.0f},{alpha})"
