@@ -1,0 +1,62 @@
+"""Contact sets with known geometry, made by real queries on tiny bodies."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from drake_haptics import _core
+
+IDENTITY = np.array([1.0, 0, 0, 0, 0, 0, 0])
+
+
+def pose(p: object, quaternion: object = (1, 0, 0, 0)) -> np.ndarray:
+    """The pose vector [qw qx qy qz x y z]."""
+    return np.concatenate([np.asarray(quaternion, float), np.asarray(p, float)])
+
+
+def hull(points: object) -> _core.Decomposition:
+    """One convex piece, whole boundary."""
+    points = np.asarray(points, dtype=float)
+    polytope = _core.Polytope(points)
+    triangles = []
+    for loop in polytope.facets:
+        triangles += [[loop[0], loop[k], loop[k + 1]] for k in range(1, len(loop) - 1)]
+    return _core.decompose_surface(
+        polytope.vertices,
+        np.array(triangles, dtype=np.int32),
+        np.ones(len(triangles), dtype=np.uint8),
+    )
+
+
+def box(size: object, center: object = (0, 0, 0)) -> _core.Decomposition:
+    """An axis-aligned box of the given size, m."""
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    return hull(corners * np.asarray(size) / 2 + np.asarray(center))
+
+
+def spike(tip: object) -> _core.Decomposition:
+    """A slender tetrahedron that stands on its tip, 20 mm tall."""
+    tip = np.asarray(tip, dtype=float)
+    up = np.array([[1, 0, 20], [-0.5, 0.8, 20], [-0.5, -0.8, 20]]) * 1e-3
+    return hull(np.vstack([tip, tip + up]))
+
+
+def contacts_at(points: object, depths: object, tolerance: float) -> _core.ContactSet:
+    """Contacts at (n, 3) points on the plane z = 0, each `depth` deep.
+
+    Every contact comes from a spike whose tip is at the point, pressed into its
+    own small slab, so that normals are +z and distances are −depth. Contact i
+    has the witness points (x, y, −depth) and (x, y, 0).
+    """
+    points = np.asarray(points, dtype=float)
+    tips = np.column_stack([points[:, :2], -np.asarray(depths, dtype=float)])
+    tool = [spike(tip) for tip in tips]
+    vertices = np.vstack([piece.vertices for piece in tool])
+    offsets = np.cumsum([0] + [len(piece.vertices) for piece in tool[:-1]])
+    triangles = np.vstack(
+        [p.triangles + o for p, o in zip(tool, offsets, strict=True)]
+    ).astype(np.int32)
+    ones = np.ones(len(triangles), dtype=np.uint8)
+    body = _core.decompose_surface(vertices, triangles, ones)
+    slab = box([10, 10, 1], [0, 0, -0.5])
+    return _core.ContactTracker(body, [slab], tolerance).query(IDENTITY)
