@@ -1,0 +1,85 @@
+"""The last gate before a device."""
+
+import numpy as np
+import pytest
+from drake_haptics.systems.display_force_hold import (
+    LIMITED,
+    NOT_FINITE,
+    SHOWN_AS_ASKED,
+    DisplayForceHold,
+)
+
+MAX_FORCE, MAX_TORQUE = 8.5, 0.188
+
+
+def sample(wrench):
+    """Returns F_applied and status after one tick."""
+    hold = DisplayForceHold(1e-3, MAX_FORCE, MAX_TORQUE)
+    context = hold.CreateDefaultContext()
+    hold.get_display_wrench_input_port().FixValue(context, np.array(wrench, float))
+    context.SetDiscreteState(
+        hold.EvalUniquePeriodicDiscreteUpdate(context).get_vector().CopyToVector()
+    )
+    return (
+        hold.get_applied_wrench_output_port().Eval(context),
+        hold.get_status_output_port().Eval(context)[0],
+    )
+
+
+def test_topology():
+    hold = DisplayForceHold(1e-3, MAX_FORCE, MAX_TORQUE)
+    assert hold.GetInputPort("F_display").size() == 6
+    assert hold.GetOutputPort("F_applied").size() == 6
+    assert hold.GetOutputPort("status").size() == 1
+    assert not hold.HasAnyDirectFeedthrough()
+    assert hold.num_discrete_state_groups() == 1
+
+
+def test_within_the_limits_it_shows_what_is_asked():
+    wrench = [0.05, -0.05, 0.1, 3.0, -4.0, 5.0]
+    applied, status = sample(wrench)
+    np.testing.assert_array_equal(applied, wrench)
+    assert status == SHOWN_AS_ASKED
+
+
+@pytest.mark.parametrize("size", [10.0, 1e3, 1e160, 1e307])
+def test_beyond_them_it_keeps_the_direction(size):
+    applied, status = sample(size * np.array([1.0, 1.0, 0.0, 10.0, 0.0, -10.0]))
+    assert status == LIMITED
+    np.testing.assert_allclose(
+        applied[:3], MAX_TORQUE * np.array([1, 1, 0]) / np.sqrt(2), rtol=1e-12
+    )
+    assert np.linalg.norm(applied[3:]) == pytest.approx(MAX_FORCE)
+    np.testing.assert_allclose(applied[3], -applied[5])
+
+
+def test_a_torque_over_its_limit_leaves_the_force():
+    applied, status = sample([1.0, 0.0, 0.0, 1.0, 2.0, 3.0])
+    np.testing.assert_allclose(applied, [MAX_TORQUE, 0, 0, 1, 2, 3])
+    assert status == LIMITED
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("entry", range(6))
+def test_what_is_not_finite_is_shown_as_nothing(value, entry):
+    wrench = np.ones(6)
+    wrench[entry] = value
+    applied, status = sample(wrench)
+    np.testing.assert_array_equal(applied, np.zeros(6))
+    assert status == NOT_FINITE
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (0.0, 1.0, 1.0),
+        (-1.0, 1.0, 1.0),
+        (np.nan, 1.0, 1.0),
+        (1e-3, -1.0, 1.0),
+        (1e-3, np.inf, 1.0),
+        (1e-3, 1.0, np.nan),
+    ],
+)
+def test_impossible_limits_are_refused(arguments):
+    with pytest.raises(ValueError):
+        DisplayForceHold(*arguments)

@@ -1,0 +1,189 @@
+"""Scene files: what is read, and what is refused by name."""
+
+import numpy as np
+import pytest
+from drake_haptics.scene import (
+    Contact,
+    Coupling,
+    Device,
+    HandPath,
+    Pose,
+    SceneError,
+    Waypoint,
+    load_scene,
+)
+from drake_haptics.scene_library import find_scene, list_scenes
+from drake_haptics.simulated_device import make_hand_path, make_simulated_device
+
+GOOD = """
+description: A peg above a plate.
+tool:
+  mesh: peg.obj
+  mass_kg: 0.08
+  grasp: {position_m: [0, 0, 0.04], rpy_deg: [0, 0, 90]}
+environment:
+- name: plate
+  mesh: package://drake_haptics/models/meshes/plate.obj
+  scale: 1e-3
+  pose: {position_m: [0.1, 0, 0]}
+hand:
+  grip: light
+  path:
+    periodic: false
+    waypoints:
+    - {time_s: 0, position_m: [0, 0, 0.1]}
+    - {time_s: 1.5, position_m: [0, 0, 0.05], rpy_deg: [0, 10, 0]}
+"""
+
+
+def load(tmp_path, text):
+    path = tmp_path / "scene.yaml"
+    path.write_text(text)
+    return load_scene(path)
+
+
+def test_a_scene_is_read_with_defaults_for_the_rest(tmp_path):
+    scene = load(tmp_path, GOOD)
+    assert scene.tool.mass_kg == 0.08
+    assert scene.environment[0].scale == 1e-3
+    assert scene.hand.path.waypoints[1].rpy_deg == [0, 10, 0]
+    assert (scene.contact, scene.coupling) == (Contact(), Coupling())
+    assert scene.device == Device()
+
+
+def test_mesh_paths_no_longer_depend_on_the_folder(tmp_path):
+    scene = load(tmp_path, GOOD)
+    assert scene.tool.mesh == str(tmp_path / "peg.obj")
+    assert scene.environment[0].mesh.endswith("/models/meshes/plate.obj")
+    assert scene.environment[0].mesh.startswith("/")
+
+
+def test_a_pose_is_drakes():
+    X = Pose([1, 2, 3], [0, 0, 90]).to_rigid_transform()
+    np.testing.assert_allclose(X @ np.array([1.0, 0, 0]), [1, 3, 3], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "complaint"),
+    [
+        ("tool:", "tol:", r"tol: unknown key; did you mean 'tool'\?"),
+        ("mass_kg: 0.08", "mass: 0.08", r"tool\.mass: unknown key; did you mean 'mass"),
+        ("scale: 1e-3", "scales: 1", r"environment\[0\]\.scales: unknown key"),
+        ("periodic: false", "periodc: no", r"hand\.path\.periodc: unknown key"),
+        ("{time_s: 0,", "{time: 0,", r"hand\.path\.waypoints\[0\]\.time: unknown"),
+        ("mass_kg: 0.08", "mass_kg: heavy", r"tool\.mass_kg: expected a finite number"),
+        ("mass_kg: 0.08", "mass_kg: .nan", r"tool\.mass_kg: expected a finite number"),
+        ("mass_kg: 0.08", "mass_kg:", r"tool\.mass_kg: expected a finite number"),
+        ("mass_kg: 0.08", "mass_kg: 0", r"tool\.mass_kg must be positive, is 0"),
+        ("periodic: false", "periodic: 3", r"hand\.path\.periodic: expected true or"),
+        ("scale: 1e-3", "scale: -1", r"environment\[0\]\.scale must be positive"),
+        ("mesh: peg.obj", "", r"tool\.mesh is missing"),
+        ("[0, 0, 0.04]", "[0, 0]", r"tool\.grasp\.position_m needs three numbers"),
+        ("[0, 0, 0.04]", "0.04", r"tool\.grasp\.position_m: expected a list"),
+        ("- name: plate", "- name: a b", r"environment\[0\]\.name must be a plain"),
+        ("time_s: 1.5", "time_s: 0", r"waypoints\[1\]\.time_s must be later"),
+        ("time_s: 0,", "time_s: 1,", r"waypoints\[0\]\.time_s must be 0"),
+        ("hand:", "contact: {stiffness_N_per_m: -1}\nhand:", r"contact\.stiffness"),
+        ("hand:", "contact: {tolerance_m: -1}\nhand:", r"contact\.tolerance_m must"),
+        ("hand:", "contact: {cluster_size_m: 0}\nhand:", r"contact\.cluster_size_m"),
+        ("hand:", "coupling: {damping_Ns_per_m: -1}\nhand:", r"coupling\.damping"),
+        ("hand:", "device: {rate_hz: 0}\nhand:", r"device\.rate_hz must be pos"),
+        ("hand:", "device: {max_force_N: -1}\nhand:", r"device\.max_force_N must not"),
+        ("hand:", "device: 3\nhand:", r"device: expected keys, found 3"),
+    ],
+)
+def test_what_is_wrong_is_named_with_file_and_key(tmp_path, old, new, complaint):
+    assert old in GOOD
+    with pytest.raises(SceneError, match=r"scene\.yaml: .*" + complaint):
+        load(tmp_path, GOOD.replace(old, new, 1))
+
+
+def test_a_name_used_twice_is_refused(tmp_path):
+    twice = GOOD.replace("hand:", "- {name: plate, mesh: b.obj}\nhand:")
+    with pytest.raises(SceneError, match=r"name is used twice"):
+        load(tmp_path, twice)
+
+
+def test_a_scene_needs_something_to_meet_and_a_path(tmp_path):
+    with pytest.raises(SceneError, match="environment needs at least one"):
+        load(tmp_path, "tool: {mesh: a.obj}")
+    with pytest.raises(SceneError, match=r"hand\.path\.waypoints is empty"):
+        load(tmp_path, GOOD[: GOOD.index("hand:")])
+
+
+@pytest.mark.parametrize("text", ["{", "", "[1, 2]", "just words", "\t- x"])
+def test_what_is_no_scene_at_all_is_refused(tmp_path, text):
+    with pytest.raises(SceneError, match=r"scene\.yaml"):
+        load(tmp_path, text)
+
+
+def test_a_missing_file_is_named():
+    with pytest.raises(SceneError, match="nowhere"):
+        load_scene("/nowhere.yaml")
+
+
+def test_shipped_scenes_are_found_by_name_and_can_be_held():
+    scenes = list_scenes()
+    assert {"cup_spoon", "torus_peg", "hammer_block", "sphere_pen"} <= set(scenes)
+    for name, path in scenes.items():
+        assert find_scene(name) == path
+        scene = load_scene(path)
+        assert scene.description
+        make_simulated_device(scene, make_hand_path(scene.hand.path))
+
+
+def test_a_path_is_a_scene_too(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text(GOOD)
+    assert find_scene(str(path)) == path
+
+
+def test_an_unknown_scene_is_answered_with_those_there_are():
+    with pytest.raises(SceneError, match=r"'cup_spon' is neither.*cup_spoon"):
+        find_scene("cup_spon")
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ({"preset": "omega"}, r"device\.preset: 'omega' is none of phantom"),
+        ({"base": Pose([1.0, 0, 0])}, "from the middle of the device's workspace"),
+    ],
+)
+def test_a_device_that_cannot_hold_it_is_refused(tmp_path, change, complaint):
+    scene = load(tmp_path, GOOD)
+    scene.device = Device(**change)
+    with pytest.raises(SceneError, match=complaint):
+        make_simulated_device(scene, make_hand_path(scene.hand.path))
+
+
+def test_a_path_too_long_for_the_device_is_refused(tmp_path):
+    scene = load(tmp_path, GOOD.replace("[0, 0, 0.05]", "[0, 0.3, 0]"))
+    with pytest.raises(SceneError, match="radius is 0.12 m"):
+        make_simulated_device(scene, make_hand_path(scene.hand.path))
+
+
+def test_an_unknown_grip_is_refused(tmp_path):
+    scene = load(tmp_path, GOOD.replace("grip: light", "grip: iron"))
+    with pytest.raises(SceneError, match=r"hand\.grip: 'iron' is none of none, light"):
+        make_simulated_device(scene, make_hand_path(scene.hand.path))
+
+
+def test_a_path_that_turns_too_far_is_refused():
+    path = HandPath(waypoints=[Waypoint(0), Waypoint(1, rpy_deg=[0, 0, 150])])
+    with pytest.raises(SceneError, match=r"hand\.path\.waypoints: .* 0 and 1"):
+        make_hand_path(path)
+
+
+def test_default_coupling_is_stable_on_the_shipped_device():
+    # Gil et al.: K < (b + B) / (T / 2) without further delay; the arm gives almost
+    # no damping of its own, and the hand's is left out, so this is the worst case.
+    coupling = Coupling()
+    half_tick = 0.5 / Device().rate_hz
+    assert coupling.stiffness_N_per_m < 0.5 * coupling.damping_Ns_per_m / half_tick
+    assert (
+        coupling.rotational_stiffness_Nm_per_rad
+        < 0.5 * coupling.rotational_damping_Nms_per_rad / half_tick
+    )
+    # Sampled damping itself is bounded: B T / m of the lightest handle motion.
+    assert coupling.damping_Ns_per_m / Device().rate_hz / 0.12 < 0.2
