@@ -89,6 +89,7 @@ class HapticVisualizer(LeafSystem):
             if item.X_WO is None
         }
         self.DeclarePeriodicPublishEvent(_PERIOD_S, 0.0, self._publish)
+        self.DeclareForcedPublishEvent(self._publish)
 
     def get_handle_pose_input_port(self) -> InputPort:
         """Returns the input `X_WH`."""

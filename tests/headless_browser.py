@@ -1,0 +1,154 @@
+"""A real browser without a window, for tests that look at what people see."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import shutil
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import websocket
+from PIL import Image
+
+_NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
+_FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",  # WebGL on the CPU
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--remote-debugging-port=0",
+    "--remote-allow-origins=*",
+    "--window-size=1000,700",
+)
+
+
+def find_browser() -> str | None:
+    """Returns the path of a Chromium, if there is one."""
+    return next((path for name in _NAMES if (path := shutil.which(name))), None)
+
+
+class HeadlessBrowser:
+    """One page of a Chromium, driven through its debugging port.
+
+    Attributes:
+        errors: what the page complained about: console errors and exceptions.
+    """
+
+    def __init__(self, executable: str, timeout_s: float = 60.0):
+        self.errors: list[str] = []
+        self._timeout_s = timeout_s
+        self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        self._process = subprocess.Popen(
+            [
+                executable,
+                *_FLAGS,
+                f"--user-data-dir={self._folder.name}",
+                "about:blank",
+            ],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        self._id = 0
+        self._socket = self._connect()
+        for domain in ("Page", "Runtime", "Log"):
+            self.call(f"{domain}.enable")
+
+    def __enter__(self) -> HeadlessBrowser:
+        """Nothing more to start."""
+        return self
+
+    def __exit__(self, *args: object) -> None:
+        """Ends the browser."""
+        self._socket.close()
+        self._process.terminate()
+        self._process.wait(timeout=self._timeout_s)
+        self._folder.cleanup()
+
+    def open(self, address: str) -> None:
+        """Opens a page and waits until it has loaded."""
+        self.call("Page.navigate", url=address)
+        self.wait_for("document.readyState == 'complete'")
+
+    def wait_for(self, expression: str) -> None:
+        """Waits until a JavaScript expression is true.
+
+        Raises:
+            TimeoutError: It never became so.
+        """
+        deadline = time.monotonic() + self._timeout_s
+        while not self.evaluate(expression):
+            if time.monotonic() > deadline:
+                raise TimeoutError(f"{expression}; the page says {self.errors}")
+            time.sleep(0.1)
+
+    def evaluate(self, expression: str) -> Any:
+        """Returns the value of a JavaScript expression."""
+        answer = self.call(
+            "Runtime.evaluate", expression=expression, returnByValue=True
+        )
+        if "exceptionDetails" in answer:
+            raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
+        return answer["result"].get("value")
+
+    def screenshot(self) -> np.ndarray:
+        """Returns the page as pixels (height, width, 3) in 0..255."""
+        data = base64.b64decode(self.call("Page.captureScreenshot")["data"])
+        return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))
+
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """Calls a method of the protocol and notes complaints on the way."""
+        self._id += 1
+        message = {"id": self._id, "method": method, "params": parameters}
+        self._socket.send(json.dumps(message))
+        while True:
+            answer = json.loads(self._socket.recv())
+            self._note(answer)
+            if answer.get("id") == self._id:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']}")
+                return dict(answer["result"])
+
+    def _note(self, message: dict[str, Any]) -> None:
+        """Keeps what is a complaint of the page."""
+        parameters = message.get("params", {})
+        if message.get("method") == "Runtime.exceptionThrown":
+            self.errors.append(str(parameters["exceptionDetails"]))
+        elif message.get("method") == "Runtime.consoleAPICalled":
+            if parameters["type"] in ("error", "assert"):
+                self.errors.append(str(parameters["args"]))
+        elif message.get("method") == "Log.entryAdded":
+            if parameters["entry"]["level"] == "error":
+                self.errors.append(str(parameters["entry"]))
+
+    def _connect(self) -> websocket.WebSocket:
+        """Finds the port that the browser chose and connects to its page."""
+        deadline = time.monotonic() + self._timeout_s
+        port_file = Path(self._folder.name) / "DevToolsActivePort"
+        while time.monotonic() < deadline:
+            if port_file.exists() and (lines := port_file.read_text().split()):
+                browser = websocket.create_connection(
+                    f"ws://127.0.0.1:{lines[0]}{lines[1]}", timeout=self._timeout_s
+                )
+                browser.send(json.dumps({"id": 0, "method": "Target.getTargets"}))
+                targets = json.loads(browser.recv())["result"]["targetInfos"]
+                browser.close()
+                pages = [t["targetId"] for t in targets if t["type"] == "page"]
+                if pages:
+                    return websocket.create_connection(
+                        f"ws://127.0.0.1:{lines[0]}/devtools/page/{pages[0]}",
+                        timeout=self._timeout_s,
+                    )
+            time.sleep(0.05)
+        raise TimeoutError("the browser did not start")

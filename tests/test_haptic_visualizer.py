@@ -1,0 +1,363 @@
+"""What is drawn, when, and that a recording holds all of it."""
+
+# ruff: noqa: D102 - the methods of the fake are documented by Drake.
+import copy
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from pydrake.common.value import Value
+from pydrake.geometry import Rgba
+from pydrake.math import RigidTransform, RollPitchYaw
+
+from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems import haptic_visualizer
+from drake_haptics.systems.arrow_pool import ArrowPool
+from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.haptic_visualizer import HapticVisualizer
+
+
+class FakeMeshcat:
+    """Keeps what it is told, like a browser, and what it was told when."""
+
+    def __init__(self, connections=1):
+        self.connections = connections
+        self.objects = set()
+        self.transforms = {}
+        self.properties = {}
+        self.recording = False
+        self.frames = []
+
+    def SetTriangleMesh(self, path, vertices, faces, rgba):
+        assert vertices.shape[0] == 3 and faces.max() < vertices.shape[1]
+        self.objects.add(path)
+
+    def SetObject(self, path, shape, rgba):
+        self.objects.add(path)
+
+    def SetTransform(self, path, X_ParentPath, time_in_recording=None):
+        self.transforms[path] = X_ParentPath
+        self._record(path, "transform", X_ParentPath, time_in_recording)
+
+    def SetProperty(self, path, name, value, time_in_recording=None):
+        self.properties[path, name] = value
+        self._record(path, name, value, time_in_recording)
+
+    def _record(self, path, name, value, time):
+        if self.recording and time is not None:
+            self.frames.append((time, path, name, value))
+
+    def StartRecording(self, frames_per_second):
+        assert frames_per_second == 32
+        self.recording = True
+
+    def StopRecording(self):
+        self.recording = False
+
+    def GetNumActiveConnections(self):
+        return self.connections
+
+    def SetSimulationTime(self, time):
+        pass
+
+    def visible(self, folder):
+        """Paths of the arrows in a folder that are to be seen."""
+        return sorted(
+            path
+            for (path, name), value in self.properties.items()
+            if name == "visible" and value and path.startswith(f"{folder}/")
+        )
+
+
+class Frozen(SimpleNamespace):
+    """A value of an abstract port, as the core's are."""
+
+    def __deepcopy__(self, memo):
+        return self
+
+    def __len__(self):
+        return len(self.distance)
+
+
+def make_contacts(distance, nhat=(0, 0, 1.0)):
+    n = len(distance)
+    return Frozen(
+        distance=np.array(distance, dtype=float),
+        nhat_BA_W=np.tile(nhat, (n, 1)),
+        p_WC=np.arange(3.0 * n).reshape(n, 3),
+        object_index=np.zeros(n, dtype=np.int32),
+        piece_A=np.arange(n, dtype=np.int32),
+        piece_B=np.zeros(n, dtype=np.int32),
+    )
+
+
+def make_mesh(size=0.1):
+    corners = size * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], dtype=np.int32)
+    return SimpleNamespace(vertices=corners, triangles=faces)
+
+
+X_HT = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [0.01, 0.02, 0.03])
+X_WH = RigidTransform(RollPitchYaw(-0.5, 0.0, 0.7), [0.1, 0.0, 0.2])
+
+
+def make_visualizer(meshcat, objects=()):
+    return HapticVisualizer(meshcat, make_mesh(), objects, X_HT)
+
+
+def make_context(
+    visualizer, contacts=(), forces=None, X_WTool=X_WH @ X_HT, f_H_W=(0, 0, 0)
+):
+    context = visualizer.CreateDefaultContext()
+    values = {
+        "X_WH": pose_to_vector(X_WH),
+        "X_WTool": pose_to_vector(X_WTool),
+        "F_display": np.array([0.0, 0, 0, *f_H_W]),
+        "contacts": Value(make_contacts(contacts)),
+        "clusters": Value(make_contacts(contacts)),
+        "contact_wrench": Value(
+            Frozen(
+                f_Cluster_W=np.array(
+                    forces if forces is not None else [(0, 0, 1.0)] * len(contacts)
+                ).reshape(-1, 3)
+            )
+        ),
+    }
+    for name, value in values.items():
+        visualizer.GetInputPort(name).FixValue(context, value)
+    return context
+
+
+def test_ports_have_drakes_names_and_sizes():
+    moving = ContactObject("lid", make_mesh(), None)
+    visualizer = make_visualizer(FakeMeshcat(), [moving])
+    assert {
+        visualizer.get_input_port(i).get_name(): visualizer.get_input_port(i).size()
+        for i in range(visualizer.num_input_ports())
+    } == {
+        "X_WH": 7,
+        "X_WTool": 7,
+        "contacts": 0,
+        "clusters": 0,
+        "contact_wrench": 0,
+        "F_display": 6,
+        "X_WO_lid": 7,
+    }
+    assert visualizer.num_output_ports() == 0
+    assert visualizer.num_continuous_states() == 0
+
+
+def test_tool_and_ghost_are_where_the_ports_say():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    X_WTool = RigidTransform(RollPitchYaw(1, 2, 3), [1, 2, 3])
+    visualizer.ForcedPublish(make_context(visualizer, X_WTool=X_WTool))
+    assert meshcat.transforms["/haptics/tool"].IsNearlyEqualTo(X_WTool, 1e-12)
+    ghost = meshcat.transforms["/haptics/handle"]
+    assert ghost.IsNearlyEqualTo(X_WH @ X_HT, 1e-12)
+
+
+def test_the_line_joins_the_handle_and_the_point_of_the_tool_that_it_holds():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    offset = RigidTransform(np.array([0.003, 0.0, 0.004]))
+    visualizer.ForcedPublish(make_context(visualizer, X_WTool=offset @ X_WH @ X_HT))
+    X_WLine = meshcat.transforms["/haptics/coupling"]
+    scale = meshcat.properties["/haptics/coupling", "scale"]
+    assert scale == pytest.approx([1, 1, 0.005])
+    half = X_WLine.rotation().matrix()[:, 2] * scale[2] / 2
+    np.testing.assert_allclose(
+        X_WLine.translation() - half, X_WH.translation(), atol=1e-12
+    )
+    np.testing.assert_allclose(
+        X_WLine.translation() + half,
+        X_WH.translation() + offset.translation(),
+        atol=1e-12,
+    )
+
+
+def test_contacts_are_green_near_and_red_penetrating():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    visualizer.ForcedPublish(make_context(visualizer, [0.001, -0.002]))
+    # The deepest first; child 0 is green, child 1 is red.
+    assert meshcat.visible("/haptics/contacts") == [
+        "/haptics/contacts/0/1",
+        "/haptics/contacts/1/0",
+    ]
+    tail = meshcat.transforms["/haptics/contacts/0"].translation()
+    np.testing.assert_allclose(tail, [3, 4, 5])
+
+
+def test_contact_arrows_point_along_the_normal():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    context = make_context(visualizer)
+    nhat = np.array([0.6, 0.0, -0.8])
+    visualizer.GetInputPort("contacts").FixValue(
+        context, Value(make_contacts([0.001], nhat))
+    )
+    visualizer.ForcedPublish(context)
+    R = meshcat.transforms["/haptics/contacts/0"].rotation().matrix()
+    np.testing.assert_allclose(R[:, 2], nhat, atol=1e-12)
+
+
+def test_arrows_disappear_with_their_contacts():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    visualizer.StartRecording()  # so that no frame is left out
+    visualizer.ForcedPublish(make_context(visualizer, [-0.001, -0.001]))
+    assert len(meshcat.visible("/haptics/contacts")) == 2
+    visualizer.ForcedPublish(make_context(visualizer, []))
+    assert meshcat.visible("/haptics") == []
+
+
+def test_more_contacts_than_arrows_leaves_the_deepest():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    distance = np.linspace(0.002, -0.002, 200)
+    visualizer.ForcedPublish(make_context(visualizer, distance))
+    visible = meshcat.visible("/haptics/contacts")
+    assert len(visible) == 64
+    assert all(path.endswith("/1") for path in visible)
+
+
+def test_force_arrows_grow_with_the_force():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    forces = [(0, 0, 1.0), (0, 2.0, 0), (0, 0, 0)]
+    visualizer.ForcedPublish(make_context(visualizer, [-0.001] * 3, forces))
+    length = [meshcat.properties[f"/haptics/clusters/{i}", "scale"][0] for i in (0, 1)]
+    assert length[1] == pytest.approx(2 * length[0])
+    # No direction, no arrow.
+    assert len(meshcat.visible("/haptics/clusters")) == 2
+
+
+def test_the_force_on_the_hand_is_drawn_at_the_handle():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    visualizer.ForcedPublish(make_context(visualizer, f_H_W=(0, -3.0, 0)))
+    X_WArrow = meshcat.transforms["/haptics/force/0"]
+    np.testing.assert_allclose(X_WArrow.translation(), X_WH.translation())
+    np.testing.assert_allclose(
+        X_WArrow.rotation().matrix()[:, 2], [0, -1, 0], atol=1e-9
+    )
+
+
+def test_objects_that_move_follow_their_port_and_others_are_placed_once():
+    meshcat = FakeMeshcat()
+    X_WO = RigidTransform(np.array([1.0, 2, 3]))
+    objects = [
+        ContactObject("table", make_mesh(), X_WO),
+        ContactObject("lid", make_mesh(), None),
+    ]
+    visualizer = make_visualizer(meshcat, objects)
+    assert meshcat.transforms["/haptics/objects/table"].IsNearlyEqualTo(X_WO, 1e-12)
+    context = make_context(visualizer)
+    visualizer.get_object_pose_input_port("lid").FixValue(context, pose_to_vector(X_WH))
+    visualizer.ForcedPublish(context)
+    assert meshcat.transforms["/haptics/objects/lid"].IsNearlyEqualTo(X_WH, 1e-12)
+
+
+def test_nothing_is_drawn_while_nobody_looks():
+    meshcat = FakeMeshcat(connections=0)
+    visualizer = make_visualizer(meshcat)
+    visualizer.ForcedPublish(make_context(visualizer, [-0.001]))
+    assert "/haptics/tool" not in meshcat.transforms
+
+
+def test_drawing_takes_at_most_its_share_of_clock_time(monkeypatch):
+    clock = SimpleNamespace(now=100.0)
+    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
+    meshcat = FakeMeshcat()
+    drawn = []
+
+    def slow_transform(path, X, time=None):
+        if path == "/haptics/tool":
+            drawn.append(clock.now)
+            clock.now += 0.010  # a frame takes 10 ms
+
+    visualizer = make_visualizer(meshcat)
+    meshcat.SetTransform = slow_transform
+    context = make_context(visualizer)
+    while clock.now < 102.0:
+        visualizer.ForcedPublish(context)
+        clock.now += 1 / 32
+    assert 0.010 * len(drawn) <= 0.05 * 2.0 + 0.010
+    assert len(drawn) >= 8
+
+
+def test_a_recording_is_complete_though_nobody_looks():
+    meshcat = FakeMeshcat(connections=0)
+    visualizer = make_visualizer(meshcat)
+    visualizer.StartRecording()
+    context = make_context(visualizer, [-0.001])
+    for frame in range(5):
+        context.SetTime(frame / 32)
+        visualizer.ForcedPublish(context)
+    visualizer.StopRecording()
+    times = [time for time, path, name, _ in meshcat.frames if path == "/haptics/tool"]
+    assert times == [0, 1 / 32, 2 / 32, 3 / 32, 4 / 32]
+    context.SetTime(1.0)
+    visualizer.ForcedPublish(context)
+    assert max(time for time, *_ in meshcat.frames) == 4 / 32
+
+
+def test_the_first_recorded_frame_says_of_every_arrow_whether_it_is_seen():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    visualizer.ForcedPublish(make_context(visualizer, [-0.001, 0.001]))
+    visualizer.StartRecording()
+    visualizer.ForcedPublish(make_context(visualizer, [-0.001]))
+    first = {
+        path: value for _, path, name, value in meshcat.frames if name == "visible"
+    }
+    arrows = {path for (path, name) in meshcat.properties if name == "visible"}
+    assert set(first) == arrows
+    assert [
+        path for path, seen in sorted(first.items()) if "contacts" in path and seen
+    ] == ["/haptics/contacts/0/1"]
+
+
+def test_an_arrow_stays_in_its_slot_while_others_come_and_go():
+    meshcat = FakeMeshcat()
+    pool = ArrowPool(meshcat, "/a", 4, [Rgba(1, 0, 0)])
+    up = np.array([[0, 0, 1.0]] * 3)
+
+    def draw(keys):
+        p_W = np.array([[ord(key), 0, 0] for key in keys], dtype=float)
+        pool.draw(keys, p_W, up[: len(keys)], [0] * len(keys), 0.0)
+        return {
+            chr(int(meshcat.transforms[path[:-2]].translation()[0])): path
+            for path in meshcat.visible("/a")
+        }
+
+    first = draw("ab")
+    second = draw("xby")
+    third = draw("yb")
+    assert first["b"] == second["b"] == third["b"]
+    assert second["y"] == third["y"]
+    assert set(first) == {"a", "b"} and set(second) == {"x", "b", "y"}
+    assert set(third) == {"y", "b"}
+
+
+def test_what_does_not_change_is_not_sent_again():
+    meshcat = FakeMeshcat()
+    pool = ArrowPool(meshcat, "/a", 64, [Rgba(1, 0, 0), Rgba(0, 1, 0)])
+    calls = []
+    meshcat.SetProperty = lambda *args: calls.append(args)
+    pool.draw([1], np.zeros((1, 3)), np.ones((1, 3)), [1], 0.0)
+    assert [args[1] for args in calls] == ["scale", "visible"]
+    calls.clear()
+    pool.draw([1], np.zeros((1, 3)), np.ones((1, 3)), [1], 0.0)
+    assert [args[1] for args in calls] == ["scale"]
+
+
+def test_no_context_is_kept():
+    visualizer = make_visualizer(FakeMeshcat())
+    context = make_context(visualizer, [-0.001])
+    twin = copy.deepcopy(context)
+    visualizer.ForcedPublish(twin)
+    assert not any(
+        type(value).__name__ == "LeafContext" for value in vars(visualizer).values()
+    )
