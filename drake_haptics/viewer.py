@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 from collections.abc import Callable
 
@@ -34,8 +36,15 @@ class DecompositionViewer:
     """
 
     def __init__(self, decomposition: Decomposition) -> None:
-        self._meshcat = meshcat.Visualizer()
+        with contextlib.redirect_stdout(io.StringIO()):  # it announces itself there
+            self._meshcat = meshcat.Visualizer()
         self._draw(decomposition)
+
+    def close(self) -> None:
+        """Stops the web server; the page in the browser stays as it is."""
+        server = self._meshcat.window.server_proc
+        server.terminate()
+        server.communicate()
 
     @property
     def url(self) -> str:
@@ -66,9 +75,9 @@ class DecompositionViewer:
         self._set_scene()
         root = self._meshcat["drake_haptics"]
         gap = width * (1 + _EXPLOSION / 2) / 2 + 0.15
-        self._add(root["in place"], on_mesh, in_place, gap)
-        self._add(root["apart"]["facets on the mesh"], on_mesh, exploded, -gap)
-        self._add(root["apart"]["virtual facets"], virtual, exploded, -gap)
+        self._add(root["in place"], on_mesh, in_place, -gap)
+        self._add(root["apart"]["facets on the mesh"], on_mesh, exploded, gap)
+        self._add(root["apart"]["virtual facets"], virtual, exploded, gap)
 
     def _set_scene(self) -> None:
         background = self._meshcat["/Background"]
@@ -77,7 +86,7 @@ class DecompositionViewer:
         for path in ("/Grid", "/Axes"):
             self._meshcat[path].set_property("visible", False)
         camera = self._meshcat["/Cameras/default/rotated/<object>"]
-        camera.set_property("position", [3.5, 1.2, 0.0])  # y is up in this frame
+        camera.set_property("position", [2.4, 0.9, 0.0])  # y is up in this frame
 
     def _add(
         self,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import signal
 
 import click
@@ -97,12 +98,10 @@ def _print_report(result: Decomposition) -> None:
 def _view(result: Decomposition, show: bool, html: str | None) -> None:
     from drake_haptics.viewer import DecompositionViewer  # starts a web server
 
-    viewer = DecompositionViewer(result)
-    if html is not None:
-        viewer.write_html(html)
-    if show:
-        click.echo(f"Open {viewer.url} in a browser; Ctrl-C ends.", err=True)
-        try:
-            signal.pause()
-        except KeyboardInterrupt:
-            click.echo(err=True)
+    with contextlib.closing(DecompositionViewer(result)) as viewer:
+        if html is not None:
+            viewer.write_html(html)
+        if show:
+            click.echo(f"Open {viewer.url} in a browser; Ctrl-C ends.", err=True)
+            with contextlib.suppress(KeyboardInterrupt):
+                signal.pause()

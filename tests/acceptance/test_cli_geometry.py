@@ -1,0 +1,147 @@
+"""`drake-haptics check` and `decompose`, as a user runs them."""
+
+import json
+import signal
+import subprocess
+import sys
+import urllib.request
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from mesh_samples import box, l_prism, real_mesh
+
+from drake_haptics.decomposition import Decomposition
+
+PROGRAM = [str(Path(sys.executable).with_name("drake-haptics"))]
+
+
+@pytest.fixture
+def environment(tmp_path, monkeypatch):
+    monkeypatch.setenv("DRAKE_HAPTICS_CACHE", str(tmp_path / "cache"))
+
+
+def run(*arguments):
+    return subprocess.run(
+        [*PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=120
+    )
+
+
+def fails_with_one_message(result, status, *words):
+    assert result.returncode == status
+    assert "Traceback" not in result.stderr and result.stdout == ""
+    for word in words:
+        assert word in result.stderr
+    return True
+
+
+@pytest.fixture
+def l_file(tmp_path):
+    V, F = l_prism()
+    np.savez(tmp_path / "l.npz", V=V * 100, F=F)
+    return tmp_path / "l.npz"
+
+
+def test_check_reports_and_succeeds(l_file):
+    result = run("check", l_file, "--unit", "mm")
+    assert result.returncode == 0 and result.stderr == ""
+    assert "200 mm x 200 mm x 100 mm" in result.stdout
+    assert "one solid" in result.stdout
+
+
+def test_check_writes_json(l_file, tmp_path):
+    alone = run("check", l_file, "--scale", "0.001", "--json", "-")
+    assert json.loads(alone.stdout)["volume_m3"] == pytest.approx(0.003)
+    both = run("check", l_file, "--unit", "mm", "--json", tmp_path / "report.json")
+    assert "one solid" in both.stdout
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report == json.loads(alone.stdout)
+
+
+def test_errors_of_the_user_are_one_message(l_file, tmp_path):
+    bad = tmp_path / "nan.obj"
+    bad.write_text("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    assert fails_with_one_message(run("check", bad), 1, "nan.obj", "NaN")
+    assert fails_with_one_message(run("decompose", bad), 1, "nan.obj", "NaN")
+    assert fails_with_one_message(run("check", tmp_path / "no"), 1, "no such file")
+    assert fails_with_one_message(run("check", l_file, "--unit", "x"), 1, "unit 'x'")
+    assert fails_with_one_message(run("check"), 2, "MESH")
+    assert fails_with_one_message(run("chekc", l_file), 2, "chekc")
+    assert fails_with_one_message(
+        run("decompose", l_file, "--method", "cubes"), 2, "cubes"
+    )
+    nowhere = tmp_path / "absent" / "out.json"
+    failed = run("check", l_file, "--json", nowhere)
+    assert fails_with_one_message(failed, 1, "out.json", "No such file")
+
+
+def test_strict_fails_after_the_report(tmp_path):
+    V, F = box()
+    np.savez(tmp_path / "open.npz", V=V, F=F[1:])
+    result = run("check", tmp_path / "open.npz", "--strict")
+    assert result.returncode == 1
+    assert "open edges" in result.stdout and "strict" in result.stderr
+
+
+def test_decompose_writes_file_and_json_and_remembers(environment, l_file, tmp_path):
+    out = tmp_path / "pieces.npz"
+    first = run("decompose", l_file, "--unit", "mm", "-o", out, "--json", "-")
+    assert first.returncode == 0, first.stderr
+    data = json.loads(first.stdout)
+    assert data["pieces"] > 1 and data["from_cache"] is False
+    loaded = Decomposition.load(out)
+    assert len(loaded.pieces) == data["pieces"]
+    assert loaded.mesh.report.volume == pytest.approx(0.003)
+    second = run("decompose", l_file, "--unit", "mm")
+    assert "found earlier" in second.stdout
+    assert f"{data['pieces']} from 20 triangles" in second.stdout
+
+
+def test_decompose_says_that_open_surfaces_are_one_sided(environment):
+    result = run("decompose", real_mesh("fcl_rob.obj"), "--unit", "mm")
+    assert result.returncode == 0, result.stderr
+    assert "one-sided" in result.stdout
+
+
+def test_decompose_shows_the_pieces_until_interrupted(environment, l_file):
+    command = [*PROGRAM, "decompose", str(l_file), "--unit", "mm", "--show"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        line = process.stderr.readline()
+        address = next(word for word in line.split() if word.startswith("http"))
+        with urllib.request.urlopen(address, timeout=10) as page:
+            assert page.status == 200
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=20) == 0
+        assert "Traceback" not in process.stderr.read()
+
+
+@pytest.mark.parametrize("subcommand", ["check", "decompose"])
+def test_drake_is_never_imported(environment, l_file, subcommand):
+    program = (
+        "import sys\n"
+        "from drake_haptics.cli import main\n"
+        f"main([{subcommand!r}, {str(l_file)!r}], standalone_mode=False)\n"
+        "assert 'pydrake' not in sys.modules\n"
+        "assert 'drake_haptics.mesh' in sys.modules\n"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60
+    )
+    assert result.returncode == 0, result.stderr
+
+
+def test_help_lists_all_commands_without_importing_them():
+    program = (
+        "import sys\n"
+        "from drake_haptics.cli import main\n"
+        "main(['--help'], standalone_mode=False)\n"
+        "assert not {'pydrake', 'numpy', 'trimesh'} & set(sys.modules)\n"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60
+    )
+    assert result.returncode == 0, result.stderr
+    for name in ("run", "scenes", "check", "decompose"):
+        assert f"\n  {name} " in result.stdout
