@@ -1,4 +1,3 @@
-#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/vector.h>
 
 #include "bind.h"

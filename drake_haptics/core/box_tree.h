@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace drake_haptics {
+
+/// A tree of boxes over items with boxes, for "which of them overlap this box".
+class BoxTree {
+ public:
+  using Box = Eigen::AlignedBox3d;
+
+  explicit BoxTree(std::vector<Box> item_boxes);
+
+  /// Calls `visit(item)` for each item whose box meets `box`, until one call
+  /// returns true. Returns whether one did.
+  template <typename Visit>
+  bool AnyOverlap(const Box& box, const Visit& visit) const {
+    return !nodes_.empty() && AnyOverlap(0, box, visit);
+  }
+
+ private:
+  // Children of inner nodes are `first` and `first + 1`; a leaf has the items
+  // order_[first .. first + count).
+  struct Node {
+    Box box;
+    int first = 0;
+    int count = 0;
+  };
+
+  void Build(int node, int begin, int end);
+
+  template <typename Visit>
+  bool AnyOverlap(int index, const Box& box, const Visit& visit) const {
+    const Node& node = nodes_[index];
+    if (!node.box.intersects(box)) return false;
+    if (node.count == 0) {
+      return AnyOverlap(node.first, box, visit) ||
+             AnyOverlap(node.first + 1, box, visit);
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      const int item = order_[i];
+      if (item_boxes_[item].intersects(box) && visit(item)) return true;
+    }
+    return false;
+  }
+
+  std::vector<Box> item_boxes_;
+  std::vector<int> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace drake_haptics

@@ -1,0 +1,211 @@
+#include "patch.h"
+
+#include <algorithm>
+
+#include "spanning.h"
+
+namespace drake_haptics {
+namespace {
+
+// A vertex this near to a facet's plane belongs to the facet. It is more than
+// the tolerance of the final hull's facets, so that each of those was checked.
+constexpr double kOnPlaneTolerances = 4;
+
+}  // namespace
+
+PatchWorkspace::PatchWorkspace(const SurfaceMesh& mesh_in)
+    : mesh(mesh_in),
+      obstacles(mesh_in),
+      label(mesh_in.triangles.size(), -1),
+      vertex_label(mesh_in.vertices.size(), -1),
+      vertex_mark(mesh_in.vertices.size(), -1) {}
+
+Patch::Patch(PatchWorkspace* work, int label, std::span<const int> triangles)
+    : work_(*work), mesh_(work->mesh), label_(label) {
+  for (const int t : triangles) Append(t);
+}
+
+Patch::Outcome Patch::TryAdd(std::span<const int> triangles) {
+  const Sizes before{triangles_.size(), vertices_.size(), regions_.size()};
+  for (const int t : triangles) Append(t);
+  const Outcome outcome = Check(before);
+  if (outcome != Outcome::kAdded) RollBack(before);
+  return outcome;
+}
+
+void Patch::Append(int triangle) {
+  triangles_.push_back(triangle);
+  work_.label[triangle] = label_;
+  for (const int v : mesh_.triangles[triangle]) {
+    if (work_.vertex_label[v] == label_) continue;
+    work_.vertex_label[v] = label_;
+    vertices_.push_back(v);
+  }
+  const int region = mesh_.region[triangle];
+  if (std::find(regions_.begin(), regions_.end(), region) == regions_.end()) {
+    regions_.push_back(region);
+  }
+}
+
+void Patch::RollBack(const Sizes& sizes) {
+  for (std::size_t i = sizes.triangles; i < triangles_.size(); ++i) {
+    work_.label[triangles_[i]] = -1;
+  }
+  for (std::size_t i = sizes.vertices; i < vertices_.size(); ++i) {
+    work_.vertex_label[vertices_[i]] = -1;
+  }
+  triangles_.resize(sizes.triangles);
+  vertices_.resize(sizes.vertices);
+  regions_.resize(sizes.regions);
+}
+
+Patch::Outcome Patch::Check(const Sizes& before) {
+  const bool solid = mesh_.solid[triangles_[0]];
+  if (!(solid ? IsSupported(before) : IsOneSided(before))) {
+    return Outcome::kNever;
+  }
+  // Facets that got a new vertex, and new facets.
+  const std::size_t num_vertices = vertices_.size();
+  const std::size_t num_regions = regions_.size();
+  for (std::size_t r = 0; r < num_regions; ++r) {
+    const Plane& plane = mesh_.regions[regions_[r]].plane;
+    const bool changed =
+        r >= before.regions ||
+        std::any_of(vertices_.begin() + before.vertices,
+                    vertices_.begin() + num_vertices, [&](int v) {
+                      return plane.Height(mesh_.vertices[v]) >=
+                             -kOnPlaneTolerances * mesh_.tolerance;
+                    });
+    if (changed && !FacetIsCovered(regions_[r])) return Outcome::kNotNow;
+  }
+  if (solid && !HullIsInside(before)) return Outcome::kNever;
+  return Outcome::kAdded;
+}
+
+// Each triangle's plane has all vertices of the patch on or below it.
+bool Patch::IsSupported(const Sizes& before) const {
+  const auto supports = [&](int region, std::size_t first_vertex) {
+    const Plane& plane = mesh_.regions[region].plane;
+    return std::all_of(
+        vertices_.begin() + first_vertex, vertices_.end(), [&](int v) {
+          return plane.Height(mesh_.vertices[v]) <= mesh_.tolerance;
+        });
+  };
+  for (std::size_t r = 0; r < regions_.size(); ++r) {
+    const std::size_t first = r < before.regions ? before.vertices : 0;
+    if (!supports(regions_[r], first)) return false;
+  }
+  return true;
+}
+
+// A surface without an inside is rendered by flat pieces.
+bool Patch::IsOneSided(const Sizes& before) const {
+  const Plane& plane = mesh_.regions[regions_[0]].plane;
+  return std::all_of(vertices_.begin() + before.vertices, vertices_.end(),
+                     [&](int v) {
+                       return std::abs(plane.Height(mesh_.vertices[v])) <=
+                              mesh_.tolerance;
+                     }) &&
+         std::all_of(triangles_.begin() + before.triangles, triangles_.end(),
+                     [&](int t) {
+                       return mesh_.planes[t].normal.dot(plane.normal) > 0;
+                     });
+}
+
+// The hull's facet in the plane of a region is all surface: triangles of the
+// patch fill it, after taking those free ones that lie within it.
+bool Patch::FacetIsCovered(int region) {
+  const Plane& plane = mesh_.regions[region].plane;
+  if (plane.normal.isZero()) return true;
+  const double near = kOnPlaneTolerances * mesh_.tolerance;
+  const int mark = work_.next_mark++;
+  std::vector<Vec3> points;
+  for (const int v : vertices_) {
+    if (plane.Height(mesh_.vertices[v]) < -near) continue;
+    points.push_back(mesh_.vertices[v]);
+    work_.vertex_mark[v] = mark;
+  }
+  double covered = 0;
+  std::vector<int> stack;
+  for (const int t : triangles_) {
+    const Triangle& triangle = mesh_.triangles[t];
+    const bool in_facet =
+        mesh_.planes[t].normal.dot(plane.normal) > 0 &&
+        std::all_of(triangle.begin(), triangle.end(),
+                    [&](int v) { return work_.vertex_mark[v] == mark; });
+    if (!in_facet) continue;
+    covered += mesh_.areas[t];
+    if (mesh_.region[t] == region) stack.push_back(t);
+  }
+  const FlatHull facet = FindFlatHull(points, plane.normal);
+  const auto is_covered = [&] {
+    return IsCovered(facet, covered, mesh_.tolerance);
+  };
+  const auto is_within = [&](const Vec3& p) {
+    for (std::size_t k = 0; k < facet.corners.size(); ++k) {
+      const Vec3& a = facet.corners[k];
+      const Vec3 along = facet.corners[(k + 1) % facet.corners.size()] - a;
+      if (plane.normal.cross(along).dot(p - a) <
+          -mesh_.tolerance * along.norm()) {
+        return false;
+      }
+    }
+    return true;
+  };
+  while (!is_covered() && !stack.empty()) {
+    const int t = stack.back();
+    stack.pop_back();
+    for (const int next : mesh_.neighbors[t]) {
+      if (next < 0 || work_.label[next] >= 0) continue;
+      if (mesh_.region[next] != region) continue;
+      const Triangle& v = mesh_.triangles[next];
+      if (!is_within(mesh_.vertices[v[0]]) ||
+          !is_within(mesh_.vertices[v[1]]) ||
+          !is_within(mesh_.vertices[v[2]])) {
+        continue;
+      }
+      Append(next);
+      covered += mesh_.areas[next];
+      stack.push_back(next);
+    }
+  }
+  return is_covered();
+}
+
+bool Patch::HullIsInside(const Sizes& before) {
+  if (vertices_.size() == before.vertices) return true;
+  std::optional<ConvexHull> grown = hull_;
+  BoxTree::Box added;
+  if (!grown) {
+    std::vector<Vec3> points;
+    for (const int v : vertices_) {
+      points.push_back(mesh_.vertices[v]);
+      added.extend(points.back());
+    }
+    const Spanning spanning = FindSpanning(points, mesh_.tolerance);
+    if (spanning.dimension < 3) return true;
+    grown.emplace(points, spanning.point);
+  } else {
+    for (std::size_t i = before.vertices; i < vertices_.size(); ++i) {
+      const Vec3& p = mesh_.vertices[vertices_[i]];
+      if (!grown->Add(p)) continue;
+      added.extend(p);
+      for (const int v : grown->last_covered()) added.extend(grown->point(v));
+    }
+  }
+  if (!added.isEmpty()) {
+    std::vector<Plane> planes;
+    grown->ForEachTriangle([&](const HullTriangle& t) {
+      planes.push_back({t.normal, t.normal.dot(grown->point(t.vertex[0]))});
+    });
+    if (work_.obstacles.MeetInterior(planes, added,
+                                     mesh_.component[triangles_[0]],
+                                     work_.label, label_)) {
+      return false;
+    }
+  }
+  hull_ = std::move(grown);
+  return true;
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,185 @@
+#include "patch_growth.h"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "hull_shape.h"
+#include "patch.h"
+
+namespace drake_haptics {
+namespace {
+
+// Passes progress on at a pace that costs nothing.
+class ProgressReport {
+ public:
+  ProgressReport(const Progress& progress, std::size_t total)
+      : progress_(progress), total_(total) {}
+
+  void Report(std::size_t done) {
+    if (!progress_) return;
+    const auto now = Clock::now();
+    if (now < next_ && done < total_) return;
+    next_ = now + std::chrono::milliseconds(50);
+    if (!progress_(static_cast<double>(done) / static_cast<double>(total_))) {
+      throw std::runtime_error("the decomposition was stopped");
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const Progress& progress_;
+  std::size_t total_;
+  Clock::time_point next_ = Clock::now();
+};
+
+class Growth {
+ public:
+  Growth(const SurfaceMesh& mesh, const Progress& progress)
+      : mesh_(mesh),
+        work_(mesh),
+        report_(progress, mesh.triangles.size()),
+        refused_by_(mesh.triangles.size(), -1) {}
+
+  std::vector<int> Run() {
+    TakeConvexComponents();
+    std::vector<int> seeds(mesh_.triangles.size());
+    std::iota(seeds.begin(), seeds.end(), 0);
+    std::stable_sort(seeds.begin(), seeds.end(), [&](int i, int j) {
+      return mesh_.areas[i] > mesh_.areas[j];
+    });
+    for (const int seed : seeds) {
+      if (work_.label[seed] < 0) GrowFrom(seed);
+    }
+    return std::move(work_.label);
+  }
+
+ private:
+  void TakeConvexComponents() {
+    std::vector<std::vector<int>> members(mesh_.num_components);
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      members[mesh_.component[t]].push_back(static_cast<int>(t));
+    }
+    for (const std::vector<int>& triangles : members) {
+      if (!IsConvexSolid(triangles)) continue;
+      for (const int t : triangles) work_.label[t] = num_patches_;
+      Finish(triangles.size());
+    }
+  }
+
+  // Cheap tests first: most components fail at the first concave edge.
+  bool IsConvexSolid(const std::vector<int>& triangles) const {
+    for (const int t : triangles) {
+      if (!mesh_.solid[t]) return false;
+      for (const int neighbor : mesh_.neighbors[t]) {
+        if (neighbor < 0) return false;
+        for (const int v : mesh_.triangles[neighbor]) {
+          if (mesh_.planes[t].Height(mesh_.vertices[v]) > mesh_.tolerance) {
+            return false;
+          }
+        }
+      }
+    }
+    std::vector<Vec3> points;
+    for (const int t : triangles) {
+      for (const int v : mesh_.triangles[t])
+        points.push_back(mesh_.vertices[v]);
+    }
+    const HullShape shape = FindHullShape(points, mesh_.tolerance);
+    if (shape.dimension < 3) return false;
+    for (const int t : triangles) {
+      for (const int i : shape.extreme) {
+        if (mesh_.planes[t].Height(points[i]) > mesh_.tolerance) return false;
+      }
+    }
+    std::vector<Plane> planes;
+    BoxTree::Box box;
+    for (const HullShape::Polygon& polygon : shape.polygons) {
+      planes.push_back(
+          {polygon.normal, polygon.normal.dot(points[polygon.loop[0]])});
+    }
+    for (const int i : shape.extreme) box.extend(points[i]);
+    std::vector<int> own(mesh_.triangles.size(), -1);
+    for (const int t : triangles) own[t] = 0;
+    return !work_.obstacles.MeetInterior(planes, box,
+                                         mesh_.component[triangles[0]], own, 0);
+  }
+
+  // All of the triangle's planar region if that is a free convex polygon.
+  std::span<const int> WholeRegion(int triangle) const {
+    const PlanarRegion& region = mesh_.regions[mesh_.region[triangle]];
+    const bool is_free =
+        region.is_convex &&
+        std::all_of(region.triangles.begin(), region.triangles.end(),
+                    [&](int t) { return work_.label[t] < 0; });
+    return is_free ? std::span<const int>(region.triangles)
+                   : std::span<const int>{};
+  }
+
+  void GrowFrom(int seed) {
+    const std::span<const int> region = WholeRegion(seed);
+    Patch patch(&work_, num_patches_,
+                region.empty() ? std::span<const int>(&seed, 1) : region);
+    std::vector<int> not_now;
+    std::size_t num_searched = 0, num_retried = 0;
+    while (true) {
+      for (; num_searched < patch.triangles().size(); ++num_searched) {
+        const int t = patch.triangles()[num_searched];
+        for (const int next : mesh_.neighbors[t]) {
+          if (next >= 0) Try(next, &patch, &not_now);
+        }
+        report_.Report(num_done_ + num_searched);
+      }
+      // A facet that could not be completed when the patch was smaller may be
+      // now.
+      if (not_now.empty() || num_retried == num_searched) break;
+      num_retried = num_searched;
+      for (const int t : std::exchange(not_now, {})) Try(t, &patch, &not_now);
+    }
+    Finish(patch.triangles().size());
+  }
+
+  void Try(int triangle, Patch* patch, std::vector<int>* not_now) {
+    if (work_.label[triangle] >= 0 || refused_by_[triangle] == num_patches_) {
+      return;
+    }
+    const std::span<const int> region = WholeRegion(triangle);
+    if (region.size() > 1 && patch->TryAdd(region) == Patch::Outcome::kAdded) {
+      return;
+    }
+    switch (patch->TryAdd({&triangle, 1})) {
+      case Patch::Outcome::kAdded:
+        break;
+      case Patch::Outcome::kNotNow:
+        not_now->push_back(triangle);
+        break;
+      case Patch::Outcome::kNever:
+        refused_by_[triangle] = num_patches_;
+        break;
+    }
+  }
+
+  void Finish(std::size_t num_triangles) {
+    ++num_patches_;
+    num_done_ += num_triangles;
+    report_.Report(num_done_);
+  }
+
+  const SurfaceMesh& mesh_;
+  PatchWorkspace work_;
+  ProgressReport report_;
+  std::vector<int> refused_by_;  // Patch that can never take the triangle.
+  int num_patches_ = 0;
+  std::size_t num_done_ = 0;
+};
+
+}  // namespace
+
+std::vector<int> GrowPatches(const SurfaceMesh& mesh,
+                             const Progress& progress) {
+  return Growth(mesh, progress).Run();
+}
+
+}  // namespace drake_haptics

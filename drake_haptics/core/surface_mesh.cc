@@ -1,0 +1,170 @@
+#include "surface_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numeric>
+
+#include "convex_polygon.h"
+#include "mesh_edges.h"
+#include "predicates.h"
+
+namespace drake_haptics {
+namespace {
+
+void AddVertices(std::span<const Vec3> vertices, SurfaceMesh* mesh) {
+  double magnitude = 0;
+  for (const Triangle& t : mesh->triangles) {
+    for (const int v : t) {
+      magnitude = std::max(magnitude, vertices[v].cwiseAbs().maxCoeff());
+    }
+  }
+  const double scale = PowerOfTwoScale(magnitude);
+  mesh->tolerance = SurfaceTolerance(vertices, mesh->triangles) * scale;
+  mesh->vertices.reserve(vertices.size());
+  for (const Vec3& v : vertices) {
+    mesh->vertices.push_back(NormalizeForPredicates(v, scale));
+  }
+}
+
+void AddPlanes(SurfaceMesh* mesh) {
+  for (const Triangle& t : mesh->triangles) {
+    const Vec3& a = mesh->vertices[t[0]];
+    const Vec3 cross =
+        TriangleCross(a, mesh->vertices[t[1]], mesh->vertices[t[2]]);
+    mesh->areas.push_back(cross.norm() / 2);
+    const Vec3 normal =
+        mesh->areas.back() > 0 ? Vec3(cross.stableNormalized()) : cross;
+    mesh->planes.push_back({normal, normal.dot(a)});
+  }
+}
+
+int Root(std::vector<int>* parent, int i) {
+  while ((*parent)[i] != i) i = (*parent)[i] = (*parent)[(*parent)[i]];
+  return i;
+}
+
+void AddNeighborsAndComponents(SurfaceMesh* mesh) {
+  const int n = static_cast<int>(mesh->triangles.size());
+  mesh->neighbors.assign(n, {-1, -1, -1});
+  std::vector<int> parent(n);
+  std::iota(parent.begin(), parent.end(), 0);
+  const std::vector<TriangleSide> sides = SortedSides(mesh->triangles);
+  ForEachMeshEdge(sides, [&](std::span<const TriangleSide> edge) {
+    for (const TriangleSide& side : edge) {
+      parent[Root(&parent, side.triangle)] = Root(&parent, edge[0].triangle);
+    }
+    if (edge.size() == 2 && edge[0].forward != edge[1].forward) {
+      mesh->neighbors[edge[0].triangle][edge[0].edge] = edge[1].triangle;
+      mesh->neighbors[edge[1].triangle][edge[1].edge] = edge[0].triangle;
+    }
+  });
+  std::vector<int> number(n, -1);
+  for (int t = 0; t < n; ++t) {
+    int& component = number[Root(&parent, t)];
+    if (component < 0) component = mesh->num_components++;
+    mesh->component.push_back(component);
+  }
+}
+
+bool LiesIn(const SurfaceMesh& mesh, int t, const Plane& plane) {
+  const Triangle& triangle = mesh.triangles[t];
+  return mesh.planes[t].normal.dot(plane.normal) > 0 &&
+         std::all_of(triangle.begin(), triangle.end(), [&](int v) {
+           return std::abs(plane.Height(mesh.vertices[v])) <= mesh.tolerance;
+         });
+}
+
+PlanarRegion FloodRegion(const SurfaceMesh& mesh, int seed,
+                         std::vector<int>* region_of, int region_index) {
+  PlanarRegion region{mesh.planes[seed], {seed}, false};
+  (*region_of)[seed] = region_index;
+  for (std::size_t i = 0; i < region.triangles.size(); ++i) {
+    for (const int next : mesh.neighbors[region.triangles[i]]) {
+      if (next < 0 || (*region_of)[next] >= 0) continue;
+      if (!LiesIn(mesh, next, region.plane)) continue;
+      (*region_of)[next] = region_index;
+      region.triangles.push_back(next);
+    }
+  }
+  return region;
+}
+
+bool IsConvexPolygon(const SurfaceMesh& mesh, const PlanarRegion& region) {
+  if (region.triangles.size() == 1) return true;
+  std::vector<Vec3> points;
+  double area = 0;
+  for (const int t : region.triangles) {
+    for (const int v : mesh.triangles[t]) points.push_back(mesh.vertices[v]);
+    area += mesh.areas[t];
+  }
+  return IsCovered(FindFlatHull(points, region.plane.normal), area,
+                   mesh.tolerance);
+}
+
+void AddRegions(SurfaceMesh* mesh) {
+  mesh->region.assign(mesh->triangles.size(), -1);
+  std::vector<int> order(mesh->triangles.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
+    return mesh->areas[i] > mesh->areas[j];
+  });
+  for (const int seed : order) {
+    if (mesh->region[seed] >= 0) continue;
+    mesh->regions.push_back(FloodRegion(
+        *mesh, seed, &mesh->region, static_cast<int>(mesh->regions.size())));
+    mesh->regions.back().is_convex =
+        IsConvexPolygon(*mesh, mesh->regions.back());
+  }
+}
+
+}  // namespace
+
+double SurfaceTolerance(std::span<const Vec3> vertices,
+                        std::span<const Triangle> triangles) {
+  Eigen::AlignedBox3d box;
+  for (const Triangle& t : triangles) {
+    for (const int v : t) box.extend(vertices[v]);
+  }
+  return kSurfaceTolerance * box.sizes().norm();
+}
+
+SurfaceMesh MakeSurfaceMesh(std::span<const Vec3> vertices,
+                            std::span<const Triangle> triangles,
+                            std::span<const std::uint8_t> solid) {
+  SurfaceMesh mesh;
+  mesh.triangles.assign(triangles.begin(), triangles.end());
+  mesh.solid.assign(solid.begin(), solid.end());
+  AddVertices(vertices, &mesh);
+  AddPlanes(&mesh);
+  AddNeighborsAndComponents(&mesh);
+  AddRegions(&mesh);
+  return mesh;
+}
+
+FlatHull FindFlatHull(std::span<const Vec3> points, const Vec3& normal) {
+  const Vec3 along = normal.unitOrthogonal();
+  const Vec3 across = normal.cross(along);
+  std::vector<Eigen::Vector2d> projected;
+  projected.reserve(points.size());
+  for (const Vec3& p : points) {
+    const Vec3 q = p - points[0];
+    projected.emplace_back(along.dot(q), across.dot(q));
+  }
+  FlatHull hull;
+  const std::vector<int> loop = ExactConvexPolygon(projected);
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Eigen::Vector2d& a = projected[loop[k]];
+    const Eigen::Vector2d& b = projected[loop[(k + 1) % loop.size()]];
+    hull.area += (a.x() * b.y() - a.y() * b.x()) / 2;
+    hull.perimeter += (b - a).norm();
+    hull.corners.push_back(points[loop[k]]);
+  }
+  return hull;
+}
+
+bool IsCovered(const FlatHull& hull, double covered, double tolerance) {
+  constexpr double kRelative = 1e-9;
+  return covered >= hull.area * (1 - kRelative) - hull.perimeter * tolerance;
+}
+
+}  // namespace drake_haptics

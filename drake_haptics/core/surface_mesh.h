@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "decomposition.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+/// A plane that supports something: normal · x <= offset there.
+struct Plane {
+  Vec3 normal = Vec3::Zero();  ///< unit; zero for a triangle without area
+  double offset = 0;
+
+  double Height(const Vec3& point) const { return normal.dot(point) - offset; }
+};
+
+/// Triangles that are connected and lie in the plane of the largest of them.
+struct PlanarRegion {
+  Plane plane;
+  std::vector<int> triangles;
+  bool is_convex = false;  ///< together they are one convex polygon
+};
+
+/// A triangle mesh with what the growth of patches asks about it. Lengths are
+/// scaled by a power of two, as the predicates want them.
+struct SurfaceMesh {
+  double tolerance = 0;  ///< planes closer than this are one
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint8_t> solid;
+  std::vector<Plane> planes;  ///< of each triangle
+  std::vector<double> areas;  ///< of each triangle
+  /// Across edge k (corner k to k + 1): the triangle that shares this edge, and
+  /// nobody else, with the same winding; -1 if there is none.
+  std::vector<std::array<int, 3>> neighbors;
+  std::vector<int> region;  ///< of each triangle
+  std::vector<PlanarRegion> regions;
+  std::vector<int> component;  ///< of each triangle, connected by any edge
+  int num_components = 0;
+};
+
+/// Distance, relative to the mesh's bounding box diagonal, below which points
+/// count as lying in a plane. Coordinates in single precision are off by 3e-8
+/// of their magnitude; a smaller value would split every flat face of such a
+/// mesh.
+inline constexpr double kSurfaceTolerance = 1e-7;
+
+/// kSurfaceTolerance in m, for the vertices that triangles use.
+double SurfaceTolerance(std::span<const Vec3> vertices,
+                        std::span<const Triangle> triangles);
+
+SurfaceMesh MakeSurfaceMesh(std::span<const Vec3> vertices,
+                            std::span<const Triangle> triangles,
+                            std::span<const std::uint8_t> solid);
+
+/// Area of the convex hull of points near a plane, seen along its normal, and
+/// the hull's perimeter.
+struct FlatHull {
+  double area = 0, perimeter = 0;
+  std::vector<Vec3> corners;  ///< counter-clockwise about the normal
+};
+FlatHull FindFlatHull(std::span<const Vec3> points, const Vec3& normal);
+
+/// Whether `covered` fills the hull but for slivers of width `tolerance`.
+bool IsCovered(const FlatHull& hull, double covered, double tolerance);
+
+}  // namespace drake_haptics
