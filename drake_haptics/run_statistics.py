@@ -72,8 +72,8 @@ class RunStatistics:
         self._max_force_N = max(self._max_force_N, force_N)
         self._max_torque_Nm = max(self._max_torque_Nm, torque_Nm)
         self._max_penetration_m = max(self._max_penetration_m, penetration_m)
-        self._limit_hits += status == LIMITED
-        self._non_finite_events += status == NOT_FINITE
+        self._limit_hits += int(status == LIMITED)
+        self._non_finite_events += int(status == NOT_FINITE)
 
     def to_dict(self) -> dict[str, object]:
         """Returns the figures for a report, ready for JSON.

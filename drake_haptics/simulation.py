@@ -150,7 +150,7 @@ def _make_measure(
             penetration_m=-float(np.min(contacts.distance, initial=0.0)),
             force_N=math.hypot(*wrench[3:]),
             torque_Nm=math.hypot(*wrench[:3]),
-            status=status.Eval(device_context)[0],
+            status=float(status.Eval(device_context)[0]),
         )
 
     return measure

@@ -1,0 +1,153 @@
+"""The hand and the handle, on the shipped arm."""
+
+import numpy as np
+import pytest
+from drake_haptics._core import CouplingGains
+from drake_haptics.device_preset import load_device_preset
+from drake_haptics.systems.arm_inverse_kinematics import (
+    UnreachableError,
+    solve_arm_positions,
+)
+from drake_haptics.systems.hand_impedance import HandImpedance
+from drake_haptics.systems.hand_path import HandPath
+from drake_haptics.systems.simulated_arm import make_arm_plant
+from drake_haptics.pose_vector import vector_to_pose
+from pydrake.math import RigidTransform, RollPitchYaw
+
+L1, L2 = 0.215, 0.170
+K, B, KR, BR = 300.0, 5.0, 1.0, 0.02
+
+
+@pytest.fixture(scope="module")
+def plant():
+    preset = load_device_preset("phantom_premium_1_5_6dof")
+    plant = make_arm_plant(preset.model_path, RigidTransform())
+    plant.Finalize()
+    return plant
+
+
+def hand_on(plant, path, gains):
+    hand = HandImpedance(
+        plant, plant.GetBodyByName("handle"), path, RigidTransform(), gains
+    )
+    return hand, hand.CreateDefaultContext()
+
+
+def set_arm(hand, context, q, v=np.zeros(6), F=np.zeros(6)):
+    hand.get_arm_state_input_port().FixValue(context, np.concatenate([q, v]))
+    hand.get_applied_wrench_input_port().FixValue(context, F)
+
+
+def handle_pose(q):
+    """Forward kinematics by hand: yaw, planar two-link, then yaw, pitch, roll."""
+    R_yaw = RollPitchYaw(0, 0, q[0]).ToRotationMatrix()
+    R_fore = RollPitchYaw(0, -(q[1] + q[2]), 0).ToRotationMatrix()
+    elbow = np.array([L1 * np.cos(q[1]), 0, L1 * np.sin(q[1])])
+    tip = elbow + R_fore @ np.array([0, 0, -L2])
+    R_gimbal = RollPitchYaw(q[5], q[4], q[3]).ToRotationMatrix()
+    return RigidTransform(R_yaw @ R_fore @ R_gimbal, R_yaw @ tip)
+
+
+Q = np.array([0.2, 0.3, -0.4, 0.5, -0.3, 0.6])
+
+
+def test_topology(plant):
+    hand, _ = hand_on(plant, HandPath([0.0], [RigidTransform()]), None)
+    sizes = {"generalized_force": 6, "X_WH": 7, "V_WH": 6}
+    for name, size in sizes.items():
+        assert hand.GetOutputPort(name).size() == size
+    assert hand.GetInputPort("arm_state").size() == 12
+    assert hand.GetInputPort("F_applied").size() == 6
+    # Poses must not depend on the wrench, or the loop would be algebraic.
+    assert not hand.HasDirectFeedthrough(1, 1)
+    assert not hand.HasDirectFeedthrough(1, 2)
+
+
+def test_the_handle_is_where_the_joints_put_it(plant):
+    hand, context = hand_on(plant, HandPath([0.0], [RigidTransform()]), None)
+    set_arm(hand, context, Q)
+    X_WH = vector_to_pose(hand.get_handle_pose_output_port().Eval(context))
+    assert X_WH.IsNearlyEqualTo(handle_pose(Q), 1e-13)
+
+
+def test_the_handle_moves_as_its_pose_does(plant):
+    hand, context = hand_on(plant, HandPath([0.0], [RigidTransform()]), None)
+    v = np.array([1.0, -0.5, 0.7, 2.0, -1.0, 3.0])
+    set_arm(hand, context, Q, v)
+    h = 1e-6
+    before, after = handle_pose(Q - h * v), handle_pose(Q + h * v)
+    turn = (after.rotation() @ before.rotation().inverse()).ToAngleAxis()
+    rate = np.concatenate(
+        [turn.angle() * turn.axis(), after.translation() - before.translation()]
+    ) / (2 * h)
+    np.testing.assert_allclose(
+        hand.get_handle_velocity_output_port().Eval(context), rate, atol=1e-7
+    )
+
+
+def test_a_wrench_on_the_handle_works_as_it_does_at_the_joints(plant):
+    # Virtual work along each joint: τ_i = F · (change of pose per change of q_i).
+    hand, context = hand_on(plant, HandPath([0.0], [RigidTransform()]), None)
+    F = np.array([0.1, -0.05, 0.08, 1.0, 2.0, -3.0])
+    set_arm(hand, context, Q, F=F)
+    expected = np.zeros(6)
+    h = 1e-6
+    for i, step in enumerate(np.eye(6) * h):
+        before, after = handle_pose(Q - step), handle_pose(Q + step)
+        turn = (after.rotation() @ before.rotation().inverse()).ToAngleAxis()
+        expected[i] = F[:3] @ (turn.angle() * turn.axis()) + F[3:] @ (
+            after.translation() - before.translation()
+        )
+    torque = hand.get_generalized_force_output_port().Eval(context)
+    np.testing.assert_allclose(torque, expected / (2 * h), atol=1e-8)
+
+
+def test_the_hand_pulls_to_its_path(plant):
+    aim = handle_pose(Q)
+    offset = np.array([0.004, -0.002, 0.003])
+    target = RigidTransform(aim.rotation(), aim.translation() + offset)
+    gains = CouplingGains(K, B, KR, BR)
+    hand, context = hand_on(plant, HandPath([0.0], [target]), gains)
+    free, free_context = hand_on(plant, HandPath([0.0], [target]), None)
+    set_arm(hand, context, Q)
+    set_arm(free, free_context, Q, F=np.concatenate([np.zeros(3), K * offset]))
+    np.testing.assert_allclose(
+        hand.get_generalized_force_output_port().Eval(context),
+        free.get_generalized_force_output_port().Eval(free_context),
+        atol=1e-10,
+    )
+
+
+def test_the_hand_moves_with_time(plant):
+    aim = handle_pose(Q)
+    up = RigidTransform(aim.rotation(), aim.translation() + [0, 0, 0.01])
+    hand, context = hand_on(
+        plant, HandPath([0.0, 1.0], [aim, up]), CouplingGains(K, B, KR, BR)
+    )
+    set_arm(hand, context, Q)
+    port = hand.get_generalized_force_output_port()
+    np.testing.assert_allclose(port.Eval(context), 0.0, atol=1e-9)
+    context.SetTime(1.0)
+    assert np.linalg.norm(port.Eval(context)) > 0.1
+
+
+def test_inverse_kinematics_finds_the_pose(plant):
+    handle = plant.GetBodyByName("handle")
+    rng = np.random.default_rng(3)
+    for _ in range(30):
+        aim = handle_pose(rng.uniform(-0.5, 0.5, 6))
+        q = solve_arm_positions(plant, handle, aim, np.zeros(6))
+        assert handle_pose(q).IsNearlyEqualTo(aim, 1e-8)
+
+
+@pytest.mark.parametrize(
+    "pose",
+    [
+        RigidTransform([1.0, 0, 0]),
+        RigidTransform([L1 + L2 - 1e-4, 0, 0]),
+        RigidTransform(RollPitchYaw(0, np.pi / 2, 0), [L1, 0, -L2]),
+    ],
+)
+def test_a_pose_out_of_reach_is_refused(plant, pose):
+    with pytest.raises(UnreachableError):
+        solve_arm_positions(plant, plant.GetBodyByName("handle"), pose, np.zeros(6))

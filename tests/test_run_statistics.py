@@ -1,0 +1,85 @@
+"""What a run measured."""
+
+import json
+
+import numpy as np
+import pytest
+from drake_haptics import run_statistics
+from drake_haptics.run_statistics import RunStatistics
+from drake_haptics.systems.display_force_hold import (
+    LIMITED,
+    NOT_FINITE,
+    SHOWN_AS_ASKED,
+)
+
+
+def add(statistics, **changes):
+    tick = {
+        "tick_s": 1e-4,
+        "query_s": 1e-5,
+        "contacts": 3,
+        "clusters": 1,
+        "penetration_m": 0.0,
+        "force_N": 1.0,
+        "torque_Nm": 0.1,
+        "status": SHOWN_AS_ASKED,
+    }
+    statistics.add(**(tick | changes))
+
+
+def test_a_run_without_ticks_is_all_zero():
+    figures = RunStatistics(1e-3).to_dict()
+    assert figures["ticks"] == 0
+    assert figures["tick_us"] == {"median": 0, "p99": 0, "p99_9": 0, "max": 0}
+    assert figures["contacts"] == {"median": 0, "max": 0}
+
+
+def test_times_are_described_in_microseconds():
+    statistics = RunStatistics(1e-3)
+    times = np.random.default_rng(0).permutation(20001) * 1e-6
+    for t in times:
+        add(statistics, tick_s=t, query_s=t / 10)
+    figures = statistics.to_dict()
+    expected = {"median": 10000.0, "p99": 19800.0, "p99_9": 19980.0, "max": 20000.0}
+    assert figures["tick_us"] == pytest.approx(expected)
+    assert figures["contact_query_us"] == pytest.approx(
+        {key: value / 10 for key, value in expected.items()}
+    )
+    assert figures["ticks"] == 20001
+    assert figures["duration_s"] == pytest.approx(20.001)
+
+
+def test_counts_and_largest_values():
+    statistics = RunStatistics(1e-3)
+    add(statistics, contacts=0, clusters=0, penetration_m=-1e-3)
+    add(statistics, contacts=5, clusters=2, force_N=8.5, status=LIMITED)
+    add(statistics, contacts=7, clusters=2, torque_Nm=0.15, penetration_m=2e-4)
+    add(statistics, contacts=5, clusters=1, status=NOT_FINITE)
+    figures = statistics.to_dict()
+    assert figures["contacts"] == {"median": 5.0, "max": 7}
+    assert figures["clusters"] == {"median": 1.5, "max": 2}
+    assert figures["max_force_N"] == 8.5
+    assert figures["max_torque_Nm"] == 0.15
+    assert figures["max_penetration_m"] == 2e-4
+    assert (figures["limit_hits"], figures["non_finite_events"]) == (1, 1)
+
+
+def test_memory_is_bounded_and_keeps_the_latest(monkeypatch):
+    monkeypatch.setattr(run_statistics, "_FIRST_RECORDS", 4)
+    monkeypatch.setattr(run_statistics, "_MAX_RECORDS", 16)
+    statistics = RunStatistics(1e-3)
+    add(statistics, force_N=9.0, tick_s=1.0)
+    for i in range(40):
+        add(statistics, contacts=i)
+    figures = statistics.to_dict()
+    assert figures["ticks"] == 41
+    assert figures["contacts"] == {"median": 31.5, "max": 39}
+    # The largest values are of the whole run, distributions of the latest ticks.
+    assert figures["max_force_N"] == 9.0
+    assert figures["tick_us"]["max"] == pytest.approx(100.0)
+
+
+def test_a_report_is_json():
+    statistics = RunStatistics(1e-3)
+    add(statistics, status=np.float64(LIMITED), penetration_m=np.float64(1e-3))
+    assert json.loads(json.dumps(statistics.to_dict()))["ticks"] == 1

@@ -1,0 +1,76 @@
+"""The coupling system; its law has its own test (test_core_virtual_coupling)."""
+
+import numpy as np
+import pytest
+from drake_haptics._core import CouplingGains
+from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.virtual_coupling import VirtualCoupling
+from pydrake.math import RigidTransform, RollPitchYaw
+
+K, B, KR, BR = 800.0, 2.0, 1.5, 0.004
+X_HT = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [0.02, -0.01, 0.05])
+X_WH = RigidTransform(RollPitchYaw(-0.4, 0.5, 0.6), [0.1, 0.2, 0.3])
+
+
+@pytest.fixture
+def coupling():
+    return VirtualCoupling(CouplingGains(K, B, KR, BR), X_HT)
+
+
+def evaluate(coupling, X_WT, V_WH=np.zeros(6), V_WT=np.zeros(6)):
+    context = coupling.CreateDefaultContext()
+    coupling.get_handle_pose_input_port().FixValue(context, pose_to_vector(X_WH))
+    coupling.get_handle_velocity_input_port().FixValue(context, V_WH)
+    coupling.get_tool_pose_input_port().FixValue(context, pose_to_vector(X_WT))
+    coupling.get_tool_velocity_input_port().FixValue(context, V_WT)
+    return (
+        coupling.get_wrench_model_output_port().Eval(context),
+        coupling.get_display_wrench_output_port().Eval(context),
+    )
+
+
+def test_topology(coupling):
+    names = [coupling.get_input_port(i).get_name() for i in range(4)]
+    assert names == ["X_WH", "V_WH", "X_WTool", "V_WTool"]
+    assert coupling.GetOutputPort("wrench_model").size() == 78
+    assert coupling.GetOutputPort("F_display").size() == 6
+
+
+def test_it_has_no_state_and_no_delay(coupling):
+    assert coupling.CreateDefaultContext().num_total_states() == 0
+    assert coupling.HasDirectFeedthrough(0, 1)
+
+
+def test_where_it_is_held_the_tool_is_at_ease(coupling):
+    model, display = evaluate(coupling, X_WH @ X_HT)
+    np.testing.assert_allclose(model[:6], 0.0, atol=1e-12)
+    np.testing.assert_allclose(display, 0.0, atol=1e-12)
+
+
+def test_the_handle_feels_the_reaction(coupling):
+    pull = np.array([0.001, -0.002, 0.003])
+    X_WT = X_WH @ X_HT
+    X_WT.set_translation(X_WT.translation() + pull)
+    model, display = evaluate(coupling, X_WT)
+    np.testing.assert_allclose(model[3:6], -K * pull, atol=1e-10)
+    np.testing.assert_allclose(display[3:], K * pull, atol=1e-10)
+    # About the handle's origin the force has the lever of the grasp.
+    lever = X_WH.rotation() @ X_HT.translation()
+    np.testing.assert_allclose(display[:3], np.cross(lever, K * pull), atol=1e-10)
+
+
+def test_the_model_tells_its_stiffness_and_damping(coupling):
+    model, _ = evaluate(coupling, X_WH @ X_HT)
+    np.testing.assert_allclose(
+        model[6:42].reshape(6, 6), np.diag([KR] * 3 + [K] * 3), atol=1e-9
+    )
+    np.testing.assert_allclose(
+        model[42:].reshape(6, 6), np.diag([BR] * 3 + [B] * 3), atol=1e-12
+    )
+
+
+def test_a_change_of_any_input_is_seen(coupling):
+    rest = evaluate(coupling, X_WH @ X_HT)[1]
+    moving = np.array([0.1, 0, 0, 0, 0.2, 0])
+    assert not np.allclose(evaluate(coupling, X_WH @ X_HT, V_WH=moving)[1], rest)
+    assert not np.allclose(evaluate(coupling, X_WH @ X_HT, V_WT=moving)[1], rest)
