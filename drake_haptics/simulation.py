@@ -7,7 +7,6 @@ import math
 import time
 from collections.abc import Callable
 
-import numpy as np
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import Context, EventStatus
 
@@ -147,7 +146,7 @@ def _make_measure(
             query_s=contacts.query_seconds,
             contacts=len(contacts),
             clusters=len(clusters),
-            penetration_m=-float(np.min(contacts.distance, initial=0.0)),
+            penetration_m=-min(contacts.distance.tolist(), default=0.0),
             force_N=math.hypot(*wrench[3:]),
             torque_Nm=math.hypot(*wrench[:3]),
             status=float(status.Eval(device_context)[0]),

@@ -21,6 +21,8 @@ from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.scratch import declare_scratch, get_scratch
 
+_AT_ORIGIN = np.zeros(3)
+
 
 class HandImpedance(LeafSystem):
     """A hand as a six-axis spring and damper that follows a path.
@@ -69,6 +71,8 @@ class HandImpedance(LeafSystem):
         super().__init__()
         self._plant = plant
         self._handle = handle
+        self._handle_frame = handle.body_frame()
+        self._world_frame = plant.world_frame()
         self._path = path
         self._q_PH = pose_to_vector(X_PH)
         self._gains = gains
@@ -128,10 +132,10 @@ class HandImpedance(LeafSystem):
         J_WH = plant.CalcJacobianSpatialVelocity(
             plant_context,
             JacobianWrtVariable.kV,
-            self._handle.body_frame(),
-            np.zeros(3),
-            plant.world_frame(),
-            plant.world_frame(),
+            self._handle_frame,
+            _AT_ORIGIN,
+            self._world_frame,
+            self._world_frame,
         )
         X_WH = pose_to_vector(plant.EvalBodyPoseInWorld(plant_context, self._handle))
         kinematics.set_value((X_WH, J_WH @ state[self._num_positions :], J_WH.T))
