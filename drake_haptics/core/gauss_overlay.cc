@@ -26,6 +26,19 @@ bool InRegionOfB(const std::vector<Vec3>& edges, const Vec3& n, double slack) {
                      [&](const Vec3& e) { return n.dot(e) <= slack; });
 }
 
+// Whether the arc of edge `id` of P, between the normals of the facets beside
+// it, may meet the great circle of directions perpendicular to `axis` (in P's
+// frame). Segments have no facets, and their arc is the whole circle.
+bool ArcMayCross(const Polytope& P, int id, const Vec3& axis) {
+  const Polytope::Edge& edge = P.edges[id];
+  if (edge.left < 0) return true;
+  const double left = axis.dot(P.facets[edge.left].normal);
+  const double right = axis.dot(P.facets[edge.right].normal);
+  const double slack = kRegionSlack * P.radius;
+  return (left <= slack && right >= -slack) ||
+         (left >= -slack && right <= slack);
+}
+
 }  // namespace
 
 void OverlayGaussRegions(const PosedPair& pair, const Hub& hub, double floor,
@@ -72,8 +85,13 @@ void OverlayGaussRegions(const PosedPair& pair, const Hub& hub, double floor,
   const auto edge_ids_B = B.neighbor_edges_of(hub.b);
   for (std::size_t i = 0; i < edges_A.size(); ++i) {
     const Vec3& edge_A = edges_A[i];
+    const Vec3 axis_B = R.transpose() * edge_A;
     for (std::size_t j = 0; j < edges_B.size(); ++j) {
       const Vec3& edge_B = edges_B[j];
+      if (!ArcMayCross(B, edge_ids_B[j], axis_B) ||
+          !ArcMayCross(A, edge_ids_A[i], edge_B)) {
+        continue;
+      }
       const Vec3 cross = edge_A.cross(edge_B);
       const double length_squared = cross.squaredNorm();
       if (!(length_squared > kParallelSine * kParallelSine *

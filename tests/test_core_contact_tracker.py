@@ -1,0 +1,215 @@
+"""Test the contact tracker against mesh distances, brute force and mechanics."""
+
+from __future__ import annotations
+
+import copy
+
+import coal
+import numpy as np
+import pytest
+import trimesh
+from contact_samples import IDENTITY, box, hull, pose, spike
+from scipy.spatial.transform import Rotation
+
+from drake_haptics import _core
+
+T = 5e-3
+
+
+def pieces_of(mesh: trimesh.Trimesh) -> _core.Decomposition:
+    return _core.decompose_surface(
+        mesh.vertices,
+        mesh.faces.astype(np.int32),
+        np.ones(len(mesh.faces), dtype=np.uint8),
+    )
+
+
+def ring() -> trimesh.Trimesh:
+    return trimesh.creation.torus(0.03, 0.01, major_sections=24, minor_sections=12)
+
+
+def random_pose(rng: np.random.Generator, spread: float) -> np.ndarray:
+    x, y, z, w = Rotation.random(random_state=int(rng.integers(1 << 31))).as_quat()
+    return pose(spread * rng.normal(size=3), [w, x, y, z])
+
+
+def coal_distance(A: trimesh.Trimesh, B: trimesh.Trimesh, q_WA: np.ndarray) -> float:
+    """Distance between the surfaces of two meshes, by another library."""
+
+    def surface(mesh: trimesh.Trimesh) -> coal.BVHModelOBBRSS:
+        model = coal.BVHModelOBBRSS()
+        model.beginModel(len(mesh.faces), len(mesh.vertices))
+        model.addVertices(np.asarray(mesh.vertices))
+        for face in mesh.faces:
+            model.addTriangle(*np.asarray(mesh.vertices)[face])
+        model.endModel()
+        return model
+
+    R = Rotation.from_quat(np.roll(q_WA[:4], -1)).as_matrix()
+    result = coal.DistanceResult()
+    coal.distance(
+        surface(A),
+        coal.Transform3s(R, q_WA[4:]),
+        surface(B),
+        coal.Transform3s.Identity(),
+        coal.DistanceRequest(),
+        result,
+    )
+    return float(result.min_distance)
+
+
+def test_the_nearest_contact_is_the_distance_of_the_meshes() -> None:
+    rng = np.random.default_rng(0)
+    A, B = ring(), ring()
+    tracker = _core.ContactTracker(pieces_of(A), [pieces_of(B)], T)
+    found = 0
+    for _ in range(150):
+        q_WA = random_pose(rng, 0.035)
+        truth = coal_distance(A, B, q_WA)
+        contacts = tracker.query(q_WA)
+        if truth > T:
+            assert len(contacts) == 0 or contacts.distance.min() < 0
+        elif truth > 0:
+            found += 1
+            assert contacts.distance.min() == pytest.approx(truth, abs=1e-9)
+    assert found > 10
+
+
+def test_every_pair_of_pieces_in_depth_is_found_by_the_trees() -> None:
+    rng = np.random.default_rng(1)
+    A, B = pieces_of(ring()), pieces_of(ring())
+    tracker = _core.ContactTracker(A, [B], 0.0)
+    deep = 0
+    for _ in range(12):
+        q_WA = random_pose(rng, 0.02)
+        X_WA = np.eye(4)
+        X_WA[:3, :3] = Rotation.from_quat(np.roll(q_WA[:4], -1)).as_matrix()
+        X_WA[:3, 3] = q_WA[4:]
+        tracker.reset()
+        contacts = tracker.query(q_WA)
+        found = set(zip(contacts.piece_A, contacts.piece_B, strict=True))
+        for i, P in enumerate(A.pieces):
+            for j, Q in enumerate(B.pieces):
+                answer = _core.ConvexPair(P, Q).query(X_WA, np.eye(4))
+                if answer.distance < -1e-6:
+                    deep += 1
+                    assert (i, j) in found
+    assert deep > 20
+
+
+def test_warm_and_cold_answers_agree_while_apart() -> None:
+    A, B = pieces_of(ring()), pieces_of(ring())
+    warm = _core.ContactTracker(A, [B], T)
+    compared = 0
+    for k in range(400):
+        q_WA = pose([0.04 + 0.03 * np.sin(0.02 * k), 0.01, 0.024])
+        contacts = warm.query(q_WA)
+        cold = _core.ContactTracker(A, [B], T).query(q_WA)
+        if len(cold) and cold.distance.min() > 1e-6:
+            compared += 1
+            np.testing.assert_array_equal(contacts.piece_A, cold.piece_A)
+            np.testing.assert_array_equal(contacts.piece_B, cold.piece_B)
+            np.testing.assert_allclose(contacts.distance, cold.distance, atol=1e-14)
+            np.testing.assert_allclose(contacts.nhat_BA_W, cold.nhat_BA_W, atol=1e-9)
+    assert compared > 50
+
+
+def strip_plate(xs: np.ndarray) -> _core.Decomposition:
+    """A closed plate 10 mm thick whose long sides are cut at xs, a flat piece each."""
+    section = np.array([[-25, -5], [25, -5], [25, 5], [-25, 5]]) * 1e-3
+    vertices = np.array([[x, y, z] for x in xs for y, z in section])
+    triangles, labels = [[0, 2, 1], [0, 3, 2]], [0, 0]
+    last = 4 * (len(xs) - 1)
+    triangles += [[last, last + 1, last + 2], [last, last + 2, last + 3]]
+    labels += [1, 1]
+    for i in range(len(xs) - 1):
+        for k in range(4):
+            a, b = 4 * i + k, 4 * i + (k + 1) % 4
+            triangles += [[a, b, b + 4], [a, b + 4, a + 4]]
+            labels += [2 + 4 * i + k] * 2
+    return _core.assemble_surface_pieces(
+        vertices, np.array(triangles, np.int32), np.array(labels, np.int32)
+    )
+
+
+def test_a_seam_in_a_flat_face_is_not_felt() -> None:
+    """The normal stays up all the way across ten strips."""
+    plate = strip_plate(np.linspace(-0.05, 0.05, 11))
+    assert len(plate.pieces) == 42
+    assert all(piece.dimension == 2 for piece in plate.pieces)
+    tracker = _core.ContactTracker(spike([0, 0, 0]), [plate], 2e-3)
+    for height in (1e-3, -5e-4):
+        for x in np.linspace(-0.045, 0.045, 901):
+            contacts = tracker.query(pose([x, 0.003, 0.005 + height]))
+            assert len(contacts) > 0
+            np.testing.assert_allclose(
+                contacts.nhat_BA_W, np.tile([0, 0, 1], (len(contacts), 1)), atol=1e-9
+            )
+            assert contacts.distance.min() == pytest.approx(height, abs=1e-12)
+
+
+def test_a_press_through_a_flat_piece_is_held_along_the_way_in() -> None:
+    mesh = trimesh.creation.box([0.04, 0.04, 0.04])
+    normal_axis = np.argmax(np.abs(mesh.face_normals), axis=1)
+    labels = (normal_axis * 2 + (mesh.face_normals.max(axis=1) > 0.5)).astype(np.int32)
+    shell = _core.assemble_surface_pieces(
+        mesh.vertices, mesh.faces.astype(np.int32), labels
+    )
+    assert all(piece.dimension == 2 for piece in shell.pieces)
+    flat_tool = _core.ContactTracker(spike([0, 0, 0]), [shell], 2e-3)
+    for z in np.arange(0.0215, 0.002, -2.5e-4):
+        contacts = flat_tool.query(pose([0.001, 0.002, z]))
+        top = contacts.nhat_BA_W[:, 2] > 0.999
+        assert top.any()
+        assert contacts.distance[top].min() == pytest.approx(z - 0.02, abs=1e-12)
+    # And out again, the same way.
+    for z in np.arange(0.002, 0.0215, 2.5e-4):
+        contacts = flat_tool.query(pose([0.001, 0.002, z]))
+        assert contacts.distance.min() <= z - 0.02 + 1e-12
+
+
+def test_nothing_pulls_a_tool_that_comes_from_behind_an_open_sheet() -> None:
+    sheet = _core.decompose_surface(
+        np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]),
+        np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32),
+        np.zeros(2, dtype=np.uint8),
+    )
+    flipped = np.array([[0, 0, 0], [1, 0, -20], [-0.5, 0.8, -20], [-0.5, -0.8, -20]])
+    tracker = _core.ContactTracker(hull(flipped * 1e-3), [sheet], 2e-3)
+    for z in np.arange(-3e-3, -1e-4, 1e-4):
+        assert len(tracker.query(pose([0, 0, z]))) == 0
+
+
+def test_objects_are_posed_and_named_by_their_index() -> None:
+    tracker = _core.ContactTracker(
+        spike([0, 0, 0]), [box([0.1, 0.1, 0.1]), box([0.1, 0.1, 0.1])], T
+    )
+    tracker.set_object_pose(0, pose([0, 0, -0.05]))
+    tracker.set_object_pose(1, pose([5, 0, 0]))
+    contacts = tracker.query(pose([0, 0, 1e-3]))
+    assert set(contacts.object_index) == {0}
+    contacts = tracker.query(pose([5, 0, 0.051]))
+    assert set(contacts.object_index) == {1}
+    assert contacts.distance.min() == pytest.approx(1e-3, abs=1e-14)
+    with pytest.raises(IndexError):
+        tracker.set_object_pose(2, IDENTITY)
+
+
+def test_a_bad_pose_changes_nothing_and_a_copy_goes_its_own_way() -> None:
+    tracker = _core.ContactTracker(spike([0, 0, 0]), [box([1, 1, 1])], T)
+    q = pose([0, 0, 0.501])
+    before = tracker.query(q)
+    for bad in (np.full(7, np.nan), np.zeros(7), pose([np.inf, 0, 0])):
+        with pytest.raises(ValueError, match="q_WTool"):
+            tracker.query(bad)
+    twin = copy.deepcopy(tracker)
+    twin.query(pose([0, 0, 5.0]))
+    after = tracker.query(q)
+    np.testing.assert_array_equal(before.distance, after.distance)
+    np.testing.assert_array_equal(twin.query(q).distance, after.distance)
+
+
+@pytest.mark.parametrize("bad", [-1e-3, np.nan, np.inf])
+def test_the_tolerance_is_checked(bad: float) -> None:
+    with pytest.raises(ValueError, match="tolerance"):
+        _core.ContactTracker(box([1, 1, 1]), [], bad)
