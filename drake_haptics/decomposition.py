@@ -149,15 +149,17 @@ def _assemble(
     mesh: Mesh, method: Method, data: PieceData, from_cache: bool
 ) -> Decomposition:
     core = data.assemble(mesh)
-    originals = [np.asarray(piece.facet_original) for piece in core.pieces]
+    solid_pieces = [piece for piece in core.pieces if piece.dimension == 3]
+    num_flat = len(core.pieces) - len(solid_pieces)
+    originals = [np.asarray(piece.facet_original) for piece in solid_pieces]
     report = DecompositionReport(
         source=mesh.report.source,
         method=method,
         triangles=len(mesh.triangles),
         one_sided_triangles=mesh.report.one_sided_triangles,
         pieces=len(core.pieces),
-        flat_pieces=sum(piece.dimension < 3 for piece in core.pieces),
-        facets=sum(map(len, originals)),
+        flat_pieces=num_flat,
+        facets=sum(map(len, originals)) + num_flat,
         virtual_facets=sum(int((~original).sum()) for original in originals),
         seconds=data.seconds,
         from_cache=from_cache,

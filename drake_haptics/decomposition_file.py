@@ -78,7 +78,7 @@ def read_decomposition(path: Path) -> tuple[Mesh, str, PieceData]:
         )
         return mesh, facts["method"], _unpack_pieces(path, facts, arrays, mesh)
     except (KeyError, TypeError) as error:
-        raise DecompositionFileError(f"{path}: lacks {error}") from error
+        raise DecompositionFileError(f"{path}: is incomplete ({error})") from error
 
 
 def _component(data: dict[str, Any]) -> Component:

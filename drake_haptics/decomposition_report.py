@@ -22,7 +22,7 @@ class DecompositionReport:
         one_sided_triangles: those that bound no solid.
         pieces: convex pieces.
         flat_pieces: those of them without volume (coplanar patches).
-        facets: of all pieces.
+        facets: of all pieces; a flat piece counts as one.
         virtual_facets: those of them that are not on the mesh.
         seconds: that finding the pieces took, s.
         from_cache: the pieces were found earlier and read from the cache or a file.
@@ -48,11 +48,11 @@ class DecompositionReport:
     ) -> RenderResult:
         yield Text(self.source, style="bold")
         table = Table.grid(padding=(0, 2))
+        pieces = "1 piece" if self.pieces == 1 else f"{self.pieces:,} pieces"
         flat = f", {self.flat_pieces:,} of them flat" if self.flat_pieces else ""
         table.add_row(
-            "  pieces",
-            f"{self.pieces:,} from {self.triangles:,} triangles{flat} "
-            f"(method {self.method})",
+            "  result",
+            f"{pieces} from {self.triangles:,} triangles{flat} (method {self.method})",
         )
         table.add_row(
             "  facets",
@@ -60,7 +60,7 @@ class DecompositionReport:
             f"(not on the mesh)",
         )
         when = "found earlier in" if self.from_cache else "found in"
-        table.add_row("  time", f"{when} {self.seconds:.3g} s")
+        table.add_row("  time", f"{when} {_duration(self.seconds)}")
         yield table
         if self.one_sided_triangles:
             share = self.one_sided_triangles / self.triangles
@@ -74,3 +74,7 @@ class DecompositionReport:
         out = io.StringIO()
         Console(file=out, width=100, color_system=None).print(self)
         return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
+
+
+def _duration(seconds: float) -> str:
+    return f"{seconds:.2f} s" if seconds >= 0.1 else f"{seconds * 1e3:.2g} ms"

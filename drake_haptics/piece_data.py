@@ -31,7 +31,11 @@ class PatchLabels:
     def fits(self, mesh: Mesh) -> bool:
         """Tells whether the labels can belong to the mesh."""
         labels = self.piece_of_triangle
-        if labels.shape != (len(mesh.triangles),) or labels.min() < 0:
+        if (
+            labels.dtype != np.int32
+            or labels.shape != (len(mesh.triangles),)
+            or labels.min() < 0
+        ):
             return False
         return bool((np.bincount(labels, minlength=1) > 0).all())
 
@@ -72,9 +76,11 @@ class ConvexHulls:
     def fits(self, mesh: Mesh) -> bool:
         """Tells whether the hulls are well formed; they may fit any mesh."""
         return bool(
-            self.points.ndim == 2
+            self.points.dtype == np.float64
+            and self.points.ndim == 2
             and self.points.shape[1] == 3
             and np.isfinite(self.points).all()
+            and self.start.dtype == np.int32
             and self.start.ndim == 1
             and len(self.start) >= 2
             and self.start[0] == 0

@@ -34,12 +34,16 @@ class ColoredTriangles:
 def piece_surfaces(
     pieces: list[_core.Polytope],
 ) -> tuple[ColoredTriangles, ColoredTriangles]:
-    """Returns the facets on the mesh, a colour for each piece, and the virtual ones."""
+    """Returns the facets on the mesh, a colour for each piece, and the virtual ones.
+
+    Of a flat piece only the front is drawn: its back is in the same place.
+    """
     corners: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
     owners: tuple[list[int], list[int]] = ([], [])
     for index, piece in enumerate(pieces):
         points = np.asarray(piece.vertices)
-        for loop, original in zip(piece.facets, piece.facet_original, strict=True):
+        sides = list(zip(piece.facets, piece.facet_original, strict=True))
+        for loop, original in sides if piece.dimension == 3 else sides[:1]:
             kind = 0 if original else 1
             fan = np.array([(loop[0], *pair) for pair in pairwise(loop[1:])])
             corners[kind].append(points[fan.ravel()])

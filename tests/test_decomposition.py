@@ -57,8 +57,11 @@ def test_the_hull_of_each_part_fills_its_notch():
     assert contains(l_hull, np.array([[1.4, 1.4, 0.5]]), 0)
     originals = np.asarray(l_hull.facet_original)
     normals = np.asarray(l_hull.facet_normals)
-    assert (~originals).sum() == 1  # only the facet across the notch
-    np.testing.assert_allclose(normals[~originals], [[0.5**0.5, 0.5**0.5, 0]])
+    # Not on the mesh are the facet across the notch, and floor and ceiling, which
+    # are on it only in part.
+    virtual = {tuple(np.round(normal, 9)) for normal in normals[~originals]}
+    across = tuple(np.round([0.5**0.5, 0.5**0.5, 0], 9))
+    assert virtual == {across, (0, 0, 1), (0, 0, -1)}
 
 
 def test_coacd_fills_a_solid_with_few_pieces():
@@ -99,7 +102,7 @@ def test_progress_rises_to_one():
     shares = []
     mesh = load_mesh(real_mesh("power_drill.stl"))
     decompose(mesh, progress=shares.append, cache=False)
-    assert shares[-1] == 1 and len(shares) > 3
+    assert shares[-1] == 1 and len(shares) >= 2
     assert all(0 <= a <= b <= 1 for a, b in itertools.pairwise(shares))
 
 
@@ -120,11 +123,12 @@ def test_a_large_real_mesh(name):
     labels = np.asarray(result.core.piece_of_triangle)
     assert labels.shape == (len(mesh.triangles),)
     assert set(labels) == set(range(len(result.pieces)))
-    assert len(result.pieces) < 0.8 * len(mesh.triangles)
-    one_component = mesh.component_of_triangle
-    first = np.zeros(len(result.pieces), dtype=int)
-    first[labels] = one_component
-    np.testing.assert_array_equal(first[labels], one_component)
+    assert len(result.pieces) <= len(mesh.triangles) * (0.3 if mesh.solid.all() else 1)
+    component = np.zeros(len(result.pieces), dtype=int)
+    component[labels] = mesh.component_of_triangle  # a piece stays in one component
+    np.testing.assert_array_equal(component[labels], mesh.component_of_triangle)
+    if not mesh.solid.any():
+        assert result.report.flat_pieces == result.report.pieces
 
 
 # Files.

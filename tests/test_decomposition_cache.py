@@ -118,14 +118,17 @@ def test_old_entries_and_abandoned_files_go(folder, mesh, monkeypatch):
     os.utime(old, (time.time() - 7200,) * 2)
     decompose(mesh)
     assert not old.exists() and fresh.exists()
-    (used_last,) = folder.glob("*.npz")
-    decompose(Mesh.from_arrays(*box()))
-    (used_first,) = set(folder.glob("*.npz")) - {used_last}
-    os.utime(used_first, (1, 1))
-    two_entries = 2 * max(path.stat().st_size for path in folder.glob("*.npz"))
-    monkeypatch.setattr(decomposition_cache, "MAX_CACHE_BYTES", two_entries + 100)
-    decompose(mesh, "hull")
-    assert used_last.exists() and not used_first.exists()
+    for method in ("surface", "hull"):
+        decompose(Mesh.from_arrays(*box()), method)
+    entries = sorted(folder.glob("*.npz"))
+    for age, path in enumerate(entries):
+        os.utime(path, (time.time() - 60 * age,) * 2)
+    total = sum(path.stat().st_size for path in entries)
+    monkeypatch.setattr(decomposition_cache, "MAX_CACHE_BYTES", total)
+    decompose(Mesh.from_arrays(*box(at=(1, 2, 3))))  # one more has no room
+    kept = set(folder.glob("*.npz"))
+    assert entries[0] in kept and entries[-1] not in kept
+    assert sum(path.stat().st_size for path in kept) <= total
 
 
 WRITER = textwrap.dedent(

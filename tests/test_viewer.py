@@ -33,10 +33,19 @@ def test_a_box_is_drawn_as_its_six_sides():
 
 def test_facets_that_are_not_on_the_mesh_are_drawn_apart(hull_of_l):
     on_mesh, virtual = piece_surfaces(hull_of_l.pieces)
-    assert area(virtual) == pytest.approx(2**0.5)  # across the notch
-    assert area(on_mesh) == pytest.approx(2 + 2 + 1 + 1 + 2 * 3.5)
-    np.testing.assert_allclose(virtual.colors, [VIRTUAL_FACET[:3]] * 6)
+    across_notch, floor = 2**0.5, 3.5
+    assert area(virtual) == pytest.approx(across_notch + 2 * floor)
+    assert area(on_mesh) == pytest.approx(2 + 2 + 1 + 1)
+    assert (virtual.colors == VIRTUAL_FACET[:3]).all()
     assert set(virtual.piece) == {0}
+
+
+def test_a_flat_piece_is_drawn_once():
+    V, F = box()
+    result = decompose(Mesh.from_arrays(V, F[:2]), cache=False)
+    on_mesh, virtual = piece_surfaces(result.pieces)
+    assert area(on_mesh) == pytest.approx(1) and len(virtual.faces) == 0
+    assert result.report.virtual_facets == 0 and result.report.facets == 1
 
 
 def test_the_page_stands_alone(hull_of_l, tmp_path, capsys):

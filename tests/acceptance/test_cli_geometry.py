@@ -96,7 +96,7 @@ def test_decompose_writes_file_and_json_and_remembers(environment, l_file, tmp_p
     assert loaded.mesh.report.volume == pytest.approx(0.003)
     second = run("decompose", l_file, "--unit", "mm")
     assert "found earlier" in second.stdout
-    assert f"{data['pieces']} from 20 triangles" in second.stdout
+    assert f"{data['pieces']} pieces from 20 triangles" in second.stdout
 
 
 def test_decompose_says_that_open_surfaces_are_one_sided(environment):
