@@ -48,11 +48,12 @@ class DecompositionReport:
     ) -> RenderResult:
         yield Text(self.source, style="bold")
         table = Table.grid(padding=(0, 2))
+        table.add_row("  method", self.method)
         pieces = "1 piece" if self.pieces == 1 else f"{self.pieces:,} pieces"
         flat = f", {self.flat_pieces:,} of them flat" if self.flat_pieces else ""
         table.add_row(
             "  result",
-            f"{pieces} from {self.triangles:,} triangles{flat} (method {self.method})",
+            f"{pieces} from {self.triangles:,} triangles{flat}",
         )
         table.add_row(
             "  facets",
@@ -66,7 +67,8 @@ class DecompositionReport:
             share = self.one_sided_triangles / self.triangles
             yield Text(
                 f"  {self.one_sided_triangles:,} triangles ({share:.0%}) bound no "
-                f"solid: their pieces are one-sided, nothing can be inside them.",
+                f"solid: their pieces are one-sided and nothing can be inside. Closing "
+                f"the holes of the mesh gives fewer pieces and an inside.",
                 style="yellow",
             )
 
@@ -77,4 +79,4 @@ class DecompositionReport:
 
 
 def _duration(seconds: float) -> str:
-    return f"{seconds:.2f} s" if seconds >= 0.1 else f"{seconds * 1e3:.2g} ms"
+    return f"{seconds:.2f} s" if seconds >= 0.1 else f"{seconds * 1e3:.1f} ms"
