@@ -45,7 +45,6 @@ class RunStatistics:
         penetration_m: float,
         force_N: float,
         torque_Nm: float,
-        status: float,
     ) -> None:
         """Adds a tick.
 
@@ -58,7 +57,6 @@ class RunStatistics:
                 penetrates.
             force_N: Norm of the force shown, N.
             torque_Nm: Norm of the torque shown, N·m.
-            status: Of the `DisplayForceHold`.
         """
         if self._ticks == len(self._records) < _MAX_RECORDS:
             self._records = np.vstack([self._records, np.zeros_like(self._records)])
@@ -72,6 +70,9 @@ class RunStatistics:
         self._max_force_N = max(self._max_force_N, force_N)
         self._max_torque_Nm = max(self._max_torque_Nm, torque_Nm)
         self._max_penetration_m = max(self._max_penetration_m, penetration_m)
+
+    def add_status(self, status: float) -> None:
+        """Counts what the `DisplayForceHold` said of a tick."""
         self._limit_hits += int(status == LIMITED)
         self._non_finite_events += int(status == NOT_FINITE)
 

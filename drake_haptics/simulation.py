@@ -126,6 +126,7 @@ def _make_measure(
     clusters_port = loop.contact_clustering.get_clusters_output_port()
 
     def measure(context: Context, tick_s: float) -> None:
+        statistics.add_status(status.Eval(device_context)[0])
         for name, port, port_context in (
             ("the tool's pose", X_WTool, tool_context),
             ("the tool's velocity", V_WTool, tool_context),
@@ -149,7 +150,6 @@ def _make_measure(
             penetration_m=-min(contacts.distance.tolist(), default=0.0),
             force_N=math.hypot(*wrench[3:]),
             torque_Nm=math.hypot(*wrench[:3]),
-            status=float(status.Eval(device_context)[0]),
         )
 
     return measure

@@ -15,6 +15,8 @@ from drake_haptics.pose_vector import vector_to_pose
 from pydrake.math import RigidTransform, RollPitchYaw
 
 L1, L2 = 0.215, 0.170
+AT_REST = np.zeros(6)
+NO_WRENCH = np.zeros(6)
 K, B, KR, BR = 300.0, 5.0, 1.0, 0.02
 
 
@@ -33,7 +35,7 @@ def hand_on(plant, path, gains):
     return hand, hand.CreateDefaultContext()
 
 
-def set_arm(hand, context, q, v=np.zeros(6), F=np.zeros(6)):
+def set_arm(hand, context, q, v=AT_REST, F=NO_WRENCH):
     hand.get_arm_state_input_port().FixValue(context, np.concatenate([q, v]))
     hand.get_applied_wrench_input_port().FixValue(context, F)
 
@@ -120,7 +122,7 @@ def test_the_hand_pulls_to_its_path(plant):
 
 def test_the_hand_moves_with_time(plant):
     aim = handle_pose(Q)
-    up = RigidTransform(aim.rotation(), aim.translation() + [0, 0, 0.01])
+    up = RigidTransform(aim.rotation(), aim.translation() + np.array([0, 0, 0.01]))
     hand, context = hand_on(
         plant, HandPath([0.0, 1.0], [aim, up]), CouplingGains(K, B, KR, BR)
     )

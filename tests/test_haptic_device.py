@@ -36,6 +36,7 @@ class Slider(LeafSystem):
         output.SetFromVector([0, 0, 0, 0, 0, self._state(context)[1]])
 
     def DoCalcTimeDerivatives(self, context, derivatives):
+        """Overrides Drake's."""
         v = self._state(context)[1]
         f = self._F.Eval(context)[5]
         derivatives.get_mutable_vector().SetFromVector([v, (f - DAMPING * v) / MASS])

@@ -10,6 +10,7 @@ from pydrake.math import RigidTransform
 from test_contact_query import TOLERANCE, at_height, box_core, query_at
 
 K, B = 2e4, 5.0
+AT_REST = np.zeros(6)
 HEIGHT = 0.0195
 
 
@@ -35,7 +36,7 @@ def make_force(objects):
     return force, force.CreateDefaultContext()
 
 
-def fix(force, context, clusters, V_WTool=np.zeros(6)):
+def fix(force, context, clusters, V_WTool=AT_REST):
     force.get_clusters_input_port().FixValue(context, Value[object](clusters))
     force.get_tool_pose_input_port().FixValue(context, at_height(HEIGHT))
     force.get_tool_velocity_input_port().FixValue(context, V_WTool)

@@ -22,7 +22,6 @@ def add(statistics, **changes):
         "penetration_m": 0.0,
         "force_N": 1.0,
         "torque_Nm": 0.1,
-        "status": SHOWN_AS_ASKED,
     }
     statistics.add(**(tick | changes))
 
@@ -52,16 +51,18 @@ def test_times_are_described_in_microseconds():
 def test_counts_and_largest_values():
     statistics = RunStatistics(1e-3)
     add(statistics, contacts=0, clusters=0, penetration_m=-1e-3)
-    add(statistics, contacts=5, clusters=2, force_N=8.5, status=LIMITED)
+    add(statistics, contacts=5, clusters=2, force_N=8.5)
     add(statistics, contacts=7, clusters=2, torque_Nm=0.15, penetration_m=2e-4)
-    add(statistics, contacts=5, clusters=1, status=NOT_FINITE)
+    add(statistics, contacts=5, clusters=1)
+    for status in (SHOWN_AS_ASKED, LIMITED, LIMITED, NOT_FINITE):
+        statistics.add_status(status)
     figures = statistics.to_dict()
     assert figures["contacts"] == {"median": 5.0, "max": 7}
     assert figures["clusters"] == {"median": 1.5, "max": 2}
     assert figures["max_force_N"] == 8.5
     assert figures["max_torque_Nm"] == 0.15
     assert figures["max_penetration_m"] == 2e-4
-    assert (figures["limit_hits"], figures["non_finite_events"]) == (1, 1)
+    assert (figures["limit_hits"], figures["non_finite_events"]) == (2, 1)
 
 
 def test_memory_is_bounded_and_keeps_the_latest(monkeypatch):
@@ -81,5 +82,6 @@ def test_memory_is_bounded_and_keeps_the_latest(monkeypatch):
 
 def test_a_report_is_json():
     statistics = RunStatistics(1e-3)
-    add(statistics, status=np.float64(LIMITED), penetration_m=np.float64(1e-3))
+    add(statistics, penetration_m=np.float64(1e-3))
+    statistics.add_status(np.float64(LIMITED))
     assert json.loads(json.dumps(statistics.to_dict()))["ticks"] == 1

@@ -8,6 +8,7 @@ from drake_haptics.systems.virtual_coupling import VirtualCoupling
 from pydrake.math import RigidTransform, RollPitchYaw
 
 K, B, KR, BR = 800.0, 2.0, 1.5, 0.004
+AT_REST = np.zeros(6)
 X_HT = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [0.02, -0.01, 0.05])
 X_WH = RigidTransform(RollPitchYaw(-0.4, 0.5, 0.6), [0.1, 0.2, 0.3])
 
@@ -17,7 +18,7 @@ def coupling():
     return VirtualCoupling(CouplingGains(K, B, KR, BR), X_HT)
 
 
-def evaluate(coupling, X_WT, V_WH=np.zeros(6), V_WT=np.zeros(6)):
+def evaluate(coupling, X_WT, V_WH=AT_REST, V_WT=AT_REST):
     context = coupling.CreateDefaultContext()
     coupling.get_handle_pose_input_port().FixValue(context, pose_to_vector(X_WH))
     coupling.get_handle_velocity_input_port().FixValue(context, V_WH)

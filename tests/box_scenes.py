@@ -1,0 +1,61 @@
+"""Small scenes for tests: a cube or a ball above a plate, made on the spot."""
+
+from pathlib import Path
+
+import trimesh
+from drake_haptics.scene import (
+    EnvironmentObject,
+    Hand,
+    HandPath,
+    Scene,
+    Tool,
+    Waypoint,
+)
+
+TOOL_HALF_HEIGHT = 0.01
+TOOL_MASS = 0.1
+PLATE_TOP = 0.01
+
+
+def write(folder: Path, name: str, mesh: trimesh.Trimesh) -> str:
+    path = folder / f"{name}.obj"
+    mesh.export(path)
+    return str(path)
+
+
+def over_a_plate(
+    folder: Path, waypoints, *, tool="cube", periodic=False, grip="nominal"
+) -> Scene:
+    """Returns a scene of a tool, 2 cm high, over a plate whose top is at z = 1 cm.
+
+    Args:
+        folder: For the mesh files.
+        waypoints: (time s, x, y, z m) of the tool's middle, z from the plate's top.
+        tool: "cube" or "ball".
+        periodic: Of the hand's path.
+        grip: Of the hand.
+    """
+    tools = {
+        "cube": trimesh.creation.box([2 * TOOL_HALF_HEIGHT] * 3),
+        "ball": trimesh.creation.icosphere(subdivisions=2, radius=TOOL_HALF_HEIGHT),
+    }
+    plate = trimesh.creation.box([0.2, 0.2, 2 * PLATE_TOP])
+    return Scene(
+        tool=Tool(
+            mesh=write(folder, tool, tools[tool]),
+            mass_kg=TOOL_MASS,
+        ),
+        environment=[
+            EnvironmentObject(name="plate", mesh=write(folder, "plate", plate))
+        ],
+        hand=Hand(
+            grip=grip,
+            path=HandPath(
+                periodic=periodic,
+                waypoints=[
+                    Waypoint(time_s=t, position_m=[x, y, z + PLATE_TOP])
+                    for t, x, y, z in waypoints
+                ],
+            ),
+        ),
+    )

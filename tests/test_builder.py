@@ -1,0 +1,138 @@
+"""What the builder puts into a diagram, and how it is wired."""
+
+import numpy as np
+import pytest
+from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+from drake_haptics._core import RigidToolDynamics
+from drake_haptics.builder import AddHapticLoop, BuildHapticDiagram
+from drake_haptics.errors import MeshError
+from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.scene import Contact, Coupling, Pose, SceneError
+from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.hand_path import HandPath
+from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.systems.simulated_arm import SimulatedArm
+from drake_haptics.device_preset import load_device_preset
+from pydrake.geometry import Meshcat
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import DiagramBuilder
+
+START = (0.0, 0.0, 0.0, 0.05)
+SYSTEMS = {
+    "device",
+    "virtual_coupling",
+    "haptic_tool",
+    "contact_query",
+    "contact_clustering",
+    "penalty_force",
+}
+
+
+def names(diagram):
+    return {system.get_name() for system in diagram.GetSystems()}
+
+
+def test_a_scene_gets_the_systems_it_needs_and_no_more(tmp_path):
+    haptic = BuildHapticDiagram(over_a_plate(tmp_path, [START]))
+    assert names(haptic.diagram) == SYSTEMS
+    assert haptic.visualizer is None
+    assert haptic.period_s == 1e-3
+    assert names(haptic.loop.device) == {"display_force_hold", "simulated_arm"}
+
+
+def test_a_meshcat_adds_the_visualizer(tmp_path):
+    haptic = BuildHapticDiagram(over_a_plate(tmp_path, [START]), meshcat=Meshcat())
+    assert names(haptic.diagram) == SYSTEMS | {"haptic_visualizer"}
+
+
+def test_tool_and_handle_start_where_the_path_does(tmp_path):
+    scene = over_a_plate(tmp_path, [(0.0, 0.01, 0.02, 0.05)])
+    scene.tool.grasp = Pose([0.0, 0.0, -0.03], [0.0, 0.0, 20.0])
+    haptic = BuildHapticDiagram(scene)
+    root = haptic.diagram.CreateDefaultContext()
+    tool, device = haptic.loop.haptic_tool, haptic.loop.device
+    X_WT = vector_to_pose(
+        tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root))
+    )
+    np.testing.assert_allclose(X_WT.translation(), [0.01, 0.02, 0.06], atol=1e-15)
+    X_WH = vector_to_pose(
+        device.get_handle_pose_output_port().Eval(device.GetMyContextFromRoot(root))
+    )
+    assert (X_WH @ scene.tool.grasp.to_rigid_transform()).IsNearlyEqualTo(X_WT, 1e-8)
+    # There the coupling is at ease, so a run starts without a jolt.
+    coupling = haptic.loop.virtual_coupling
+    display = coupling.get_display_wrench_output_port().Eval(
+        coupling.GetMyContextFromRoot(root)
+    )
+    np.testing.assert_allclose(display, 0.0, atol=1e-5)
+
+
+def test_contact_reaches_the_tool_as_the_scene_says(tmp_path):
+    scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 1e-3)])
+    scene.contact = Contact(
+        tolerance_m=2e-3, cluster_size_m=0.1, stiffness_N_per_m=500.0
+    )
+    haptic = BuildHapticDiagram(scene)
+    root = haptic.diagram.CreateDefaultContext()
+    force = haptic.loop.penalty_force
+    F = force.get_tool_wrench_output_port().Eval(force.GetMyContextFromRoot(root))
+    np.testing.assert_allclose(F, [0, 0, 0, 0, 0, 500.0 * 1e-3], atol=1e-9)
+
+
+def test_progress_names_the_objects(tmp_path):
+    calls = []
+    BuildHapticDiagram(
+        over_a_plate(tmp_path, [START]), progress=lambda *call: calls.append(call)
+    )
+    assert {name for name, _ in calls} == {"tool", "plate"}
+    assert ("tool", 1.0) in calls
+
+
+def test_a_missing_mesh_is_named(tmp_path):
+    scene = over_a_plate(tmp_path, [START])
+    scene.environment[0].mesh = str(tmp_path / "nothing.obj")
+    with pytest.raises(MeshError, match=r"nothing\.obj"):
+        BuildHapticDiagram(scene)
+
+
+def test_an_unknown_preset_is_refused_before_any_mesh_is_read(tmp_path):
+    scene = over_a_plate(tmp_path, [START])
+    scene.tool.mesh = "nowhere.obj"
+    scene.device.preset = "omega"
+    with pytest.raises(SceneError, match="omega"):
+        BuildHapticDiagram(scene)
+
+
+def test_the_loop_can_be_put_into_a_diagram_of_ones_own(tmp_path):
+    core = BuildHapticDiagram(over_a_plate(tmp_path, [START])).tool.core
+    preset = load_device_preset("phantom_premium_1_5_6dof")
+    arm = SimulatedArm(
+        preset.model_path,
+        preset.handle_link,
+        RigidTransform(),
+        HandPath([0.0], [RigidTransform(preset.workspace_center_m)]),
+        RigidTransform(),
+        None,
+    )
+    arm.set_name("arm")
+    builder = DiagramBuilder()
+    loop = AddHapticLoop(
+        builder,
+        device=HapticDevice(arm, period_s=1e-3, max_force_N=1.0, max_torque_Nm=0.1),
+        tool=core,
+        tool_dynamics=RigidToolDynamics(0.1, np.zeros(3), 1e-5 * np.eye(3)),
+        objects=[ContactObject("cart", core)],
+        contact=Contact(),
+        coupling=Coupling(),
+        X_HT=RigidTransform(),
+        X_WT=RigidTransform(preset.workspace_center_m),
+        period_s=1e-3,
+    )
+    # An object that moves is the caller's to connect.
+    builder.ExportInput(loop.contact_query.get_object_pose_input_port("cart"), "X_WO")
+    builder.ExportInput(
+        loop.penalty_force.get_object_velocity_input_port("cart"), "V_WO"
+    )
+    diagram = builder.Build()
+    assert names(diagram) == SYSTEMS
+    assert diagram.num_input_ports() == 2

@@ -1,0 +1,58 @@
+"""Centre of mass and inertia of meshes whose values are known."""
+
+import numpy as np
+import pytest
+import trimesh
+from drake_haptics.mass_properties import calc_mass_properties
+from drake_haptics.mesh import Mesh
+
+MASS = 0.3
+
+
+def intake(mesh):
+    return Mesh.from_arrays(mesh.vertices, mesh.faces)
+
+
+def test_a_box():
+    a, b, c = 0.1, 0.2, 0.3
+    box = trimesh.creation.box([a, b, c])
+    box.apply_translation([1.0, -2.0, 3.0])
+    center, inertia = calc_mass_properties(intake(box), MASS)
+    np.testing.assert_allclose(center, [1.0, -2.0, 3.0])
+    expected = MASS / 12 * np.diag([b * b + c * c, a * a + c * c, a * a + b * b])
+    np.testing.assert_allclose(inertia, expected, atol=1e-12)
+
+
+def test_a_turned_shape_agrees_with_trimesh():
+    cone = trimesh.creation.cone(0.02, 0.1, sections=24)
+    cone.apply_transform(trimesh.transformations.euler_matrix(0.3, 0.5, 0.7))
+    cone.density = MASS / cone.volume
+    center, inertia = calc_mass_properties(intake(cone), MASS)
+    np.testing.assert_allclose(center, cone.center_mass, atol=1e-12)
+    np.testing.assert_allclose(inertia, cone.moment_inertia, atol=1e-12)
+
+
+def test_a_hollow_is_hollow():
+    outer = trimesh.creation.icosphere(subdivisions=3, radius=0.1)
+    inner = trimesh.creation.icosphere(subdivisions=3, radius=0.09)
+    inner.invert()
+    shell = trimesh.util.concatenate([outer, inner])
+    _, inertia = calc_mass_properties(intake(shell), MASS)
+    thick = 2 / 5 * MASS * (0.1**5 - 0.09**5) / (0.1**3 - 0.09**3)
+    np.testing.assert_allclose(inertia, thick * np.eye(3), rtol=0.02, atol=1e-9)
+
+
+def test_an_open_surface_is_a_shell():
+    x = np.array([[0, 0, 0], [0.2, 0, 0], [0.2, 0.1, 0], [0, 0.1, 0]])
+    plate = Mesh.from_arrays(x, np.array([[0, 1, 2], [0, 2, 3]]))
+    center, inertia = calc_mass_properties(plate, MASS)
+    np.testing.assert_allclose(center, [0.1, 0.05, 0.0], atol=1e-15)
+    expected = MASS / 12 * np.diag([0.1**2, 0.2**2, 0.1**2 + 0.2**2])
+    np.testing.assert_allclose(inertia, expected, atol=1e-15)
+    assert np.linalg.eigvalsh(inertia).min() > 0
+
+
+def test_mass_scales_inertia():
+    box = intake(trimesh.creation.box([0.1, 0.1, 0.1]))
+    one, two = (calc_mass_properties(box, m)[1] for m in (MASS, 2 * MASS))
+    assert two[0, 0] == pytest.approx(2 * one[0, 0])

@@ -1,0 +1,116 @@
+"""Runs: what they measure, how they end."""
+
+import gc
+import time
+
+import numpy as np
+import pytest
+from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics import simulation
+from drake_haptics.simulation import make_simulator, run
+
+ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
+# 1 cm into the plate, through a hand of 300 N/m.
+PRESSING = (0.2, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.01)
+
+
+@pytest.fixture(scope="module")
+def haptic(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("scene")
+    return BuildHapticDiagram(over_a_plate(folder, [ABOVE, PRESSING]))
+
+
+def test_a_run_measures_every_tick(haptic):
+    times = []
+    figures = run(
+        haptic, 0.5, on_tick=lambda context: times.append(context.get_time())
+    ).to_dict()
+    assert figures["ticks"] == 500
+    np.testing.assert_allclose(times, np.arange(1, 501) * 1e-3, atol=1e-12)
+    assert figures["duration_s"] == pytest.approx(0.5)
+    assert 0.0 < figures["contact_query_us"]["median"] < figures["tick_us"]["median"]
+    assert figures["contacts"]["max"] >= 1
+    assert figures["clusters"]["max"] >= 1
+    assert 1.0 < figures["max_force_N"] < 8.5
+    assert (figures["limit_hits"], figures["non_finite_events"]) == (0, 0)
+
+
+def test_a_run_starts_anew_each_time(haptic):
+    first, second = (run(haptic, 0.3).to_dict() for _ in range(2))
+    for key in ("max_force_N", "max_torque_Nm", "max_penetration_m", "contacts"):
+        assert first[key] == second[key]
+
+
+def test_garbage_is_thawed_after_a_run(haptic):
+    before = gc.get_freeze_count()
+    run(haptic, 0.01)
+    assert gc.get_freeze_count() == before
+
+
+def test_ctrl_c_ends_a_run_without_an_error(haptic):
+    def interrupt(context):
+        if context.get_time() > 0.0495:
+            raise KeyboardInterrupt
+
+    assert run(haptic, None, on_tick=interrupt).ticks == 50
+
+
+def test_other_errors_come_out(haptic):
+    def fail(context):
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        run(haptic, 0.01, on_tick=fail)
+
+
+def test_in_real_time_a_run_is_not_faster_than_the_clock(haptic):
+    start = time.perf_counter()
+    figures = run(haptic, 0.2, realtime=True).to_dict()
+    assert time.perf_counter() - start >= 0.199
+    # Waiting is not counted: most ticks are much shorter than their millisecond
+    # even on a busy computer.
+    assert figures["tick_us"]["median"] < 990.0
+
+
+def test_a_value_that_is_not_finite_stops_the_run(haptic, monkeypatch):
+    def make_broken_simulator(haptic):
+        simulator = make_simulator(haptic)
+        tool = haptic.loop.haptic_tool
+        context = tool.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+        context.get_mutable_discrete_state_vector().SetAtIndex(9, np.nan)
+        return simulator
+
+    monkeypatch.setattr(simulation, "make_simulator", make_broken_simulator)
+    with pytest.raises(
+        simulation.RunError, match=r"stopped at 0.0010 s: the tool's pose is not finite"
+    ) as caught:
+        run(haptic, 1.0)
+    figures = caught.value.statistics.to_dict()
+    assert figures["non_finite_events"] == 1
+    # The device was shown nothing.
+    assert figures["max_force_N"] == 0.0
+
+
+def test_no_coupling_is_too_stiff_for_the_limits_of_the_device(tmp_path):
+    scene = over_a_plate(tmp_path, [ABOVE, PRESSING])
+    scene.coupling.stiffness_N_per_m = 1e308
+    figures = run(BuildHapticDiagram(scene), 0.5).to_dict()
+    assert figures["limit_hits"] > 0
+    assert figures["max_force_N"] <= 8.5 * (1 + 1e-12)
+
+
+def test_the_step_is_fine_enough_for_the_arm(haptic):
+    # A four times smaller step changes the handle's motion, at 0.15 m/s, by less
+    # than the resolution of such devices, 30 µm.
+    port = haptic.loop.device.get_handle_pose_output_port()
+    ends = []
+    for share in (1.0, 0.25):
+        simulator = make_simulator(haptic)
+        simulator.get_mutable_integrator().set_maximum_step_size(
+            share * haptic.period_s
+        )
+        simulator.AdvanceTo(0.15)
+        context = haptic.loop.device.GetMyContextFromRoot(simulator.get_context())
+        ends.append(port.Eval(context)[4:])
+    assert np.linalg.norm(ends[0] - ends[1]) < 1e-5
