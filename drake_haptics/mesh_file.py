@@ -47,7 +47,12 @@ def read_mesh_file(path: str | os.PathLike[str]) -> RawMesh:
         raise MeshError(f"{path}: no such file")
     if path.is_dir():
         raise MeshError(f"{path}: is a folder; name a mesh file inside it")
-    if path.stat().st_size == 0:
+    try:
+        with open(path, "rb") as stream:
+            is_empty = not stream.read(1)
+    except OSError as error:
+        raise MeshError(f"{path}: cannot be opened: {error.strerror}") from error
+    if is_empty:
         raise MeshError(f"{path}: is empty (0 bytes): export it again")
     if path.suffix.lower() == ".npz":
         return _read_npz(path)

@@ -171,6 +171,14 @@ def test_a_damaged_file_is_refused_wherever_the_damage_is(tmp_path):
         np.testing.assert_array_equal(loaded.mesh.vertices, box()[0])
 
 
+def test_a_save_that_fails_names_the_file_and_leaves_nothing(tmp_path):
+    result = decompose(Mesh.from_arrays(*box()), cache=False)
+    (tmp_path / "it.npz").mkdir()
+    with pytest.raises(OSError, match=r"it\.npz'$"):
+        result.save(tmp_path / "it.npz")
+    assert [path.name for path in tmp_path.iterdir()] == ["it.npz"]
+
+
 def test_foreign_files_are_refused(tmp_path):
     path = tmp_path / "it.npz"
     np.savez(path, V=box()[0], F=box()[1])

@@ -7,6 +7,8 @@ start at once and never import Drake.
 from __future__ import annotations
 
 import importlib
+import io
+import sys
 from collections.abc import Mapping
 from typing import Any
 
@@ -88,3 +90,6 @@ class LazyGroup(click.Group):
 @click.version_option(package_name="drake_haptics", prog_name="drake-haptics")
 def main() -> None:
     """Feel arbitrary triangle meshes with a 6-degree-of-freedom haptic device."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # m² is no reason to fail in ASCII

@@ -75,6 +75,14 @@ def test_errors_of_the_user_are_one_message(l_file, tmp_path):
     nowhere = tmp_path / "absent" / "out.json"
     failed = run("check", l_file, "--json", nowhere)
     assert fails_with_one_message(failed, 1, "out.json", "No such file")
+    failed = run("decompose", l_file, "--no-cache", "-o", nowhere)
+    assert fails_with_one_message(failed, 1, f"{nowhere}: No such file")
+
+
+def test_a_terminal_without_unicode_is_served(l_file, monkeypatch):
+    monkeypatch.setenv("PYTHONIOENCODING", "ascii")
+    result = run("check", l_file, "--unit", "mm")
+    assert result.returncode == 0 and "0.14 m?" in result.stdout
 
 
 def test_strict_fails_after_the_report(tmp_path):
