@@ -234,7 +234,8 @@ def BuildHapticDiagram(
     visualizer = None
     if meshcat is not None:
         visualizer = builder.AddNamedSystem(
-            "haptic_visualizer", HapticVisualizer(meshcat, tool.core, objects, X_HT)
+            "haptic_visualizer",
+            HapticVisualizer(meshcat, tool.core, objects, X_HT, period_s),
         )
         _connect_visualizer(builder, loop, visualizer)
     return HapticDiagram(

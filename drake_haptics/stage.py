@@ -18,10 +18,6 @@ from drake_haptics.scene import Pose
 _VIEW = np.array([0.48, -0.74, 0.47])
 # Half the angle of Meshcat's camera, less a margin.
 _HALF_VIEW_RAD = np.deg2rad(33.0)
-_CAMERA = "/Cameras/default/rotated/<object>"
-# The camera stands back and zooms in: nearer to how a hand is seen than the wide
-# angle from close by.
-_ZOOM = 2.0
 
 
 def open_meshcat(port: int | None = None) -> Meshcat:
@@ -61,9 +57,8 @@ def set_stage(meshcat: Meshcat, haptic: HapticDiagram) -> None:
     low, high = _framed_box(haptic)
     middle = (low + high) / 2
     radius = float(np.linalg.norm(high - low)) / 2
-    distance = _ZOOM * radius / np.sin(_HALF_VIEW_RAD)
+    distance = radius / np.sin(_HALF_VIEW_RAD)
     meshcat.SetCameraPose(middle + distance * _VIEW / np.linalg.norm(_VIEW), middle)
-    meshcat.SetProperty(_CAMERA, "zoom", _ZOOM)
 
 
 def _framed_box(haptic: HapticDiagram) -> tuple[np.ndarray, np.ndarray]:

@@ -52,7 +52,7 @@ class ArrowPool:
     def draw(
         self,
         keys: Sequence[Hashable],
-        p_W: np.ndarray,
+        p_WTip: np.ndarray,
         vectors_W: np.ndarray,
         colors: Sequence[int] | np.ndarray,
         time_s: float,
@@ -61,7 +61,7 @@ class ArrowPool:
 
         Args:
             keys: (n,) what each arrow stands for, each once.
-            p_W: (n, 3) tails, m.
+            p_WTip: (n, 3) tips, m.
             vectors_W: (n, 3) from tail to tip, m, none of them zero.
             colors: (n,) indices into the pool's colours.
             time_s: Time in the recording, s.
@@ -69,10 +69,12 @@ class ArrowPool:
         keys = keys[: len(self._slots)]
         self._assign_slots(keys)
         visible: list[int | None] = [None] * len(self._slots)
-        for key, p, vector, color in zip(keys, p_W, vectors_W, colors, strict=False):
+        for key, p, vector, color in zip(keys, p_WTip, vectors_W, colors, strict=False):
             i = self._slot_of_key[key]
             visible[i] = int(color)
-            X_WArrow = RigidTransform(RotationMatrix.MakeFromOneVector(vector, 2), p)
+            X_WArrow = RigidTransform(
+                RotationMatrix.MakeFromOneVector(vector, 2), p - vector
+            )
             self._meshcat.SetTransform(self._slots[i], X_WArrow, time_s)
             scale = [float(np.linalg.norm(vector))] * 3
             self._meshcat.SetProperty(self._slots[i], "scale", scale, time_s)

@@ -111,11 +111,15 @@ class HapticPicture:
     def draw_display_force(
         self, p_WH: np.ndarray, f_H_W: np.ndarray, time_s: float
     ) -> None:
-        """Draws the force (3,) N that the hand feels, at the handle (3,) m."""
+        """Draws the force (3,) N that the hand feels, pushing at the handle (3,) m."""
         self._draw_forces(self._force, ["force"], p_WH[None], f_H_W[None], [0], time_s)
 
     def draw_contacts(self, contacts: ContactSet, time_s: float) -> None:
-        """Draws a small arrow along each contact's normal, the deepest if too many."""
+        """Draws a small arrow for each contact, the deepest ones if there are too many.
+
+        It points along the normal and ends at the contact's point: there it comes out
+        of the object, which is seen through, and not out of the tool, which is not.
+        """
         distance = contacts.distance
         order = np.argsort(distance)[:_MAX_CONTACTS]
         keys = list(
@@ -136,13 +140,13 @@ class HapticPicture:
         )
 
     def draw_clusters(
-        self, clusters: ClusterSet, f_Cluster_W: np.ndarray, time_s: float
+        self, clusters: ClusterSet, f_cluster_W: np.ndarray, time_s: float
     ) -> None:
-        """Draws the force (k, 3) N of each cluster, at its point."""
+        """Draws the force (k, 3) N of each cluster, pushing at its point."""
         keys = list(range(len(clusters)))
         penetrating = clusters.distance < 0
         self._draw_forces(
-            self._clusters, keys, clusters.p_WC, f_Cluster_W, penetrating, time_s
+            self._clusters, keys, clusters.p_WC, f_cluster_W, penetrating, time_s
         )
 
     def write_visibility(self, time_s: float) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 
@@ -15,8 +16,7 @@ from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.haptic_picture import HapticPicture
 
-# An exact binary fraction, so that frames stay on the grid for ever.
-_PERIOD_S = 1 / 32
+_LONGEST_PERIOD_S = 1 / 30
 # Drawing takes at most this share of clock time; the rest is the loop's.
 _LARGEST_SHARE = 0.05
 # A run faster than real time shows no more frames per second of clock time.
@@ -29,8 +29,8 @@ class HapticVisualizer(LeafSystem):
     * The tool, and as a ghost where the handle wants it: X_WH X_HT.
     * The coupling: a line from the handle to the place in the tool that it holds,
       and an arrow of the force on the hand.
-    * Each contact: a small arrow from its point along the normal, which points from
-      the object into the tool; green near, red penetrating.
+    * Each contact: a small arrow along the normal, from the object into the tool,
+      its tip at the contact's point; green near, red penetrating.
     * Each cluster: a larger arrow, as long as its force is large.
 
     .. pydrake_system::
@@ -49,9 +49,10 @@ class HapticVisualizer(LeafSystem):
     at Ho in the world, N·m and N. `contacts`, `clusters` and `contact_wrench` are the
     outputs of `ContactQuery`, `ContactClustering` and `PenaltyForce`.
 
-    It draws 32 times per simulated second while a browser is connected. Drawing takes
-    at most one twentieth of clock time: after a frame that was slow to draw, the next
-    ones are left out. A recording is complete, whatever time that takes.
+    It draws about 32 times per simulated second, at ticks of the loop, while a browser
+    is connected. Drawing takes at most one twentieth of clock time: after a frame that
+    was slow to draw, the next ones are left out. A recording is complete, whatever time
+    that takes.
     """
 
     def __init__(
@@ -60,6 +61,7 @@ class HapticVisualizer(LeafSystem):
         tool: Decomposition,
         objects: Sequence[ContactObject],
         X_HT: RigidTransform,
+        tick_s: float,
     ):
         """Constructs the system and sends the geometry.
 
@@ -68,8 +70,13 @@ class HapticVisualizer(LeafSystem):
             tool: The tool, in its frame T.
             objects: Those of the `ContactQuery`.
             X_HT: Pose of the tool in the handle at rest.
+            tick_s: Period of the loop, s.
         """
         super().__init__()
+        # A power of two of ticks is exact: a frame is never a round-off away from a
+        # tick, where it would cost the integrator a step of its own.
+        ticks = 2.0 ** math.floor(math.log2(max(_LONGEST_PERIOD_S / tick_s, 1.0)))
+        self._period_s = ticks * tick_s
         self._meshcat = meshcat
         self._picture = HapticPicture(meshcat, tool, objects, X_HT)
         self._recording = False
@@ -88,7 +95,7 @@ class HapticVisualizer(LeafSystem):
             for item in objects
             if item.X_WO is None
         }
-        self.DeclarePeriodicPublishEvent(_PERIOD_S, 0.0, self._publish)
+        self.DeclarePeriodicPublishEvent(self._period_s, 0.0, self._publish)
         self.DeclareForcedPublishEvent(self._publish)
 
     def get_handle_pose_input_port(self) -> InputPort:
@@ -125,7 +132,7 @@ class HapticVisualizer(LeafSystem):
 
     def StartRecording(self) -> None:
         """Records every frame from now on into Meshcat's animation."""
-        self._meshcat.StartRecording(frames_per_second=1 / _PERIOD_S)
+        self._meshcat.StartRecording(frames_per_second=1 / self._period_s)
         self._recording = True
         self._first_frame = True
 
@@ -166,6 +173,6 @@ class HapticVisualizer(LeafSystem):
         f_H_W = self._F_display.Eval(context)[3:]
         picture.draw_display_force(X_WH.translation(), f_H_W, time_s)
         picture.draw_contacts(self._contacts.Eval(context), time_s)
-        f_Cluster_W = self._contact_wrench.Eval(context).f_Cluster_W
-        picture.draw_clusters(self._clusters.Eval(context), f_Cluster_W, time_s)
+        f_cluster_W = self._contact_wrench.Eval(context).f_cluster_W
+        picture.draw_clusters(self._clusters.Eval(context), f_cluster_W, time_s)
         self._meshcat.SetSimulationTime(time_s)

@@ -9,6 +9,7 @@ import pytest
 from pydrake.common.value import Value
 from pydrake.geometry import Rgba
 from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.systems.analysis import Simulator
 
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems import haptic_visualizer
@@ -48,7 +49,7 @@ class FakeMeshcat:
             self.frames.append((time, path, name, value))
 
     def StartRecording(self, frames_per_second):
-        assert frames_per_second == 32
+        self.frames_per_second = frames_per_second
         self.recording = True
 
     def StopRecording(self):
@@ -102,7 +103,7 @@ X_WH = RigidTransform(RollPitchYaw(-0.5, 0.0, 0.7), [0.1, 0.0, 0.2])
 
 
 def make_visualizer(meshcat, objects=()):
-    return HapticVisualizer(meshcat, make_mesh(), objects, X_HT)
+    return HapticVisualizer(meshcat, make_mesh(), objects, X_HT, tick_s=1 / 1024)
 
 
 def make_context(
@@ -117,7 +118,7 @@ def make_context(
         "clusters": Value(make_contacts(contacts)),
         "contact_wrench": Value(
             Frozen(
-                f_Cluster_W=np.array(
+                f_cluster_W=np.array(
                     forces if forces is not None else [(0, 0, 1.0)] * len(contacts)
                 ).reshape(-1, 3)
             )
@@ -176,6 +177,12 @@ def test_the_line_joins_the_handle_and_the_point_of_the_tool_that_it_holds():
     )
 
 
+def assert_tip_is_at(meshcat, path, p_W):
+    """Checks where an arrow of length 1 along z, scaled and placed, ends."""
+    tip = [0, 0, meshcat.properties[path, "scale"][2]]
+    np.testing.assert_allclose(meshcat.transforms[path] @ tip, p_W, atol=1e-12)
+
+
 def test_contacts_are_green_near_and_red_penetrating():
     meshcat = FakeMeshcat()
     visualizer = make_visualizer(meshcat)
@@ -185,8 +192,7 @@ def test_contacts_are_green_near_and_red_penetrating():
         "/haptics/contacts/0/1",
         "/haptics/contacts/1/0",
     ]
-    tail = meshcat.transforms["/haptics/contacts/0"].translation()
-    np.testing.assert_allclose(tail, [3, 4, 5])
+    assert_tip_is_at(meshcat, "/haptics/contacts/0", [3, 4, 5])
 
 
 def test_contact_arrows_point_along_the_normal():
@@ -238,7 +244,7 @@ def test_the_force_on_the_hand_is_drawn_at_the_handle():
     visualizer = make_visualizer(meshcat)
     visualizer.ForcedPublish(make_context(visualizer, f_H_W=(0, -3.0, 0)))
     X_WArrow = meshcat.transforms["/haptics/force/0"]
-    np.testing.assert_allclose(X_WArrow.translation(), X_WH.translation())
+    assert_tip_is_at(meshcat, "/haptics/force/0", X_WH.translation())
     np.testing.assert_allclose(
         X_WArrow.rotation().matrix()[:, 2], [0, -1, 0], atol=1e-9
     )
@@ -325,7 +331,7 @@ def test_an_arrow_stays_in_its_slot_while_others_come_and_go():
     up = np.array([[0, 0, 1.0]] * 3)
 
     def draw(keys):
-        p_W = np.array([[ord(key), 0, 0] for key in keys], dtype=float)
+        p_W = np.array([[ord(key), 0, 1] for key in keys], dtype=float)
         pool.draw(keys, p_W, up[: len(keys)], [0] * len(keys), 0.0)
         return {
             chr(int(meshcat.transforms[path[:-2]].translation()[0])): path
@@ -361,3 +367,16 @@ def test_no_context_is_kept():
     assert not any(
         type(value).__name__ == "LeafContext" for value in vars(visualizer).values()
     )
+
+
+@pytest.mark.parametrize("tick_s", [1e-3, 1 / 1024, 2.5e-4, 3e-3, 0.1])
+def test_frames_fall_on_ticks_to_the_last_bit(tick_s):
+    meshcat = FakeMeshcat()
+    visualizer = HapticVisualizer(meshcat, make_mesh(), [], X_HT, tick_s)
+    visualizer.StartRecording()
+    Simulator(visualizer, make_context(visualizer)).AdvanceTo(3.0)
+    times = [time for time, path, *_ in meshcat.frames if path == "/haptics/tool"]
+    assert len(times) >= 3.0 / max(1 / 15, tick_s)
+    assert np.all(np.diff(times) > 0.9 * max(1 / 64, tick_s))
+    for time in times:
+        assert time == round(time / tick_s) * tick_s

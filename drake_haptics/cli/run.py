@@ -12,6 +12,7 @@ from rich.progress import Progress, TaskID
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.cli.mesh_options import write_json
 from drake_haptics.cli.status_line import StatusLine, make_summary
+from drake_haptics.errors import UserError
 from drake_haptics.recording import write_recording
 from drake_haptics.scene import Scene, load_scene
 from drake_haptics.scene_library import find_scene
@@ -86,9 +87,8 @@ def run(
     if headless and (pieces or port) and not record:
         raise click.UsageError("--headless has no page for --pieces and --port")
     chosen = _choose_scene(scene, tool, environment, tool_scale, environment_scale)
-    if record is not None:
-        # Fail now rather than after the run.
-        record.touch()
+    if record is not None and not record.absolute().parent.is_dir():
+        raise UserError(f"--record: there is no folder {record.parent}")
     console = Console(highlight=False, stderr=json_file == "-")
     meshcat = None if headless and record is None else open_meshcat(port)
     haptic = _build(console, chosen, meshcat)
