@@ -16,8 +16,9 @@ from drake_haptics.scene import Pose
 
 # From where the camera looks: from the right front, above.
 _VIEW = np.array([0.48, -0.74, 0.47])
-# Half the angle of Meshcat's camera, less a margin.
-_HALF_VIEW_RAD = np.deg2rad(33.0)
+# More than half the angle of Meshcat's camera, since objects do not fill the sphere
+# around them.
+_HALF_VIEW_RAD = np.deg2rad(46.0)
 
 
 def open_meshcat(port: int | None = None) -> Meshcat:

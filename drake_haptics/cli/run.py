@@ -161,7 +161,8 @@ def _choose_scene(
 
 def _build(console: Console, scene: Scene, meshcat: Meshcat | None) -> HapticDiagram:
     """Builds the diagram, with a bar while meshes are cut into pieces."""
-    with Progress(console=console, transient=True) as bars:
+    quiet = not console.is_terminal
+    with Progress(console=console, transient=True, disable=quiet) as bars:
         tasks: dict[str, TaskID] = {}
 
         def report(name: str, share: float) -> None:

@@ -1,0 +1,212 @@
+"""`drake-haptics run` and `scenes` from end to end."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from drake_haptics.cli import main
+from drake_haptics.scene_library import list_scenes
+from drake_haptics.shapes import SHAPES
+
+# The installed command, beside the interpreter.
+COMMAND = Path(sys.executable).with_name("drake-haptics")
+SCENES = ["cup_spoon", "hammer_block", "sphere_pen", "torus_peg"]
+
+
+def invoke(*arguments):
+    """Runs the command line in this process."""
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def stats(request, tmp_path_factory):
+    """The figures of a whole cycle of a shipped scene."""
+    file = tmp_path_factory.mktemp(request.param) / "s.json"
+    result = invoke("run", request.param, "--headless", "--duration", 5, "--json", file)
+    assert result.exit_code == 0, result.output
+    return json.loads(file.read_text())
+
+
+def test_a_run_has_all_its_figures(stats):
+    assert stats["ticks"] == 5000
+    for key in ("tick_us", "contact_query_us"):
+        times = stats[key]
+        assert 0 < times["median"] <= times["p99"] <= times["p99_9"]
+    assert stats["contact_query_us"]["median"] < stats["tick_us"]["median"]
+    assert stats["clusters"]["max"] <= stats["contacts"]["max"]
+
+
+def test_every_scene_presses_and_stays_within_the_device(stats):
+    assert stats["contacts"]["max"] >= 1
+    assert 0.5 < stats["max_force_N"] < 8.5
+    assert 0.0 < stats["max_torque_Nm"] < 0.188
+    assert stats["limit_hits"] == 0
+    assert stats["non_finite_events"] == 0
+
+
+def test_every_scene_penetrates_only_lightly(stats):
+    assert 0.0 < stats["max_penetration_m"] < 1e-3
+
+
+def test_scenes_lists_every_scene_with_its_description():
+    result = invoke("scenes")
+    assert result.exit_code == 0
+    assert sorted(list_scenes()) == SCENES
+    for name in SCENES:
+        assert name in result.output
+    assert "scrapes" in result.output
+
+
+def test_ones_own_meshes(tmp_path):
+    for name in ("pen", "torus"):
+        surface = SHAPES[name]()
+        surface.write_obj(tmp_path / f"{name}.obj", name)
+    result = invoke(
+        "run", "--tool", tmp_path / "pen.obj", "--environment", tmp_path / "torus.obj",
+        "--headless", "--duration", 3, "--json", tmp_path / "s.json",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    stats = json.loads((tmp_path / "s.json").read_text())
+    assert stats["contacts"]["max"] >= 1
+    assert stats["non_finite_events"] == 0
+
+
+def test_scale_is_applied(tmp_path):
+    # The same run in millimetres.
+    largest = []
+    for factor, options in [
+        (1, []),
+        (1000, ["--tool-scale", 1e-3, "--environment-scale", 1e-3]),
+    ]:
+        for name in ("pen", "sphere"):
+            surface = SHAPES[name]()
+            scaled = type(surface)(factor * surface.vertices, surface.triangles)
+            scaled.write_obj(tmp_path / f"{name}.obj", name)
+        result = invoke(
+            "run", "--tool", tmp_path / "pen.obj", "--environment",
+            tmp_path / "sphere.obj", "--headless", "--duration", 2.5, "--json",
+            tmp_path / "s.json", *options,
+        )  # fmt: skip
+        assert result.exit_code == 0, result.output
+        largest.append(json.loads((tmp_path / "s.json").read_text())["max_force_N"])
+    assert largest[0] > 0.1
+    assert largest[1] == pytest.approx(largest[0], rel=1e-3)
+
+
+def test_json_to_stdout_is_alone():
+    process = subprocess.run(
+        [COMMAND, "run", "sphere_pen", "--headless",
+         "--duration", "0.1", "--json", "-"],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert process.returncode == 0, process.stderr
+    assert json.loads(process.stdout)["ticks"] == 100
+
+
+def test_ctrl_c_ends_a_run_with_its_figures(tmp_path):
+    file = tmp_path / "s.json"
+    process = subprocess.Popen(
+        [COMMAND, "run", "cup_spoon", "--json", file],
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )  # fmt: skip
+    first = process.stdout.readline()
+    time.sleep(2.0)
+    process.send_signal(signal.SIGINT)
+    rest, _ = process.communicate(timeout=60)
+    assert process.returncode == 0, rest
+    assert "http://localhost:" in first
+    assert "INFO" not in first + rest and "Traceback" not in rest
+    assert json.loads(file.read_text())["ticks"] > 100
+
+
+def test_a_recording_is_one_file_and_does_not_name_a_server(tmp_path):
+    file = tmp_path / "out.html"
+    result = invoke(
+        "run", "sphere_pen", "--headless", "--duration", 0.3, "--record", file
+    )
+    assert result.exit_code == 0, result.output
+    page = file.read_text()
+    assert "penetrating" in page
+    assert 'src="http' not in page and "<script src=" not in page
+
+
+def test_pieces_are_coloured_in_a_recording(tmp_path):
+    sizes = []
+    for option in ([], ["--pieces"]):
+        file = tmp_path / "out.html"
+        result = invoke(
+            "run",
+            "sphere_pen",
+            "--headless",
+            "--duration",
+            0.1,
+            "--record",
+            file,
+            *option,
+        )
+        assert result.exit_code == 0, result.output
+        sizes.append(len(file.read_text()))
+    assert sizes[1] > sizes[0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["run", "cup_spon"], 1, ["cup_spon", "cup_spoon"]),
+        (["run"], 2, ["SCENE"]),
+        (["run", "--tool", "a.obj"], 2, ["--environment"]),
+        (["run", "cup_spoon", "--tool", "a.obj"], 2, ["either"]),
+        (["run", "--tool", "no.obj", "--environment", "no.obj"], 1, ["no.obj"]),
+        (["run", "cup_spoon", "--duration", "-1"], 2, ["duration"]),
+        (["run", "cup_spoon", "--headless", "--port", "7001"], 2, ["--port"]),
+        (["run", "cup_spoon", "--headless", "--record", "no/x.html"], 1, ["folder no"]),
+    ],
+)  # fmt: skip
+def test_errors_are_for_people(arguments, code, words):
+    result = invoke(*arguments)
+    assert result.exit_code == code, result.output
+    for word in words:
+        assert word in result.output
+    assert "Traceback" not in result.output
+
+
+def test_a_typo_in_a_scene_file_names_the_key(tmp_path):
+    file = tmp_path / "typo.yaml"
+    text = list_scenes()["sphere_pen"].read_text()
+    file.write_text(text.replace("mass_kg", "mass_gk"))
+    result = invoke("run", file, "--headless")
+    assert result.exit_code == 1
+    assert "mass_gk" in result.output and "mass_kg" in result.output
+
+
+def test_a_mesh_with_nan_is_refused(tmp_path):
+    surface = SHAPES["pen"]()
+    surface.vertices[3] = np.nan
+    surface.write_obj(tmp_path / "nan.obj", "nan")
+    result = invoke(
+        "run", "--tool", tmp_path / "nan.obj", "--environment", tmp_path / "nan.obj",
+        "--headless",
+    )  # fmt: skip
+    assert result.exit_code == 1
+    assert "nan.obj" in result.output
+    assert "finite" in result.output.lower() or "nan" in result.output.lower()
+
+
+def test_a_port_in_use_is_named():
+    with socket.socket() as taken:
+        taken.bind(("localhost", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        result = invoke("run", "cup_spoon", "--duration", 0.1, "--port", port)
+    assert result.exit_code == 1
+    assert str(port) in result.output
