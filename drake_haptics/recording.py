@@ -13,8 +13,8 @@ _LEGEND = (
     (colors.TOOL, "tool"),
     (colors.HANDLE_GHOST, "where the handle wants it"),
     (colors.COUPLING_LINE, "coupling, force on the hand"),
-    (colors.NEAR_CONTACT, "near: contact (small), force of a cluster (large)"),
-    (colors.PENETRATING_CONTACT, "penetrating: the same"),
+    (colors.NEAR_CONTACT, "near contact"),
+    (colors.PENETRATING_CONTACT, "penetrating contact"),
 )
 
 
@@ -37,9 +37,10 @@ def write_recording(meshcat: Meshcat, path: Path, title: str) -> None:
     )
     legend = (
         '<div id="legend" style="position:fixed;left:1.2em;bottom:1.2em;'
-        "max-width:17em;padding:0.7em 1em;font:12px/1.55 sans-serif;color:#333;"
+        "max-width:19em;padding:0.7em 1em;font:12px/1.55 sans-serif;color:#333;"
         'background:rgba(255,255,255,0.75);border-radius:0.5em">'
-        f"<b>{html.escape(title)}</b>{rows}</div>"
+        f"<b>{html.escape(title)}</b>{rows}"
+        "<div>small arrows: contacts; large ones: forces of clusters</div></div>"
     )
     page = meshcat.StaticHtml().replace("</body>", f"{legend}</body>", 1)
     path.write_text(page, encoding="utf-8")

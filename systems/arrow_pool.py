@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Sequence
 
 import numpy as np
@@ -42,6 +43,7 @@ class ArrowPool:
         self._slot_of_key: dict[Hashable, int] = {}
         # Colour shown in each slot; None where hidden.
         self._shown: list[int | None] = [None] * capacity
+        self._lengths = [1.0] * capacity
         vertices, triangles = _make_arrow()
         for slot in self._slots:
             for color, rgba in enumerate(colors):
@@ -76,8 +78,10 @@ class ArrowPool:
                 RotationMatrix.MakeFromOneVector(vector, 2), p - vector
             )
             self._meshcat.SetTransform(self._slots[i], X_WArrow, time_s)
-            scale = [float(np.linalg.norm(vector))] * 3
-            self._meshcat.SetProperty(self._slots[i], "scale", scale, time_s)
+            length = float(np.linalg.norm(vector))
+            if not math.isclose(length, self._lengths[i], rel_tol=1e-6):
+                self._lengths[i] = length
+                self._meshcat.SetProperty(self._slots[i], "scale", [length] * 3, time_s)
         for i, shown in enumerate(visible):
             self._show(i, shown, time_s)
 

@@ -356,6 +356,8 @@ def test_what_does_not_change_is_not_sent_again():
     assert [args[1] for args in calls] == ["scale", "visible"]
     calls.clear()
     pool.draw([1], np.zeros((1, 3)), np.ones((1, 3)), [1], 0.0)
+    assert calls == []
+    pool.draw([1], np.zeros((1, 3)), 2 * np.ones((1, 3)), [1], 0.0)
     assert [args[1] for args in calls] == ["scale"]
 
 

@@ -72,7 +72,7 @@ class StatusLine:
         F_display = loop.virtual_coupling.get_display_wrench_output_port().Eval(
             coupling
         )
-        deepest_mm = -1e3 * min(contacts.distance.min(initial=0.0), 0.0)
+        deepest_mm = 1e3 * max(-contacts.distance.min(initial=0.0), 0.0)
         return (
             f"[bold]{context.get_time():7.1f} s[/] · {rate:5.2f} x real time"
             f" · {len(contacts):3d} contacts in {len(clusters):2d} clusters"
