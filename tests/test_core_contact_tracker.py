@@ -75,26 +75,44 @@ def test_the_nearest_contact_is_the_distance_of_the_meshes() -> None:
     assert found > 10
 
 
-def test_every_pair_of_pieces_in_depth_is_found_by_the_trees() -> None:
+def swarm(rng: np.random.Generator, count: int) -> _core.Decomposition:
+    """Many convex bodies in one mesh."""
+    bodies = [
+        trimesh.convex.convex_hull(0.01 * rng.normal(size=(8, 3)) + center)
+        for center in rng.uniform(-0.05, 0.05, size=(count, 3))
+    ]
+    return pieces_of(trimesh.util.concatenate(bodies))
+
+
+def test_the_trees_miss_no_pair_and_every_pair_gets_its_own_answer() -> None:
     rng = np.random.default_rng(1)
-    A, B = pieces_of(ring()), pieces_of(ring())
-    tracker = _core.ContactTracker(A, [B], 0.0)
-    deep = 0
-    for _ in range(12):
+    A, B = swarm(rng, 40), swarm(rng, 40)
+    assert len(A.pieces) == len(B.pieces) == 40
+    tracker = _core.ContactTracker(A, [B], T)
+    deep = near = 0
+    for _ in range(5):
         q_WA = random_pose(rng, 0.02)
         X_WA = np.eye(4)
         X_WA[:3, :3] = Rotation.from_quat(np.roll(q_WA[:4], -1)).as_matrix()
         X_WA[:3, 3] = q_WA[4:]
         tracker.reset()
         contacts = tracker.query(q_WA)
-        found = set(zip(contacts.piece_A, contacts.piece_B, strict=True))
+        found = {
+            (i, j): d
+            for i, j, d in zip(
+                contacts.piece_A, contacts.piece_B, contacts.distance, strict=True
+            )
+        }
         for i, P in enumerate(A.pieces):
             for j, Q in enumerate(B.pieces):
-                answer = _core.ConvexPair(P, Q).query(X_WA, np.eye(4))
-                if answer.distance < -1e-6:
-                    deep += 1
-                    assert (i, j) in found
-    assert deep > 20
+                truth = _core.ConvexPair(P, Q).query(X_WA, np.eye(4)).distance
+                if truth > T:
+                    assert (i, j) not in found
+                else:
+                    deep += truth < 0
+                    near += truth >= 0
+                    assert found[i, j] == pytest.approx(truth, abs=1e-12)
+    assert min(deep, near) > 20
 
 
 def test_warm_and_cold_answers_agree_while_apart() -> None:
@@ -166,6 +184,32 @@ def test_a_press_through_a_flat_piece_is_held_along_the_way_in() -> None:
     for z in np.arange(0.002, 0.0215, 2.5e-4):
         contacts = flat_tool.query(pose([0.001, 0.002, z]))
         assert contacts.distance.min() <= z - 0.02 + 1e-12
+
+
+def test_a_piece_met_from_behind_does_not_push_the_tool_through_the_wall() -> None:
+    """A wall 3 to 6 mm thick whose far side is one piece with a virtual back."""
+    outline = np.array([[-30, 0], [30, 0], [30, -3], [0, -6], [-30, -3]]) * 1e-3
+    vertices = np.array([[x, y, z] for y in (-0.02, 0.02) for x, z in outline])
+    quads = [[i, (i + 1) % 5, (i + 1) % 5 + 5, i + 5] for i in range(5)]
+    triangles = [[a, b, c] for a, b, c, _ in quads] + [
+        [a, c, d] for a, _, c, d in quads
+    ]
+    caps = [[0, k + 1, k] for k in (1, 2, 3)]
+    triangles += caps + [[5 + a, 5 + c, 5 + b] for a, b, c in caps]
+    # The sides are top, right, below right, below left, left; both below in one.
+    labels = [0, 1, 2, 2, 3] * 2 + [4] * 3 + [5] * 3
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    if mesh.volume < 0:
+        triangles = np.asarray(triangles)[:, ::-1].copy()
+    wall = _core.assemble_surface_pieces(
+        vertices, np.array(triangles, np.int32), np.array(labels, np.int32)
+    )
+    assert [piece.dimension for piece in wall.pieces] == [2, 2, 3, 2, 2, 2]
+    tracker = _core.ContactTracker(spike([0, 0, 0]), [wall], 2e-3)
+    for z in np.arange(1e-3, -4.2e-3, -2.5e-4):
+        contacts = tracker.query(pose([0.001, 0.0, z]))
+        assert len(contacts) > 0
+        assert (contacts.nhat_BA_W[:, 2] > 0).all()
 
 
 def test_nothing_pulls_a_tool_that_comes_from_behind_an_open_sheet() -> None:

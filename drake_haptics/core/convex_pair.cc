@@ -15,6 +15,10 @@ constexpr int kColdPromotionHubs = 64;
 constexpr int kWarmPromotionHubs = 12;
 // Closer than this share of the size, distance and depth are both computed.
 constexpr double kJoinShare = 1e-9;
+// Cosine of the largest angle between the normal of a new contact and the
+// direction from which the pair came together: beyond it the tool came from
+// behind the surface, through a virtual side of the piece.
+constexpr double kComingFrom = -0.2;
 // How far beyond a feature's sides a held contact may slide, as a share of the
 // size: the press is over once the tool has left the features sideways.
 constexpr double kHeldSlideShare = 1e-2;
@@ -113,9 +117,7 @@ class Query {
       if (!surface_only_ || IsSupported(contact)) return contact;
     }
     if (depth.status == DepthStatus::kNoFacet) return Grazing();
-    if (surface_only_ && depth.best.support == SurfaceSupport::kVirtual) {
-      return std::nullopt;
-    }
+    if (surface_only_ && !IsPlausible(depth)) return std::nullopt;
     const Witness witness =
         WitnessOfFeatures(pair_, depth.best.feature_A, depth.best.feature_B,
                           depth.best.n, depth.best.h);
@@ -128,6 +130,16 @@ class Query {
     return PairContact{depth.best.h, depth.best.n,         witness.p_a,
                        witness.p_b,  depth.best.feature_A, depth.best.feature_B,
                        status};
+  }
+
+  // Whether the facet found can be the way on which the overlap began. A piece
+  // of a thin wall is also met from behind, through its virtual side: its own
+  // surface is far then, and the pieces on the near side carry the contact.
+  bool IsPlausible(const Depth& depth) const {
+    if (depth.best.support == SurfaceSupport::kVirtual) return false;
+    if (state_.in_contact) return true;
+    if (depth.best.n.dot(state_.n) < kComingFrom) return false;
+    return depth.best.h >= depth.shallowest - tolerance_;
   }
 
   Depth WarmDepth() {

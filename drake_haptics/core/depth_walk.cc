@@ -82,6 +82,10 @@ class Walk {
     const int answer = best_ >= 0 ? best_ : BestUnsupported();
     if (answer < 0) return result;
     result.best = workspace_.candidates[answer];
+    result.shallowest = result.best.h;
+    for (const DepthCandidate& candidate : workspace_.candidates) {
+      result.shallowest = std::max(result.shallowest, candidate.h);
+    }
     if (result.status == DepthStatus::kNoFacet) {
       result.status = DepthStatus::kLocalMinimum;
     }
