@@ -19,11 +19,12 @@ from drake_haptics.scene import (
     Waypoint,
 )
 from drake_haptics.systems.hand_grip import HAND_GRIPS
-from drake_haptics.touch_height import calc_touch_height
+from drake_haptics.touch_height import TouchMap
 
 _GRIP = "nominal"
 _PRESS_N = 2.0
-_LARGEST_EXTENT_M = 2.0
+_LARGEST_TOOL_M = 1.0
+_LARGEST_ENVIRONMENT_M = 100.0
 _SMALLEST_EXTENT_M = 2e-3
 # The path keeps well inside a workspace of 12 cm radius.
 _CLEARANCE_M = 0.03
@@ -44,8 +45,8 @@ def make_scene_for_meshes(
     """Makes what `Scene.for_meshes` documents."""
     tool = load_mesh(tool_path, scale=tool_scale)
     environment = load_mesh(environment_path, scale=environment_scale)
-    for name, mesh in [("tool", tool), ("environment", environment)]:
-        _check_extent(name, mesh)
+    _check_extent("tool", tool, _LARGEST_TOOL_M)
+    _check_extent("environment", environment, _LARGEST_ENVIRONMENT_M)
     tip = _find_tip(tool)
     # The handle is above the tip, at half the tool's height: pressing straight down
     # then turns it little.
@@ -73,13 +74,13 @@ def make_scene_for_meshes(
     )
 
 
-def _check_extent(name: str, mesh: Mesh) -> None:
-    """Refuses a size that no device's workspace fits: most often a wrong unit."""
+def _check_extent(name: str, mesh: Mesh, largest_m: float) -> None:
+    """Refuses a size that nobody means: most often a wrong unit."""
     extent = max(mesh.report.extent)
-    if not _SMALLEST_EXTENT_M <= extent <= _LARGEST_EXTENT_M:
+    if not _SMALLEST_EXTENT_M <= extent <= largest_m:
         raise SceneError(
             f"the {name} is {extent:.3g} m long; give the scale that makes it between"
-            f" {_SMALLEST_EXTENT_M} m and {_LARGEST_EXTENT_M} m"
+            f" {_SMALLEST_EXTENT_M} m and {largest_m:g} m"
         )
 
 
@@ -113,9 +114,9 @@ def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPath:
     radius = min(_LARGEST_CIRCLE_M, 0.2 * min(environment.report.extent[:2]))
     angles = np.linspace(0.0, 2.0 * np.pi, _CIRCLE_POINTS + 1)
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    touch_map = TouchMap(tool, environment, place, radius)
     while True:
-        xy = place + radius * circle
-        touch = np.array([calc_touch_height(tool, environment, p) for p in xy])
+        touch = np.array([touch_map.calc_height(radius * p) for p in circle])
         seen = np.isfinite(touch)
         if not seen.any():
             raise SceneError("the tool, lowered onto the environment, passes it by")
@@ -125,6 +126,7 @@ def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPath:
             break
         # At the edge of a cliff no circle is small enough: press in place.
         radius = 0.5 * radius if radius > _SMALLEST_CIRCLE_M else 0.0
+    xy = place + radius * circle
     press = _PRESS_N / HAND_GRIPS[_GRIP].stiffness_N_per_m
     above = [*xy[0], touch[0] + _CLEARANCE_M]
     times = _APPROACH_S + _CIRCLE_STEP_S * np.arange(len(xy))

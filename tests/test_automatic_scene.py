@@ -1,0 +1,64 @@
+"""A scene for two meshes of one's own: it must simply run."""
+
+import numpy as np
+import pytest
+import trimesh
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.scene import Scene, SceneError
+from drake_haptics.scene_check import check_values
+from drake_haptics.simulation import run
+
+
+def write(folder, name, mesh):
+    path = folder / name
+    mesh.export(path)
+    return path
+
+
+SHAPES = {
+    "block": trimesh.creation.box([0.1, 0.08, 0.03]),
+    "ball": trimesh.creation.icosphere(subdivisions=2, radius=0.05),
+    "ring": trimesh.creation.torus(0.04, 0.015, 24, 16),
+    "tube": trimesh.creation.annulus(0.03, 0.04, 0.08),
+    "stick": trimesh.creation.cylinder(0.004, 0.12, sections=12),
+}
+
+
+@pytest.mark.parametrize(
+    ("environment", "median_contacts"),
+    # From the rim of the tube the stick slips into the hollow for a while.
+    [("block", 1), ("ball", 1), ("ring", 1), ("tube", 0)],
+)
+def test_it_touches_and_presses_gently(tmp_path, environment, median_contacts):
+    scene = Scene.for_meshes(
+        write(tmp_path, "stick.stl", SHAPES["stick"]),
+        write(tmp_path, "environment.ply", SHAPES[environment]),
+    )
+    check_values(scene)
+    period = scene.hand.path.waypoints[-1].time_s
+    figures = run(BuildHapticDiagram(scene), 0.5 * period).to_dict()
+    assert figures["contacts"]["median"] >= median_contacts
+    assert 0.5 < figures["max_force_N"] < 4.0
+    assert (figures["limit_hits"], figures["non_finite_events"]) == (0, 0)
+
+
+def test_scales_are_metres_per_unit(tmp_path):
+    in_mm = SHAPES["block"].copy()
+    in_mm.apply_scale(1000.0)
+    stick = write(tmp_path, "stick.stl", SHAPES["stick"])
+    metres = Scene.for_meshes(stick, write(tmp_path, "m.ply", SHAPES["block"]))
+    scaled = Scene.for_meshes(
+        stick, write(tmp_path, "mm.ply", in_mm), environment_scale=1e-3
+    )
+    for one, two in zip(
+        metres.hand.path.waypoints, scaled.hand.path.waypoints, strict=True
+    ):
+        np.testing.assert_allclose(one.position_m, two.position_m, atol=1e-6)
+
+
+@pytest.mark.parametrize("size", [3.0, 1e-4])
+def test_a_tool_of_an_unlikely_size_is_refused(tmp_path, size):
+    tool = write(tmp_path, "tool.stl", trimesh.creation.box([size] * 3))
+    block = write(tmp_path, "block.stl", SHAPES["block"])
+    with pytest.raises(SceneError, match=r"the tool is .* m long; give the scale"):
+        Scene.for_meshes(tool, block)
