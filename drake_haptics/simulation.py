@@ -75,6 +75,9 @@ def run(
         simulator.AdvanceTo(math.inf if duration_s is None else duration_s)
     except KeyboardInterrupt:
         pass
+    except FloatingPointError as error:
+        time_s = simulator.get_context().get_time()
+        raise RunError(f"stopped at {time_s:.4f} s: {error}", statistics) from error
     finally:
         gc.unfreeze()
     return statistics

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform
@@ -49,6 +51,8 @@ class HandImpedance(LeafSystem):
     * `generalized_force` is for the plant, N·m.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
+
+    All outputs raise FloatingPointError where the arm's state is not finite.
     """
 
     def __init__(
@@ -126,6 +130,9 @@ class HandImpedance(LeafSystem):
     def _calc_kinematics(self, context: Context, kinematics: AbstractValue) -> None:
         """Sets (X_WH as a vector, V_WH, Jᵀ)."""
         state = self._arm_state.Eval(context)
+        # The plant would end the interpreter.
+        if not math.isfinite(sum(state.tolist())):
+            raise FloatingPointError("the arm's state is not finite")
         plant = self._plant
         plant_context = get_scratch(self._plant_context, context)
         plant.SetPositionsAndVelocities(plant_context, state)

@@ -153,3 +153,10 @@ def test_inverse_kinematics_finds_the_pose(plant):
 def test_a_pose_out_of_reach_is_refused(plant, pose):
     with pytest.raises(UnreachableError):
         solve_arm_positions(plant, plant.GetBodyByName("handle"), pose, np.zeros(6))
+
+
+def test_a_state_that_is_not_finite_is_an_error_and_no_crash(plant):
+    hand, context = hand_on(plant, HandPath([0.0], [RigidTransform()]), None)
+    set_arm(hand, context, np.full(6, np.nan))
+    with pytest.raises(FloatingPointError, match="arm's state is not finite"):
+        hand.get_handle_pose_output_port().Eval(context)

@@ -92,6 +92,18 @@ def test_a_value_that_is_not_finite_stops_the_run(haptic, monkeypatch):
     assert figures["max_force_N"] == 0.0
 
 
+def test_an_arm_that_is_lost_stops_the_run(haptic, monkeypatch):
+    def make_broken_simulator(haptic):
+        simulator = make_simulator(haptic)
+        state = simulator.get_mutable_context().get_mutable_continuous_state_vector()
+        state.SetAtIndex(state.size() - 1, np.inf)
+        return simulator
+
+    monkeypatch.setattr(simulation, "make_simulator", make_broken_simulator)
+    with pytest.raises(simulation.RunError, match="the arm's state is not finite"):
+        run(haptic, 1.0)
+
+
 def test_no_coupling_is_too_stiff_for_the_limits_of_the_device(tmp_path):
     scene = over_a_plate(tmp_path, [ABOVE, PRESSING])
     scene.coupling.stiffness_N_per_m = 1e308
