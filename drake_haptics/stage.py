@@ -15,10 +15,9 @@ from drake_haptics.errors import UserError
 from drake_haptics.scene import Pose
 
 # From where the camera looks: from the right front, above.
-_VIEW = np.array([0.48, -0.74, 0.47])
-# More than half the angle of Meshcat's camera, since objects do not fill the sphere
-# around them.
-_HALF_VIEW_RAD = np.deg2rad(46.0)
+_VIEW = np.array([0.48, -0.74, 0.47]) / np.linalg.norm([0.48, -0.74, 0.47])
+# Half the angle of Meshcat's camera is 37.5 degrees; the rest is margin.
+_HALF_VIEW_RAD = np.deg2rad(32.0)
 
 
 def open_meshcat(port: int | None = None) -> Meshcat:
@@ -55,29 +54,33 @@ def set_stage(meshcat: Meshcat, haptic: HapticDiagram) -> None:
     meshcat.SetProperty("/Background", "bottom_color", list(BACKGROUND_BOTTOM[:3]))
     meshcat.SetProperty("/Grid", "visible", False)
     meshcat.SetProperty("/Axes", "visible", False)
-    low, high = _framed_box(haptic)
-    middle = (low + high) / 2
-    radius = float(np.linalg.norm(high - low)) / 2
-    distance = radius / np.sin(_HALF_VIEW_RAD)
-    meshcat.SetCameraPose(middle + distance * _VIEW / np.linalg.norm(_VIEW), middle)
+    points = _framed_points(haptic)
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    # The least distance at which the cone of the view holds every point.
+    towards = (points - middle) @ _VIEW
+    across = np.linalg.norm(points - middle - np.outer(towards, _VIEW), axis=1)
+    distance = float(np.max(towards + across / np.tan(_HALF_VIEW_RAD)))
+    meshcat.SetCameraPose(middle + distance * _VIEW, middle)
 
 
-def _framed_box(haptic: HapticDiagram) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the corners, m, of a box around what happens."""
-    waypoints = haptic.scene.hand.path.waypoints
+def _framed_points(haptic: HapticDiagram) -> np.ndarray:
+    """Returns points (n, 3) of the world, m, that are to be in the picture."""
     vertices = haptic.tool.mesh.vertices
-    start = _transform(Pose(waypoints[0].position_m, waypoints[0].rpy_deg), vertices)
-    path = np.array([waypoint.position_m for waypoint in waypoints])
-    points = np.vstack([start, path])
-    low, high = points.min(axis=0), points.max(axis=0)
-    margin = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+    tool = np.vstack(
+        [
+            _transform(Pose(waypoint.position_m, waypoint.rpy_deg), vertices)
+            for waypoint in haptic.scene.hand.path.waypoints
+        ]
+    )
+    size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+    low, high = tool.min(axis=0) - size, tool.max(axis=0) + size
+    framed = [tool]
     for item, decomposition in zip(
         haptic.scene.environment, haptic.environment, strict=True
     ):
         corners = _transform(item.pose, decomposition.mesh.vertices)
-        within = np.all((corners > low - margin) & (corners < high + margin), axis=1)
-        points = np.vstack([points, corners[within]])
-    return points.min(axis=0), points.max(axis=0)
+        framed.append(corners[np.all((corners > low) & (corners < high), axis=1)])
+    return np.vstack(framed)
 
 
 def _transform(pose: Pose, points: np.ndarray) -> np.ndarray:

@@ -1,10 +1,10 @@
 """What the hand feels when the contact gets softer: a scene changed from Python.
 
-python examples/softer_wall.py
+    python examples/softer_wall.py
 
-Runs the peg in the torus with three contact stiffnesses and prints the largest force
-on the hand and the deepest penetration. The coupling bounds what the hand feels, so the
-force hardly changes; the penetration does.
+Runs the peg in the torus with three contact stiffnesses. The hand hardly notices the
+first step, because the coupling is the softer spring there; the last one lets the peg
+deep into the torus.
 """
 
 from drake_haptics.builder import BuildHapticDiagram

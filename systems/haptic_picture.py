@@ -85,6 +85,9 @@ class HapticPicture:
                 np.asfortranarray(drawn.faces.T.astype(np.int32)),
                 np.asfortranarray(drawn.colors.T),
             )
+            if name != "tool":
+                path = f"{_ROOT}/{name}"
+                self._meshcat.SetProperty(path, "opacity", _ENVIRONMENT_ALPHA)
 
     def place_object(self, name: str, X_WO: RigidTransform, time_s: float) -> None:
         """Places an object that moves."""

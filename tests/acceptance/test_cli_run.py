@@ -14,8 +14,10 @@ import pytest
 from click.testing import CliRunner
 
 from drake_haptics.cli import main
+from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene_library import list_scenes
 from drake_haptics.shapes import SHAPES
+from drake_haptics.simulation import RunError
 
 # The installed command, beside the interpreter.
 COMMAND = Path(sys.executable).with_name("drake-haptics")
@@ -210,3 +212,21 @@ def test_a_port_in_use_is_named():
         result = invoke("run", "cup_spoon", "--duration", 0.1, "--port", port)
     assert result.exit_code == 1
     assert str(port) in result.output
+
+
+def test_an_unstable_run_ends_with_its_figures_and_a_status_of_its_own(
+    tmp_path, monkeypatch
+):
+    statistics = RunStatistics(1e-3)
+
+    def diverge(*args, **kwargs):
+        raise RunError("the tool's pose is not finite", statistics)
+
+    # The command's module has the command's name, which hides it from `import`.
+    module = sys.modules[main.get_command(None, "run").callback.__module__]
+    monkeypatch.setattr(module, "run_haptic", diverge)
+    file = tmp_path / "s.json"
+    result = invoke("run", "sphere_pen", "--headless", "--json", file)
+    assert result.exit_code == 3
+    assert "not finite" in result.output
+    assert json.loads(file.read_text())["ticks"] == 0

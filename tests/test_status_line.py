@@ -1,0 +1,46 @@
+"""What the terminal shows during a run."""
+
+import io
+
+import pytest
+from rich.console import Console
+
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.cli.status_line import StatusLine, make_summary
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+from drake_haptics.simulation import run
+
+
+@pytest.fixture(scope="module")
+def haptic():
+    return BuildHapticDiagram(load_scene(find_scene("sphere_pen")))
+
+
+def run_with_status(haptic, *, terminal):
+    """Runs into contact and returns what was written and the figures."""
+    text = io.StringIO()
+    console = Console(file=text, force_terminal=terminal, width=160, color_system=None)
+    with StatusLine(console, haptic) as status:
+        figures = run(haptic, 1.5, on_tick=status.update).to_dict()
+    return text.getvalue(), figures
+
+
+def test_a_terminal_sees_time_contacts_and_force(haptic):
+    text, _ = run_with_status(haptic, terminal=True)
+    assert "1 contacts in  1 clusters" in text
+    assert "x real time" in text
+    assert " N " in text and "mm deep" in text
+
+
+def test_a_file_gets_no_status(haptic):
+    text, _ = run_with_status(haptic, terminal=False)
+    assert text == ""
+
+
+def test_the_summary_has_the_figures(haptic):
+    _, figures = run_with_status(haptic, terminal=False)
+    text = io.StringIO()
+    Console(file=text, width=160).print(make_summary(figures))
+    assert f"force {figures['max_force_N']:.2f} N" in text.getvalue()
+    assert "1500 ticks" in text.getvalue()
