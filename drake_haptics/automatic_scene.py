@@ -18,10 +18,9 @@ from drake_haptics.scene import (
     Tool,
     Waypoint,
 )
-from drake_haptics.systems.hand_grip import HAND_GRIPS
+from drake_haptics.systems.hand_grip import NOMINAL_GRIP
 from drake_haptics.touch_height import TouchMap
 
-_GRIP = "nominal"
 _PRESS_N = 2.0
 _LARGEST_TOOL_M = 1.0
 _LARGEST_ENVIRONMENT_M = 100.0
@@ -70,7 +69,7 @@ def make_scene_for_meshes(
             )
         ],
         contact=Contact(tolerance_m=tolerance, cluster_size_m=2.5 * tolerance),
-        hand=Hand(grip=_GRIP, path=_make_path(tool, environment, tip)),
+        hand=Hand(grip="nominal", path=_make_path(tool, environment, tip)),
     )
 
 
@@ -127,7 +126,7 @@ def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPath:
         # At the edge of a cliff no circle is small enough: press in place.
         radius = 0.5 * radius if radius > _SMALLEST_CIRCLE_M else 0.0
     xy = place + radius * circle
-    press = _PRESS_N / HAND_GRIPS[_GRIP].stiffness_N_per_m
+    press = _PRESS_N / NOMINAL_GRIP.stiffness_N_per_m
     above = [*xy[0], touch[0] + _CLEARANCE_M]
     times = _APPROACH_S + _CIRCLE_STEP_S * np.arange(len(xy))
     around = [

@@ -272,7 +272,8 @@ def load_scene(path: str | Path) -> Scene:
         check_values(scene)
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error
-    for part in [scene.tool, *scene.environment]:
+    parts: list[Tool | EnvironmentObject] = [scene.tool, *scene.environment]
+    for part in parts:
         part.mesh = _absolute(part.mesh, path.parent)
     return scene
 

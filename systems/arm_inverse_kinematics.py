@@ -64,7 +64,7 @@ def solve_arm_positions(
             if np.linalg.svd(J, compute_uv=False)[-1] < _SMALLEST_SINGULAR_VALUE:
                 raise UnreachableError("the arm is at the edge of its reach or gimbal")
             return q
-        damping = 1e-4 * min(1.0, np.linalg.norm(error))
+        damping = 1e-4 * min(1.0, float(np.linalg.norm(error)))
         step = np.linalg.solve(J.T @ J + damping * np.eye(len(q)), J.T @ error)
-        q += step * min(1.0, _LARGEST_STEP_RAD / np.max(np.abs(step)))
+        q += step * min(1.0, _LARGEST_STEP_RAD / float(np.max(np.abs(step))))
     raise UnreachableError("the arm does not reach that far")

@@ -41,9 +41,10 @@ class HandGrip:
 # 1e-4-1e-3 kg·m², .002-.05 N·m·s/rad, .1-3 N·m/rad (Hasser and Cutkosky 2002; Israr,
 # Choi and Tan 2006). The rotations are chosen in these ranges for damping like that
 # of the translations. A light grip is the worst case for stability.
+NOMINAL_GRIP = HandGrip(0.2, 3e-4, 300.0, 5.0, 1.0, 0.02)
 HAND_GRIPS: dict[str, HandGrip | None] = {
     "none": None,
     "light": HandGrip(0.05, 1e-4, 50.0, 1.0, 0.3, 0.005),
-    "nominal": HandGrip(0.2, 3e-4, 300.0, 5.0, 1.0, 0.02),
+    "nominal": NOMINAL_GRIP,
     "firm": HandGrip(0.3, 1e-3, 1000.0, 15.0, 3.0, 0.05),
 }
