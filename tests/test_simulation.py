@@ -83,7 +83,8 @@ def test_a_value_that_is_not_finite_stops_the_run(haptic, monkeypatch):
 
     monkeypatch.setattr(simulation, "make_simulator", make_broken_simulator)
     with pytest.raises(
-        simulation.RunError, match=r"stopped at 0.0010 s: the tool's pose is not finite"
+        simulation.RunError,
+        match=r"stopped at 0.0010 s: the tool's state is not finite",
     ) as caught:
         run(haptic, 1.0)
     figures = caught.value.statistics.to_dict()
