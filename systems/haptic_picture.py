@@ -176,7 +176,7 @@ class HapticPicture:
         )
         scale = self._size_m * length / force[felt]
         pool.draw(
-            [keys[i] for i in felt],
+            [keys[i] for i in felt.tolist()],
             p_W[felt],
             scale[:, None] * f_W[felt],
             np.asarray(colors_of)[felt],
