@@ -93,12 +93,9 @@ void CheckMesh(std::span<const Vec3> vertices,
   if (triangles.empty()) {
     throw std::invalid_argument("a mesh needs one triangle or more");
   }
-  for (const Vec3& v : vertices) {
-    // Squares of coordinates must not overflow.
-    if (!(v.cwiseAbs().maxCoeff() < 1e100)) {
-      throw std::invalid_argument(
-          "a mesh's coordinates must be finite and below 1e100 m");
-    }
+  if (!AreUsable(vertices)) {
+    throw std::invalid_argument(
+        "a mesh's coordinates must be finite and below 1e100 m");
   }
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (const int v : triangles[t]) {

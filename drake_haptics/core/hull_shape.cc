@@ -30,9 +30,12 @@ void DropStraightCorners(std::span<const Vec3> points, double tolerance,
       const double deviation =
           chord.cross(points[(*loop)[k]] - before).norm() /
           std::max(chord.norm(), std::numeric_limits<double>::min());
+      // Both neighbours are still there in this pass.
       const bool may_drop =
-          k == 0 || kept.empty() || kept.back() == (*loop)[k - 1];
-      if (may_drop && deviation <= tolerance && k + 1 < loop->size()) {
+          (k == 0 || (!kept.empty() && kept.back() == (*loop)[k - 1])) &&
+          (k + 1 < loop->size() ||
+           (!kept.empty() && kept.front() == loop->front()));
+      if (may_drop && deviation <= tolerance) {
         dropped = true;
       } else {
         kept.push_back((*loop)[k]);
@@ -105,6 +108,13 @@ std::vector<int> DistinctPoints(std::span<const Vec3> points) {
 }
 
 }  // namespace
+
+bool AreUsable(std::span<const Vec3> points) {
+  static constexpr double kLargest = 1e100;
+  return std::all_of(points.begin(), points.end(), [](const Vec3& p) {
+    return (p.array().abs() < kLargest).all();  // False for NaN.
+  });
+}
 
 HullShape FindHullShape(std::span<const Vec3> points, double tolerance) {
   double magnitude = 0;

@@ -20,6 +20,9 @@ struct HullShape {
   std::vector<Polygon> polygons;  ///< dimension 2: front and back
 };
 
+/// Whether all coordinates are finite and so small that their squares are too.
+bool AreUsable(std::span<const Vec3> points);
+
 /// @param points positions, m, finite and at least one.
 /// @param tolerance thickness, m, below which the set is flat. The same bound,
 ///        against a facet's plane, merges triangles to facets. It is never

@@ -172,6 +172,17 @@ bool Patch::FacetIsCovered(int region) {
   return is_covered();
 }
 
+// Several planes may still make one flat hull, if they are as good as parallel.
+bool Patch::FlatHullIsCovered(std::span<const Vec3> points) const {
+  const Vec3& normal = mesh_.regions[regions_[0]].plane.normal;
+  if (regions_.size() == 1 || normal.isZero()) return true;
+  double covered = 0;
+  for (const int t : triangles_) {
+    if (mesh_.planes[t].normal.dot(normal) > 0) covered += mesh_.areas[t];
+  }
+  return IsCovered(FindFlatHull(points, normal), covered, mesh_.tolerance);
+}
+
 bool Patch::HullIsInside(const Sizes& before) {
   if (vertices_.size() == before.vertices) return true;
   std::optional<ConvexHull> grown = hull_;
@@ -182,8 +193,9 @@ bool Patch::HullIsInside(const Sizes& before) {
       points.push_back(mesh_.vertices[v]);
       added.extend(points.back());
     }
-    const Spanning spanning = FindSpanning(points, mesh_.tolerance);
-    if (spanning.dimension < 3) return true;
+    const Spanning spanning =
+        FindSpanning(points, kOnPlaneTolerances * mesh_.tolerance);
+    if (spanning.dimension < 3) return FlatHullIsCovered(points);
     grown.emplace(points, spanning.point);
   } else {
     for (std::size_t i = before.vertices; i < vertices_.size(); ++i) {

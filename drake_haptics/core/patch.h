@@ -53,6 +53,7 @@ class Patch {
   bool IsSupported(const Sizes& before) const;
   bool IsOneSided(const Sizes& before) const;
   bool FacetIsCovered(int region);
+  bool FlatHullIsCovered(std::span<const Vec3> points) const;
   bool HullIsInside(const Sizes& before);
 
   PatchWorkspace& work_;

@@ -8,25 +8,11 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "gauss_turn.h"
 #include "hull_shape.h"
 
 namespace drake_haptics {
 namespace {
-
-// Squares of coordinates must not overflow.
-constexpr double kLargest = 1e100;
-
-void CheckFinite(std::span<const Vec3> points) {
-  if (points.empty()) {
-    throw std::invalid_argument("a polytope needs one point or more");
-  }
-  for (const Vec3& p : points) {
-    if (!(p.cwiseAbs().maxCoeff() < kLargest)) {
-      throw std::invalid_argument(
-          "a polytope's coordinates must be finite and below 1e100 m");
-    }
-  }
-}
 
 // Turns ragged lists given as (owner, item) pairs in order of `owners` into CSR
 // arrays: counts first, then a running sum.
@@ -151,11 +137,18 @@ Polytope MakePolytope(std::span<const Vec3> points, const HullShape& shape) {
   AddNeighborsAndRings(&P);
   AddVertexFacets(&P);
   AddBall(&P);
+  FillGaussTurns(&P);
   return P;
 }
 
 Polytope MakePolytope(std::span<const Vec3> points, double flatness) {
-  CheckFinite(points);
+  if (points.empty()) {
+    throw std::invalid_argument("a polytope needs one point or more");
+  }
+  if (!AreUsable(points)) {
+    throw std::invalid_argument(
+        "a polytope's coordinates must be finite and below 1e100 m");
+  }
   Eigen::AlignedBox3d box;
   for (const Vec3& p : points) box.extend(p);
   return MakePolytope(points,

@@ -7,14 +7,10 @@
 namespace drake_haptics {
 namespace {
 
-// Share of a facet that patch triangles must cover. The growth of patches keeps
-// facets whole or bare; what lies between is round-off on slivers.
-constexpr double kCoveredShare = 0.999;
-
 double FacetArea(const Polytope& P, int facet) {
   const auto loop = P.loop_of(facet);
-  Vec3 sum = Vec3::Zero();
   const Vec3& base = P.vertices[loop[0]];
+  Vec3 sum = Vec3::Zero();
   for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
     sum += (P.vertices[loop[k]] - base).cross(P.vertices[loop[k + 1]] - base);
   }
@@ -31,6 +27,8 @@ class Marker {
         tolerance_(tolerance),
         piece_(*piece) {}
 
+  // The growth of patches keeps facets whole or bare but for slivers, so that
+  // half of the area decides.
   void MarkFacets() {
     std::vector<std::pair<int, int>> piece_vertex;  // By mesh vertex.
     for (int v = 0; v < piece_.num_vertices(); ++v) {
@@ -57,7 +55,7 @@ class Marker {
     }
     for (std::size_t f = 0; f < piece_.facets.size(); ++f) {
       piece_.facets[f].original =
-          covered[f] > kCoveredShare * FacetArea(piece_, static_cast<int>(f));
+          covered[f] > FacetArea(piece_, static_cast<int>(f)) / 2;
     }
   }
 

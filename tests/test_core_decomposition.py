@@ -1,0 +1,346 @@
+"""Convex surface decomposition: what must hold for every mesh."""
+
+import numpy as np
+import pytest
+import trimesh
+from mesh_samples import box, joined, l_prism, real_mesh
+
+from drake_haptics import _core
+
+# Twice what decomposition.cc allows: facets lie on the mesh, and hulls in the
+# solid, within this share of the mesh's size.
+SURFACE = 1e-6
+
+
+def arrays(V, F):
+    return np.asarray(V, dtype=float), np.asarray(F, dtype=np.int32)
+
+
+def of_trimesh(mesh):
+    return arrays(mesh.vertices, mesh.faces)
+
+
+def u_prism():
+    """A prism over a U: two concave edges."""
+    outline = [(0, 0), (3, 0), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)]
+    V = [(x, y, z) for z in (0, 1) for x, y in outline]
+    caps = [(0, 1, 4), (0, 4, 5), (0, 5, 6), (0, 6, 7), (1, 2, 3), (1, 3, 4)]
+    F = [(a, c, b) for a, b, c in caps] + [(a + 8, b + 8, c + 8) for a, b, c in caps]
+    for i in range(8):
+        j = (i + 1) % 8
+        F += [(i, j, j + 8), (i, j + 8, i + 8)]
+    return arrays(V, F)
+
+
+def hollow_box():
+    """A box with a closed cavity: two components, the inner one wound inward."""
+    V, F = box((0.5, 0.5, 0.5), at=(0.25, 0.25, 0.25))
+    return arrays(*joined(box(), (V, F[:, ::-1])))
+
+
+def load(name):
+    mesh = trimesh.load(real_mesh(name), process=False)
+    mesh.merge_vertices()
+    mesh.update_faces(mesh.nondegenerate_faces())
+    mesh.remove_unreferenced_vertices()
+    return of_trimesh(mesh)
+
+
+SHAPES = {
+    "box": lambda: arrays(*box()),
+    "L": lambda: arrays(*l_prism()),
+    "U": u_prism,
+    "hollow box": hollow_box,
+    "sphere": lambda: of_trimesh(trimesh.creation.icosphere(subdivisions=3)),
+    "torus": lambda: of_trimesh(trimesh.creation.torus(1.0, 0.3)),
+    "tube": lambda: of_trimesh(trimesh.creation.annulus(0.9, 1.0, 2.0, sections=24)),
+    "cup": lambda: load("cup_500.obj"),
+    "spoon": lambda: load("spoon_336.obj"),
+    "real torus": lambda: load("torus_2000.obj"),
+    "hammer": lambda: load("hammer_1692.obj"),
+    "mug": lambda: load("mug.stl"),
+}
+
+
+def decompose(V, F, solid=True):
+    return _core.decompose_surface(V, F, np.full(len(F), solid, dtype=np.uint8))
+
+
+def areas(V, F):
+    return (
+        np.linalg.norm(
+            np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]), axis=1
+        )
+        / 2
+    )
+
+
+def facet_area(corners):
+    fan = np.cross(corners[1:-1] - corners[0], corners[2:] - corners[0])
+    return np.linalg.norm(fan.sum(axis=0)) / 2
+
+
+def winding_numbers(points, V, F):
+    """How often the surface winds about each point (van Oosterom, Strackee)."""
+    result = []
+    for p in points:
+        a, b, c = (V[F[:, k]] - p for k in range(3))
+        la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+        numerator = (a * np.cross(b, c)).sum(axis=1)
+        denominator = (
+            la * lb * lc
+            + (a * b).sum(axis=1) * lc
+            + (b * c).sum(axis=1) * la
+            + (c * a).sum(axis=1) * lb
+        )
+        result.append(np.arctan2(numerator, denominator).sum() / (2 * np.pi))
+    return np.array(result)
+
+
+@pytest.fixture(params=SHAPES, scope="module")
+def decomposed(request):
+    V, F = SHAPES[request.param]()
+    return V, F, decompose(V, F)
+
+
+def test_each_triangle_is_in_one_piece(decomposed):
+    _, F, result = decomposed
+    labels = result.piece_of_triangle
+    assert labels.shape == (len(F),)
+    np.testing.assert_array_equal(np.unique(labels), np.arange(len(result.pieces)))
+
+
+def test_pieces_are_hulls_of_their_triangles(decomposed):
+    V, F, result = decomposed
+    size = np.linalg.norm(np.ptp(V, axis=0))
+    for i, piece in enumerate(result.pieces):
+        corners = V[F[result.piece_of_triangle == i]].reshape(-1, 3)
+        assert {*map(tuple, piece.vertices)} <= {*map(tuple, corners)}
+        heights = corners @ piece.facet_normals.T - piece.facet_offsets
+        assert heights.max() <= SURFACE * size
+
+
+def test_original_facets_are_the_triangles(decomposed):
+    """Each triangle lies in an original facet, and they have the same area."""
+    V, F, result = decomposed
+    size = np.linalg.norm(np.ptp(V, axis=0))
+    area = areas(V, F)
+    for i, piece in enumerate(result.pieces):
+        mine = np.flatnonzero(result.piece_of_triangle == i)
+        original = np.flatnonzero(piece.facet_original)
+        normals = piece.facet_normals[original]
+        heights = V[F[mine]] @ normals.T - piece.facet_offsets[original]
+        near = np.abs(heights).max(axis=1) <= SURFACE * size
+        facing = (
+            np.cross(V[F[mine, 1]] - V[F[mine, 0]], V[F[mine, 2]] - V[F[mine, 0]])
+            @ normals.T
+            > 0
+        )
+        assert (near & facing).any(axis=1).all()
+        on_facets = sum(facet_area(piece.vertices[piece.facets[f]]) for f in original)
+        slack = SURFACE * size * np.linalg.norm(np.ptp(piece.vertices, axis=0))
+        assert abs(on_facets - area[mine].sum()) <= 1e-3 * on_facets + 4 * slack
+
+
+def test_hulls_lie_in_the_solid(decomposed):
+    V, F, result = decomposed
+    size = np.linalg.norm(np.ptp(V, axis=0))
+    rng = np.random.default_rng(0)
+    solid_pieces = [p for p in result.pieces if p.dimension == 3]
+    if len(solid_pieces) > 100:
+        picks = rng.choice(len(solid_pieces), 100, replace=False)
+        solid_pieces = [solid_pieces[i] for i in picks]
+    points = np.array(
+        [
+            rng.dirichlet(np.full(len(p.vertices), 0.5)) @ p.vertices
+            for p in solid_pieces
+            for _ in range(max(3, 100 // len(solid_pieces)))
+        ]
+    ).reshape(-1, 3)
+    outside = points[winding_numbers(points, V, F) < 0.5]
+    if len(outside):
+        mesh = trimesh.Trimesh(V, F, process=False)
+        distance = trimesh.proximity.closest_point_naive(mesh, outside)[1]
+        assert distance.max() <= SURFACE * size
+
+
+def test_features_beyond_the_mesh_are_virtual(decomposed):
+    """Edges are original exactly next to original facets, and only they bear wings."""
+    _, _, result = decomposed
+    for piece in result.pieces:
+        beside = piece.facet_original[piece.edge_facets].any(axis=1)
+        np.testing.assert_array_equal(piece.edge_original, beside)
+        wings = np.linalg.norm(piece.edge_wings.reshape(-1, 2, 3), axis=2)
+        np.testing.assert_allclose(wings, np.stack([beside] * 2, axis=1), atol=1e-9)
+        if piece.dimension == 2:
+            assert piece.facet_original[0]
+
+
+def test_rings_are_the_edges_of_the_whole_mesh(decomposed):
+    V, F, result = decomposed
+    rank = {tuple(v): i for i, v in enumerate(V)}
+    ends = [set() for _ in V]
+    for a, b, c in F:
+        ends[a] |= {b, c}
+        ends[b] |= {c, a}
+        ends[c] |= {a, b}
+    for piece in result.pieces[:60]:
+        for i, vertex in enumerate(piece.vertices):
+            v = rank[tuple(vertex)]
+            along = V[sorted(ends[v])] - vertex
+            along /= np.linalg.norm(along, axis=1, keepdims=True)
+            np.testing.assert_allclose(piece.ring(i), along, atol=1e-12)
+
+
+def test_labels_make_the_same_pieces_and_runs_agree(decomposed):
+    V, F, result = decomposed
+    again = decompose(V, F)
+    np.testing.assert_array_equal(again.piece_of_triangle, result.piece_of_triangle)
+    assembled = _core.assemble_surface_pieces(V, F, result.piece_of_triangle)
+    for a, b in zip(assembled.pieces, result.pieces, strict=True):
+        np.testing.assert_array_equal(a.vertices, b.vertices)
+        np.testing.assert_array_equal(a.facet_original, b.facet_original)
+        np.testing.assert_array_equal(a.edge_wings, b.edge_wings)
+
+
+@pytest.mark.parametrize("name, vertices", [("box", 8), ("sphere", 642)])
+def test_a_convex_solid_is_one_hull(name, vertices):
+    (piece,) = decompose(*SHAPES[name]()).pieces
+    assert len(piece.vertices) == vertices
+    assert piece.facet_original.all() and piece.edge_original.all()
+
+
+@pytest.mark.parametrize(
+    "name, triangles, published",
+    [("cup", 500, 190), ("spoon", 336, 78), ("hammer", 1692, 425)],
+)
+def test_piece_counts_are_near_the_papers(name, triangles, published):
+    """Table 1 of the paper, whose meshes had as many triangles but differed."""
+    V, F = SHAPES[name]()
+    assert len(F) == triangles
+    assert len(decompose(V, F).pieces) <= 1.25 * published
+
+
+def test_a_thin_wall_is_not_filled():
+    """The wall of a tube is 0.1 thick: no piece spans its bore."""
+    V, F = SHAPES["tube"]()
+    for piece in decompose(V, F).pieces:
+        if piece.dimension == 3:
+            assert np.linalg.norm(piece.centroid[:2]) > 0.8
+
+
+def test_a_second_solid_is_no_obstacle_but_a_cavity_is():
+    inner = box((0.5, 0.5, 0.5), at=(0.25, 0.25, 0.25))
+    assert len(decompose(*arrays(*joined(box(), inner))).pieces) == 2
+    assert len(decompose(*hollow_box()).pieces) > 6
+
+
+def test_a_planar_patch_has_no_notch_and_no_hole():
+    """A frame of eight triangles: its largest convex part is no frame."""
+    outer = np.array([(0, 0), (3, 0), (3, 3), (0, 3)], dtype=float)
+    V = np.array([(x, y, 0.0) for x, y in [*outer, *(outer / 3 + 1)]])
+    F = np.array(
+        [
+            t
+            for i in range(4)
+            for j in [(i + 1) % 4]
+            for t in ((i, j, j + 4), (i, j + 4, i + 4))
+        ]
+    )
+    V, F = arrays(V, F)
+    result = decompose(V, F, solid=False)
+    area = areas(V, F)
+    for i, piece in enumerate(result.pieces):
+        covered = area[result.piece_of_triangle == i].sum()
+        assert facet_area(piece.vertices[piece.facets[0]]) == pytest.approx(covered)
+
+
+def test_surfaces_without_inside_give_flat_pieces():
+    V, F = arrays(*box())
+    result = decompose(V, F[2:], solid=False)
+    assert len(result.pieces) == 5
+    for piece in result.pieces:
+        assert piece.dimension == 2
+        assert piece.facet_original.tolist() == [True, False]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_random_triangles_are_survived(seed):
+    """Soup, degenerate triangles and repeated ones: any answer but a crash."""
+    rng = np.random.default_rng(seed)
+    V = rng.integers(0, 3, size=(12, 3)).astype(float)
+    F = rng.integers(0, 12, size=(60, 3)).astype(np.int32)
+    for solid in (True, False):
+        result = decompose(V, F, solid)
+        assert len(result.piece_of_triangle) == 60
+
+
+def test_adopted_pieces_know_what_lies_on_the_mesh():
+    V, F = arrays(*l_prism())
+    halves = [box((2, 1, 1))[0], box((1, 1, 1), at=(0, 1, 0))[0]]
+    result = _core.adopt_convex_pieces(V, F, halves, 1e-6)
+    low, high = result.pieces
+    np.testing.assert_array_equal(result.piece_of_triangle, -1)
+    # The wall between the halves is virtual; of the lower one's top, half is mesh.
+    for piece, normal in ((low, [0, 1, 0]), (high, [0, -1, 0])):
+        virtual = np.flatnonzero(~piece.facet_original)
+        np.testing.assert_allclose(piece.facet_normals[virtual], [normal], atol=1e-12)
+        assert piece.edge_original.all()
+
+
+def test_an_adopted_piece_inside_is_all_virtual():
+    inside = box((0.5, 0.5, 0.5), at=(0.25, 0.25, 0.25))[0]
+    (piece,) = _core.adopt_convex_pieces(*arrays(*box()), [inside], 1e-3).pieces
+    assert not piece.facet_original.any() and not piece.edge_original.any()
+
+
+def test_progress_is_told_and_can_stop():
+    V, F = arrays(*l_prism())
+    solid = np.ones(len(F), dtype=np.uint8)
+    shares = []
+    _core.decompose_surface(V, F, solid, lambda s: shares.append(s) or True)
+    assert shares[-1] == 1 and shares == sorted(shares)
+    with pytest.raises(RuntimeError):
+        _core.decompose_surface(V, F, solid, lambda s: False)
+
+    def fail(share):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError):
+        _core.decompose_surface(V, F, solid, fail)
+
+
+@pytest.mark.parametrize("index", [-1, 12, 2**31 - 1])
+def test_bad_indices_are_refused(index):
+    V, F = arrays(*l_prism())
+    F = F.copy()
+    F[3, 1] = index
+    solid, labels = np.ones(len(F), np.uint8), np.zeros(len(F), np.int32)
+    with pytest.raises(ValueError):
+        _core.decompose_surface(V, F, solid)
+    with pytest.raises(ValueError):
+        _core.assemble_surface_pieces(V, F, labels)
+    with pytest.raises(ValueError):
+        _core.adopt_convex_pieces(V, F, [V], 1e-6)
+
+
+@pytest.mark.parametrize("labels", [[-1] * 20, [1] * 20, [0] * 19, [2**30] * 20])
+def test_bad_labels_are_refused(labels):
+    V, F = arrays(*l_prism())
+    with pytest.raises(ValueError):
+        _core.assemble_surface_pieces(V, F, np.array(labels, dtype=np.int32))
+
+
+def test_bad_values_are_refused():
+    V, F = arrays(*l_prism())
+    V = V.copy()
+    V[0, 1] = np.nan
+    with pytest.raises(ValueError):
+        decompose(V, F)
+    with pytest.raises(ValueError):
+        decompose(V[:0], F[:0])
+
+
+def test_a_piece_outlives_its_decomposition():
+    piece = decompose(*SHAPES["L"]()).pieces[0]
+    assert np.isfinite(piece.vertices).all()
