@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import drake_haptics
 from pydrake.common.yaml import yaml_load_file, yaml_load_typed
 
+import drake_haptics
 from drake_haptics.scene_check import SceneError, check_keys
 
 _DEVICES = Path(drake_haptics.__file__).parent / "models" / "devices"

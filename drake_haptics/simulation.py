@@ -30,7 +30,7 @@ def make_simulator(haptic: HapticDiagram) -> Simulator:
     """Returns a simulator at time 0 that integrates one step per tick.
 
     The step is fixed and of second order: the stiffest motion of a shipped arm in
-    a shipped grip is slow against a tick (tests/test_simulated_arm.py).
+    a shipped grip is slow against a tick (tests/test_simulation.py).
     """
     simulator = Simulator(haptic.diagram)
     ResetIntegratorFromFlags(simulator, "runge_kutta2", haptic.period_s)

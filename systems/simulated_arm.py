@@ -79,7 +79,9 @@ class SimulatedArm(Diagram):
         plant.SetDefaultPositions(solve_arm_positions(plant, handle, X_WH, q_rest))
         hand_impedance = builder.AddNamedSystem(
             "hand_impedance",
-            HandImpedance(plant, handle, path, X_PH, grip.make_gains() if grip else None),
+            HandImpedance(
+                plant, handle, path, X_PH, grip.make_gains() if grip else None
+            ),
         )
         builder.Connect(
             plant.get_state_output_port(), hand_impedance.get_arm_state_input_port()

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import trimesh
+
 from drake_haptics.scene import (
     EnvironmentObject,
     Hand,

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
+
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.scene import Scene, SceneError
 from drake_haptics.scene_check import check_values

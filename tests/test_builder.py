@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+from pydrake.geometry import Meshcat
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import DiagramBuilder
+
 from drake_haptics._core import RigidToolDynamics
 from drake_haptics.builder import AddHapticLoop, BuildHapticDiagram
+from drake_haptics.device_preset import load_device_preset
 from drake_haptics.errors import MeshError
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.scene import Contact, Coupling, Pose, SceneError
@@ -12,10 +17,6 @@ from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.simulated_arm import SimulatedArm
-from drake_haptics.device_preset import load_device_preset
-from pydrake.geometry import Meshcat
-from pydrake.math import RigidTransform
-from pydrake.systems.framework import DiagramBuilder
 
 START = (0.0, 0.0, 0.0, 0.05)
 SYSTEMS = {

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from drake_haptics.systems.contact_clustering import ContactClustering
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from test_contact_query import TOLERANCE, box_core, query_at
+
+from drake_haptics.systems.contact_clustering import ContactClustering
+from drake_haptics.systems.contact_query import ContactObject, ContactQuery
 
 TOOL_SIZE = 0.02
 

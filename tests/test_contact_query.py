@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 import trimesh
+from pydrake.math import RigidTransform
+
 from drake_haptics.decomposition import decompose
 from drake_haptics.mesh import Mesh
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems.contact_query import ContactObject, ContactQuery
-from pydrake.math import RigidTransform
 
 TOLERANCE = 2e-3
 

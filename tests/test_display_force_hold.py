@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from drake_haptics.systems.display_force_hold import (
     LIMITED,
     NOT_FINITE,

@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from pydrake.math import RigidTransform, RollPitchYaw
+
 from drake_haptics._core import CouplingGains
 from drake_haptics.device_preset import load_device_preset
+from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.systems.arm_inverse_kinematics import (
     UnreachableError,
     solve_arm_positions,
@@ -11,8 +14,6 @@ from drake_haptics.systems.arm_inverse_kinematics import (
 from drake_haptics.systems.hand_impedance import HandImpedance
 from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.simulated_arm import make_arm_plant
-from drake_haptics.pose_vector import vector_to_pose
-from pydrake.math import RigidTransform, RollPitchYaw
 
 L1, L2 = 0.215, 0.170
 AT_REST = np.zeros(6)

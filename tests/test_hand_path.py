@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from pydrake.math import RigidTransform, RollPitchYaw
+
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.systems.hand_path import HandPath
-from pydrake.math import RigidTransform, RollPitchYaw
 
 
 def pose(x, y, z, *rpy_deg):

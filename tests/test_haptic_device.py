@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
-from drake_haptics._core import CouplingGains
-from drake_haptics.systems.haptic_device import HapticDevice
-from drake_haptics.systems.virtual_coupling import VirtualCoupling
 from pydrake.math import RigidTransform
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
+
+from drake_haptics._core import CouplingGains
+from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
 PERIOD = 1e-3
 MASS, DAMPING = 0.1, 0.5

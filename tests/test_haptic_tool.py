@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.systems.analysis import Simulator
+
 from drake_haptics._core import RigidToolDynamics
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems.haptic_tool import HapticTool
-from pydrake.math import RigidTransform, RollPitchYaw
-from pydrake.systems.analysis import Simulator
 
 PERIOD, MASS = 1e-3, 0.1
 X_WT = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [1.0, 2.0, 3.0])

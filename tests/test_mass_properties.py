@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
+
 from drake_haptics.mass_properties import calc_mass_properties
 from drake_haptics.mesh import Mesh
 

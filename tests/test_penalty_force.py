@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from drake_haptics._core import cluster_contacts
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
-from drake_haptics.systems.penalty_force import PenaltyForce
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from test_contact_query import TOLERANCE, at_height, box_core, query_at
+
+from drake_haptics._core import cluster_contacts
+from drake_haptics.systems.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.penalty_force import PenaltyForce
 
 K, B = 2e4, 5.0
 AT_REST = np.zeros(6)

@@ -6,10 +6,11 @@ the serial arm's third angle is q3 - q2.
 
 import numpy as np
 import pytest
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.systems.simulated_arm import make_arm_plant
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.tree import SpatialInertia
+
+from drake_haptics.device_preset import load_device_preset
+from drake_haptics.systems.simulated_arm import make_arm_plant
 
 L1, L2, L3 = 0.215, 0.170, 0.0325
 MA, MC = 0.0202, 0.0249
@@ -53,9 +54,7 @@ def published_mass_matrix(q2, q3):
 
 def tip(q1, q2, q3):
     r = L1 * np.cos(q2) + L2 * np.sin(q3)
-    return np.array(
-        [r * np.cos(q1), r * np.sin(q1), L1 * np.sin(q2) - L2 * np.cos(q3)]
-    )
+    return np.array([r * np.cos(q1), r * np.sin(q1), L1 * np.sin(q2) - L2 * np.cos(q3)])
 
 
 @pytest.fixture(scope="module")
@@ -105,9 +104,7 @@ def test_the_gimbal_turns_the_handle_by_yaw_pitch_roll(arm):
     arm.SetPositions(context, [0, 0, 0, 0.3, 0.4, 0.5])
     X_BH = arm.EvalBodyPoseInWorld(context, arm.GetBodyByName("handle"))
     expected = RollPitchYaw(0.5, 0.4, 0.3).ToRotationMatrix()
-    np.testing.assert_allclose(
-        X_BH.rotation().matrix(), expected.matrix(), atol=1e-14
-    )
+    np.testing.assert_allclose(X_BH.rotation().matrix(), expected.matrix(), atol=1e-14)
 
 
 def test_at_zero_it_is_in_the_middle_of_its_workspace(arm):

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+
 from drake_haptics import run_statistics
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.systems.display_force_hold import (

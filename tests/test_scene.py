@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from drake_haptics.scene import (
     Contact,
     Coupling,

@@ -6,8 +6,9 @@ import time
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
-from drake_haptics.builder import BuildHapticDiagram
+
 from drake_haptics import simulation
+from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.simulation import make_simulator, run
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)

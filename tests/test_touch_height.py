@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
+
 from drake_haptics.mesh import Mesh
 from drake_haptics.touch_height import TouchMap
 

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from pydrake.math import RigidTransform, RollPitchYaw
+
 from drake_haptics._core import CouplingGains
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems.virtual_coupling import VirtualCoupling
-from pydrake.math import RigidTransform, RollPitchYaw
 
 K, B, KR, BR = 800.0, 2.0, 1.5, 0.004
 AT_REST = np.zeros(6)

@@ -7,6 +7,11 @@ al. 2009). One more sample of delay would leave a third of it.
 
 import numpy as np
 import pytest
+from pydrake.math import RigidTransform
+from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
+from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
+
 from drake_haptics._core import CouplingGains
 from drake_haptics.device_preset import load_device_preset
 from drake_haptics.pose_vector import pose_to_vector
@@ -16,10 +21,6 @@ from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.simulated_arm import SimulatedArm
 from drake_haptics.systems.virtual_coupling import VirtualCoupling
-from pydrake.math import RigidTransform
-from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
-from pydrake.systems.framework import DiagramBuilder
-from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
 
 PERIOD = 1e-3
 DEFAULT = Coupling()

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.simulation import run
 from drake_haptics.systems.hand_grip import HAND_GRIPS
