@@ -160,7 +160,7 @@ def test_a_device_that_cannot_hold_it_is_refused(tmp_path, change, complaint):
 
 def test_a_path_too_long_for_the_device_is_refused(tmp_path):
     scene = load(tmp_path, GOOD.replace("[0, 0, 0.05]", "[0, 0.3, 0]"))
-    with pytest.raises(SceneError, match="radius is 0.12 m"):
+    with pytest.raises(SceneError, match=r"radius is 0\.12 m"):
         make_simulated_device(scene, make_hand_path(scene.hand.path))
 
 
