@@ -14,14 +14,6 @@ namespace {
 // Share of a facet that the mesh must cover for the facet to be original.
 constexpr double kCoveredShare = 0.99;
 
-double PolygonArea(std::span<const Vec3> polygon) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
-    sum += (polygon[k] - polygon[0]).cross(polygon[k + 1] - polygon[0]);
-  }
-  return sum.norm() / 2;
-}
-
 // The prism about a facet: its sides, and the slab of +- tolerance.
 std::vector<Plane> FacetPrism(const Polytope& P, int f, double tolerance) {
   const Polytope::Facet& facet = P.facets[f];

@@ -1,8 +1,17 @@
 #include "convex_clip.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace drake_haptics {
+
+double PolygonArea(std::span<const Vec3> polygon) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+    sum += (polygon[k] - polygon[0]).cross(polygon[k + 1] - polygon[0]);
+  }
+  return sum.norm() / 2;
+}
 
 std::vector<Vec3> ClipPolygon(std::vector<Vec3> polygon,
                               std::span<const Plane> planes, double inset) {

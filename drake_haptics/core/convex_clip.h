@@ -8,6 +8,8 @@
 
 namespace drake_haptics {
 
+double PolygonArea(std::span<const Vec3> polygon);
+
 /// The part of a convex polygon below all planes, each lowered by `inset`.
 std::vector<Vec3> ClipPolygon(std::vector<Vec3> polygon,
                               std::span<const Plane> planes, double inset);

@@ -17,8 +17,7 @@ PatchWorkspace::PatchWorkspace(const SurfaceMesh& mesh_in)
     : mesh(mesh_in),
       obstacles(mesh_in),
       label(mesh_in.triangles.size(), -1),
-      vertex_label(mesh_in.vertices.size(), -1),
-      vertex_mark(mesh_in.vertices.size(), -1) {}
+      vertex_label(mesh_in.vertices.size(), -1) {}
 
 Patch::Patch(PatchWorkspace* work, int label, std::span<const int> triangles)
     : work_(*work), mesh_(work->mesh), label_(label) {
@@ -69,14 +68,11 @@ Patch::Outcome Patch::Check(const Sizes& before) {
   const std::size_t num_regions = regions_.size();
   for (std::size_t r = 0; r < num_regions; ++r) {
     const Plane& plane = mesh_.regions[regions_[r]].plane;
-    const bool changed =
-        r >= before.regions ||
-        std::any_of(vertices_.begin() + before.vertices,
-                    vertices_.begin() + num_vertices, [&](int v) {
-                      return plane.Height(mesh_.vertices[v]) >=
-                             -kOnPlaneTolerances * mesh_.tolerance;
-                    });
-    if (changed && !FacetIsCovered(regions_[r])) return Outcome::kNotNow;
+    const bool changed = r >= before.regions ||
+                         std::any_of(vertices_.begin() + before.vertices,
+                                     vertices_.begin() + num_vertices,
+                                     [&](int v) { return IsNear(plane, v); });
+    if (changed && !FillFacet(regions_[r])) return Outcome::kNotNow;
   }
   if (solid && !HullIsInside(before)) return Outcome::kNever;
   return Outcome::kAdded;
@@ -114,54 +110,27 @@ bool Patch::IsOneSided(const Sizes& before) const {
 
 // The hull's facet in the plane of a region is all surface: triangles of the
 // patch fill it, after taking those free ones that lie within it.
-bool Patch::FacetIsCovered(int region) {
+bool Patch::FillFacet(int region) {
   const Plane& plane = mesh_.regions[region].plane;
   if (plane.normal.isZero()) return true;
-  const double near = kOnPlaneTolerances * mesh_.tolerance;
-  const int mark = work_.next_mark++;
-  std::vector<Vec3> points;
-  for (const int v : vertices_) {
-    if (plane.Height(mesh_.vertices[v]) < -near) continue;
-    points.push_back(mesh_.vertices[v]);
-    work_.vertex_mark[v] = mark;
-  }
+  const FlatHull facet = FindFacet(plane);
+  const std::vector<int> own = TrianglesInFacet(plane);
   double covered = 0;
-  std::vector<int> stack;
-  for (const int t : triangles_) {
-    const Triangle& triangle = mesh_.triangles[t];
-    const bool in_facet =
-        mesh_.planes[t].normal.dot(plane.normal) > 0 &&
-        std::all_of(triangle.begin(), triangle.end(),
-                    [&](int v) { return work_.vertex_mark[v] == mark; });
-    if (!in_facet) continue;
-    covered += mesh_.areas[t];
-    if (mesh_.region[t] == region) stack.push_back(t);
-  }
-  const FlatHull facet = FindFlatHull(points, plane.normal);
-  const auto is_covered = [&] {
-    return IsCovered(facet, covered, mesh_.tolerance);
+  for (const int t : own) covered += mesh_.areas[t];
+  const auto is_filled = [&] {
+    return facet.IsFilledBy(covered, mesh_.tolerance);
   };
-  const auto is_within = [&](const Vec3& p) {
-    for (std::size_t k = 0; k < facet.corners.size(); ++k) {
-      const Vec3& a = facet.corners[k];
-      const Vec3 along = facet.corners[(k + 1) % facet.corners.size()] - a;
-      if (plane.normal.cross(along).dot(p - a) <
-          -mesh_.tolerance * along.norm()) {
-        return false;
-      }
-    }
-    return true;
-  };
-  while (!is_covered() && !stack.empty()) {
+  std::vector<int> stack = own;
+  while (!is_filled() && !stack.empty()) {
     const int t = stack.back();
     stack.pop_back();
     for (const int next : mesh_.neighbors[t]) {
       if (next < 0 || work_.label[next] >= 0) continue;
       if (mesh_.region[next] != region) continue;
       const Triangle& v = mesh_.triangles[next];
-      if (!is_within(mesh_.vertices[v[0]]) ||
-          !is_within(mesh_.vertices[v[1]]) ||
-          !is_within(mesh_.vertices[v[2]])) {
+      if (!std::all_of(v.begin(), v.end(), [&](int i) {
+            return facet.Contains(mesh_.vertices[i], mesh_.tolerance);
+          })) {
         continue;
       }
       Append(next);
@@ -169,7 +138,33 @@ bool Patch::FacetIsCovered(int region) {
       stack.push_back(next);
     }
   }
-  return is_covered();
+  return is_filled();
+}
+
+bool Patch::IsNear(const Plane& plane, int vertex) const {
+  return plane.Height(mesh_.vertices[vertex]) >=
+         -kOnPlaneTolerances * mesh_.tolerance;
+}
+
+FlatHull Patch::FindFacet(const Plane& plane) const {
+  std::vector<Vec3> points;
+  for (const int v : vertices_) {
+    if (IsNear(plane, v)) points.push_back(mesh_.vertices[v]);
+  }
+  return FindFlatHull(points, plane.normal);
+}
+
+std::vector<int> Patch::TrianglesInFacet(const Plane& plane) const {
+  std::vector<int> result;
+  for (const int t : triangles_) {
+    const Triangle& v = mesh_.triangles[t];
+    if (mesh_.planes[t].normal.dot(plane.normal) > 0 &&
+        std::all_of(v.begin(), v.end(),
+                    [&](int i) { return IsNear(plane, i); })) {
+      result.push_back(t);
+    }
+  }
+  return result;
 }
 
 // Several planes may still make one flat hull, if they are as good as parallel.
@@ -180,7 +175,7 @@ bool Patch::FlatHullIsCovered(std::span<const Vec3> points) const {
   for (const int t : triangles_) {
     if (mesh_.planes[t].normal.dot(normal) > 0) covered += mesh_.areas[t];
   }
-  return IsCovered(FindFlatHull(points, normal), covered, mesh_.tolerance);
+  return FindFlatHull(points, normal).IsFilledBy(covered, mesh_.tolerance);
 }
 
 bool Patch::HullIsInside(const Sizes& before) {

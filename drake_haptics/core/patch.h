@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "convex_hull.h"
+#include "flat_hull.h"
 #include "obstacles.h"
 #include "surface_mesh.h"
 
@@ -12,14 +13,12 @@ namespace drake_haptics {
 
 /// What all patches of a mesh share while they grow.
 struct PatchWorkspace {
-  PatchWorkspace(const SurfaceMesh& mesh);
+  explicit PatchWorkspace(const SurfaceMesh& mesh);
 
   const SurfaceMesh& mesh;
   Obstacles obstacles;
   std::vector<int> label;         ///< patch of each triangle, -1 for none yet
   std::vector<int> vertex_label;  ///< patch that took each vertex last
-  std::vector<int> vertex_mark;   ///< for scratch sets, by `next_mark`
-  int next_mark = 0;
 };
 
 /// A convex patch of the surface that takes triangles for as long as its hull
@@ -52,7 +51,10 @@ class Patch {
   Outcome Check(const Sizes& before);
   bool IsSupported(const Sizes& before) const;
   bool IsOneSided(const Sizes& before) const;
-  bool FacetIsCovered(int region);
+  bool FillFacet(int region);
+  bool IsNear(const Plane& plane, int vertex) const;
+  FlatHull FindFacet(const Plane& plane) const;
+  std::vector<int> TrianglesInFacet(const Plane& plane) const;
   bool FlatHullIsCovered(std::span<const Vec3> points) const;
   bool HullIsInside(const Sizes& before);
 

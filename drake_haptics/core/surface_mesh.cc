@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "convex_polygon.h"
+#include "flat_hull.h"
 #include "mesh_edges.h"
 #include "predicates.h"
 
@@ -97,8 +97,8 @@ bool IsConvexPolygon(const SurfaceMesh& mesh, const PlanarRegion& region) {
     for (const int v : mesh.triangles[t]) points.push_back(mesh.vertices[v]);
     area += mesh.areas[t];
   }
-  return IsCovered(FindFlatHull(points, region.plane.normal), area,
-                   mesh.tolerance);
+  return FindFlatHull(points, region.plane.normal)
+      .IsFilledBy(area, mesh.tolerance);
 }
 
 void AddRegions(SurfaceMesh* mesh) {
@@ -139,32 +139,6 @@ SurfaceMesh MakeSurfaceMesh(std::span<const Vec3> vertices,
   AddNeighborsAndComponents(&mesh);
   AddRegions(&mesh);
   return mesh;
-}
-
-FlatHull FindFlatHull(std::span<const Vec3> points, const Vec3& normal) {
-  const Vec3 along = normal.unitOrthogonal();
-  const Vec3 across = normal.cross(along);
-  std::vector<Eigen::Vector2d> projected;
-  projected.reserve(points.size());
-  for (const Vec3& p : points) {
-    const Vec3 q = p - points[0];
-    projected.emplace_back(along.dot(q), across.dot(q));
-  }
-  FlatHull hull;
-  const std::vector<int> loop = ExactConvexPolygon(projected);
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Eigen::Vector2d& a = projected[loop[k]];
-    const Eigen::Vector2d& b = projected[loop[(k + 1) % loop.size()]];
-    hull.area += (a.x() * b.y() - a.y() * b.x()) / 2;
-    hull.perimeter += (b - a).norm();
-    hull.corners.push_back(points[loop[k]]);
-  }
-  return hull;
-}
-
-bool IsCovered(const FlatHull& hull, double covered, double tolerance) {
-  constexpr double kRelative = 1e-9;
-  return covered >= hull.area * (1 - kRelative) - hull.perimeter * tolerance;
 }
 
 }  // namespace drake_haptics

@@ -57,15 +57,4 @@ SurfaceMesh MakeSurfaceMesh(std::span<const Vec3> vertices,
                             std::span<const Triangle> triangles,
                             std::span<const std::uint8_t> solid);
 
-/// Area of the convex hull of points near a plane, seen along its normal, and
-/// the hull's perimeter.
-struct FlatHull {
-  double area = 0, perimeter = 0;
-  std::vector<Vec3> corners;  ///< counter-clockwise about the normal
-};
-FlatHull FindFlatHull(std::span<const Vec3> points, const Vec3& normal);
-
-/// Whether `covered` fills the hull but for slivers of width `tolerance`.
-bool IsCovered(const FlatHull& hull, double covered, double tolerance);
-
 }  // namespace drake_haptics

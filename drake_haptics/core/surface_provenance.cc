@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <tuple>
 
+#include "convex_clip.h"
+
 namespace drake_haptics {
 namespace {
 
 double FacetArea(const Polytope& P, int facet) {
-  const auto loop = P.loop_of(facet);
-  const Vec3& base = P.vertices[loop[0]];
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-    sum += (P.vertices[loop[k]] - base).cross(P.vertices[loop[k + 1]] - base);
-  }
-  return sum.norm() / 2;
+  std::vector<Vec3> corners;
+  for (const int v : P.loop_of(facet)) corners.push_back(P.vertices[v]);
+  return PolygonArea(corners);
 }
 
 class Marker {
