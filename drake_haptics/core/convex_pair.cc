@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "facet_revisit.h"
 #include "surface_support.h"
 #include "witness.h"
 
@@ -118,34 +119,58 @@ class Query {
     }
     if (depth.status == DepthStatus::kNoFacet) return Grazing();
     if (surface_only_ && !IsPlausible(depth)) return std::nullopt;
-    const Witness witness =
-        WitnessOfFeatures(pair_, depth.best.feature_A, depth.best.feature_B,
-                          depth.best.n, depth.best.h);
     ContactStatus status =
         depth.best.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating;
     if (depth.status == DepthStatus::kBounded &&
         depth.best.support != SurfaceSupport::kOriginal) {
       status = ContactStatus::kBounded;
     }
-    return PairContact{depth.best.h, depth.best.n,         witness.p_a,
-                       witness.p_b,  depth.best.feature_A, depth.best.feature_B,
-                       status};
+    return AtFacet(depth, status);
   }
 
-  // Whether the facet found can be the way on which the overlap began. A piece
-  // of a thin wall is also met from behind, through its virtual side: its own
-  // surface is far then, and the pieces on the near side carry the contact.
+  // The contact at a facet of A ⊖ B, which is also the next tick's start.
+  PairContact AtFacet(const Depth& depth, ContactStatus status) {
+    const DepthCandidate& facet = depth.best;
+    const Witness witness = WitnessOfFeatures(
+        pair_, facet.feature_A, facet.feature_B, facet.n, facet.h);
+    facet_hub_ = depth.hub;
+    return {facet.h,         facet.n,         witness.p_a, witness.p_b,
+            facet.feature_A, facet.feature_B, status};
+  }
+
+  // Whether the facet found can be the way on which the overlap came about: it
+  // goes on from the last contact, or it is near the shallowest way there is.
+  // A piece of a thin wall is also met from behind, through its virtual side:
+  // its own surface is far then, and the pieces on the near side carry the
+  // contact.
   bool IsPlausible(const Depth& depth) const {
     if (depth.best.support == SurfaceSupport::kVirtual) return false;
-    if (state_.in_contact) return true;
-    if (depth.best.n.dot(state_.n) < kComingFrom) return false;
-    return depth.best.h >= depth.shallowest - tolerance_;
+    if (state_.in_contact && depth.best.h >= state_.distance - tolerance_) {
+      return true;
+    }
+    return depth.best.n.dot(state_.n) >= kComingFrom &&
+           depth.best.h >= depth.shallowest - tolerance_;
   }
 
+  // From the last answer. On coherent motion its facet mostly still is the
+  // answer, and one comparison proves it.
   Depth WarmDepth() {
     Hub hub = state_.hub;
+    if (!state_.feature_A.is_none()) {
+      const Revisit last =
+          RevisitFacet(pair_, state_.feature_A, state_.feature_B, state_.n);
+      if (last.status == RevisitStatus::kMinimum &&
+          last.facet.support == SurfaceSupport::kSupported) {
+        return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub,
+                1};
+      }
+      if (last.status != RevisitStatus::kGone) {
+        return WalkDepth(pair_, last.hub, &last.facet, kWarmPromotionHubs,
+                         &workspace_);
+      }
+    }
     SupportGap(pair_, state_.n, &hub);
-    return WalkDepth(pair_, hub, kWarmPromotionHubs, &workspace_);
+    return WalkDepth(pair_, hub, nullptr, kWarmPromotionHubs, &workspace_);
   }
 
   // The starts of paper 5.2.2: the last known normal, if any, and the line
@@ -155,12 +180,13 @@ class Query {
     if (!(between.norm() > 1e-12 * pair_.scale())) between = Vec3::UnitX();
     Hub hub;
     SupportGap(pair_, between, &hub);
-    Depth depth = WalkDepth(pair_, hub, kColdPromotionHubs, &workspace_);
+    Depth depth =
+        WalkDepth(pair_, hub, nullptr, kColdPromotionHubs, &workspace_);
     if (state_.n.squaredNorm() > 0) {
       hub = state_.hub;
       SupportGap(pair_, state_.n, &hub);
       const Depth other =
-          WalkDepth(pair_, hub, kColdPromotionHubs, &workspace_);
+          WalkDepth(pair_, hub, nullptr, kColdPromotionHubs, &workspace_);
       if (BetterOf(other, depth)) depth = other;
     }
     return depth;
@@ -192,33 +218,38 @@ class Query {
   std::optional<PairContact> Held() {
     Hub hub = state_.hub;
     if (!(SupportGap(pair_, state_.n, &hub) < 0)) return std::nullopt;
-    const Depth depth = WalkDepth(pair_, hub, kWarmPromotionHubs, &workspace_);
+    const Depth depth =
+        WalkDepth(pair_, hub, nullptr, kWarmPromotionHubs, &workspace_);
     if (depth.status == DepthStatus::kNoFacet ||
         depth.best.support != SurfaceSupport::kSupported ||
         !(depth.best.h < 0) || depth.best.n.dot(state_.n) < 0.5) {
       return std::nullopt;
     }
-    const Witness witness =
-        WitnessOfFeatures(pair_, depth.best.feature_A, depth.best.feature_B,
-                          depth.best.n, depth.best.h);
-    if (LateralOffset(pair_, depth.best.feature_A, depth.best.feature_B,
-                      witness) > kHeldSlideShare * pair_.scale()) {
+    const PairContact contact = AtFacet(depth, ContactStatus::kHeld);
+    if (LateralOffset(pair_, contact.feature_A, contact.feature_B,
+                      {contact.p_a, contact.p_b}) >
+        kHeldSlideShare * pair_.scale()) {
       return std::nullopt;
     }
-    return PairContact{depth.best.h,         depth.best.n,
-                       witness.p_a,          witness.p_b,
-                       depth.best.feature_A, depth.best.feature_B,
-                       ContactStatus::kHeld};
+    return contact;
   }
 
   void Remember(const std::optional<PairContact>& contact) {
     state_.in_contact = contact.has_value();
+    const bool is_facet = contact && facet_hub_;
+    state_.feature_A = is_facet ? contact->feature_A : Feature();
+    state_.feature_B = is_facet ? contact->feature_B : Feature();
     if (contact) {
       state_.n = contact->n;
-    } else if (separation_.status != SeparationStatus::kTouching) {
-      state_.n = separation_.n;
+      state_.distance = contact->distance;
     }
-    if (state_.n.squaredNorm() > 0) SupportGap(pair_, state_.n, &state_.hub);
+    if (is_facet) {
+      state_.hub = *facet_hub_;
+    } else if (separation_.status != SeparationStatus::kTouching) {
+      // The vertices of the closest features face each other along n.
+      state_.n = separation_.n;
+      state_.hub = separation_.simplex.hubs[0];
+    }
   }
 
   const PosedPair& pair_;
@@ -227,6 +258,7 @@ class Query {
   PairState& state_;
   DepthWorkspace& workspace_;
   Separation separation_;
+  std::optional<Hub> facet_hub_;  // of the facet that is the answer, if one is
 };
 
 }  // namespace

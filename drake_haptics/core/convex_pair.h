@@ -34,7 +34,10 @@ struct PairState {
   Simplex simplex;        ///< of the last separation query
   Vec3 n = Vec3::Zero();  ///< last normal, in A's frame; zero if none
   Hub hub;                ///< supports along the last normal
+  Feature feature_A;      ///< features of the last depth; none if the last
+  Feature feature_B;      ///< answer was not a depth
   bool in_contact = false;
+  double distance = 0;    ///< last contact's, m
 };
 
 /// Which contacts of a pair count.

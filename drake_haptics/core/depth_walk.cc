@@ -57,7 +57,8 @@ class Walk {
     workspace_.closed.clear();
   }
 
-  Depth Run(const Hub& start) {
+  Depth Run(const Hub& start, const DepthCandidate* known) {
+    if (known != nullptr) Add(*known);
     Visit(start);
     Depth result;
     result.hub = start;
@@ -102,6 +103,16 @@ class Walk {
     // With a supported answer at hand only better ones are of interest.
     const double floor = best_ >= 0 ? workspace_.candidates[best_].h : kNone;
     OverlayGaussRegions(pair_, hub, floor, &workspace_);
+    Take(first);
+  }
+
+  void Add(const DepthCandidate& candidate) {
+    workspace_.candidates.push_back(candidate);
+    Take(workspace_.candidates.size() - 1);
+  }
+
+  // Notes what the candidates from the given one on mean for the answer.
+  void Take(std::size_t first) {
     workspace_.closed.resize(workspace_.candidates.size(), 0);
     const double tie = kTieShare * pair_.scale();
     for (std::size_t i = first; i < workspace_.candidates.size(); ++i) {
@@ -172,9 +183,10 @@ class Walk {
 
 }  // namespace
 
-Depth WalkDepth(const PosedPair& pair, const Hub& start, int max_promotion_hubs,
+Depth WalkDepth(const PosedPair& pair, const Hub& start,
+                const DepthCandidate* known, int max_promotion_hubs,
                 DepthWorkspace* workspace) {
-  return Walk(pair, max_promotion_hubs, workspace).Run(start);
+  return Walk(pair, max_promotion_hubs, workspace).Run(start, known);
 }
 
 }  // namespace drake_haptics

@@ -37,8 +37,8 @@ struct Depth {
 struct DepthWorkspace {
   std::vector<Hub> visited;
   std::vector<DepthCandidate> candidates;
-  std::vector<Vec3> edges_A, edges_B, facets_A, facets_B;
-  std::vector<int> closed;
+  std::vector<Vec3> edges_A, edges_B;
+  std::vector<int> closed, active_B;
 };
 
 /// Walks on the surface of A ⊖ B from a vertex hub pair to a locally optimal
@@ -53,9 +53,12 @@ struct DepthWorkspace {
 /// so far is carried by both surfaces, the walk goes on over the next best
 /// ones (the promotion of paper 5.3.2) up to the bound.
 /// @param start a hub whose Gauss regions overlap: supports along a direction.
+/// @param known a facet of that hub known beforehand, or null: supported, it
+///     spares the look at all that is deeper.
 /// @param max_promotion_hubs bound on the hubs looked at while no supported
 ///     facet is known.
-Depth WalkDepth(const PosedPair& pair, const Hub& start, int max_promotion_hubs,
+Depth WalkDepth(const PosedPair& pair, const Hub& start,
+                const DepthCandidate* known, int max_promotion_hubs,
                 DepthWorkspace* workspace);
 
 }  // namespace drake_haptics

@@ -31,12 +31,14 @@ struct Polytope {
     /// locally supported by direction n at the edge when n ⟂ edge and
     /// n · wing <= 0 for each wing. Zero vectors where there is no face.
     std::array<Vec3, 2> wings{Vec3::Zero(), Vec3::Zero()};
+    double turn = 0;  ///< see gauss_turn.h
   };
 
   struct Facet {
     Vec3 normal = Vec3::Zero();  ///< unit, outward
     double offset = 0;           ///< normal · x = offset on the facet, m
     bool original = true;        ///< lies on the surface
+    double turn = 0;             ///< see gauss_turn.h
   };
 
   int dimension = 0;
@@ -49,6 +51,8 @@ struct Polytope {
   std::vector<int> facet_loop;
   /// Edge k of facet f's loop joins loop vertices k and k + 1.
   std::vector<int> facet_loop_edge;
+  /// Unit normal of that edge in the facet's plane, out of the facet.
+  std::vector<Vec3> facet_loop_side;
 
   /// Neighbours of each vertex along edges, and the edges that lead there.
   std::vector<int> neighbor_start{0};

@@ -1,0 +1,150 @@
+#include "facet_revisit.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "gauss_turn.h"
+
+namespace drake_haptics {
+namespace {
+
+constexpr double kRegionSlack = 1e-11;
+constexpr double kParallelSine = 1e-8;
+
+// Whether vertex v of P is farthest along the direction among its neighbours.
+bool IsFarthest(const Polytope& P, int v, const Vec3& direction) {
+  const double limit = direction.dot(P.vertices[v]) + kRegionSlack * P.radius;
+  const auto neighbors = P.neighbors_of(v);
+  return std::all_of(neighbors.begin(), neighbors.end(), [&](int w) {
+    return direction.dot(P.vertices[w]) <= limit;
+  });
+}
+
+// The least clearance of a point on a facet's plane from the facet's rim;
+// negative outside.
+double Clearance(const Polytope& P, int facet, const Vec3& point) {
+  double clearance = std::numeric_limits<double>::infinity();
+  const int start = P.facet_loop_start[facet];
+  const int end = P.facet_loop_start[facet + 1];
+  for (int k = start; k < end; ++k) {
+    const Vec3& corner = P.vertices[P.facet_loop[k]];
+    clearance = std::min(clearance, P.facet_loop_side[k].dot(corner - point));
+  }
+  return clearance;
+}
+
+// tan(φ/2) for the largest angle between the direction and the facets around a
+// vertex.
+double TurnAroundVertex(const Polytope& P, int v, const Vec3& direction) {
+  double cosine = 1;
+  for (const int facet : P.facets_of(v)) {
+    cosine = std::min(cosine, direction.dot(P.facets[facet].normal));
+  }
+  return P.dimension < 2 ? std::numeric_limits<double>::infinity()
+                         : GaussTurn(cosine);
+}
+
+struct FacetVisit {
+  bool is_facet = false;
+  bool is_minimum = false;
+  double h = 0;
+};
+
+// A facet of P against vertex v of Q, which is `point_P` in P's frame;
+// `outward_Q` is the facet's normal in Q's frame.
+FacetVisit Visit(const Polytope& P, int facet, const Polytope& Q, int v,
+                 const Vec3& point_P, const Vec3& outward_Q) {
+  FacetVisit result;
+  result.is_facet = IsFarthest(Q, v, -outward_Q);
+  if (!result.is_facet) return result;
+  const Polytope::Facet& plane = P.facets[facet];
+  result.h = plane.normal.dot(point_P) - plane.offset;
+  const double depth = -result.h;
+  const double clearance = Clearance(P, facet, point_P);
+  result.is_minimum =
+      clearance > 0 && (clearance > depth * plane.turn ||
+                        clearance > depth * TurnAroundVertex(Q, v, -outward_Q));
+  return result;
+}
+
+Revisit Finish(const PosedPair& pair, const FacetVisit& visit, const Vec3& n,
+               Feature a, Feature b, const Hub& hub) {
+  Revisit result;
+  if (!visit.is_facet) return result;
+  result.facet = {
+      visit.h, n, a, b,
+      ClassifySupport(pair.A, a, n, pair.B, b, pair.X_AB.R.transpose() * n)};
+  result.hub = hub;
+  result.status =
+      visit.is_minimum ? RevisitStatus::kMinimum : RevisitStatus::kFacet;
+  return result;
+}
+
+Revisit VisitFacetOfA(const PosedPair& pair, Feature a, Feature b) {
+  const int facet = a.index(), vertex = b.index();
+  const Vec3& outward = pair.A.facets[facet].normal;
+  const Vec3 outward_B = pair.X_AB.R.transpose() * outward;
+  const FacetVisit visit =
+      Visit(pair.A, facet, pair.B, vertex, pair.b(vertex), outward_B);
+  return Finish(pair, visit, -outward, a, b,
+                {pair.A.loop_of(facet)[0], vertex});
+}
+
+Revisit VisitFacetOfB(const PosedPair& pair, Feature a, Feature b) {
+  const int facet = b.index(), vertex = a.index();
+  const Vec3 n = pair.X_AB.R * pair.B.facets[facet].normal;
+  const Vec3 point_B = pair.X_AB.R.transpose() * (pair.a(vertex) - pair.X_AB.p);
+  const FacetVisit visit = Visit(pair.B, facet, pair.A, vertex, point_B, n);
+  return Finish(pair, visit, n, a, b, {vertex, pair.B.loop_of(facet)[0]});
+}
+
+Revisit VisitEdges(const PosedPair& pair, Feature a, Feature b,
+                   const Vec3& n_last) {
+  Revisit result;
+  const Polytope::Edge& edge_A = pair.A.edges[a.index()];
+  const Polytope::Edge& edge_B = pair.B.edges[b.index()];
+  const Vec3 start_A = pair.a(edge_A.v0), start_B = pair.b(edge_B.v0);
+  const Vec3 along_A = pair.a(edge_A.v1) - start_A;
+  const Vec3 along_B = pair.b(edge_B.v1) - start_B;
+  const Vec3 cross = along_A.cross(along_B);
+  const double length = cross.norm();
+  const double length_A = along_A.norm(), length_B = along_B.norm();
+  if (!(length > kParallelSine * length_A * length_B)) return result;
+  const Vec3 n = cross * ((cross.dot(n_last) < 0 ? -1.0 : 1.0) / length);
+  // n is perpendicular to both edges, so one end stands for the whole edge.
+  if (!IsFarthest(pair.A, edge_A.v0, -n) ||
+      !IsFarthest(pair.B, edge_B.v0, pair.X_AB.R.transpose() * n)) {
+    return result;
+  }
+  const Vec3 between = start_B - start_A;
+  const double h = -n.dot(between);
+  const double scale = length * length;
+  const double s = between.cross(along_B).dot(cross) / scale;
+  const double t = between.cross(along_A).dot(cross) / scale;
+  // The facet is a parallelogram: clearances from its two pairs of sides.
+  const double clearance = std::min(std::min(s, 1 - s) * length / length_B,
+                                    std::min(t, 1 - t) * length / length_A);
+  FacetVisit visit;
+  visit.is_facet = true;
+  visit.h = h;
+  visit.is_minimum =
+      clearance > 0 && clearance > -h * std::min(edge_A.turn, edge_B.turn);
+  return Finish(pair, visit, n, a, b, {edge_A.v0, edge_B.v0});
+}
+
+}  // namespace
+
+Revisit RevisitFacet(const PosedPair& pair, Feature feature_A,
+                     Feature feature_B, const Vec3& n_last) {
+  if (feature_A.kind() == FeatureKind::kFacet) {
+    return VisitFacetOfA(pair, feature_A, feature_B);
+  }
+  if (feature_B.kind() == FeatureKind::kFacet) {
+    return VisitFacetOfB(pair, feature_A, feature_B);
+  }
+  return VisitEdges(pair, feature_A, feature_B, n_last);
+}
+
+}  // namespace drake_haptics
