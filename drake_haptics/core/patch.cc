@@ -11,6 +11,10 @@ namespace {
 // the tolerance of the final hull's facets, so that each of those was checked.
 constexpr double kOnPlaneTolerances = 4;
 
+// A hull thinner than this counts as flat: the inset of the obstacle test would
+// leave it no interior, and nothing would keep it in the solid.
+constexpr double kFlatTolerances = 12;
+
 }  // namespace
 
 PatchWorkspace::PatchWorkspace(const SurfaceMesh& mesh_in)
@@ -189,7 +193,7 @@ bool Patch::HullIsInside(const Sizes& before) {
       added.extend(points.back());
     }
     const Spanning spanning =
-        FindSpanning(points, kOnPlaneTolerances * mesh_.tolerance);
+        FindSpanning(points, kFlatTolerances * mesh_.tolerance);
     if (spanning.dimension < 3) return FlatHullIsCovered(points);
     grown.emplace(points, spanning.point);
   } else {
