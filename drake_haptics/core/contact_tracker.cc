@@ -16,6 +16,26 @@ void RequireFinite(const Pose& X, const char* what) {
   }
 }
 
+// How far a point within `radius` (m) of A's origin has moved in B's frame at
+// most, from the last to the present pose X_AB.
+double MotionBound(const Pose& last, const Pose& present, double radius) {
+  const Pose X_BA = present.inverse(), last_X_BA = last.inverse();
+  // A rotation by θ has the Frobenius norm 2√2 sin(θ/2) about the identity and
+  // moves a point at distance r by 2 r sin(θ/2) at most.
+  return (X_BA.p - last_X_BA.p).norm() +
+         radius * (X_BA.R - last_X_BA.R).norm() / std::sqrt(2.0);
+}
+
+double RadiusAboutOrigin(const Decomposition& decomposition) {
+  double squared = 0;
+  for (const Polytope& piece : decomposition.pieces) {
+    for (const Vec3& v : piece.vertices) {
+      squared = std::max(squared, v.squaredNorm());
+    }
+  }
+  return std::sqrt(squared);
+}
+
 }  // namespace
 
 ContactTracker::ContactTracker(
@@ -27,6 +47,7 @@ ContactTracker::ContactTracker(
   }
   if (tool_ == nullptr) throw std::invalid_argument("the tool is missing");
   tool_tree_ = std::make_shared<PieceTree>(tool_->pieces);
+  tool_radius_ = RadiusAboutOrigin(*tool_);
   for (auto& decomposition : objects) {
     if (decomposition == nullptr) {
       throw std::invalid_argument("an object is missing");
@@ -59,6 +80,9 @@ void ContactTracker::Query(const Pose& X_WTool, ContactSet* out) {
 void ContactTracker::QueryObject(int i, const Pose& X_WTool, ContactSet* out) {
   Object& object = objects_[i];
   const Pose X_AB = RelativePose(X_WTool, object.X_WO);
+  const PairRequest request{tolerance_, SurfaceRule::kSurfaceOnly,
+                            MotionBound(object.X_AB, X_AB, tool_radius_)};
+  object.X_AB = X_AB;
   candidates_.clear();
   CollectPairs(*tool_tree_, *object.tree, X_AB, tolerance_, &stack_,
                &candidates_);
@@ -81,8 +105,8 @@ void ContactTracker::QueryObject(int i, const Pose& X_WTool, ContactSet* out) {
     next_tracked_.push_back(is_known ? *known : TrackedPair{pieces, {}});
     const PosedPair pair{tool_->pieces[pieces.a],
                          object.decomposition->pieces[pieces.b], X_AB};
-    const auto answer = QueryPair(pair, tolerance_, SurfaceRule::kSurfaceOnly,
-                                  &next_tracked_.back().state, &workspace_);
+    const auto answer =
+        QueryPair(pair, request, &next_tracked_.back().state, &workspace_);
     if (!answer) continue;
     Contact contact = InWorld(*answer, X_WTool);
     contact.object = i;

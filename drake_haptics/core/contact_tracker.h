@@ -49,6 +49,7 @@ class ContactTracker {
     std::shared_ptr<const Decomposition> decomposition;
     std::shared_ptr<const PieceTree> tree;
     Pose X_WO;
+    Pose X_AB;  // at the last query: the object in the tool's frame
     std::vector<TrackedPair> tracked;  // sorted by pieces
   };
 
@@ -58,6 +59,7 @@ class ContactTracker {
   std::shared_ptr<const PieceTree> tool_tree_;
   std::vector<Object> objects_;
   double tolerance_;
+  double tool_radius_ = 0;  // of the tool about its origin, m
   // Buffers, kept so that a warm query allocates nothing.
   DepthWorkspace workspace_;
   std::vector<PiecePair> stack_, candidates_;

@@ -20,6 +20,13 @@ constexpr double kJoinShare = 1e-9;
 // direction from which the pair came together: beyond it the tool came from
 // behind the surface, through a virtual side of the piece.
 constexpr double kComingFrom = -0.2;
+// How much deeper than the shallowest facet a new contact may be, and than the
+// last contact, beyond what the motion explains, an old one; as shares of the
+// tolerance.
+constexpr double kEntryShare = 0.25;
+constexpr double kTrackingShare = 0.1;
+// Cosine of the largest turn of a held contact's normal in one tick.
+constexpr double kHeldTurn = 0.5;
 // How far beyond a feature's sides a held contact may slide, as a share of the
 // size: the press is over once the tool has left the features sideways.
 constexpr double kHeldSlideShare = 1e-2;
@@ -44,17 +51,17 @@ bool BetterOf(const Depth& second, const Depth& first) {
 
 class Query {
  public:
-  Query(const PosedPair& pair, double tolerance, SurfaceRule rule,
-        PairState* state, DepthWorkspace* workspace)
+  Query(const PosedPair& pair, const PairRequest& request, PairState* state,
+        DepthWorkspace* workspace)
       : pair_(pair),
-        tolerance_(tolerance),
-        surface_only_(rule == SurfaceRule::kSurfaceOnly),
+        request_(request),
+        surface_only_(request.rule == SurfaceRule::kSurfaceOnly),
         state_(*state),
         workspace_(*workspace) {}
 
   std::optional<PairContact> Run() {
     if (!state_.in_contact && IsBeyondLastNormal()) return std::nullopt;
-    separation_ = ComputeSeparation(pair_, state_.simplex, tolerance_);
+    separation_ = ComputeSeparation(pair_, state_.simplex, request_.tolerance);
     state_.simplex = separation_.simplex;
     std::optional<PairContact> contact;
     switch (separation_.status) {
@@ -75,7 +82,7 @@ class Query {
   // Last tick's normal often still proves that the pair is out of reach.
   bool IsBeyondLastNormal() {
     return state_.n.squaredNorm() > 0 &&
-           SupportGap(pair_, state_.n, &state_.hub) > tolerance_;
+           SupportGap(pair_, state_.n, &state_.hub) > request_.tolerance;
   }
 
   std::optional<PairContact> Near() {
@@ -145,11 +152,15 @@ class Query {
   // contact.
   bool IsPlausible(const Depth& depth) const {
     if (depth.best.support == SurfaceSupport::kVirtual) return false;
-    if (state_.in_contact && depth.best.h >= state_.distance - tolerance_) {
-      return true;
-    }
+    if (state_.in_contact && GoesOn(depth.best.h)) return true;
     return depth.best.n.dot(state_.n) >= kComingFrom &&
-           depth.best.h >= depth.shallowest - tolerance_;
+           depth.best.h >= depth.shallowest - kEntryShare * request_.tolerance;
+  }
+
+  // Whether the motion since the last contact explains this gap.
+  bool GoesOn(double h) const {
+    return h >= state_.distance - 2 * request_.motion -
+                    kTrackingShare * request_.tolerance;
   }
 
   // From the last answer. On coherent motion its facet mostly still is the
@@ -222,7 +233,8 @@ class Query {
         WalkDepth(pair_, hub, nullptr, kWarmPromotionHubs, &workspace_);
     if (depth.status == DepthStatus::kNoFacet ||
         depth.best.support != SurfaceSupport::kSupported ||
-        !(depth.best.h < 0) || depth.best.n.dot(state_.n) < 0.5) {
+        !(depth.best.h < 0) || !GoesOn(depth.best.h) ||
+        depth.best.n.dot(state_.n) < kHeldTurn) {
       return std::nullopt;
     }
     const PairContact contact = AtFacet(depth, ContactStatus::kHeld);
@@ -253,7 +265,7 @@ class Query {
   }
 
   const PosedPair& pair_;
-  const double tolerance_;
+  const PairRequest request_;
   const bool surface_only_;
   PairState& state_;
   DepthWorkspace& workspace_;
@@ -263,10 +275,11 @@ class Query {
 
 }  // namespace
 
-std::optional<PairContact> QueryPair(const PosedPair& pair, double tolerance,
-                                     SurfaceRule rule, PairState* state,
+std::optional<PairContact> QueryPair(const PosedPair& pair,
+                                     const PairRequest& request,
+                                     PairState* state,
                                      DepthWorkspace* workspace) {
-  return Query(pair, tolerance, rule, state, workspace).Run();
+  return Query(pair, request, state, workspace).Run();
 }
 
 }  // namespace drake_haptics

@@ -37,7 +37,7 @@ struct PairState {
   Feature feature_A;      ///< features of the last depth; none if the last
   Feature feature_B;      ///< answer was not a depth
   bool in_contact = false;
-  double distance = 0;    ///< last contact's, m
+  double distance = 0;  ///< last contact's, m
 };
 
 /// Which contacts of a pair count.
@@ -47,6 +47,15 @@ enum class SurfaceRule {
                    ///< carried by the meshes that they stand for
 };
 
+/// What is asked of a pair.
+struct PairRequest {
+  double tolerance = 0;  ///< contacts farther apart than this (m) are none
+  SurfaceRule rule = SurfaceRule::kWholeBoundary;
+  /// No point of A has moved farther than this (m) in B's frame since the last
+  /// query; used under kSurfaceOnly.
+  double motion = 0;
+};
+
 /// Answers the pair at its present pose, warm from `state`, and renews it.
 /// Apart: the distance and closest features. Overlapping: the locally optimal
 /// penetration depth (paper, 5.2), tracked from the last answer. The two join
@@ -54,11 +63,12 @@ enum class SurfaceRule {
 ///
 /// Under kSurfaceOnly a contact apart counts where both meshes are locally
 /// supported along its normal, so that seams of a decomposition are never
-/// felt; a pair that was in contact and has passed behind the surface stays in
-/// contact along the way it went in (DESIGN, section 5).
-/// @param tolerance contacts farther apart than this (m) are none.
-std::optional<PairContact> QueryPair(const PosedPair& pair, double tolerance,
-                                     SurfaceRule rule, PairState* state,
+/// felt; a contact's depth grows no faster than the motion allows; and a pair
+/// that was in contact and has passed behind the surface stays in contact
+/// along the way it went in.
+std::optional<PairContact> QueryPair(const PosedPair& pair,
+                                     const PairRequest& request,
+                                     PairState* state,
                                      DepthWorkspace* workspace);
 
 }  // namespace drake_haptics
