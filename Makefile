@@ -33,6 +33,7 @@ format: $(STAMP)-test
 build: $(STAMP)-test
 	$(BIN)/pip install --quiet "scikit-build-core>=0.11" "nanobind>=2.7" "cmeel-eigen>=3.4"
 	$(BIN)/pip install --quiet --no-build-isolation --no-deps -e .
+	$(BIN)/python -m nanobind.stubgen -q -m drake_haptics._core -o drake_haptics/_core.pyi
 
 $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || { \

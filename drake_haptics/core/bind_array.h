@@ -24,34 +24,36 @@ inline std::vector<Vec3> ToPoints(const PointsArg& array) {
   return points;
 }
 
+/// Rows of an array of the given number of columns.
+template <typename Scalar, int columns>
+using Rows = Eigen::Matrix<Scalar, Eigen::Dynamic, columns,
+                           columns == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+
 /// (n, columns) array with entry(item, k) in row of `item`, column k.
 template <typename Scalar, int columns, typename Item, typename Entry>
-nanobind::object ToRows(const std::vector<Item>& items, const Entry& entry) {
-  using Matrix =
-      Eigen::Matrix<Scalar, Eigen::Dynamic, columns,
-                    columns == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-  Matrix matrix(items.size(), columns);
+Rows<Scalar, columns> ToRows(const std::vector<Item>& items,
+                             const Entry& entry) {
+  Rows<Scalar, columns> rows(items.size(), columns);
   for (std::size_t i = 0; i < items.size(); ++i) {
-    for (int k = 0; k < columns; ++k) matrix(i, k) = entry(items[i], k);
+    for (int k = 0; k < columns; ++k) rows(i, k) = entry(items[i], k);
   }
-  return nanobind::cast(std::move(matrix));
+  return rows;
 }
 
 /// (n,) array of one member of each item.
 template <typename Scalar, typename Item, typename Member>
-nanobind::object ToArray(const std::vector<Item>& items,
-                         Member Item::* member) {
+Rows<Scalar, 1> ToArray(const std::vector<Item>& items, Member Item::* member) {
   return ToRows<Scalar, 1>(
       items, [member](const Item& item, int) { return item.*member; });
 }
 
 /// (n, 3) array of vectors, or of one vector member of each item.
-inline nanobind::object ToArray3(const std::vector<Vec3>& vectors) {
+inline Rows<double, 3> ToArray3(const std::vector<Vec3>& vectors) {
   return ToRows<double, 3>(vectors, [](const Vec3& v, int k) { return v[k]; });
 }
 
 template <typename Item>
-nanobind::object ToArray3(const std::vector<Item>& items, Vec3 Item::* member) {
+Rows<double, 3> ToArray3(const std::vector<Item>& items, Vec3 Item::* member) {
   return ToRows<double, 3>(
       items, [member](const Item& item, int k) { return (item.*member)[k]; });
 }

@@ -15,28 +15,28 @@ namespace drake_haptics {
 
 /// (n,) view of a scalar member.
 template <typename Item, typename Scalar>
-nanobind::object Column(nanobind::handle owner, const std::vector<Item>& items,
-                        Scalar Item::* member) {
+auto Column(nanobind::handle owner, const std::vector<Item>& items,
+            Scalar Item::* member) {
   static_assert(sizeof(Item) % sizeof(Scalar) == 0);
   using Array =
-      nanobind::ndarray<nanobind::numpy, const Scalar, nanobind::ndim<1>>;
+      nanobind::ndarray<nanobind::numpy, const Scalar, nanobind::shape<-1>>;
   const Scalar* data = items.empty() ? nullptr : &(items.front().*member);
   const std::size_t shape[1] = {items.size()};
   const std::int64_t strides[1] = {sizeof(Item) / sizeof(Scalar)};
-  return nanobind::cast(Array(data, 1, shape, owner, strides));
+  return Array(data, 1, shape, owner, strides);
 }
 
 /// (n, 3) view of a vector member.
 template <typename Item>
-nanobind::object Column(nanobind::handle owner, const std::vector<Item>& items,
-                        Vec3 Item::* member) {
+auto Column(nanobind::handle owner, const std::vector<Item>& items,
+            Vec3 Item::* member) {
   static_assert(sizeof(Item) % sizeof(double) == 0);
   using Array =
-      nanobind::ndarray<nanobind::numpy, const double, nanobind::ndim<2>>;
+      nanobind::ndarray<nanobind::numpy, const double, nanobind::shape<-1, 3>>;
   const double* data = items.empty() ? nullptr : (items.front().*member).data();
   const std::size_t shape[2] = {items.size(), 3};
   const std::int64_t strides[2] = {sizeof(Item) / sizeof(double), 1};
-  return nanobind::cast(Array(data, 2, shape, owner, strides));
+  return Array(data, 2, shape, owner, strides);
 }
 
 /// Defines `name` as a read-only column of the vector `items` of Class.

@@ -50,8 +50,8 @@ void BindClustering(nb::module_& m) {
       [](nb::handle self) {
         const auto& label = nb::cast<const ClusterSet&>(self).label;
         const std::size_t shape[1] = {label.size()};
-        return nb::cast(nb::ndarray<nb::numpy, const std::int32_t, nb::ndim<1>>(
-            label.data(), 1, shape, self));
+        return nb::ndarray<nb::numpy, const std::int32_t, nb::shape<-1>>(
+            label.data(), 1, shape, self);
       },
       "(n,) cluster of each contact.");
   DefFrozenCopy(&set);

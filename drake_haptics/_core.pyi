@@ -1,0 +1,430 @@
+"""
+The compiled core of drake_haptics: geometry, contact query, clustering and wrenches. Use the classes of drake_haptics, which document and check their input; this module is their engine.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Annotated
+
+import numpy
+from numpy.typing import NDArray
+
+
+class Polytope:
+    """
+    Convex hull of points, with the adjacency that the contact query walks on. Immutable.
+    """
+
+    def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> None:
+        """
+        Builds the hull of (n, 3) points, m. Coplanar triangles become one facet; points that are not extreme are dropped; sets that are flat, straight or a single point are valid.
+
+        Raises:
+            ValueError: no points, or not finite.
+        """
+
+    @property
+    def dimension(self) -> int:
+        """0 point, 1 segment, 2 flat polygon, 3 solid."""
+
+    @property
+    def vertices(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]:
+        """(n, 3) extreme points, m, in the order of the input."""
+
+    @property
+    def facets(self) -> list[list[int]]:
+        """Vertex loops, counter-clockwise seen from outside."""
+
+    @property
+    def facet_normals(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]:
+        """(m, 3) unit outward normals."""
+
+    @property
+    def facet_offsets(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
+        """(m,) plane offsets, m: normal · x = offset."""
+
+    @property
+    def facet_original(self) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C')]:
+        """
+        (m,) whether a facet lies on the surface that the polytope is a piece of.
+        """
+
+    @property
+    def edges(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C')]:
+        """(k, 2) end vertices."""
+
+    @property
+    def edge_facets(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C')]:
+        """(k, 2) facets left and right of each edge; -1 on a segment."""
+
+    @property
+    def edge_original(self) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C')]:
+        """(k,) whether an edge lies on an edge of the surface."""
+
+    @property
+    def edge_wings(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
+        """
+        (k, 6) two unit directions in the surface beside each edge, away from it; zero where the surface ends.
+        """
+
+    def ring(self, vertex: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]:
+        """(r, 3) unit directions of the surface's edges at a vertex."""
+
+    @property
+    def centroid(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """(3,) mean of the vertices, m."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the ball about the centroid, m."""
+
+class Decomposition:
+    """A mesh and the convex pieces that stand for its surface. Immutable."""
+
+    @property
+    def vertices(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]:
+        """(n, 3) of the mesh, m, in the object's frame."""
+
+    @property
+    def triangles(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C')]:
+        """(m, 3) vertex indices, counter-clockwise seen from outside."""
+
+    @property
+    def pieces(self) -> list[Polytope]:
+        """The polytopes that queries run on."""
+
+    @property
+    def piece_of_triangle(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')]:
+        """
+        (m,) piece of each triangle; -1 where pieces were not made from triangles.
+        """
+
+def decompose_surface(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], progress: Callable[[float], bool] | None = None) -> Decomposition:
+    """
+    Convex surface decomposition (paper, section 5.3.1).
+
+    Args:
+        vertices: (n, 3) positions, m.
+        triangles: (m, 3) vertex indices, int32, counter-clockwise seen from outside.
+        solid: (m,) uint8, whether a triangle bounds a solid; the pieces of others are flat.
+        progress: called with the share done in [0, 1]; returns whether to go on.
+
+    Raises:
+        ValueError: bad indices or values.
+        RuntimeError: `progress` returned False.
+    """
+
+def assemble_surface_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], piece_of_triangle: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Decomposition:
+    """
+    The result of decompose_surface from its labels, without the search.
+
+    Args:
+        vertices: (n, 3) positions, m.
+        triangles: (m, 3) vertex indices, int32.
+        piece_of_triangle: (m,) int32, numbers from 0 without gaps.
+
+    Raises:
+        ValueError: bad indices, values or labels.
+    """
+
+def adopt_convex_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], pieces: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)]], tolerance: float) -> Decomposition:
+    """
+    Pieces made elsewhere. Facets on the mesh are original, all others virtual.
+
+    Args:
+        vertices: (n, 3) positions, m.
+        triangles: (m, 3) vertex indices, int32.
+        pieces: list of (k, 3) points, m, whose hulls are the pieces.
+        tolerance: distance from the mesh, m, up to which a facet lies on it.
+
+    Raises:
+        ValueError: bad indices or values.
+    """
+
+class Contact:
+    """One contact in the world frame."""
+
+    @property
+    def distance(self) -> float:
+        """m; > 0 apart, < 0 penetrating (then −distance is the depth)."""
+
+    @property
+    def nhat_BA_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """(3,) unit normal out of B into A."""
+
+    @property
+    def p_WCa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """(3,) witness point on A, m."""
+
+    @property
+    def p_WCb(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """(3,) witness point on B, m."""
+
+    @property
+    def p_WC(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """(3,) mean of both (Eq. 1), m."""
+
+    @property
+    def feature_A(self) -> int:
+        """Feature of A: index * 4 + (0 vertex, 1 edge, 2 facet)."""
+
+    @property
+    def feature_B(self) -> int:
+        """Feature of B, likewise."""
+
+    @property
+    def status(self) -> int:
+        """
+        0 near, 1 penetrating, 2 held behind the surface, 3 a search met its bound.
+        """
+
+class ConvexPair:
+    """
+    Signed distance of two convex polytopes, warm from query to query: the exact distance apart, the tracked penetration depth in overlap (paper, 5.2).
+    """
+
+    def __init__(self, A: Polytope, B: Polytope) -> None: ...
+
+    def query(self, X_WA: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='F')], X_WB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='F')]) -> Contact:
+        """
+        Contact at the poses X_WA and X_WB, (4, 4) rigid.
+
+        Raises:
+            ValueError: a pose is not finite or not rigid.
+        """
+
+    def reset(self) -> None:
+        """Forgets what earlier queries found."""
+
+class ContactSet:
+    """
+    The contacts of one tick, as read-only columns over n contacts. Immutable; copies are the object itself.
+    """
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, arg: int, /) -> Contact: ...
+
+    @property
+    def query_seconds(self) -> float:
+        """Time that the query took inside the core, s."""
+
+    @property
+    def distance(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """(n,) m; > 0 apart, < 0 penetrating."""
+
+    @property
+    def nhat_BA_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) unit normals out of the object into the tool."""
+
+    @property
+    def p_WCa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) witness points on the tool, m."""
+
+    @property
+    def p_WCb(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) witness points on the objects, m."""
+
+    @property
+    def p_WC(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) their means (Eq. 1), m."""
+
+    @property
+    def object_index(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) object of each contact."""
+
+    @property
+    def piece_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) tool's piece."""
+
+    @property
+    def piece_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) object's piece."""
+
+    @property
+    def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) index * 4 + (0 vertex, 1 edge, 2 facet)."""
+
+    @property
+    def feature_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) likewise, of the object."""
+
+    @property
+    def status(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) 0 near, 1 penetrating, 2 held, 3 bounded."""
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
+class ContactTracker:
+    """
+    Finds all contacts between a moving tool and many objects, each query starting from the last one's answer.
+    """
+
+    def __init__(self, tool: Decomposition, objects: Sequence[Decomposition], tolerance: float) -> None:
+        """
+        Watches `tool` against `objects`, all at the identity pose, for contacts up to `tolerance` (m).
+
+        Raises:
+            ValueError: the tolerance is negative or not finite.
+        """
+
+    @property
+    def num_objects(self) -> int: ...
+
+    @property
+    def tolerance(self) -> float:
+        """m."""
+
+    def set_object_pose(self, i: int, q_WO: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> None:
+        """
+        Poses object i by (7,) [qw qx qy qz x y z].
+
+        Raises:
+            ValueError: not a pose.
+            IndexError: no such object.
+        """
+
+    def query(self, q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> ContactSet:
+        """
+        Contacts at the tool's pose (7,) [qw qx qy qz x y z].
+
+        Raises:
+            ValueError: not a pose; what was remembered is kept.
+        """
+
+    def reset(self) -> None:
+        """Forgets what earlier queries found."""
+
+    def __deepcopy__(self, arg: object, /) -> ContactTracker: ...
+
+class ClusterSet:
+    """
+    Representative contacts of one tick, as read-only columns over k clusters. Immutable; copies are the object itself.
+    """
+
+    def __len__(self) -> int: ...
+
+    @property
+    def distance(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """(k,) smallest distance of the members (Eq. 5), m."""
+
+    @property
+    def nhat_BA_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(k, 3) weighted mean directions (Eq. 3), unit."""
+
+    @property
+    def p_WC(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(k, 3) weighted mean positions (Eq. 4), m."""
+
+    @property
+    def object_index(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(k,) object of each cluster."""
+
+    @property
+    def num_contacts(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(k,) members."""
+
+    @property
+    def label(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) cluster of each contact."""
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
+def cluster_contacts(contacts: ContactSet, delta: float, tolerance: float) -> ClusterSet:
+    """
+    Groups contacts with an octree of leaf size `delta` (m) and represents each group by one contact (paper, 4.2, Eq. 1 to 5). Members weigh `tolerance` (m) − distance.
+
+    Raises:
+        ValueError: delta <= 0 or tolerance < 0.
+    """
+
+class PenaltyWrench:
+    """The wrenches of all clusters. Immutable; copies are the object itself."""
+
+    @property
+    def wrench_model(self) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
+        """
+        (78,) wrench on the tool at To in W with its linear model: [F (6); K (36, by rows); B (36, by rows)], rotational first.
+        """
+
+    @property
+    def F_Tool_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """(6,) wrench on the tool at To, [N·m; N]."""
+
+    @property
+    def F_objects_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
+        """(m, 6) wrench on each object at its origin, [N·m; N]."""
+
+    @property
+    def f_cluster_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]:
+        """(k, 3) force of each cluster on the tool, N."""
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
+def penalty_force(clusters: ClusterSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: float, damping: float, tolerance: float) -> PenaltyWrench:
+    """
+    Penalty wrenches of the clusters (paper, Eq. 6 to 10): k (t − d) along the normal, plus damping while approaching; never a pull.
+
+    Args:
+        p_WTo: (3,) tool's origin, m.
+        V_WTool: (6,) its spatial velocity [rad/s; m/s].
+        p_WO: (m, 3) objects' origins, m.
+        V_WO: (m, 6) their spatial velocities.
+        stiffness: k, N/m.
+        damping: k_v, N·s/m.
+        tolerance: t, m.
+
+    Raises:
+        ValueError: a gain is negative or not finite, or rows do not match.
+        IndexError: a cluster names an object that has no row.
+    """
+
+class CouplingGains:
+    """Spring and damper of the virtual coupling."""
+
+    def __init__(self, stiffness_N_per_m: float, damping_Ns_per_m: float, rotational_stiffness_Nm_per_rad: float, rotational_damping_Nms_per_rad: float) -> None: ...
+
+    @property
+    def stiffness_N_per_m(self) -> float: ...
+
+    @property
+    def damping_Ns_per_m(self) -> float: ...
+
+    @property
+    def rotational_stiffness_Nm_per_rad(self) -> float: ...
+
+    @property
+    def rotational_damping_Nms_per_rad(self) -> float: ...
+
+def coupling_wrench(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], gains: CouplingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
+    """
+    Wrenches of the virtual coupling between handle H and tool.
+
+    Args:
+        q_WH, q_HT, q_WTool: (7,) poses [qw qx qy qz x y z]: handle, the tool's place in it, tool.
+        V_WH, V_WTool: (6,) spatial velocities [rad/s; m/s].
+
+    Returns:
+        (84,): wrench model on the tool at To (78), then the reaction on the handle at Ho in W (6).
+    """
+
+class RigidToolDynamics:
+    """A free rigid tool, advanced implicitly."""
+
+    def __init__(self, mass_kg: float, p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], I_TTcm_T: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='F')]) -> None:
+        """
+        Tool of `mass_kg`, centre of mass (3,) m and rotational inertia about it (3, 3) kg·m², both in the tool's frame.
+
+        Raises:
+            ValueError: not a physical inertia.
+        """
+
+    def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], wrench_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], h: float) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
+        """
+        Advances the state (13,) = [pose (7); spatial velocity (6)] by one linearized backward Euler step of h seconds under a wrench model (78,).
+        """
