@@ -53,7 +53,7 @@ class ConvexPair {
  private:
   std::shared_ptr<const Polytope> A_, B_;
   PairState state_;
-  DepthWorkspace workspace_;
+  PairWorkspace workspace_;
 };
 
 void BindContact(nb::module_& m) {

@@ -6,7 +6,6 @@
 
 #include "contact.h"
 #include "decomposition.h"
-#include "depth_walk.h"
 #include "piece_tree.h"
 #include "types.h"
 
@@ -61,7 +60,7 @@ class ContactTracker {
   double tolerance_;
   double tool_radius_ = 0;  // of the tool about its origin, m
   // Buffers, kept so that a warm query allocates nothing.
-  DepthWorkspace workspace_;
+  PairWorkspace workspace_;
   std::vector<PiecePair> stack_, candidates_;
   std::vector<TrackedPair> next_tracked_;
 };

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "facet_revisit.h"
 #include "surface_support.h"
@@ -25,6 +26,8 @@ constexpr double kComingFrom = -0.2;
 // tolerance.
 constexpr double kEntryShare = 0.25;
 constexpr double kTrackingShare = 0.1;
+// Thickness of the layer between flush faces where no tolerance gives one.
+constexpr double kFreeSpreadShare = 1e-3;
 // Cosine of the largest turn of a held contact's normal in one tick.
 constexpr double kHeldTurn = 0.5;
 // How far beyond a feature's sides a held contact may slide, as a share of the
@@ -52,7 +55,7 @@ bool BetterOf(const Depth& second, const Depth& first) {
 class Query {
  public:
   Query(const PosedPair& pair, const PairRequest& request, PairState* state,
-        DepthWorkspace* workspace)
+        PairWorkspace* workspace)
       : pair_(pair),
         request_(request),
         surface_only_(request.rule == SurfaceRule::kSurfaceOnly),
@@ -75,6 +78,7 @@ class Query {
         if (surface_only_ && state_.in_contact) contact = Held();
     }
     Remember(contact);
+    if (contact) Center(&*contact);
     return contact;
   }
 
@@ -177,11 +181,12 @@ class Query {
       }
       if (last.status != RevisitStatus::kGone) {
         return WalkDepth(pair_, last.hub, &last.facet, kWarmPromotionHubs,
-                         &workspace_);
+                         &workspace_.depth);
       }
     }
     SupportGap(pair_, state_.n, &hub);
-    return WalkDepth(pair_, hub, nullptr, kWarmPromotionHubs, &workspace_);
+    return WalkDepth(pair_, hub, nullptr, kWarmPromotionHubs,
+                     &workspace_.depth);
   }
 
   // The starts of paper 5.2.2: the last known normal, if any, and the line
@@ -192,12 +197,12 @@ class Query {
     Hub hub;
     SupportGap(pair_, between, &hub);
     Depth depth =
-        WalkDepth(pair_, hub, nullptr, kColdPromotionHubs, &workspace_);
+        WalkDepth(pair_, hub, nullptr, kColdPromotionHubs, &workspace_.depth);
     if (state_.n.squaredNorm() > 0) {
       hub = state_.hub;
       SupportGap(pair_, state_.n, &hub);
       const Depth other =
-          WalkDepth(pair_, hub, nullptr, kColdPromotionHubs, &workspace_);
+          WalkDepth(pair_, hub, nullptr, kColdPromotionHubs, &workspace_.depth);
       if (BetterOf(other, depth)) depth = other;
     }
     return depth;
@@ -230,7 +235,7 @@ class Query {
     Hub hub = state_.hub;
     if (!(SupportGap(pair_, state_.n, &hub) < 0)) return std::nullopt;
     const Depth depth =
-        WalkDepth(pair_, hub, nullptr, kWarmPromotionHubs, &workspace_);
+        WalkDepth(pair_, hub, nullptr, kWarmPromotionHubs, &workspace_.depth);
     if (depth.status == DepthStatus::kNoFacet ||
         depth.best.support != SurfaceSupport::kSupported ||
         !(depth.best.h < 0) || !GoesOn(depth.best.h) ||
@@ -244,6 +249,20 @@ class Query {
       return std::nullopt;
     }
     return contact;
+  }
+
+  // Moves the witness points of nearly flush faces to the centre of pressure.
+  void Center(PairContact* contact) {
+    const double spread =
+        std::isfinite(request_.tolerance)
+            ? std::max(0.0, request_.tolerance - contact->distance)
+            : kFreeSpreadShare * pair_.scale();
+    const Vec3& n = contact->n;
+    const auto center = PressureCenter(pair_, n, contact->distance, state_.hub,
+                                       spread, &workspace_.patch);
+    if (!center) return;
+    contact->p_a = *center + n * n.dot(contact->p_a - *center);
+    contact->p_b = contact->p_a - contact->distance * n;
   }
 
   void Remember(const std::optional<PairContact>& contact) {
@@ -268,7 +287,7 @@ class Query {
   const PairRequest request_;
   const bool surface_only_;
   PairState& state_;
-  DepthWorkspace& workspace_;
+  PairWorkspace& workspace_;
   Separation separation_;
   std::optional<Hub> facet_hub_;  // of the facet that is the answer, if one is
 };
@@ -278,7 +297,7 @@ class Query {
 std::optional<PairContact> QueryPair(const PosedPair& pair,
                                      const PairRequest& request,
                                      PairState* state,
-                                     DepthWorkspace* workspace) {
+                                     PairWorkspace* workspace) {
   return Query(pair, request, state, workspace).Run();
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "contact_patch.h"
 #include "depth_walk.h"
 #include "separation.h"
 #include "support.h"
@@ -47,6 +48,12 @@ enum class SurfaceRule {
                    ///< carried by the meshes that they stand for
 };
 
+/// Buffers of a query, kept between ticks so that a warm one allocates nothing.
+struct PairWorkspace {
+  DepthWorkspace depth;
+  PatchWorkspace patch;
+};
+
 /// What is asked of a pair.
 struct PairRequest {
   double tolerance = 0;  ///< contacts farther apart than this (m) are none
@@ -66,9 +73,13 @@ struct PairRequest {
 /// felt; a contact's depth grows no faster than the motion allows; and a pair
 /// that was in contact and has passed behind the surface stays in contact
 /// along the way it went in.
+///
+/// The witness points of faces that lie nearly flush are at the centre of
+/// pressure of a layer as thick as `tolerance` − distance (contact_patch.h);
+/// where the tolerance is infinite, a thousandth of the size.
 std::optional<PairContact> QueryPair(const PosedPair& pair,
                                      const PairRequest& request,
                                      PairState* state,
-                                     DepthWorkspace* workspace);
+                                     PairWorkspace* workspace);
 
 }  // namespace drake_haptics

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "support.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+/// Buffers, kept between ticks.
+struct PatchWorkspace {
+  /// Corners in the contact's plane (x, y, m) with the pressure there (z, m).
+  std::vector<Vec3> polygon, clipped;
+};
+
+/// The centre of pressure of a contact between faces, or a face and an edge,
+/// that lie nearly flush: one point of contact would jump from corner to corner
+/// as the faces rock, and the torque with it. The pressure is that of a layer
+/// of thickness `spread` between the two support features: linear, `spread`
+/// where they are nearest, less where they gape. Its centre moves continuously
+/// with the pose, from the middle of the overlap of parallel faces to the
+/// corner of tilted ones.
+/// @param n unit normal from B into A, in A's frame.
+/// @param h support gap along n, m.
+/// @param hub vertices that support the pair along n.
+/// @return a point of the contact's plane (anywhere along n), in A's frame, or
+///         nothing where the contact has no extent.
+std::optional<Vec3> PressureCenter(const PosedPair& pair, const Vec3& n,
+                                   double h, const Hub& hub, double spread,
+                                   PatchWorkspace* workspace);
+
+}  // namespace drake_haptics

@@ -1,0 +1,119 @@
+"""Test the centre of pressure of flush contacts against a sampled layer."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from contact_samples import box, hull, pose
+from scipy.spatial.transform import Rotation
+
+from drake_haptics import _core
+
+T = 2e-3
+HALF = np.array([0.02, 0.01, 0.015])
+
+
+def tilted(
+    height: float, tilt: np.ndarray, yaw: float = 0.0, x: float = 0.0
+) -> tuple[np.ndarray, Rotation]:
+    """Pose of a box whose lowest point is `height` above the ground plane."""
+    R = Rotation.from_rotvec([*tilt, 0]) * Rotation.from_rotvec([0, 0, yaw])
+    corners = R.apply(
+        HALF * [[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]
+    )
+    qx, qy, qz, qw = R.as_quat()
+    return pose([x, 0, height - corners[:, 2].min()], [qw, qx, qy, qz]), R
+
+
+def sampled_center(q: np.ndarray, R: Rotation, edge_x: float) -> np.ndarray:
+    """Centre of the layer's pressure under the box's bottom, by brute force."""
+    s = (np.arange(400) + 0.5) / 400 * 2 - 1
+    bottom = np.stack(np.meshgrid(s * HALF[0], s * HALF[1], [-HALF[2]]), -1)
+    points = R.apply(bottom.reshape(-1, 3)) + q[4:]
+    pressure = np.maximum(0.0, T - points[:, 2]) * (points[:, 0] < edge_x)
+    return (points * pressure[:, None]).sum(axis=0)[:2] / pressure.sum()
+
+
+@pytest.mark.parametrize("height", [1.5e-3, 2e-4, -3e-4])
+@pytest.mark.parametrize(
+    ("tilt", "x"),
+    [
+        ((0, 0), 0.0),
+        ((0.01, 0), 0.0),
+        ((0.02, -0.03), 0.0),
+        ((0.0, 0.1), 0.0),
+        # Half off the ground's edge, the lowest corner still on it.
+        ((0, 0), 0.049),
+        ((0.01, -0.02), 0.049),
+    ],
+)
+def test_the_centre_is_that_of_a_sampled_layer(
+    height: float, tilt: tuple[float, float], x: float
+) -> None:
+    ground = box([0.1, 0.1, 0.02], [0, 0, -0.01])
+    q, R = tilted(height, np.array(tilt), yaw=0.4, x=x)
+    contacts = _core.ContactTracker(box(2 * HALF), [ground], T).query(q)
+    assert len(contacts) == 1
+    assert contacts.distance[0] == pytest.approx(height, abs=1e-12)
+    np.testing.assert_allclose(contacts.nhat_BA_W[0], [0, 0, 1], atol=1e-12)
+    truth = sampled_center(q, R, 0.05)
+    np.testing.assert_allclose(contacts.p_WC[0][:2], truth, atol=1e-4)
+    np.testing.assert_allclose(
+        contacts.p_WCa - contacts.p_WCb,
+        contacts.distance[:, None] * contacts.nhat_BA_W,
+        atol=1e-12,
+    )
+
+
+def test_the_centre_moves_continuously_as_the_box_rocks_through_flush() -> None:
+    ground = box([0.1, 0.1, 0.02], [0, 0, -0.01])
+    tracker = _core.ContactTracker(box(2 * HALF), [ground], T)
+    step = 1e-5
+    centers = []
+    for tilt in np.arange(-0.05, 0.05, step):
+        q, _ = tilted(1e-3, np.array([0.3 * tilt, tilt]))
+        centers.append(tracker.query(q).p_WC[0])
+    moved = np.linalg.norm(np.diff(centers, axis=0), axis=1)
+    # A layer of spread s under a face of length L moves its centre by L² / (12 s)
+    # per radian in one direction, 0.13 m/rad here; a jump would be some 0.02 m.
+    assert moved.max() < 10 * step * 0.04**2 / (12 * 1e-3)
+    reach = np.abs(np.array(centers)[:, 0]).max()
+    # At the end the layer is a wedge 20 mm wide: its centre is a third of that in.
+    assert reach == pytest.approx(0.02 - 1e-3 / 0.05 / 3, rel=0.03)
+
+
+def test_an_edge_on_a_face_is_centred_too() -> None:
+    ground = box([0.1, 0.1, 0.02], [0, 0, -0.01])
+    roof = hull(
+        [
+            [x, y, z]
+            for x in (-0.02, 0.02)
+            for y, z in ((0, 0), (-0.01, 0.01), (0.01, 0.01))
+        ]
+    )
+    tracker = _core.ContactTracker(roof, [ground], T)
+    contacts = tracker.query(pose([0.01, 0.0, 5e-4]))
+    np.testing.assert_allclose(contacts.p_WC[0][:2], [0.01, 0], atol=1e-9)
+    # Tilted about y the layer is a trapezoid along the edge.
+    angle = 0.02
+    quaternion = [np.cos(angle / 2), 0, np.sin(angle / 2), 0]
+    lift = 5e-4 + 0.02 * np.sin(angle)
+    contacts = tracker.query(pose([0.01, 0.0, lift], quaternion))
+    s = np.linspace(-0.02, 0.02, 20001)
+    x, z = 0.01 + s * np.cos(angle), lift - s * np.sin(angle)
+    pressure = np.maximum(0, T - z)
+    assert contacts.p_WC[0][0] == pytest.approx(
+        (x * pressure).sum() / pressure.sum(), abs=1e-6
+    )
+
+
+def test_a_corner_on_a_face_stays_where_it_is() -> None:
+    ground = box([0.1, 0.1, 0.02], [0, 0, -0.01])
+    q, R = tilted(1e-3, np.array([0.5, 0.4]))
+    contacts = _core.ContactTracker(box(2 * HALF), [ground], T).query(q)
+    corners = (
+        R.apply(HALF * [[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
+        + q[4:]
+    )
+    lowest = corners[np.argmin(corners[:, 2])]
+    np.testing.assert_allclose(contacts.p_WCa[0], lowest, atol=1e-12)
