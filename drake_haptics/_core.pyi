@@ -428,3 +428,50 @@ class RigidToolDynamics:
         """
         Advances the state (13,) = [pose (7); spatial velocity (6)] by one linearized backward Euler step of h seconds under a wrench model (78,).
         """
+
+class PosePath:
+    """A pose over time, a cubic per segment. Immutable."""
+
+    def __init__(self, starts_s: Sequence[float], cubics: Annotated[NDArray[numpy.float64], dict(shape=(None, 4, 7), order='C', device='cpu', writable=False)], period_s: float) -> None:
+        """
+        Path of m segments.
+
+        Args:
+            starts_s: (m,) where they begin, rising from 0 s. The last one never ends.
+            cubics: (m, 4, 7) coefficients by power of the time since the start, of [qw qx qy qz x y z]; the quaternion of any length.
+            period_s: when the path begins anew; infinite if never.
+
+        Raises:
+            ValueError: sizes do not match or there is no period.
+        """
+
+    def evaluate(self, time_s: float) -> tuple:
+        """
+        Returns the pose (7,) and the spatial velocity (6,) at its origin, [rad/s; m/s].
+        """
+
+class HeldArm:
+    """
+    A chain of six revolute joints and a hand that draws its handle H along a path. States are (12,): angles, rad, and speeds, rad/s. All methods raise FloatingPointError where a state is not finite.
+    """
+
+    def __init__(self, J_WH: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], path: PosePath, q_PH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], gains: CouplingGains) -> None:
+        """
+        Args:
+            J_WH: (6, 6) spatial velocity of H per joint speed, all angles zero.
+            q_WH: (7,) its pose there.
+            path: X_WP over time.
+            q_PH: (7,) where the hand wants the handle in P.
+            gains: of the hand.
+        """
+
+    def calc_handle_pose(self, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
+        """Pose X_WH (7,)."""
+
+    def calc_handle_velocity(self, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """Spatial velocity V_WH (6,), [rad/s; m/s]."""
+
+    def calc_joint_torques(self, time_s: float, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """
+        Joint torques (6,), N·m, of the hand and of a wrench (6,) on the handle at its origin in the world, [N·m; N].
+        """

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
-from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
@@ -15,15 +12,17 @@ from pydrake.systems.framework import (
     InputPort,
     LeafSystem,
     OutputPort,
-    ValueProducer,
 )
 
-from drake_haptics._core import CouplingGains, coupling_wrench
-from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics._core import CouplingGains, HeldArm
+from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.systems.hand_path import HandPath
-from drake_haptics.systems.scratch import declare_scratch, get_scratch
 
-_AT_ORIGIN = np.zeros(3)
+_NUM_JOINTS = 6
+_LETS_GO = CouplingGains(0.0, 0.0, 0.0, 0.0)
+# Angles (rad) and speeds (rad/s) at which the arm is compared with its plant.
+_PROBE = np.array([0.3, -0.5, 0.7, 1.1, -0.9, 0.4, 1.0, -2.0, 3.0, 2.0, -1.0, 4.0])
+_MAX_DIFFERENCE = 1e-9
 
 
 class HandImpedance(LeafSystem):
@@ -31,8 +30,8 @@ class HandImpedance(LeafSystem):
 
     It draws the handle to X_WP X_PH, with P the frame of the path, and passes on
     the wrench that the device's motors show. Both act in continuous time as
-    generalized forces, τ = Jᵀ (F_hand + F_applied), which is one evaluation and one
-    vector port, where applied spatial forces would be many.
+    generalized forces, τ = Jᵀ (F_hand + F_applied), which is one call of the core
+    and one vector port, where applied spatial forces would be many.
 
     .. pydrake_system::
 
@@ -66,46 +65,28 @@ class HandImpedance(LeafSystem):
         """Constructs the system.
 
         Args:
-            plant: The arm, finalized, with as many velocities as positions.
-            handle: Its body that is held.
+            plant: The arm, finalized: six revolute joints in a chain.
+            handle: Its body that is held, at the end of the chain.
             path: Where the hand wants P to go.
             X_PH: Where it wants the handle in P.
             gains: Of the hand; None lets go.
+
+        Raises:
+            ValueError: The arm is no such chain.
         """
         super().__init__()
-        self._plant = plant
-        self._handle = handle
-        self._handle_frame = handle.body_frame()
-        self._world_frame = plant.world_frame()
-        self._path = path
-        self._q_PH = pose_to_vector(X_PH)
-        self._gains = gains
-        self._num_positions = plant.num_positions()
-        num_velocities = plant.num_velocities()
-        self._arm_state = self.DeclareVectorInputPort(
-            "arm_state", self._num_positions + num_velocities
-        )
+        self._arm = _make_held_arm(plant, handle, path, X_PH, gains or _LETS_GO)
+        self._arm_state = self.DeclareVectorInputPort("arm_state", 2 * _NUM_JOINTS)
         self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
-        self._plant_context = declare_scratch(
-            self, "plant_context", plant.CreateDefaultContext
-        )
-        self._kinematics = self.DeclareCacheEntry(
-            "kinematics",
-            ValueProducer(Value[object], self._calc_kinematics),
-            {self._arm_state.ticket()},
-        )
+        from_arm = {self._arm_state.ticket()}
         self._generalized_force = self.DeclareVectorOutputPort(
             "generalized_force",
-            num_velocities,
+            _NUM_JOINTS,
             self._calc_generalized_force,
-            {self._kinematics.ticket(), self._F_applied.ticket(), self.time_ticket()},
+            {*from_arm, self._F_applied.ticket(), self.time_ticket()},
         )
-        self._X_WH = self.DeclareVectorOutputPort(
-            "X_WH", 7, self._calc_X_WH, {self._kinematics.ticket()}
-        )
-        self._V_WH = self.DeclareVectorOutputPort(
-            "V_WH", 6, self._calc_V_WH, {self._kinematics.ticket()}
-        )
+        self._X_WH = self.DeclareVectorOutputPort("X_WH", 7, self._calc_X_WH, from_arm)
+        self._V_WH = self.DeclareVectorOutputPort("V_WH", 6, self._calc_V_WH, from_arm)
 
     def get_arm_state_input_port(self) -> InputPort:
         """Returns the input `arm_state`."""
@@ -127,39 +108,61 @@ class HandImpedance(LeafSystem):
         """Returns the output `V_WH`."""
         return self._V_WH
 
-    def _calc_kinematics(self, context: Context, kinematics: AbstractValue) -> None:
-        """Sets (X_WH as a vector, V_WH, Jᵀ)."""
-        state = self._arm_state.Eval(context)
-        # The plant would end the interpreter.
-        if not math.isfinite(sum(state.tolist())):
-            raise FloatingPointError("the arm's state is not finite")
-        plant = self._plant
-        plant_context = get_scratch(self._plant_context, context)
-        plant.SetPositionsAndVelocities(plant_context, state)
-        J_WH = plant.CalcJacobianSpatialVelocity(
-            plant_context,
-            JacobianWrtVariable.kV,
-            self._handle_frame,
-            _AT_ORIGIN,
-            self._world_frame,
-            self._world_frame,
-        )
-        X_WH = pose_to_vector(plant.EvalBodyPoseInWorld(plant_context, self._handle))
-        kinematics.set_value((X_WH, J_WH @ state[self._num_positions :], J_WH.T))
-
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
-        q_WH, V_WH, J_WH_transposed = self._kinematics.Eval(context)
-        F_W = self._F_applied.Eval(context)
-        if self._gains is not None:
-            q_WP, V_WP = self._path.calc(context.get_time())
-            F_W = (
-                F_W
-                + coupling_wrench(q_WP, V_WP, self._q_PH, q_WH, V_WH, self._gains)[:6]
+        output.SetFromVector(
+            self._arm.calc_joint_torques(
+                context.get_time(),
+                self._arm_state.Eval(context),
+                self._F_applied.Eval(context),
             )
-        output.SetFromVector(J_WH_transposed @ F_W)
+        )
 
     def _calc_X_WH(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._kinematics.Eval(context)[0])
+        output.SetFromVector(self._arm.calc_handle_pose(self._arm_state.Eval(context)))
 
     def _calc_V_WH(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._kinematics.Eval(context)[1])
+        output.SetFromVector(
+            self._arm.calc_handle_velocity(self._arm_state.Eval(context))
+        )
+
+
+def _make_held_arm(
+    plant: MultibodyPlant,
+    handle: RigidBody,
+    path: HandPath,
+    X_PH: RigidTransform,
+    gains: CouplingGains,
+) -> HeldArm:
+    """Reads the arm's kinematics off its plant and holds them against it."""
+    if (plant.num_positions(), plant.num_velocities()) != (_NUM_JOINTS, _NUM_JOINTS):
+        raise ValueError(f"the arm must have {_NUM_JOINTS} revolute joints")
+    context = plant.CreateDefaultContext()
+
+    def kinematics(state: np.ndarray) -> tuple[RigidTransform, np.ndarray]:
+        plant.SetPositionsAndVelocities(context, state)
+        J_WH = plant.CalcJacobianSpatialVelocity(
+            context,
+            JacobianWrtVariable.kV,
+            handle.body_frame(),
+            np.zeros(3),
+            plant.world_frame(),
+            plant.world_frame(),
+        )
+        return plant.EvalBodyPoseInWorld(context, handle), J_WH
+
+    X_WH, J_WH = kinematics(np.zeros(2 * _NUM_JOINTS))
+    arm = HeldArm(J_WH, pose_to_vector(X_WH), path.core, pose_to_vector(X_PH), gains)
+    X_WH, J_WH = kinematics(_PROBE)
+    if not (
+        vector_to_pose(arm.calc_handle_pose(_PROBE)).IsNearlyEqualTo(
+            X_WH, _MAX_DIFFERENCE
+        )
+        and np.allclose(
+            arm.calc_handle_velocity(_PROBE),
+            J_WH @ _PROBE[_NUM_JOINTS:],
+            rtol=0.0,
+            atol=_MAX_DIFFERENCE,
+        )
+    ):
+        raise ValueError("the arm must be one chain of revolute joints to the handle")
+    return arm

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Sequence
 
 import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.trajectories import PiecewisePolynomial
 
+from drake_haptics._core import PosePath
 from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
 
 # Neighbouring quaternions are interpolated along their chord; beyond this angle
@@ -21,8 +21,8 @@ class HandPath:
 
     Positions and quaternions follow the shape-preserving cubic (Fritsch and Carlson
     1980), so that speed is continuous and a pause between two equal waypoints stays
-    still. Before it is asked, all is turned into polynomials, because the simulated
-    arm asks several times per tick.
+    still. The core evaluates them, because the simulated arm asks several times per
+    tick.
     """
 
     def __init__(
@@ -54,20 +54,30 @@ class HandPath:
             raise ValueError("a periodic path needs three waypoints or more")
         if periodic and not poses[0].IsNearlyEqualTo(poses[-1], 1e-6):
             raise ValueError("a periodic path must end at the pose it starts with")
-        self._periodic = periodic
-        self._times = [float(t) for t in times_s]
-        self._end = samples[-1]
-        self._coefficients = _fit(np.array(self._times), samples, periodic)
+        times = np.array(times_s, dtype=float)
+        self._duration_s = float(times[-1])
+        cubics = _fit(times, samples, periodic)
+        if periodic:
+            self._core = PosePath(times[:-1].tolist(), cubics, self._duration_s)
+        else:
+            rest = np.zeros((1, 4, 7))
+            rest[0, 0] = samples[-1]
+            self._core = PosePath(times.tolist(), np.vstack([cubics, rest]), np.inf)
 
     @property
     def duration_s(self) -> float:
         """Time of the last waypoint, s."""
-        return self._times[-1]
+        return self._duration_s
 
     @property
     def start(self) -> RigidTransform:
         """X_WP at the start."""
         return vector_to_pose(self.calc(0.0)[0])
+
+    @property
+    def core(self) -> PosePath:
+        """What the core evaluates."""
+        return self._core
 
     def calc(self, time_s: float) -> tuple[np.ndarray, np.ndarray]:
         """Returns X_WP as [qw qx qy qz x y z] and V_WP = [ω; v] at a time.
@@ -79,29 +89,7 @@ class HandPath:
             The pose (7,), m, and the spatial velocity (6,) at P's origin in the
             world, rad/s and m/s.
         """
-        if self._periodic:
-            time_s %= self._times[-1]
-        elif time_s >= self._times[-1]:
-            return self._end, np.zeros(6)
-        i = bisect_right(self._times, time_s) - 1
-        s = time_s - self._times[i]
-        powers = np.array([[1.0, s, s * s, s**3], [0.0, 1.0, 2.0 * s, 3.0 * s * s]])
-        value, rate = (powers @ self._coefficients[i]).tolist()
-        w, x, y, z = value[:4]
-        dw, dx, dy, dz = rate[:4]
-        # On the chord the quaternion is shorter than 1. Its change of length is
-        # the real part of dq q*, which the angular velocity does not read.
-        squared = w * w + x * x + y * y + z * z
-        n = 1.0 / squared**0.5
-        k = 2.0 / squared
-        pose = [w * n, x * n, y * n, z * n, *value[4:]]
-        velocity = [
-            k * (dx * w - dw * x - dy * z + dz * y),
-            k * (dy * w - dw * y - dz * x + dx * z),
-            k * (dz * w - dw * z - dx * y + dy * x),
-            *rate[4:],
-        ]
-        return np.array(pose), np.array(velocity)
+        return self._core.evaluate(time_s)
 
 
 def _align_signs(samples: np.ndarray) -> np.ndarray:

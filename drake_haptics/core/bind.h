@@ -11,5 +11,6 @@ void BindPolytope(nanobind::module_& m);
 void BindDecomposition(nanobind::module_& m);
 void BindQuery(nanobind::module_& m);
 void BindForce(nanobind::module_& m);
+void BindHand(nanobind::module_& m);
 
 }  // namespace drake_haptics

@@ -13,4 +13,5 @@ NB_MODULE(_core, m) {
   drake_haptics::BindDecomposition(m);
   drake_haptics::BindQuery(m);
   drake_haptics::BindForce(m);
+  drake_haptics::BindHand(m);
 }

@@ -1,0 +1,126 @@
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "bind.h"
+#include "bind_array.h"
+#include "held_arm.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+using State = SixJointArm::State;
+using CubicsArg = nb::ndarray<const double, nb::shape<-1, 4, 7>, nb::c_contig,
+                              nb::device::cpu>;
+
+PosePath MakePath(std::vector<double> starts, const CubicsArg& cubics,
+                  double period) {
+  if (starts.empty() || starts.size() != cubics.shape(0) || !(period > 0)) {
+    throw std::invalid_argument(
+        "a path needs a cubic for each start, one at least, and a period above "
+        "0 s");
+  }
+  PosePath path{std::move(starts), {}, period};
+  for (std::size_t i = 0; i < cubics.shape(0); ++i) {
+    path.cubics.emplace_back(
+        Eigen::Map<const PosePath::Cubic>(cubics.data() + 28 * i));
+  }
+  return path;
+}
+
+void RequireFinite(const State& state) {
+  if (!state.allFinite()) {
+    PyErr_SetString(PyExc_FloatingPointError, "the arm's state is not finite");
+    throw nb::python_error();
+  }
+}
+
+void BindPath(nb::module_& m) {
+  nb::class_<PosePath>(m, "PosePath",
+                       "A pose over time, a cubic per segment. Immutable.")
+      .def(
+          "__init__",
+          [](PosePath* self, std::vector<double> starts_s,
+             const CubicsArg& cubics, double period_s) {
+            new (self)
+                PosePath(MakePath(std::move(starts_s), cubics, period_s));
+          },
+          nb::arg("starts_s"), nb::arg("cubics"), nb::arg("period_s"),
+          "Path of m segments.\n\n"
+          "Args:\n"
+          "    starts_s: (m,) where they begin, rising from 0 s. The last one "
+          "never ends.\n"
+          "    cubics: (m, 4, 7) coefficients by power of the time since the "
+          "start, of [qw qx qy qz x y z]; the quaternion of any length.\n"
+          "    period_s: when the path begins anew; infinite if never.\n\n"
+          "Raises:\n    ValueError: sizes do not match or there is no period.")
+      .def(
+          "evaluate",
+          [](const PosePath& self, double time) {
+            const MovingPose pose = self.Evaluate(time);
+            return nb::make_tuple(pose.q, pose.V);
+          },
+          nb::arg("time_s"),
+          "Returns the pose (7,) and the spatial velocity (6,) at its origin, "
+          "[rad/s; m/s].");
+}
+
+void BindHeldArm(nb::module_& m) {
+  nb::class_<HeldArm>(m, "HeldArm",
+                      "A chain of six revolute joints and a hand that draws "
+                      "its handle H along a path. States are (12,): angles, "
+                      "rad, and speeds, rad/s. All methods raise "
+                      "FloatingPointError where a state is not finite.")
+      .def(
+          "__init__",
+          [](HeldArm* self, const Mat6& J_WH, const PoseVector& q_WH,
+             const PosePath& path, const PoseVector& q_PH,
+             const CouplingGains& gains) {
+            new (self) HeldArm{SixJointArm(J_WH, q_WH), path, q_PH, gains};
+          },
+          nb::arg("J_WH"), nb::arg("q_WH"), nb::arg("path"), nb::arg("q_PH"),
+          nb::arg("gains"),
+          "Args:\n"
+          "    J_WH: (6, 6) spatial velocity of H per joint speed, all angles "
+          "zero.\n"
+          "    q_WH: (7,) its pose there.\n"
+          "    path: X_WP over time.\n"
+          "    q_PH: (7,) where the hand wants the handle in P.\n"
+          "    gains: of the hand.")
+      .def(
+          "calc_handle_pose",
+          [](const HeldArm& self, const State& state) {
+            RequireFinite(state);
+            return self.arm.Evaluate(state).pose.q;
+          },
+          nb::arg("state"), "Pose X_WH (7,).")
+      .def(
+          "calc_handle_velocity",
+          [](const HeldArm& self, const State& state) {
+            RequireFinite(state);
+            return self.arm.Evaluate(state).pose.V;
+          },
+          nb::arg("state"), "Spatial velocity V_WH (6,), [rad/s; m/s].")
+      .def(
+          "calc_joint_torques",
+          [](const HeldArm& self, double time, const State& state,
+             const Vec6& F_applied) {
+            RequireFinite(state);
+            return self.JointTorques(time, state, F_applied);
+          },
+          nb::arg("time_s"), nb::arg("state"), nb::arg("F_applied"),
+          "Joint torques (6,), N·m, of the hand and of a wrench (6,) on the "
+          "handle at its origin in the world, [N·m; N].");
+}
+
+}  // namespace
+
+void BindHand(nb::module_& m) {
+  BindPath(m);
+  BindHeldArm(m);
+}
+
+}  // namespace drake_haptics
