@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from drake_haptics.systems.display_force_hold import LIMITED, NOT_FINITE
@@ -10,6 +12,8 @@ from drake_haptics.systems.display_force_hold import LIMITED, NOT_FINITE
 # does not fill the memory; largest values and counts are of all ticks.
 _MAX_RECORDS = 1 << 20
 _FIRST_RECORDS = 1 << 13
+# A tick only notes its numbers; what they amount to is found for many at once.
+_BLOCK = 1 << 8
 
 
 class RunStatistics:
@@ -22,6 +26,7 @@ class RunStatistics:
             period_s: Simulated time of a tick, s.
         """
         self._period_s = period_s
+        self._pending: list[tuple[float, ...]] = []
         self._records = np.zeros((_FIRST_RECORDS, 4))
         self._ticks = 0
         self._max_force_N = 0.0
@@ -33,18 +38,16 @@ class RunStatistics:
     @property
     def ticks(self) -> int:
         """Number of ticks so far."""
-        return self._ticks
+        return self._ticks + len(self._pending)
 
     def add(
         self,
-        *,
         tick_s: float,
         query_s: float,
         contacts: int,
         clusters: int,
-        penetration_m: float,
-        force_N: float,
-        torque_Nm: float,
+        distance_m: float,
+        shown: Sequence[float],
     ) -> None:
         """Adds a tick.
 
@@ -53,28 +56,32 @@ class RunStatistics:
             query_s: Clock time of the contact query inside the core, s.
             contacts: Before clustering.
             clusters: After it.
-            penetration_m: Depth of the deepest contact, m; not positive if none
-                penetrates.
-            force_N: Norm of the force shown, N.
-            torque_Nm: Norm of the torque shown, N·m.
+            distance_m: Of the nearest contact, m, negative if it penetrates; 0 if
+                there is none.
+            shown: (7,) state of the `DisplayForceHold`: wrench on the device
+                [τ; f], N·m and N, and status.
         """
-        if self._ticks == len(self._records) < _MAX_RECORDS:
-            self._records = np.vstack([self._records, np.zeros_like(self._records)])
-        self._records[self._ticks % _MAX_RECORDS] = (
-            tick_s,
-            query_s,
-            contacts,
-            clusters,
-        )
-        self._ticks += 1
-        self._max_force_N = max(self._max_force_N, force_N)
-        self._max_torque_Nm = max(self._max_torque_Nm, torque_Nm)
-        self._max_penetration_m = max(self._max_penetration_m, penetration_m)
+        self._pending.append((tick_s, query_s, contacts, clusters, distance_m, *shown))
+        if len(self._pending) == _BLOCK:
+            self._digest()
 
-    def add_status(self, status: float) -> None:
-        """Counts what the `DisplayForceHold` said of a tick."""
-        self._limit_hits += int(status == LIMITED)
-        self._non_finite_events += int(status == NOT_FINITE)
+    def _digest(self) -> None:
+        """Counts the pending ticks."""
+        if not self._pending:
+            return
+        block = np.array(self._pending)
+        self._pending.clear()
+        end = self._ticks + len(block)
+        while len(self._records) < min(end, _MAX_RECORDS):
+            self._records = np.vstack([self._records, np.zeros_like(self._records)])
+        self._records[np.arange(self._ticks, end) % _MAX_RECORDS] = block[:, :4]
+        self._ticks = end
+        distance, torque, force, status = np.split(block[:, 4:], [1, 4, 7], axis=1)
+        self._max_penetration_m = max(self._max_penetration_m, -float(distance.min()))
+        self._max_torque_Nm = max(self._max_torque_Nm, _largest_norm(torque))
+        self._max_force_N = max(self._max_force_N, _largest_norm(force))
+        self._limit_hits += int(np.count_nonzero(status == LIMITED))
+        self._non_finite_events += int(np.count_nonzero(status == NOT_FINITE))
 
     def to_dict(self) -> dict[str, object]:
         """Returns the figures for a report, ready for JSON.
@@ -84,6 +91,7 @@ class RunStatistics:
         with `median`, `max`), `max_force_N`, `max_torque_Nm`, `max_penetration_m`,
         `limit_hits` and `non_finite_events` (numbers of ticks).
         """
+        self._digest()
         tick_s, query_s, contacts, clusters = self._records[: self._ticks].T
         return {
             "ticks": self._ticks,
@@ -98,6 +106,10 @@ class RunStatistics:
             "limit_hits": self._limit_hits,
             "non_finite_events": self._non_finite_events,
         }
+
+
+def _largest_norm(vectors: np.ndarray) -> float:
+    return float(np.linalg.norm(vectors, axis=1).max())
 
 
 def _describe_times(seconds: np.ndarray) -> dict[str, float]:

@@ -116,19 +116,20 @@ def _make_measure(
     """Returns what reads a tick's values from the context into the statistics."""
     loop = haptic.loop
     tool_context = loop.haptic_tool.GetMyContextFromRoot(root)
-    device_context = loop.device.GetMyContextFromRoot(root)
+    hold = loop.device.GetSubsystemByName("display_force_hold")
+    hold_context = hold.GetMyContextFromRoot(root)
     query_context = loop.contact_query.GetMyContextFromRoot(root)
     clustering_context = loop.contact_clustering.GetMyContextFromRoot(root)
-    F_applied = loop.device.get_applied_wrench_output_port()
-    status = loop.device.get_status_output_port()
     contacts_port = loop.contact_query.get_contacts_output_port()
     clusters_port = loop.contact_clustering.get_clusters_output_port()
 
     def measure(context: Context, tick_s: float) -> None:
-        statistics.add_status(status.Eval(device_context)[0])
+        shown = hold_context.get_discrete_state_vector().value().tolist()
         # A handle that is lost takes the tool with it.
         tool_state = tool_context.get_discrete_state_vector().value()
         if not math.isfinite(sum(tool_state.tolist())):
+            # There are no contacts of such a tool.
+            statistics.add(tick_s, 0.0, 0, 0, 0.0, shown)
             raise RunError(
                 f"stopped at {context.get_time():.4f} s: the tool's state is not"
                 " finite",
@@ -136,16 +137,13 @@ def _make_measure(
             )
         # What the next tick needs of these is cached, so they cost nothing twice.
         contacts = contacts_port.Eval(query_context)
-        clusters = clusters_port.Eval(clustering_context)
-        wrench = F_applied.Eval(device_context).tolist()
         statistics.add(
-            tick_s=tick_s,
-            query_s=contacts.query_seconds,
-            contacts=len(contacts),
-            clusters=len(clusters),
-            penetration_m=-min(contacts.distance.tolist(), default=0.0),
-            force_N=math.hypot(*wrench[3:]),
-            torque_Nm=math.hypot(*wrench[:3]),
+            tick_s,
+            contacts.query_seconds,
+            len(contacts),
+            len(clusters_port.Eval(clustering_context)),
+            min(contacts.distance.tolist(), default=0.0),
+            shown,
         )
 
     return measure

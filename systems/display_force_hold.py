@@ -98,11 +98,13 @@ class DisplayForceHold(LeafSystem):
         wrench = self._F_display.Eval(context).tolist()
         torque, torque_limited = _limit(wrench[:3], self._max_torque_Nm)
         force, force_limited = _limit(wrench[3:], self._max_force_N)
-        if not all(map(math.isfinite, wrench)):
-            torque, force, status = [0.0] * 3, [0.0] * 3, NOT_FINITE
+        if not (torque_limited or force_limited):
+            shown = [*wrench, SHOWN_AS_ASKED]
+        elif all(map(math.isfinite, wrench)):
+            shown = [*torque, *force, LIMITED]
         else:
-            status = LIMITED if torque_limited or force_limited else SHOWN_AS_ASKED
-        next_state.set_value([*torque, *force, status])
+            shown = [0.0] * 6 + [NOT_FINITE]
+        next_state.set_value(shown)
 
 
 def _limit(vector: list[float], largest: float) -> tuple[list[float], bool]:

@@ -14,15 +14,14 @@ from drake_haptics.systems.display_force_hold import (
 )
 
 
-def add(statistics, **changes):
+def add(statistics, force=(0, 0, 1.0), torque=(0.1, 0, 0), status=0.0, **changes):
     tick = {
         "tick_s": 1e-4,
         "query_s": 1e-5,
         "contacts": 3,
         "clusters": 1,
-        "penetration_m": 0.0,
-        "force_N": 1.0,
-        "torque_Nm": 0.1,
+        "distance_m": 0.0,
+        "shown": [*torque, *force, status],
     }
     statistics.add(**(tick | changes))
 
@@ -51,26 +50,37 @@ def test_times_are_described_in_microseconds():
 
 def test_counts_and_largest_values():
     statistics = RunStatistics(1e-3)
-    add(statistics, contacts=0, clusters=0, penetration_m=-1e-3)
-    add(statistics, contacts=5, clusters=2, force_N=8.5)
-    add(statistics, contacts=7, clusters=2, torque_Nm=0.15, penetration_m=2e-4)
+    add(statistics, contacts=0, clusters=0, distance_m=1e-3)
+    add(statistics, contacts=5, clusters=2, force=(0, -5.1, 6.8))
+    add(statistics, contacts=7, clusters=2, torque=(0.09, 0.12, 0), distance_m=-2e-4)
     add(statistics, contacts=5, clusters=1)
-    for status in (SHOWN_AS_ASKED, LIMITED, LIMITED, NOT_FINITE):
-        statistics.add_status(status)
     figures = statistics.to_dict()
     assert figures["contacts"] == {"median": 5.0, "max": 7}
     assert figures["clusters"] == {"median": 1.5, "max": 2}
-    assert figures["max_force_N"] == 8.5
-    assert figures["max_torque_Nm"] == 0.15
+    assert figures["max_force_N"] == pytest.approx(8.5)
+    assert figures["max_torque_Nm"] == pytest.approx(0.15)
     assert figures["max_penetration_m"] == 2e-4
-    assert (figures["limit_hits"], figures["non_finite_events"]) == (2, 1)
+
+
+@pytest.mark.parametrize("ticks", [4, 400])
+def test_what_was_shown_is_counted(ticks):
+    statistics = RunStatistics(1e-3)
+    for status in [SHOWN_AS_ASKED, LIMITED, LIMITED, NOT_FINITE] * (ticks // 4):
+        add(statistics, status=status)
+    assert statistics.ticks == ticks
+    figures = statistics.to_dict()
+    assert figures["ticks"] == ticks
+    assert figures["limit_hits"] == ticks // 2
+    assert figures["non_finite_events"] == ticks // 4
+    # Asking twice counts once.
+    assert statistics.to_dict() == figures
 
 
 def test_memory_is_bounded_and_keeps_the_latest(monkeypatch):
     monkeypatch.setattr(run_statistics, "_FIRST_RECORDS", 4)
     monkeypatch.setattr(run_statistics, "_MAX_RECORDS", 16)
     statistics = RunStatistics(1e-3)
-    add(statistics, force_N=9.0, tick_s=1.0)
+    add(statistics, force=(9.0, 0, 0), tick_s=1.0)
     for i in range(40):
         add(statistics, contacts=i)
     figures = statistics.to_dict()
@@ -83,6 +93,5 @@ def test_memory_is_bounded_and_keeps_the_latest(monkeypatch):
 
 def test_a_report_is_json():
     statistics = RunStatistics(1e-3)
-    add(statistics, penetration_m=np.float64(1e-3))
-    statistics.add_status(np.float64(LIMITED))
+    add(statistics, distance_m=np.float64(-1e-3), status=LIMITED)
     assert json.loads(json.dumps(statistics.to_dict()))["ticks"] == 1
