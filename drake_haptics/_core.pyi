@@ -445,7 +445,7 @@ class PosePath:
             ValueError: sizes do not match or there is no period.
         """
 
-    def evaluate(self, time_s: float) -> tuple:
+    def evaluate(self, time_s: float) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]]:
         """
         Returns the pose (7,) and the spatial velocity (6,) at its origin, [rad/s; m/s].
         """
@@ -465,11 +465,8 @@ class HeldArm:
             gains: of the hand.
         """
 
-    def calc_handle_pose(self, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
-        """Pose X_WH (7,)."""
-
-    def calc_handle_velocity(self, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
-        """Spatial velocity V_WH (6,), [rad/s; m/s]."""
+    def calc_handle_state(self, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
+        """Pose X_WH and spatial velocity V_WH, (13,) = [pose (7); rad/s; m/s]."""
 
     def calc_joint_torques(self, time_s: float, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from pydrake.systems.framework import (
-    BasicVector,
     Context,
+    Diagram,
+    DiagramBuilder,
     DiscreteValues,
     InputPort,
     LeafSystem,
     OutputPort,
 )
+
+from drake_haptics.systems.vector_ports import export_parts
 
 # Values of the port `status`.
 SHOWN_AS_ASKED = 0.0
@@ -19,7 +23,7 @@ LIMITED = 1.0
 NOT_FINITE = 2.0
 
 
-class DisplayForceHold(LeafSystem):
+class DisplayForceHold(Diagram):
     """Zero-order hold of the wrench on a device, within the device's limits.
 
     Force and torque are limited each by its norm, keeping its direction. A wrench
@@ -63,36 +67,37 @@ class DisplayForceHold(LeafSystem):
         ]:
             if not (limit >= 0.0 and math.isfinite(limit)):
                 raise ValueError(f"{name} must be finite and not negative, is {limit}")
-        self._max_force_N = max_force_N
-        self._max_torque_Nm = max_torque_Nm
-        self._F_display = self.DeclareVectorInputPort("F_display", 6)
-        state = self.DeclareDiscreteState(7)
-        from_state = {self.discrete_state_ticket(state)}
-        self._F_applied = self.DeclareVectorOutputPort(
-            "F_applied", 6, self._calc_F_applied, from_state
+        builder = DiagramBuilder()
+        sample = builder.AddNamedSystem(
+            "sample", _LimitedSample(period_s, max_force_N, max_torque_Nm)
         )
-        self._status = self.DeclareVectorOutputPort(
-            "status", 1, self._calc_status, from_state
-        )
-        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+        builder.ExportInput(sample.get_input_port(), "F_display")
+        export_parts(builder, sample.get_output_port(), {"F_applied": 6, "status": 1})
+        builder.BuildInto(self)
 
     def get_display_wrench_input_port(self) -> InputPort:
         """Returns the input `F_display`."""
-        return self._F_display
+        return self.GetInputPort("F_display")
 
     def get_applied_wrench_output_port(self) -> OutputPort:
         """Returns the output `F_applied`."""
-        return self._F_applied
+        return self.GetOutputPort("F_applied")
 
     def get_status_output_port(self) -> OutputPort:
         """Returns the output `status`."""
-        return self._status
+        return self.GetOutputPort("status")
 
-    def _calc_F_applied(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(context.get_discrete_state_vector().value()[:6])
 
-    def _calc_status(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(context.get_discrete_state_vector().value()[6:])
+class _LimitedSample(LeafSystem):
+    """The state of a `DisplayForceHold`, and its update."""
+
+    def __init__(self, period_s: float, max_force_N: float, max_torque_Nm: float):
+        super().__init__()
+        self._max_force_N = max_force_N
+        self._max_torque_Nm = max_torque_Nm
+        self._F_display = self.DeclareVectorInputPort("F_display", 6)
+        self.DeclareStateOutputPort("shown", self.DeclareDiscreteState(7))
+        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         wrench = self._F_display.Eval(context).tolist()
@@ -104,7 +109,7 @@ class DisplayForceHold(LeafSystem):
             shown = [*torque, *force, LIMITED]
         else:
             shown = [0.0] * 6 + [NOT_FINITE]
-        next_state.set_value(shown)
+        next_state.set_value(np.array(shown))
 
 
 def _limit(vector: list[float], largest: float) -> tuple[list[float], bool]:

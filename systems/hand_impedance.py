@@ -41,17 +41,16 @@ class HandImpedance(LeafSystem):
         - F_applied
         output_ports:
         - generalized_force
-        - X_WH
-        - V_WH
+        - handle_state
 
     * `arm_state` is [q; v] of the arm's plant.
     * `F_applied` (6) is the wrench [τ; f] on the handle at its origin in the world,
       N·m and N.
     * `generalized_force` is for the plant, N·m.
-    * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
-    * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
+    * `handle_state` (13) is [X_WH; V_WH]: the handle's pose [qw qx qy qz x y z], m,
+      and its spatial velocity [ω; v], rad/s and m/s, in the world.
 
-    All outputs raise FloatingPointError where the arm's state is not finite.
+    Both raise FloatingPointError where the arm's state is not finite.
     """
 
     def __init__(
@@ -83,10 +82,11 @@ class HandImpedance(LeafSystem):
             "generalized_force",
             _NUM_JOINTS,
             self._calc_generalized_force,
-            {*from_arm, self._F_applied.ticket(), self.time_ticket()},
+            from_arm | {self._F_applied.ticket(), self.time_ticket()},
         )
-        self._X_WH = self.DeclareVectorOutputPort("X_WH", 7, self._calc_X_WH, from_arm)
-        self._V_WH = self.DeclareVectorOutputPort("V_WH", 6, self._calc_V_WH, from_arm)
+        self._handle_state = self.DeclareVectorOutputPort(
+            "handle_state", 13, self._calc_handle_state, from_arm
+        )
 
     def get_arm_state_input_port(self) -> InputPort:
         """Returns the input `arm_state`."""
@@ -100,13 +100,9 @@ class HandImpedance(LeafSystem):
         """Returns the output `generalized_force`."""
         return self._generalized_force
 
-    def get_handle_pose_output_port(self) -> OutputPort:
-        """Returns the output `X_WH`."""
-        return self._X_WH
-
-    def get_handle_velocity_output_port(self) -> OutputPort:
-        """Returns the output `V_WH`."""
-        return self._V_WH
+    def get_handle_state_output_port(self) -> OutputPort:
+        """Returns the output `handle_state`."""
+        return self._handle_state
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(
@@ -117,13 +113,8 @@ class HandImpedance(LeafSystem):
             )
         )
 
-    def _calc_X_WH(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._arm.calc_handle_pose(self._arm_state.Eval(context)))
-
-    def _calc_V_WH(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(
-            self._arm.calc_handle_velocity(self._arm_state.Eval(context))
-        )
+    def _calc_handle_state(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._arm.calc_handle_state(self._arm_state.Eval(context)))
 
 
 def _make_held_arm(
@@ -153,16 +144,11 @@ def _make_held_arm(
     X_WH, J_WH = kinematics(np.zeros(2 * _NUM_JOINTS))
     arm = HeldArm(J_WH, pose_to_vector(X_WH), path.core, pose_to_vector(X_PH), gains)
     X_WH, J_WH = kinematics(_PROBE)
-    if not (
-        vector_to_pose(arm.calc_handle_pose(_PROBE)).IsNearlyEqualTo(
-            X_WH, _MAX_DIFFERENCE
-        )
-        and np.allclose(
-            arm.calc_handle_velocity(_PROBE),
-            J_WH @ _PROBE[_NUM_JOINTS:],
-            rtol=0.0,
-            atol=_MAX_DIFFERENCE,
-        )
+    handle_state = arm.calc_handle_state(_PROBE)
+    V_difference = handle_state[7:] - J_WH @ _PROBE[_NUM_JOINTS:]
+    if (
+        not vector_to_pose(handle_state[:7]).IsNearlyEqualTo(X_WH, _MAX_DIFFERENCE)
+        or np.abs(V_difference).max() > _MAX_DIFFERENCE
     ):
         raise ValueError("the arm must be one chain of revolute joints to the handle")
     return arm

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
-    BasicVector,
     Context,
+    Diagram,
+    DiagramBuilder,
     DiscreteValues,
     InputPort,
     LeafSystem,
@@ -17,9 +18,10 @@ from pydrake.systems.framework import (
 
 from drake_haptics._core import RigidToolDynamics
 from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.vector_ports import export_parts
 
 
-class HapticTool(LeafSystem):
+class HapticTool(Diagram):
     """A free rigid body that linearized backward Euler moves once per tick.
 
     The step takes each force with its stiffness and damping, so that contact of
@@ -67,6 +69,39 @@ class HapticTool(LeafSystem):
         super().__init__()
         if not period_s > 0.0:
             raise ValueError(f"period_s must be positive, is {period_s}")
+        builder = DiagramBuilder()
+        step = builder.AddNamedSystem(
+            "step", _ImplicitStep(dynamics, period_s, wrench_names, X_WT)
+        )
+        for name in wrench_names:
+            builder.ExportInput(step.GetInputPort(name), name)
+        export_parts(builder, step.get_output_port(), {"X_WTool": 7, "V_WTool": 6})
+        builder.BuildInto(self)
+
+    def get_wrench_input_port(self, name: str) -> InputPort:
+        """Returns the input of a wrench."""
+        return self.GetInputPort(name)
+
+    def get_pose_output_port(self) -> OutputPort:
+        """Returns the output `X_WTool`."""
+        return self.GetOutputPort("X_WTool")
+
+    def get_velocity_output_port(self) -> OutputPort:
+        """Returns the output `V_WTool`."""
+        return self.GetOutputPort("V_WTool")
+
+
+class _ImplicitStep(LeafSystem):
+    """The state of a `HapticTool`, and its update."""
+
+    def __init__(
+        self,
+        dynamics: RigidToolDynamics,
+        period_s: float,
+        wrench_names: Sequence[str],
+        X_WT: RigidTransform,
+    ):
+        super().__init__()
         self._dynamics = dynamics
         self._period_s = period_s
         self._wrenches = [
@@ -75,32 +110,8 @@ class HapticTool(LeafSystem):
         state = self.DeclareDiscreteState(
             np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
         )
-        from_state = {self.discrete_state_ticket(state)}
-        self._X_WTool = self.DeclareVectorOutputPort(
-            "X_WTool", 7, self._calc_X_WTool, from_state
-        )
-        self._V_WTool = self.DeclareVectorOutputPort(
-            "V_WTool", 6, self._calc_V_WTool, from_state
-        )
+        self.DeclareStateOutputPort("state", state)
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
-
-    def get_wrench_input_port(self, name: str) -> InputPort:
-        """Returns the input of a wrench."""
-        return self.GetInputPort(name)
-
-    def get_pose_output_port(self) -> OutputPort:
-        """Returns the output `X_WTool`."""
-        return self._X_WTool
-
-    def get_velocity_output_port(self) -> OutputPort:
-        """Returns the output `V_WTool`."""
-        return self._V_WTool
-
-    def _calc_X_WTool(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(context.get_discrete_state_vector().value()[:7])
-
-    def _calc_V_WTool(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(context.get_discrete_state_vector().value()[7:])
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         wrench_model = np.zeros(78)

@@ -15,6 +15,7 @@ from drake_haptics.systems.arm_inverse_kinematics import solve_arm_positions
 from drake_haptics.systems.hand_grip import HandGrip
 from drake_haptics.systems.hand_impedance import HandImpedance
 from drake_haptics.systems.hand_path import HandPath
+from drake_haptics.systems.vector_ports import export_parts
 
 
 class SimulatedArm(Diagram):
@@ -33,7 +34,10 @@ class SimulatedArm(Diagram):
         - X_WH
         - V_WH
 
-    The ports are those of `HandImpedance`.
+    `F_applied` is that of `HandImpedance`.
+
+    * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
+    * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
     """
 
     def __init__(
@@ -91,8 +95,11 @@ class SimulatedArm(Diagram):
             plant.get_applied_generalized_force_input_port(),
         )
         builder.ExportInput(hand_impedance.get_applied_wrench_input_port(), "F_applied")
-        builder.ExportOutput(hand_impedance.get_handle_pose_output_port(), "X_WH")
-        builder.ExportOutput(hand_impedance.get_handle_velocity_output_port(), "V_WH")
+        export_parts(
+            builder,
+            hand_impedance.get_handle_state_output_port(),
+            {"X_WH": 7, "V_WH": 6},
+        )
         builder.BuildInto(self)
 
 

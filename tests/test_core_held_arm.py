@@ -65,11 +65,9 @@ def random_states(count):
 def test_the_handle_is_where_the_plant_has_it(plant, arm):
     for state in random_states(50):
         X_WH, J_WH = kinematics(plant, state)
-        pose = vector_to_pose(arm.calc_handle_pose(state))
-        assert pose.IsNearlyEqualTo(X_WH, 1e-14)
-        np.testing.assert_allclose(
-            arm.calc_handle_velocity(state), J_WH @ state[6:], atol=2e-14
-        )
+        handle_state = arm.calc_handle_state(state)
+        assert vector_to_pose(handle_state[:7]).IsNearlyEqualTo(X_WH, 1e-14)
+        np.testing.assert_allclose(handle_state[7:], J_WH @ state[6:], atol=2e-14)
 
 
 def test_torques_do_the_work_of_hand_and_wrench(plant, arm, path):
@@ -99,8 +97,7 @@ def test_a_state_that_is_not_finite_is_an_error(arm, entry, value):
     state = np.zeros(12)
     state[entry] = value
     for calc in (
-        arm.calc_handle_pose,
-        arm.calc_handle_velocity,
+        arm.calc_handle_state,
         lambda state: arm.calc_joint_torques(0.0, state, np.zeros(6)),
     ):
         with pytest.raises(FloatingPointError, match="arm's state is not finite"):

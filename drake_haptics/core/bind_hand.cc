@@ -1,7 +1,8 @@
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
-#include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "bind.h"
 #include "bind_array.h"
@@ -61,7 +62,7 @@ void BindPath(nb::module_& m) {
           "evaluate",
           [](const PosePath& self, double time) {
             const MovingPose pose = self.Evaluate(time);
-            return nb::make_tuple(pose.q, pose.V);
+            return std::pair(pose.q, pose.V);
           },
           nb::arg("time_s"),
           "Returns the pose (7,) and the spatial velocity (6,) at its origin, "
@@ -91,19 +92,17 @@ void BindHeldArm(nb::module_& m) {
           "    q_PH: (7,) where the hand wants the handle in P.\n"
           "    gains: of the hand.")
       .def(
-          "calc_handle_pose",
+          "calc_handle_state",
           [](const HeldArm& self, const State& state) {
             RequireFinite(state);
-            return self.arm.Evaluate(state).pose.q;
+            const MovingPose pose = self.arm.Evaluate(state).pose;
+            Eigen::Matrix<double, 13, 1> out;
+            out << pose.q, pose.V;
+            return out;
           },
-          nb::arg("state"), "Pose X_WH (7,).")
-      .def(
-          "calc_handle_velocity",
-          [](const HeldArm& self, const State& state) {
-            RequireFinite(state);
-            return self.arm.Evaluate(state).pose.V;
-          },
-          nb::arg("state"), "Spatial velocity V_WH (6,), [rad/s; m/s].")
+          nb::arg("state"),
+          "Pose X_WH and spatial velocity V_WH, (13,) = [pose (7); rad/s; "
+          "m/s].")
       .def(
           "calc_joint_torques",
           [](const HeldArm& self, double time, const State& state,

@@ -1,0 +1,27 @@
+"""Parts of a vector as ports of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pydrake.systems.framework import DiagramBuilder, OutputPort
+from pydrake.systems.primitives import Demultiplexer
+
+
+def export_parts(
+    builder: DiagramBuilder, vector: OutputPort, sizes: Mapping[str, int]
+) -> None:
+    """Exports consecutive parts of a vector output as outputs of the diagram.
+
+    Drake's own system splits it, which takes no time to speak of; a port that Python
+    calculates costs some 5 µs per tick.
+
+    Args:
+        builder: Of the diagram.
+        vector: Of a system in it.
+        sizes: Size of each part by the name of its port, in order.
+    """
+    parts = builder.AddNamedSystem("parts", Demultiplexer(list(sizes.values())))
+    builder.Connect(vector, parts.get_input_port(0))
+    for i, name in enumerate(sizes):
+        builder.ExportOutput(parts.get_output_port(i), name)
