@@ -1,43 +1,62 @@
 #include "contact_patch.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace drake_haptics {
 namespace {
 
-// Sine of the tilt beyond which a feature is not flush: the layer's pressure
-// has shrunk to its corner by then.
-constexpr double kFlushSine = 0.17;
+// Sines of the tilt up to which a facet is flush, and from which it is not any
+// more. Two edges of a right-angled corner at kFlush make a facet at kTilted,
+// so that a facet takes over before two edges share the contact.
+constexpr double kFlush = 0.05;
+constexpr double kTilted = 0.0707;
 
-// A facet or edge that lies nearly flush with the contact's plane.
-struct FlushFeature {
-  FeatureKind kind = FeatureKind::kVertex;
+double FacetShare(double sine) {
+  return std::clamp((kTilted - sine) / (kTilted - kFlush), 0.0, 1.0);
+}
+
+double EdgeShare(double sine) {
+  return std::max(0.0, 1 - sine * sine / (kFlush * kFlush));
+}
+
+// The facet at a vertex that lies most flush with the contact's plane.
+struct FlushFacet {
   int index = -1;
+  double share = 0;
 };
 
-FlushFeature FindFlush(const Polytope& P, int vertex, const Vec3& outward) {
-  FlushFeature found;
-  double best = std::sqrt(1 - kFlushSine * kFlushSine);
+FlushFacet FindFlushFacet(const Polytope& P, int vertex, const Vec3& outward) {
+  FlushFacet found;
+  double least = kTilted;
   for (const int facet : P.facets_of(vertex)) {
-    const double cosine = P.facets[facet].normal.dot(outward);
-    if (cosine > best) {
-      best = cosine;
-      found = {FeatureKind::kFacet, facet};
-    }
-  }
-  if (found.index >= 0) return found;
-  double least = kFlushSine;
-  const auto neighbors = P.neighbors_of(vertex);
-  for (std::size_t i = 0; i < neighbors.size(); ++i) {
-    const Vec3 along = P.vertices[neighbors[i]] - P.vertices[vertex];
-    const double sine = std::abs(along.dot(outward)) / along.norm();
+    const Vec3& normal = P.facets[facet].normal;
+    if (normal.dot(outward) < 0) continue;
+    const double sine = normal.cross(outward).norm();
     if (sine < least) {
       least = sine;
-      found = {FeatureKind::kEdge, P.neighbor_edges_of(vertex)[i]};
+      found = {facet, FacetShare(sine)};
     }
   }
   return found;
+}
+
+// Calls visit(edge, share) for each edge at a vertex that lies flush.
+template <typename Visitor>
+void VisitFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
+                     const Visitor& visit) {
+  const auto neighbors = P.neighbors_of(vertex);
+  for (std::size_t i = 0; i < neighbors.size(); ++i) {
+    const Vec3 along = P.vertices[neighbors[i]] - P.vertices[vertex];
+    const double rise = along.dot(outward);
+    const double length_squared = along.squaredNorm();
+    if (rise * rise < kFlush * kFlush * length_squared) {
+      visit(P.neighbor_edges_of(vertex)[i],
+            EdgeShare(std::abs(rise) / std::sqrt(length_squared)));
+    }
+  }
 }
 
 // The contact's plane: coordinates along u and v, height along n.
@@ -111,30 +130,37 @@ std::optional<Vec3> Center(const std::vector<Vec3>& corners) {
 
 class Patch {
  public:
-  Patch(const PosedPair& pair, const Vec3& n, PatchWorkspace* workspace)
-      : pair_(pair), plane_(n), workspace_(*workspace) {}
+  Patch(const PosedPair& pair, const Vec3& n, double h, double spread,
+        PatchWorkspace* workspace)
+      : pair_(pair),
+        plane_(n),
+        h_(h),
+        spread_(spread),
+        workspace_(*workspace) {}
 
-  // Starts with the corners of A's feature, in the plane.
-  Height StartFromA(const FlushFeature& feature) {
+  std::optional<Vec3> OfFacets(int facet_A, int facet_B) {
     workspace_.polygon.clear();
-    if (feature.kind == FeatureKind::kFacet) {
-      for (const int v : pair_.A.loop_of(feature.index)) {
-        workspace_.polygon.push_back(plane_.To(pair_.a(v)));
-      }
-      return Height(plane_.To(pair_.A.facets[feature.index].normal),
-                    workspace_.polygon[0]);
+    for (const int v : pair_.A.loop_of(facet_A)) {
+      workspace_.polygon.push_back(plane_.To(pair_.a(v)));
     }
-    const Polytope::Edge& edge = pair_.A.edges[feature.index];
-    return StartFromSegment(pair_.a(edge.v0), pair_.a(edge.v1));
+    const Height of_A(plane_.To(pair_.A.facets[facet_A].normal),
+                      workspace_.polygon[0]);
+    return Finish(of_A, CutByFacetOfB(facet_B));
   }
 
-  // The same with an edge of B, to be cut by A's facet.
-  Height StartFromB(const FlushFeature& feature) {
-    workspace_.polygon.clear();
-    const Polytope::Edge& edge = pair_.B.edges[feature.index];
-    return StartFromSegment(pair_.b(edge.v0), pair_.b(edge.v1));
+  std::optional<Vec3> OfEdgeOfA(int edge_A, int facet_B) {
+    const Polytope::Edge& edge = pair_.A.edges[edge_A];
+    const Height of_A = StartFromSegment(pair_.a(edge.v0), pair_.a(edge.v1));
+    return Finish(of_A, CutByFacetOfB(facet_B));
   }
 
+  std::optional<Vec3> OfEdgeOfB(int facet_A, int edge_B) {
+    const Polytope::Edge& edge = pair_.B.edges[edge_B];
+    const Height of_B = StartFromSegment(pair_.b(edge.v0), pair_.b(edge.v1));
+    return Finish(CutByFacetOfA(facet_A), of_B);
+  }
+
+ private:
   Height CutByFacetOfA(int facet) {
     return Cut(
         pair_.A, facet, [this](int v) { return pair_.a(v); },
@@ -147,10 +173,9 @@ class Patch {
         pair_.X_AB.R * pair_.B.facets[facet].normal);
   }
 
-  std::optional<Vec3> Finish(const Height& of_A, const Height& of_B, double h,
-                             double spread) {
+  std::optional<Vec3> Finish(const Height& of_A, const Height& of_B) {
     for (Vec3& corner : workspace_.polygon) {
-      corner.z() = spread + h - (of_A(corner) - of_B(corner));
+      corner.z() = spread_ + h_ - (of_A(corner) - of_B(corner));
     }
     Clip([](const Vec3& p) { return p.z(); }, &workspace_);
     const auto center = Center(workspace_.polygon);
@@ -158,9 +183,9 @@ class Patch {
     return Vec3(plane_.u * center->x() + plane_.v * center->y());
   }
 
- private:
   // The height of a segment is taken constant across it.
   Height StartFromSegment(const Vec3& p, const Vec3& q) {
+    workspace_.polygon.clear();
     workspace_.polygon.push_back(plane_.To(p));
     workspace_.polygon.push_back(plane_.To(q));
     const Vec3 along = workspace_.polygon[1] - workspace_.polygon[0];
@@ -192,26 +217,53 @@ class Patch {
 
   const PosedPair& pair_;
   const Plane plane_;
+  const double h_, spread_;
   PatchWorkspace& workspace_;
+};
+
+// Weighted mean of the centres of all features that share the contact.
+struct Blend {
+  double total = 0, rest = 1;
+  Vec3 sum = Vec3::Zero();
+
+  void Add(const std::optional<Vec3>& center, double share) {
+    if (!center) return;
+    total += share;
+    rest *= 1 - share;
+    sum += share * *center;
+  }
 };
 
 }  // namespace
 
-std::optional<Vec3> PressureCenter(const PosedPair& pair, const Vec3& n,
-                                   double h, const Hub& hub, double spread,
-                                   PatchWorkspace* workspace) {
-  const FlushFeature a = FindFlush(pair.A, hub.a, -n);
-  const FlushFeature b = FindFlush(pair.B, hub.b, pair.X_AB.R.transpose() * n);
-  Patch patch(pair, n, workspace);
-  if (b.kind == FeatureKind::kFacet && a.index >= 0) {
-    const Height of_A = patch.StartFromA(a);
-    return patch.Finish(of_A, patch.CutByFacetOfB(b.index), h, spread);
+Vec3 PressureCenter(const PosedPair& pair, const Vec3& n, double h,
+                    const Hub& hub, const Vec3& witness, double spread,
+                    PatchWorkspace* workspace) {
+  const Vec3 n_B = pair.X_AB.R.transpose() * n;
+  const FlushFacet a = FindFlushFacet(pair.A, hub.a, -n);
+  const FlushFacet b = FindFlushFacet(pair.B, hub.b, n_B);
+  if (a.index < 0 && b.index < 0) return witness;
+  Patch patch(pair, n, h, spread, workspace);
+  Blend blend;
+  if (a.index >= 0 && b.index >= 0) {
+    blend.Add(patch.OfFacets(a.index, b.index), a.share * b.share);
   }
-  if (a.kind == FeatureKind::kFacet && b.index >= 0) {
-    const Height of_B = patch.StartFromB(b);
-    return patch.Finish(patch.CutByFacetOfA(a.index), of_B, h, spread);
+  if (b.index >= 0 && a.share < 1) {
+    VisitFlushEdges(pair.A, hub.a, n, [&](int edge, double share) {
+      blend.Add(patch.OfEdgeOfA(edge, b.index),
+                share * b.share * (1 - a.share));
+    });
   }
-  return std::nullopt;
+  if (a.index >= 0 && b.share < 1) {
+    VisitFlushEdges(pair.B, hub.b, n_B, [&](int edge, double share) {
+      blend.Add(patch.OfEdgeOfB(a.index, edge),
+                share * a.share * (1 - b.share));
+    });
+  }
+  const Vec3 flat = witness - n * n.dot(witness);
+  const Vec3 center =
+      (blend.sum + blend.rest * flat) / (blend.total + blend.rest);
+  return center + n * n.dot(witness);
 }
 
 }  // namespace drake_haptics

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "support.h"
@@ -19,15 +18,16 @@ struct PatchWorkspace {
 /// as the faces rock, and the torque with it. The pressure is that of a layer
 /// of thickness `spread` between the two support features: linear, `spread`
 /// where they are nearest, less where they gape. Its centre moves continuously
-/// with the pose, from the middle of the overlap of parallel faces to the
-/// corner of tilted ones.
+/// with the pose, from the middle of the overlap of parallel faces over the
+/// middle of an edge to a corner; at tilts of 3° to 4° a face gives way to its
+/// edges.
 /// @param n unit normal from B into A, in A's frame.
 /// @param h support gap along n, m.
 /// @param hub vertices that support the pair along n.
-/// @return a point of the contact's plane (anywhere along n), in A's frame, or
-///         nothing where the contact has no extent.
-std::optional<Vec3> PressureCenter(const PosedPair& pair, const Vec3& n,
-                                   double h, const Hub& hub, double spread,
-                                   PatchWorkspace* workspace);
+/// @param witness A's witness point, returned where the contact has no extent.
+/// @return the point of A's support plane at the centre, in A's frame, m.
+Vec3 PressureCenter(const PosedPair& pair, const Vec3& n, double h,
+                    const Hub& hub, const Vec3& witness, double spread,
+                    PatchWorkspace* workspace);
 
 }  // namespace drake_haptics

@@ -26,7 +26,10 @@ constexpr double kComingFrom = -0.2;
 // tolerance.
 constexpr double kEntryShare = 0.25;
 constexpr double kTrackingShare = 0.1;
-// Thickness of the layer between flush faces where no tolerance gives one.
+// Thickness of the layer between flush faces, as a share of the tolerance: thin
+// enough that it ends on the face, thick enough to be soft against rocking.
+constexpr double kSpreadShare = 0.1;
+// The same as a share of the size, where no tolerance is given.
 constexpr double kFreeSpreadShare = 1e-3;
 // Cosine of the largest turn of a held contact's normal in one tick.
 constexpr double kHeldTurn = 0.5;
@@ -253,16 +256,15 @@ class Query {
 
   // Moves the witness points of nearly flush faces to the centre of pressure.
   void Center(PairContact* contact) {
-    const double spread =
-        std::isfinite(request_.tolerance)
-            ? std::max(0.0, request_.tolerance - contact->distance)
-            : kFreeSpreadShare * pair_.scale();
-    const Vec3& n = contact->n;
-    const auto center = PressureCenter(pair_, n, contact->distance, state_.hub,
-                                       spread, &workspace_.patch);
-    if (!center) return;
-    contact->p_a = *center + n * n.dot(contact->p_a - *center);
-    contact->p_b = contact->p_a - contact->distance * n;
+    const double tolerance = request_.tolerance;
+    const double spread = std::isfinite(tolerance)
+                              ? std::clamp(tolerance - contact->distance, 0.0,
+                                           kSpreadShare * tolerance)
+                              : kFreeSpreadShare * pair_.scale();
+    contact->p_a =
+        PressureCenter(pair_, contact->n, contact->distance, state_.hub,
+                       contact->p_a, spread, &workspace_.patch);
+    contact->p_b = contact->p_a - contact->distance * contact->n;
   }
 
   void Remember(const std::optional<PairContact>& contact) {

@@ -75,8 +75,9 @@ struct PairRequest {
 /// along the way it went in.
 ///
 /// The witness points of faces that lie nearly flush are at the centre of
-/// pressure of a layer as thick as `tolerance` − distance (contact_patch.h);
-/// where the tolerance is infinite, a thousandth of the size.
+/// pressure of a layer as thick as `tolerance` − distance, at most a tenth of
+/// the tolerance (contact_patch.h); a thousandth of the size where the
+/// tolerance is infinite.
 std::optional<PairContact> QueryPair(const PosedPair& pair,
                                      const PairRequest& request,
                                      PairState* state,

@@ -68,8 +68,10 @@ def hand_force(scene, handle):
 
 
 @pytest.mark.parametrize("grip", ["light", "nominal", "firm"])
-def test_a_ball_pressed_onto_a_plate_rests(tmp_path, grip):
-    scene = press(tmp_path, "ball", grip)
+@pytest.mark.parametrize("tool", ["ball", "cube"])
+def test_a_tool_pressed_onto_a_plate_rests(tmp_path, tool, grip):
+    """On a corner-free ball, and on a flat face, whose contact must not jump."""
+    scene = press(tmp_path, tool, grip)
     seen = run_and_record(scene)
     # No drift, and no energy but that of round-off.
     assert np.ptp(seen["pose"], axis=0).max() < 1e-7
@@ -87,23 +89,6 @@ def test_a_ball_pressed_onto_a_plate_rests(tmp_path, grip):
     )
     share = (1 / k_hand) / (1 / k_hand + 1 / k_coupling + 1 / k_contact)
     np.testing.assert_allclose(shown[:, 2], share * PRESS_N, rtol=0.02)
-
-
-def test_a_flat_face_on_a_plate_rocks_little_and_does_not_wander(tmp_path):
-    # One contact stands for two faces, so the point of contact goes from corner to
-    # corner and the tool rocks. It must stay small and must not grow.
-    scene = press(tmp_path, "cube", "nominal")
-    seen = run_and_record(scene)
-    np.testing.assert_allclose(seen["pose"][:, 4:6], 0.0, atol=1e-4)
-    rocking = 2.0 * np.linalg.norm(seen["pose"][:, 1:4], axis=1)
-    half = len(rocking) // 2
-    assert rocking.max() < 5e-3
-    assert rocking[half:].max() < 1.05 * rocking[:half].max() + 1e-6
-    shown = seen["shown"][:, 3:]
-    assert np.ptp(shown, axis=0).max() < 0.02
-    np.testing.assert_allclose(
-        hand_force(scene, seen["handle"]).mean(axis=0), -shown.mean(axis=0), atol=1e-3
-    )
 
 
 def test_sliding_and_tapping_stays_finite_and_within_the_limits(tmp_path):
