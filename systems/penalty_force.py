@@ -12,10 +12,9 @@ from pydrake.systems.framework import (
     InputPort,
     LeafSystem,
     OutputPort,
-    ValueProducer,
 )
 
-from drake_haptics._core import penalty_force
+from drake_haptics._core import PenaltyWrench, penalty_force
 from drake_haptics.systems.contact_query import ContactObject
 
 
@@ -96,24 +95,20 @@ class PenaltyForce(LeafSystem):
         for i, item in enumerate(objects):
             if item.X_WO is not None:
                 self._p_WO[i] = item.X_WO.translation()
-        # One call of the core serves all ports.
-        self._wrench = self.DeclareCacheEntry(
-            "contact_wrench",
-            ValueProducer(Value[object], self._calc_wrench),
-            {self.all_input_ports_ticket()},
-        )
-        from_wrench = {self._wrench.ticket()}
+        # Each port calls the core, which takes less time than to share one answer:
+        # in a loop without a viewer only the first one is asked.
+        from_inputs = {self.all_input_ports_ticket()}
         self._wrench_model = self.DeclareVectorOutputPort(
-            "wrench_model", 78, self._calc_wrench_model, from_wrench
+            "wrench_model", 78, self._calc_wrench_model, from_inputs
         )
         self._F_Tool_W = self.DeclareVectorOutputPort(
-            "F_Tool_W", 6, self._calc_F_Tool_W, from_wrench
+            "F_Tool_W", 6, self._calc_F_Tool_W, from_inputs
         )
         self._contact_wrench = self.DeclareAbstractOutputPort(
             "contact_wrench",
             Value[object],
             self._calc_contact_wrench,
-            from_wrench,
+            from_inputs,
         )
 
     def get_clusters_input_port(self) -> InputPort:
@@ -148,32 +143,27 @@ class PenaltyForce(LeafSystem):
         """Returns the output `contact_wrench`."""
         return self._contact_wrench
 
-    def _calc_wrench(self, context: Context, wrench: AbstractValue) -> None:
+    def _calc_wrench(self, context: Context) -> PenaltyWrench:
         p_WO, V_WO = self._p_WO, self._V_WO
         if self._moving:
             p_WO, V_WO = p_WO.copy(), V_WO.copy()
             for i, X_WO, V_WOi in self._moving:
                 p_WO[i] = X_WO.Eval(context)[4:]
                 V_WO[i] = V_WOi.Eval(context)
-        stiffness, damping, tolerance = self._gains
-        wrench.set_value(
-            penalty_force(
-                self._clusters.Eval(context),
-                self._X_WTool.Eval(context)[4:],
-                self._V_WTool.Eval(context),
-                p_WO,
-                V_WO,
-                stiffness,
-                damping,
-                tolerance,
-            )
+        return penalty_force(
+            self._clusters.Eval(context),
+            self._X_WTool.Eval(context)[4:],
+            self._V_WTool.Eval(context),
+            p_WO,
+            V_WO,
+            *self._gains,
         )
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._wrench.Eval(context).wrench_model)
+        output.SetFromVector(self._calc_wrench(context).wrench_model)
 
     def _calc_F_Tool_W(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._wrench.Eval(context).F_Tool_W)
+        output.SetFromVector(self._calc_wrench(context).F_Tool_W)
 
     def _calc_contact_wrench(self, context: Context, output: AbstractValue) -> None:
-        output.set_value(self._wrench.Eval(context))
+        output.set_value(self._calc_wrench(context))

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
     BasicVector,
     Context,
+    Diagram,
+    DiagramBuilder,
     InputPort,
     LeafSystem,
     OutputPort,
-    ValueProducer,
 )
 
 from drake_haptics._core import CouplingGains, coupling_wrench
 from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.vector_ports import export_parts
 
-_WRENCH_MODEL_SIZE = 78
 
-
-class VirtualCoupling(LeafSystem):
+class VirtualCoupling(Diagram):
     """Six-axis spring and damper between handle and tool.
 
     It draws the tool to X_WH X_HT; what it does to the handle is the reaction. The
@@ -56,54 +55,59 @@ class VirtualCoupling(LeafSystem):
             X_HT: Pose of the tool in the handle at which the spring rests.
         """
         super().__init__()
+        builder = DiagramBuilder()
+        spring = builder.AddNamedSystem("spring", _SpringAndDamper(gains, X_HT))
+        for i in range(spring.num_input_ports()):
+            builder.ExportInput(
+                spring.get_input_port(i), spring.get_input_port(i).get_name()
+            )
+        export_parts(
+            builder, spring.get_output_port(), {"wrench_model": 78, "F_display": 6}
+        )
+        builder.BuildInto(self)
+
+    def get_handle_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WH`."""
+        return self.GetInputPort("X_WH")
+
+    def get_handle_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_WH`."""
+        return self.GetInputPort("V_WH")
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self.GetInputPort("X_WTool")
+
+    def get_tool_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_WTool`."""
+        return self.GetInputPort("V_WTool")
+
+    def get_wrench_model_output_port(self) -> OutputPort:
+        """Returns the output `wrench_model`."""
+        return self.GetOutputPort("wrench_model")
+
+    def get_display_wrench_output_port(self) -> OutputPort:
+        """Returns the output `F_display`."""
+        return self.GetOutputPort("F_display")
+
+
+class _SpringAndDamper(LeafSystem):
+    """Both wrenches of a `VirtualCoupling` from one call of the core."""
+
+    def __init__(self, gains: CouplingGains, X_HT: RigidTransform):
+        super().__init__()
         self._gains = gains
         self._q_HT = pose_to_vector(X_HT)
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
         self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
-        # One call of the core serves both ports.
-        self._wrenches = self.DeclareCacheEntry(
-            "wrenches",
-            ValueProducer(Value[object], self._calc_wrenches),
-            {self.all_input_ports_ticket()},
-        )
-        self._wrench_model = self.DeclareVectorOutputPort(
-            "wrench_model",
-            _WRENCH_MODEL_SIZE,
-            self._calc_wrench_model,
-            {self._wrenches.ticket()},
-        )
-        self._F_display = self.DeclareVectorOutputPort(
-            "F_display", 6, self._calc_F_display, {self._wrenches.ticket()}
+        self.DeclareVectorOutputPort(
+            "wrenches", 84, self._calc_wrenches, {self.all_input_ports_ticket()}
         )
 
-    def get_handle_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WH`."""
-        return self._X_WH
-
-    def get_handle_velocity_input_port(self) -> InputPort:
-        """Returns the input `V_WH`."""
-        return self._V_WH
-
-    def get_tool_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WTool`."""
-        return self._X_WTool
-
-    def get_tool_velocity_input_port(self) -> InputPort:
-        """Returns the input `V_WTool`."""
-        return self._V_WTool
-
-    def get_wrench_model_output_port(self) -> OutputPort:
-        """Returns the output `wrench_model`."""
-        return self._wrench_model
-
-    def get_display_wrench_output_port(self) -> OutputPort:
-        """Returns the output `F_display`."""
-        return self._F_display
-
-    def _calc_wrenches(self, context: Context, wrenches: AbstractValue) -> None:
-        wrenches.set_value(
+    def _calc_wrenches(self, context: Context, wrenches: BasicVector) -> None:
+        wrenches.SetFromVector(
             coupling_wrench(
                 self._X_WH.Eval(context),
                 self._V_WH.Eval(context),
@@ -113,9 +117,3 @@ class VirtualCoupling(LeafSystem):
                 self._gains,
             )
         )
-
-    def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._wrenches.Eval(context)[:_WRENCH_MODEL_SIZE])
-
-    def _calc_F_display(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._wrenches.Eval(context)[_WRENCH_MODEL_SIZE:])
