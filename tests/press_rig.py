@@ -1,0 +1,283 @@
+"""A tool pressed into solids through the core's haptic loop, without Drake."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+import drake_haptics
+from drake_haptics import _core
+from drake_haptics.decomposition import decompose
+from drake_haptics.mass_properties import calc_mass_properties
+from drake_haptics.mesh import Mesh, load_mesh
+
+MODELS = Path(drake_haptics.__file__).parent / "models" / "meshes"
+PERIOD_S = 1e-3
+LARGEST_FORCE_N = 8.5
+START_M = 5e-3  # how far outside a press starts
+LONGEST_TRAVEL_M = 40e-3  # where it gives up if nothing resists
+HOLD_S = 0.2
+TOOL_MASS_KG = 0.05
+_REST = np.array([1.0, 0, 0, 0, 0, 0, 0])
+
+
+@dataclass(frozen=True)
+class Gains:
+    """Contact gains of a run: m, m, N/m, N·s/m."""
+
+    tolerance_m: float = 2e-3
+    delta_m: float = 5e-3
+    stiffness_N_per_m: float = 2e4
+    damping_Ns_per_m: float = 5.0
+
+
+# The builder's defaults answer 8.5 N before the shapes touch; the others sink in:
+# 1.2 mm, less than half of a 3 mm wall, and 3.25 mm, as the shipped scenes do.
+GAINS = {
+    "default": Gains(),
+    "sinking": Gains(5e-4, 5e-3, 5e3, 5.0),
+    "soft": Gains(1e-3, 6e-3, 2e3, 4.0),
+}
+COUPLING = _core.CouplingGains(800.0, 2.0, 1.0, 0.004)
+
+
+@dataclass(frozen=True, eq=False)
+class PressTool:
+    """A tool in its frame T, with the directions in which it is pushed.
+
+    Attributes:
+        mesh: Its surface.
+        core: Its pieces.
+        dynamics: Its mass and inertia.
+        pushes_T: (k, 3) unit directions; a press takes one of them.
+    """
+
+    mesh: Mesh
+    core: _core.Decomposition
+    dynamics: _core.RigidToolDynamics
+    pushes_T: np.ndarray
+
+    def probe(self, push: int) -> np.ndarray:
+        """The foremost vertex (3,) along a push, m."""
+        V = self.mesh.vertices
+        return V[np.argmax(V @ self.pushes_T[push])]
+
+
+def make_tool(mesh: Mesh, pushes_T: object, *, flat: bool = False) -> PressTool:
+    """Cuts and weighs a tool.
+
+    Args:
+        mesh: Its surface.
+        pushes_T: (k, 3) directions of any length.
+        flat: Every triangle is a piece of its own.
+    """
+    core = (
+        _core.assemble_surface_pieces(
+            mesh.vertices, mesh.triangles, np.arange(len(mesh.triangles), dtype="i4")
+        )
+        if flat
+        else decompose(mesh).core
+    )
+    pushes = np.array(pushes_T, dtype=float)
+    return PressTool(
+        mesh,
+        core,
+        _core.RigidToolDynamics(
+            TOOL_MASS_KG, *calc_mass_properties(mesh, TOOL_MASS_KG)
+        ),
+        pushes / np.linalg.norm(pushes, axis=1, keepdims=True),
+    )
+
+
+def hull_mesh(points: np.ndarray) -> Mesh:
+    """The convex hull of points (n, 3), m, as a mesh."""
+    hull = _core.Polytope(points)
+    triangles = [
+        (loop[0], loop[i], loop[i + 1])
+        for loop in hull.facets
+        for i in range(1, len(loop) - 1)
+    ]
+    return Mesh.from_arrays(hull.vertices, np.array(triangles))
+
+
+def make_tools() -> dict[str, PressTool]:
+    """The tools by name."""
+    turn = 2 * np.pi * np.arange(8) / 8
+    ring = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    spike = np.concatenate([ring * 2e-3 + [0, 0, 0.03], [[0, 0, -0.01]]])
+    ball = load_mesh(MODELS / "sphere.obj", scale=0.1)
+    points = np.unique(np.round(ball.vertices[::8], 9), axis=0)
+    corners = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
+    down = [[0, 0, -1]]
+    return {
+        "spike": make_tool(hull_mesh(spike), down),
+        "ball": make_tool(hull_mesh(points), [*down, [1, 0, 0], [1, 1, 1]]),
+        "box": make_tool(
+            hull_mesh(corners * [6e-3, 4e-3, 3e-3]),
+            [*down, [1, 0, 0], [1, 1, 0], [1, 1, 1]],
+        ),
+        "spoon": make_tool(
+            load_mesh(MODELS / "spoon.obj", scale=1.0), [*down, [-1, 0, -0.3]]
+        ),
+        "shell": make_tool(
+            load_mesh(MODELS / "torus.obj", scale=0.3), [*down, [1, 0, 0]], flat=True
+        ),
+    }
+
+
+@dataclass(frozen=True)
+class Press:
+    """A scripted motion of the handle, all vectors (3,) in W.
+
+    Attributes:
+        p_W: The point of the surface, m.
+        nhat_W: Outward normal there.
+        push_W: Unit direction in which the tool comes.
+        slide_W: Unit tangent along which it goes on, or zero.
+        R_WT: (3, 3) the tool's orientation.
+        p_TP: The tool's foremost point, in T, m.
+        speed_m_per_s: Of the handle.
+        stop_N: Coupling force at which a press stops.
+        stop_m: How far inside the surface it stops at the latest.
+    """
+
+    p_W: np.ndarray
+    nhat_W: np.ndarray
+    push_W: np.ndarray
+    slide_W: np.ndarray
+    R_WT: np.ndarray
+    p_TP: np.ndarray
+    speed_m_per_s: float
+    stop_N: float
+    stop_m: float
+
+    def q_WH(self, travel_m: float, slid_m: float) -> np.ndarray:
+        """The handle's pose (7,) after `travel_m` from the start."""
+        p_WP = self.p_W + (travel_m - START_M) * self.push_W + slid_m * self.slide_W
+        x, y, z, w = Rotation.from_matrix(self.R_WT).as_quat()
+        return np.array([w, x, y, z, *(p_WP - self.R_WT @ self.p_TP)])
+
+
+MOTIONS = ("press", "oblique", "slide", "jab")
+
+
+def sample_presses(
+    mesh: Mesh, tool: PressTool, motion: str, count: int, seed: int
+) -> list[Press]:
+    """Presses on points of a surface, spread evenly over its area.
+
+    Press i is the same whatever the count.
+    """
+    corners = mesh.vertices[mesh.triangles]
+    area_vectors = (
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    )
+    areas = np.linalg.norm(area_vectors, axis=1)
+    shares = np.cumsum(areas) / areas.sum()
+    presses = []
+    for i in range(count):
+        rng = np.random.default_rng([seed, i])
+        t = int(np.searchsorted(shares, rng.random()))
+        u, v = rng.random(2)
+        if u + v > 1:
+            u, v = 1 - u, 1 - v
+        p_W = corners[t, 0] * (1 - u - v) + corners[t, 1] * u + corners[t, 2] * v
+        n = area_vectors[t] / areas[t]
+        tangent = np.cross(n, rng.normal(size=3))
+        tangent /= np.linalg.norm(tangent)
+        tilt = np.deg2rad(30.0) if motion == "oblique" else 0.0
+        push_W = -np.cos(tilt) * n + np.sin(tilt) * tangent
+        k = int(rng.integers(len(tool.pushes_T)))
+        R, _ = Rotation.align_vectors([push_W], [tool.pushes_T[k]])
+        twist = Rotation.from_rotvec(push_W * rng.uniform(0, 2 * np.pi))
+        presses.append(
+            Press(
+                p_W=p_W,
+                nhat_W=n,
+                push_W=push_W,
+                slide_W=tangent if motion == "slide" else np.zeros(3),
+                R_WT=(twist * R).as_matrix(),
+                p_TP=tool.probe(k),
+                speed_m_per_s=0.5 if motion == "jab" else 0.1,
+                stop_N=np.inf if motion == "jab" else LARGEST_FORCE_N,
+                stop_m=10e-3 if motion == "jab" else LONGEST_TRAVEL_M,
+            )
+        )
+    return presses
+
+
+@dataclass(frozen=True)
+class Tick:
+    """What one tick saw and did."""
+
+    phase: str  # "in", "slide", "hold", "out" or "away"
+    q_WH: np.ndarray  # (7,)
+    state: np.ndarray  # (13,) tool's pose and velocity at the query
+    contacts: _core.ContactSet
+    clusters: _core.ClusterSet
+    F_contact_W: np.ndarray  # (6,) N·m, N, on the tool at To
+    F_coupling_W: np.ndarray  # (6,) N·m, N, on the tool at To
+
+
+def run_press(
+    press: Press, tool: PressTool, solid: _core.Decomposition, gains: Gains
+) -> Iterator[Tick]:
+    """Runs a press tick by tick, wired as `drake_haptics.builder` wires the loop."""
+    tracker = _core.ContactTracker(tool.core, [solid], gains.tolerance_m)
+    zeros3, zeros6 = np.zeros((1, 3)), np.zeros((1, 6))
+    q_WH = press.q_WH(0.0, 0.0)
+    state = np.concatenate([q_WH, np.zeros(6)])
+    script = _script(press)
+    phase, next_q_WH = next(script)
+    while True:
+        V_WH = np.concatenate([np.zeros(3), (next_q_WH[4:] - q_WH[4:]) / PERIOD_S])
+        q_WH = next_q_WH
+        contacts = tracker.query(state[:7])
+        clusters = _core.cluster_contacts(contacts, gains.delta_m, gains.tolerance_m)
+        contact = _core.penalty_force(
+            clusters,
+            state[4:7],
+            state[7:],
+            zeros3,
+            zeros6,
+            gains.stiffness_N_per_m,
+            gains.damping_Ns_per_m,
+            gains.tolerance_m,
+        ).wrench_model
+        coupling = _core.coupling_wrench(
+            q_WH, V_WH, _REST, state[:7], state[7:], COUPLING
+        )[:78]
+        yield Tick(phase, q_WH, state, contacts, clusters, contact[:6], coupling[:6])
+        state = tool.dynamics.step(state, contact + coupling, PERIOD_S)
+        try:
+            phase, next_q_WH = script.send(float(np.linalg.norm(coupling[3:6])))
+        except StopIteration:
+            return
+
+
+def _script(press: Press) -> Generator[tuple[str, np.ndarray], float, None]:
+    """The handle's poses: in, perhaps along the surface, hold, out, away.
+
+    Is sent the coupling's force after each, N.
+    """
+    step = press.speed_m_per_s * PERIOD_S
+    travel, slid = 0.0, 0.0
+    force_N = yield "in", press.q_WH(travel, slid)
+    while travel < START_M + press.stop_m and force_N < press.stop_N:
+        travel += step
+        force_N = yield "in", press.q_WH(travel, slid)
+    if press.slide_W.any():
+        while slid < 15e-3:
+            slid += step
+            yield "slide", press.q_WH(travel, slid)
+    for _ in range(round(HOLD_S / PERIOD_S)):
+        yield "hold", press.q_WH(travel, slid)
+    while travel > 0:
+        travel = max(0.0, travel - step)
+        yield "out", press.q_WH(travel, slid)
+    for _ in range(50):
+        yield "away", press.q_WH(travel, slid)

@@ -1,0 +1,139 @@
+"""Plain answers about a solid, from its triangles alone: the truth of press tests."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import coal
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from drake_haptics.mesh import Mesh
+from drake_haptics.mesh_topology import winding_numbers
+
+
+def rotation_of(q: np.ndarray) -> np.ndarray:
+    """(3, 3) of a pose (7,) [qw qx qy qz x y z]."""
+    return Rotation.from_quat([*q[1:4], q[0]]).as_matrix()
+
+
+class Surface:
+    """The triangles of a closed mesh, in W."""
+
+    def __init__(self, mesh: Mesh):
+        """Takes a mesh that bounds a solid."""
+        self.mesh = mesh
+        self._corners = np.swapaxes(mesh.vertices[mesh.triangles], 0, 1)
+        a, b, c = self._corners
+        n = np.cross(b - a, c - a)
+        self.normals = n / np.linalg.norm(n, axis=1, keepdims=True)
+
+    def holds(self, points: np.ndarray) -> np.ndarray:
+        """Whether each of the points (n, 3) is inside."""
+        return winding_numbers(points, self.mesh.vertices, self.mesh.triangles) > 0.5
+
+    def distances(self, p: np.ndarray) -> np.ndarray:
+        """Distance of a point (3,) from each triangle, m (Ericson 2005, 5.1.5)."""
+        a, b, c = self._corners
+        inside = np.ones(len(a), dtype=bool)
+        rim = np.full(len(a), np.inf)
+        for s, e in ((a, b), (b, c), (c, a)):
+            d = e - s
+            inside &= np.einsum("ij,ij->i", np.cross(d, p - s), self.normals) >= 0
+            t = np.einsum("ij,ij->i", p - s, d) / np.einsum("ij,ij->i", d, d)
+            foot = s + np.clip(t, 0, 1)[:, None] * d
+            rim = np.minimum(rim, np.linalg.norm(foot - p, axis=1))
+        plane = np.abs(np.einsum("ij,ij->i", p - a, self.normals))
+        return np.where(inside, plane, rim)
+
+    def inner_depth(self, points: np.ndarray) -> float:
+        """How far the innermost of points (n, 3) is from the surface around it, m."""
+        inside = self.holds(points)
+        return max((self.distances(p).min() for p in points[inside]), default=0.0)
+
+    def facing(self, p: np.ndarray, n: np.ndarray) -> float:
+        """Largest cosine between n (3,) and the normals where p (3,) is nearest."""
+        distances = self.distances(p)
+        return float((self.normals[distances < distances.min() + 1e-5] @ n).max())
+
+    def crossings(self, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where a polyline (n, 3) meets the surface, in order.
+
+        Returns:
+            The points (k, 3) and the outward normals (k, 3) there.
+        """
+        a, b, c = self._corners
+        points, normals = [], []
+        for p, q in pairwise(path):
+            d = q - p
+            near = np.flatnonzero(
+                (np.maximum(np.maximum(a, b), c) >= np.minimum(p, q)).all(axis=1)
+                & (np.minimum(np.minimum(a, b), c) <= np.maximum(p, q)).all(axis=1)
+            )
+            ab, bc, ca = (
+                np.cross(x[near] - p, y[near] - p) @ d
+                for x, y in ((a, b), (b, c), (c, a))
+            )
+            same = ((ab > 0) & (bc > 0) & (ca > 0)) | ((ab < 0) & (bc < 0) & (ca < 0))
+            n = self.normals[near]
+            start = np.einsum("ij,ij->i", n, p - a[near])
+            end = np.einsum("ij,ij->i", n, q - a[near])
+            hit = np.flatnonzero(same & (start * end < 0))
+            share = start[hit] / (start[hit] - end[hit])
+            for k in np.argsort(share):
+                points.append(p + share[k] * d)
+                normals.append(n[hit[k]])
+        return np.reshape(points, (-1, 3)), np.reshape(normals, (-1, 3))
+
+    def is_pierced(self, path: np.ndarray) -> bool:
+        """Whether a polyline from outside came out of the far side, straight on.
+
+        A way around an edge also leaves by an opposed face, but is longer than its
+        chord.
+        """
+        points, normals = self.crossings(path)
+        if len(points) < 2 or len(points) % 2:
+            return False
+        within = path[self.holds(path)]
+        chord = np.linalg.norm(points[-1] - points[0])
+        line = np.concatenate([points[:1], within, points[-1:]])
+        length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
+        return bool(normals[0] @ normals[-1] < -0.5 and length < 1.3 * chord)
+
+
+class Overlap:
+    """Tells whether a posed tool and a solid share points."""
+
+    def __init__(self, tool: Mesh, solid: Surface):
+        """Takes both."""
+        self._tool, self._solid = tool, solid
+        self._models = _triangle_model(tool), _triangle_model(solid.mesh)
+
+    def __call__(self, q_WT: np.ndarray) -> bool:
+        """At the tool's pose (7,): surfaces cross, or the tool is inside."""
+        R, p = rotation_of(q_WT), q_WT[4:7]
+        result = coal.CollisionResult()
+        coal.collide(
+            self._models[0],
+            coal.Transform3s(R, p),
+            self._models[1],
+            coal.Transform3s.Identity(),
+            coal.CollisionRequest(),
+            result,
+        )
+        first = R @ self._tool.vertices[0] + p
+        return result.isCollision() or bool(self._solid.holds(first[None])[0])
+
+
+def _triangle_model(mesh: Mesh) -> coal.BVHModelOBBRSS:
+    model = coal.BVHModelOBBRSS()
+    model.beginModel(len(mesh.triangles), len(mesh.vertices))
+    vertices = coal.StdVec_Vec3s()
+    for v in mesh.vertices:
+        vertices.append(v)
+    triangles = coal.StdVec_Triangle()
+    for t in mesh.triangles:
+        triangles.append(coal.Triangle(*map(int, t)))
+    model.addSubModel(vertices, triangles)
+    model.endModel()
+    return model
