@@ -14,8 +14,8 @@
 // - Where the surface bounds no solid, the patch stays in one plane.
 #include "decomposition.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -23,15 +23,10 @@
 #include "hull_shape.h"
 #include "patch_growth.h"
 #include "surface_mesh.h"
-#include "surface_provenance.h"
+#include "surface_piece.h"
 
 namespace drake_haptics {
 namespace {
-
-// A facet's plane goes through the largest triangle of the hull, that of a
-// patch through the largest triangle of the mesh: both are within the
-// tolerance, so their facets are within twice that and a margin.
-constexpr double kFacetTolerances = 3;
 
 std::vector<std::vector<int>> TrianglesOfPieces(
     std::span<const int> piece_of_triangle) {
@@ -55,35 +50,23 @@ std::vector<std::vector<int>> TrianglesOfPieces(
   return members;
 }
 
-// A flat hull's front is the side that the mesh faces to.
-void TurnFrontToMesh(const Vec3& normal, HullShape* shape) {
-  if (shape->dimension == 2 && shape->polygons[0].normal.dot(normal) < 0) {
-    std::swap(shape->polygons[0], shape->polygons[1]);
+// Gives each lost triangle a patch of its own, at the end of the list. If all
+// are lost, the first remains.
+void SeparateLost(std::span<const int> lost, std::size_t index,
+                  std::vector<std::vector<int>>* patches,
+                  std::vector<int>* piece_of_triangle) {
+  std::vector<int> rest;
+  std::set_difference((*patches)[index].begin(), (*patches)[index].end(),
+                      lost.begin(), lost.end(), std::back_inserter(rest));
+  if (rest.empty()) {
+    rest.push_back(lost.front());
+    lost = lost.subspan(1);
   }
-}
-
-Polytope MakePiece(const MeshTopology& mesh, std::span<const int> patch,
-                   double tolerance) {
-  std::vector<int> corners;
-  Vec3 area = Vec3::Zero();
-  for (const int t : patch) {
-    const Triangle& triangle = mesh.triangles[t];
-    corners.insert(corners.end(), triangle.begin(), triangle.end());
-    const Vec3& a = mesh.vertices[triangle[0]];
-    area +=
-        (mesh.vertices[triangle[1]] - a).cross(mesh.vertices[triangle[2]] - a);
+  (*patches)[index] = std::move(rest);
+  for (const int t : lost) {
+    (*piece_of_triangle)[t] = static_cast<int>(patches->size());
+    patches->push_back({t});
   }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  std::vector<Vec3> points;
-  for (const int v : corners) points.push_back(mesh.vertices[v]);
-  HullShape shape = FindHullShape(points, kFacetTolerances * tolerance);
-  TurnFrontToMesh(area, &shape);
-  Polytope piece = MakePolytope(points, shape);
-  std::vector<int> source;
-  for (const int i : shape.extreme) source.push_back(corners[i]);
-  MarkSurface(mesh, patch, source, 2 * kFacetTolerances * tolerance, &piece);
-  return piece;
 }
 
 }  // namespace
@@ -135,8 +118,15 @@ Decomposition AssembleSurfacePieces(std::span<const Vec3> vertices,
                                   piece_of_triangle.end());
   const MeshTopology topology(result.vertices, result.triangles);
   const double tolerance = SurfaceTolerance(result.vertices, result.triangles);
-  for (const std::vector<int>& patch : TrianglesOfPieces(piece_of_triangle)) {
-    result.pieces.push_back(MakePiece(topology, patch, tolerance));
+  std::vector<std::vector<int>> patches = TrianglesOfPieces(piece_of_triangle);
+  // The list grows while it is worked on.
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    SurfacePiece piece = MakeSurfacePiece(topology, patches[i], tolerance);
+    while (!piece.lost.empty()) {
+      SeparateLost(piece.lost, i, &patches, &result.piece_of_triangle);
+      piece = MakeSurfacePiece(topology, patches[i], tolerance);
+    }
+    result.pieces.push_back(std::move(piece.polytope));
   }
   return result;
 }

@@ -39,9 +39,11 @@ bool IsSphere(const std::vector<Polygon>& polygons) {
 
 class Merger {
  public:
-  Merger(std::span<const Vec3> points, std::span<const HullTriangle> triangles)
+  Merger(std::span<const Vec3> points, std::span<const HullTriangle> triangles,
+         std::span<const std::uint8_t> on_surface)
       : points_(points),
         triangles_(triangles),
+        on_surface_(on_surface),
         group_(triangles.size(), -1),
         runs_(points.size(), 0) {}
 
@@ -81,7 +83,8 @@ class Merger {
     }
     std::vector<Polygon> polygons;
     for (std::size_t g = 0; g < seeds_.size(); ++g) {
-      polygons.push_back({triangles_[seeds_[g]].normal, {}});
+      const int seed = seeds_[g];
+      polygons.push_back({triangles_[seed].normal, {}, on_surface_[seed] != 0});
       // Further cycles would be holes.
       if (TraceBoundary(start[g], &polygons[g].loop) != num_boundary_edges[g]) {
         return {};
@@ -94,7 +97,8 @@ class Merger {
     std::vector<Polygon> polygons;
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       const auto& v = triangles_[t].vertex;
-      polygons.push_back({triangles_[t].normal, {v[0], v[1], v[2]}});
+      polygons.push_back(
+          {triangles_[t].normal, {v[0], v[1], v[2]}, on_surface_[t] != 0});
     }
     return polygons;
   }
@@ -113,6 +117,10 @@ class Merger {
       for (const int next : triangles_[t].neighbor) {
         if (group_[next] >= 0 || triangles_[next].normal.dot(normal) <= 0)
           continue;
+        if (on_surface_[next] != on_surface_[seed] &&
+            !IsThin(triangles_[next], tolerance)) {
+          continue;
+        }
         const auto& v = triangles_[next].vertex;
         if (std::all_of(v.begin(), v.end(), [&](int i) {
               return std::abs(normal.dot(points_[i] - base)) <= tolerance;
@@ -122,6 +130,16 @@ class Merger {
         }
       }
     }
+  }
+
+  bool IsThin(const HullTriangle& triangle, double tolerance) const {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      longest = std::max(longest, (points_[triangle.vertex[(k + 1) % 3]] -
+                                   points_[triangle.vertex[k]])
+                                      .norm());
+    }
+    return 2 * triangle.area <= tolerance * longest;
   }
 
   bool OnBoundary(const TriangleEdge& e) const {
@@ -157,6 +175,7 @@ class Merger {
 
   std::span<const Vec3> points_;
   std::span<const HullTriangle> triangles_;
+  std::span<const std::uint8_t> on_surface_;
   std::vector<int> group_;
   std::vector<int> seeds_;
   std::vector<int> runs_;
@@ -166,8 +185,9 @@ class Merger {
 
 std::vector<Polygon> MergeCoplanar(std::span<const Vec3> points,
                                    std::span<const HullTriangle> triangles,
+                                   std::span<const std::uint8_t> on_surface,
                                    double tolerance) {
-  Merger merger(points, triangles);
+  Merger merger(points, triangles, on_surface);
   merger.Group(tolerance);
   merger.CountRunsAroundPoints();
   std::vector<Polygon> polygons = merger.Collect();

@@ -60,10 +60,17 @@ std::vector<int> FlatLoop(std::span<const Vec3> points, const Vec3& normal,
 
 std::vector<HullShape::Polygon> Polygons(std::span<const Vec3> points,
                                          const Spanning& spanning,
-                                         double tolerance) {
+                                         double tolerance,
+                                         const SurfaceTest& is_on_surface) {
   const auto& p = spanning.point;
   if (spanning.dimension == 3) {
-    return MergeCoplanar(points, ConvexHull(points, p).Triangles(), tolerance);
+    const std::vector<HullTriangle> triangles =
+        ConvexHull(points, p).Triangles();
+    std::vector<std::uint8_t> on_surface(triangles.size(), 1);
+    for (std::size_t t = 0; is_on_surface && t < triangles.size(); ++t) {
+      on_surface[t] = is_on_surface(triangles[t].vertex, triangles[t].normal);
+    }
+    return MergeCoplanar(points, triangles, on_surface, tolerance);
   }
   const Vec3 normal =
       TriangleCross(points[p[0]], points[p[1]], points[p[2]]).normalized();
@@ -116,7 +123,8 @@ bool AreUsable(std::span<const Vec3> points) {
   });
 }
 
-HullShape FindHullShape(std::span<const Vec3> points, double tolerance) {
+HullShape FindHullShape(std::span<const Vec3> points, double tolerance,
+                        const SurfaceTest& is_on_surface) {
   double magnitude = 0;
   for (const Vec3& p : points) {
     magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
@@ -139,7 +147,14 @@ HullShape FindHullShape(std::span<const Vec3> points, double tolerance) {
   HullShape shape;
   shape.dimension = spanning.dimension;
   if (spanning.dimension >= 2) {
-    shape.polygons = Polygons(distinct, spanning, thickness);
+    const auto is_on_surface_by_source = [&](const std::array<int, 3>& points,
+                                             const Vec3& normal) {
+      return is_on_surface(
+          {source[points[0]], source[points[1]], source[points[2]]}, normal);
+    };
+    shape.polygons = Polygons(
+        distinct, spanning, thickness,
+        is_on_surface ? SurfaceTest(is_on_surface_by_source) : SurfaceTest());
   }
   shape.extreme = ExtremePoints(spanning, shape.polygons);
   for (int& i : shape.extreme) i = source[i];

@@ -108,7 +108,7 @@ bool Patch::IsOneSided(const Sizes& before) const {
                      }) &&
          std::all_of(triangles_.begin() + before.triangles, triangles_.end(),
                      [&](int t) {
-                       return mesh_.planes[t].normal.dot(plane.normal) > 0;
+                       return mesh_.planes[t].normal.dot(plane.normal) >= 0;
                      });
 }
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "hull_shape.h"
+#include "convex_solid.h"
 #include "patch.h"
 
 namespace drake_haptics {
@@ -63,48 +63,25 @@ class Growth {
       members[mesh_.component[t]].push_back(static_cast<int>(t));
     }
     for (const std::vector<int>& triangles : members) {
-      if (!IsConvexSolid(triangles)) continue;
+      const std::vector<Plane> planes = FindConvexSolid(mesh_, triangles);
+      if (planes.empty()) continue;
       for (const int t : triangles) work_.label[t] = num_patches_;
-      Finish(triangles.size());
+      if (HasCavity(planes, triangles)) {
+        for (const int t : triangles) work_.label[t] = -1;
+      } else {
+        Finish(triangles.size());
+      }
     }
   }
 
-  // Cheap tests first: most components fail at the first concave edge.
-  bool IsConvexSolid(const std::vector<int>& triangles) const {
-    for (const int t : triangles) {
-      if (!mesh_.solid[t]) return false;
-      for (const int neighbor : mesh_.neighbors[t]) {
-        if (neighbor < 0) return false;
-        for (const int v : mesh_.triangles[neighbor]) {
-          if (mesh_.planes[t].Height(mesh_.vertices[v]) > mesh_.tolerance) {
-            return false;
-          }
-        }
-      }
-    }
-    std::vector<Vec3> points;
-    for (const int t : triangles) {
-      for (const int v : mesh_.triangles[t])
-        points.push_back(mesh_.vertices[v]);
-    }
-    const HullShape shape = FindHullShape(points, mesh_.tolerance);
-    if (shape.dimension < 3) return false;
-    for (const int t : triangles) {
-      for (const int i : shape.extreme) {
-        if (mesh_.planes[t].Height(points[i]) > mesh_.tolerance) return false;
-      }
-    }
-    std::vector<Plane> planes;
+  bool HasCavity(std::span<const Plane> planes,
+                 std::span<const int> triangles) const {
     BoxTree::Box box;
-    for (const HullShape::Polygon& polygon : shape.polygons) {
-      planes.push_back(
-          {polygon.normal, polygon.normal.dot(points[polygon.loop[0]])});
+    for (const int t : triangles) {
+      for (const int v : mesh_.triangles[t]) box.extend(mesh_.vertices[v]);
     }
-    for (const int i : shape.extreme) box.extend(points[i]);
-    std::vector<int> own(mesh_.triangles.size(), -1);
-    for (const int t : triangles) own[t] = 0;
-    return !work_.obstacles.MeetInterior(planes, box,
-                                         mesh_.component[triangles[0]], own, 0);
+    return work_.obstacles.MeetInterior(
+        planes, box, mesh_.component[triangles[0]], work_.label, num_patches_);
   }
 
   // All of the triangle's planar region if that is a free convex polygon.

@@ -33,7 +33,7 @@ void AddFacets(const HullShape& shape, Polytope* P) {
       offset = std::max(offset, polygon.normal.dot(P->vertices[v]));
       P->facet_loop.push_back(v);
     }
-    P->facets.push_back({polygon.normal, offset, true});
+    P->facets.push_back({polygon.normal, offset, polygon.original});
     P->facet_loop_start.push_back(static_cast<int>(P->facet_loop.size()));
   }
 }

@@ -26,14 +26,22 @@ void AddVertices(std::span<const Vec3> vertices, SurfaceMesh* mesh) {
   }
 }
 
+double LongestSide(const SurfaceMesh& mesh, const Triangle& t) {
+  const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]],
+             &c = mesh.vertices[t[2]];
+  return std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+}
+
 void AddPlanes(SurfaceMesh* mesh) {
   for (const Triangle& t : mesh->triangles) {
     const Vec3& a = mesh->vertices[t[0]];
     const Vec3 cross =
         TriangleCross(a, mesh->vertices[t[1]], mesh->vertices[t[2]]);
     mesh->areas.push_back(cross.norm() / 2);
-    const Vec3 normal =
-        mesh->areas.back() > 0 ? Vec3(cross.stableNormalized()) : cross;
+    // The plane of a thin triangle is noise, and would keep others out.
+    const bool thin = cross.norm() <= kFacetTolerances * mesh->tolerance *
+                                          LongestSide(*mesh, t);
+    const Vec3 normal = thin ? Vec3::Zero() : Vec3(cross.stableNormalized());
     mesh->planes.push_back({normal, normal.dot(a)});
   }
 }
@@ -68,7 +76,8 @@ void AddNeighborsAndComponents(SurfaceMesh* mesh) {
 
 bool LiesIn(const SurfaceMesh& mesh, int t, const Plane& plane) {
   const Triangle& triangle = mesh.triangles[t];
-  return mesh.planes[t].normal.dot(plane.normal) > 0 &&
+  // Thin triangles may lie in any plane.
+  return mesh.planes[t].normal.dot(plane.normal) >= 0 &&
          std::all_of(triangle.begin(), triangle.end(), [&](int v) {
            return std::abs(plane.Height(mesh.vertices[v])) <= mesh.tolerance;
          });
@@ -78,6 +87,7 @@ PlanarRegion FloodRegion(const SurfaceMesh& mesh, int seed,
                          std::vector<int>* region_of, int region_index) {
   PlanarRegion region{mesh.planes[seed], {seed}, false};
   (*region_of)[seed] = region_index;
+  if (region.plane.normal.isZero(0)) return region;
   for (std::size_t i = 0; i < region.triangles.size(); ++i) {
     for (const int next : mesh.neighbors[region.triangles[i]]) {
       if (next < 0 || (*region_of)[next] >= 0) continue;
@@ -122,10 +132,19 @@ void AddRegions(SurfaceMesh* mesh) {
 double SurfaceTolerance(std::span<const Vec3> vertices,
                         std::span<const Triangle> triangles) {
   Eigen::AlignedBox3d box;
+  bool single = true;
   for (const Triangle& t : triangles) {
-    for (const int v : t) box.extend(vertices[v]);
+    for (const int v : t) {
+      box.extend(vertices[v]);
+      single =
+          single && vertices[v].cast<float>().cast<double>() == vertices[v];
+    }
   }
-  return kSurfaceTolerance * box.sizes().norm();
+  const double size = box.sizes().norm();
+  const double magnitude =
+      box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+  const double rounding = single ? 2 * 0x1p-24 * magnitude : 0;
+  return std::clamp(rounding, 1e-7 * size, 1e-5 * size);
 }
 
 SurfaceMesh MakeSurfaceMesh(std::span<const Vec3> vertices,

@@ -12,7 +12,7 @@ namespace drake_haptics {
 
 /// A plane that supports something: normal · x <= offset there.
 struct Plane {
-  Vec3 normal = Vec3::Zero();  ///< unit; zero for a triangle without area
+  Vec3 normal = Vec3::Zero();  ///< unit; zero for a triangle without a plane
   double offset = 0;
 
   double Height(const Vec3& point) const { return normal.dot(point) - offset; }
@@ -43,13 +43,15 @@ struct SurfaceMesh {
   int num_components = 0;
 };
 
-/// Distance, relative to the mesh's bounding box diagonal, below which points
-/// count as lying in a plane. Coordinates in single precision are off by 3e-8
-/// of their magnitude; a smaller value would split every flat face of such a
-/// mesh.
-inline constexpr double kSurfaceTolerance = 1e-7;
+/// Triangles of a hull within this many tolerances of a plane are one facet. A
+/// mesh triangle that is thinner has no plane of its own.
+inline constexpr double kFacetTolerances = 3;
 
-/// kSurfaceTolerance in m, for the vertices that triangles use.
+/// Distance, m, below which points count as lying in a plane: 1e-7 of the
+/// bounding box diagonal, for the vertices that triangles use. If all their
+/// coordinates are numbers of single precision, then they were rounded to it,
+/// and the tolerance is no less than what that can have moved two points apart;
+/// that counts for meshes far from their origin. More than 1e-5 it never is.
 double SurfaceTolerance(std::span<const Vec3> vertices,
                         std::span<const Triangle> triangles);
 

@@ -4,58 +4,18 @@
 #include <algorithm>
 #include <tuple>
 
-#include "convex_clip.h"
-
 namespace drake_haptics {
 namespace {
 
-double FacetArea(const Polytope& P, int facet) {
-  std::vector<Vec3> corners;
-  for (const int v : P.loop_of(facet)) corners.push_back(P.vertices[v]);
-  return PolygonArea(corners);
-}
-
-class Marker {
+class SurfaceAround {
  public:
-  Marker(const MeshTopology& mesh, std::span<const int> patch,
-         std::span<const int> source, double tolerance, Polytope* piece)
+  SurfaceAround(const MeshTopology& mesh, std::span<const int> patch,
+                std::span<const int> source, double tolerance, Polytope* piece)
       : mesh_(mesh),
         patch_(patch),
         source_(source),
         tolerance_(tolerance),
         piece_(*piece) {}
-
-  // The growth of patches keeps facets whole or bare but for slivers, so that
-  // half of the area decides.
-  void MarkFacets() {
-    std::vector<std::pair<int, int>> piece_vertex;  // By mesh vertex.
-    for (int v = 0; v < piece_.num_vertices(); ++v) {
-      piece_vertex.emplace_back(source_[v], v);
-    }
-    std::sort(piece_vertex.begin(), piece_vertex.end());
-    std::vector<double> covered(piece_.facets.size(), 0);
-    for (const int t : patch_) {
-      const Triangle& triangle = mesh_.triangles[t];
-      const Vec3 cross = Cross(triangle);
-      // The facets at one corner are enough, if a corner is a vertex.
-      std::span<const int> candidates;
-      for (const int v : triangle) {
-        const auto it = std::lower_bound(piece_vertex.begin(),
-                                         piece_vertex.end(), std::pair(v, 0));
-        if (it == piece_vertex.end() || it->first != v) continue;
-        candidates = piece_.facets_of(it->second);
-        break;
-      }
-      const int facet = candidates.empty()
-                            ? FacetOf(triangle, cross, AllFacets())
-                            : FacetOf(triangle, cross, candidates);
-      if (facet >= 0) covered[facet] += cross.norm() / 2;
-    }
-    for (std::size_t f = 0; f < piece_.facets.size(); ++f) {
-      piece_.facets[f].original =
-          covered[f] > FacetArea(piece_, static_cast<int>(f)) / 2;
-    }
-  }
 
   // Beyond an edge with one original facet the mesh goes on.
   void SetOuterWings() {
@@ -88,39 +48,6 @@ class Marker {
   }
 
  private:
-  Vec3 Cross(const Triangle& t) const {
-    const Vec3& a = mesh_.vertices[t[0]];
-    return (mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a);
-  }
-
-  std::span<const int> AllFacets() {
-    for (int f = static_cast<int>(all_facets_.size());
-         f < static_cast<int>(piece_.facets.size()); ++f) {
-      all_facets_.push_back(f);
-    }
-    return all_facets_;
-  }
-
-  // Of the facets that the triangle lies on the one that faces most as it does.
-  int FacetOf(const Triangle& triangle, const Vec3& cross,
-              std::span<const int> candidates) const {
-    int best = -1;
-    double best_dot = 0;
-    for (const int f : candidates) {
-      const Polytope::Facet& facet = piece_.facets[f];
-      const double dot = facet.normal.dot(cross);
-      if (dot <= best_dot) continue;
-      if (std::all_of(triangle.begin(), triangle.end(), [&](int v) {
-            return std::abs(facet.normal.dot(mesh_.vertices[v]) -
-                            facet.offset) <= tolerance_;
-          })) {
-        best = f;
-        best_dot = dot;
-      }
-    }
-    return best;
-  }
-
   // Direction in a mesh triangle away from the piece's edge on its side.
   Vec3 WingOf(int triangle, const Polytope::Edge& edge) const {
     const Vec3& base = piece_.vertices[edge.v0];
@@ -183,7 +110,6 @@ class Marker {
   std::span<const int> source_;
   double tolerance_;
   Polytope& piece_;
-  std::vector<int> all_facets_;
 };
 
 }  // namespace
@@ -220,14 +146,13 @@ std::span<const TriangleSide> MeshTopology::SidesOf(int a, int b) const {
   return {first, last};
 }
 
-void MarkSurface(const MeshTopology& mesh, std::span<const int> patch,
-                 std::span<const int> source, double tolerance,
-                 Polytope* piece) {
-  Marker marker(mesh, patch, source, tolerance, piece);
-  marker.MarkFacets();
+void ConnectToSurface(const MeshTopology& mesh, std::span<const int> patch,
+                      std::span<const int> source, double tolerance,
+                      Polytope* piece) {
+  SurfaceAround around(mesh, patch, source, tolerance, piece);
   MarkEdgesFromFacets(piece);
-  marker.SetOuterWings();
-  marker.SetRings();
+  around.SetOuterWings();
+  around.SetRings();
 }
 
 void MarkEdgesFromFacets(Polytope* piece) {

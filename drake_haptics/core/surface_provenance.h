@@ -28,14 +28,14 @@ struct MeshTopology {
   std::vector<int> vertex_triangle_start, vertex_triangle;
 };
 
-/// Tells which features of a piece lie on the mesh, and sets its wings and
+/// Marks the edges of a piece whose facets are marked, and sets its wings and
 /// rings to those of the whole mesh, which goes on beyond the piece.
 /// @param patch triangles that the piece was made from.
 /// @param source mesh vertex of each vertex of the piece.
-/// @param tolerance distance, m, within which a triangle lies on a facet.
-void MarkSurface(const MeshTopology& mesh, std::span<const int> patch,
-                 std::span<const int> source, double tolerance,
-                 Polytope* piece);
+/// @param tolerance distance, m, within which a mesh edge lies on the piece's.
+void ConnectToSurface(const MeshTopology& mesh, std::span<const int> patch,
+                      std::span<const int> source, double tolerance,
+                      Polytope* piece);
 
 /// An edge is on the surface exactly when a facet beside it is: facets that
 /// are original are bounded by mesh edges. Virtual edges have no wings.
