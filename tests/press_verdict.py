@@ -38,7 +38,8 @@ class Verdict:
         through: The tool's foremost point left the solid by the far side.
         inward_tick: First tick with a contact that pushed into the surface; -1.
         made_J: Most energy that the contact gave beyond what it had been given.
-        hooked_m: How far from the handle the tool was at the end.
+        hooked_m: How far from the handle the tool was at the end, if there was room
+            for it there.
         depth_m: Largest depth of any contact.
         shallow: Deepest contact at rest over how deep the innermost vertex was.
         jump_N: Largest change of the contact's force in a tick beyond three times
@@ -99,7 +100,11 @@ def judge(
     verdict.through = bool(
         sunk_m > spring_m + _BELOW_SPRING_M and solid.is_pierced(probe[::8])
     )
-    verdict.hooked_m = float(np.linalg.norm(states[-1][4:7] - ticks[-1].q_WH[4:]))
+    # A handle that slid along a hollow ends in the wall: nothing to say there.
+    end = _core.ContactTracker(tool.core, [pieces], gains.tolerance_m)
+    if len(end.query(ticks[-1].q_WH)) == 0:
+        gap_W = states[-1][4:7] - ticks[-1].q_WH[4:]
+        verdict.hooked_m = float(np.linalg.norm(gap_W))
     return verdict
 
 

@@ -89,7 +89,7 @@ class Surface:
         """Whether a polyline from outside came out of the far side, straight on.
 
         A way around an edge also leaves by an opposed face, but is longer than its
-        chord.
+        chord or runs along the surface.
         """
         points, normals = self.crossings(path)
         if len(points) < 2 or len(points) % 2:
@@ -98,7 +98,12 @@ class Surface:
         chord = np.linalg.norm(points[-1] - points[0])
         line = np.concatenate([points[:1], within, points[-1:]])
         length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
-        return bool(normals[0] @ normals[-1] < -0.5 and length < 1.3 * chord)
+        inward = (points[0] - points[-1]) @ normals[0]
+        return bool(
+            normals[0] @ normals[-1] < -0.5
+            and length < 1.3 * chord
+            and inward > 0.7 * chord
+        )
 
 
 class Overlap:
