@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 import trimesh
 from mesh_samples import box, joined, l_prism, real_mesh
+from scipy.spatial.transform import Rotation
+from surface_distance import distances, winding_numbers
 
 from drake_haptics import _core
 
-# Twice what decomposition.cc allows: facets lie on the mesh, and hulls in the
-# solid, within this share of the mesh's size.
+# What decomposition.cc allows: facets lie on the mesh, and hulls in the solid,
+# within this share of the mesh's size.
 SURFACE = 1e-6
 
 
@@ -39,7 +41,12 @@ def hollow_box():
 
 
 def load(name):
-    mesh = trimesh.load(real_mesh(name), process=False)
+    path = real_mesh(name)
+    if path.suffix == ".npz":
+        arrays_of_file = np.load(path)
+        mesh = trimesh.Trimesh(arrays_of_file["V"], arrays_of_file["F"], process=False)
+    else:
+        mesh = trimesh.load(path, process=False)
     mesh.merge_vertices()
     mesh.update_faces(mesh.nondegenerate_faces())
     mesh.remove_unreferenced_vertices()
@@ -59,6 +66,7 @@ SHAPES = {
     "real torus": lambda: load("torus_2000.obj"),
     "hammer": lambda: load("hammer_1692.obj"),
     "mug": lambda: load("mug.stl"),
+    "tooth": lambda: load("tooth.ply"),
 }
 
 
@@ -78,23 +86,6 @@ def areas(V, F):
 def facet_area(corners):
     fan = np.cross(corners[1:-1] - corners[0], corners[2:] - corners[0])
     return np.linalg.norm(fan.sum(axis=0)) / 2
-
-
-def winding_numbers(points, V, F):
-    """How often the surface winds about each point (van Oosterom, Strackee)."""
-    result = []
-    for p in points:
-        a, b, c = (V[F[:, k]] - p for k in range(3))
-        la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
-        numerator = (a * np.cross(b, c)).sum(axis=1)
-        denominator = (
-            la * lb * lc
-            + (a * b).sum(axis=1) * lc
-            + (b * c).sum(axis=1) * la
-            + (c * a).sum(axis=1) * lb
-        )
-        result.append(np.arctan2(numerator, denominator).sum() / (2 * np.pi))
-    return np.array(result)
 
 
 @pytest.fixture(params=SHAPES, scope="module")
@@ -120,12 +111,14 @@ def test_pieces_are_hulls_of_their_triangles(decomposed):
         assert heights.max() <= SURFACE * size
 
 
-def test_original_facets_are_the_triangles(decomposed):
+def assert_original_facets_are_the_triangles(V, F, result):
     """Each triangle lies in an original facet, and they have the same area."""
-    V, F, result = decomposed
     size = np.linalg.norm(np.ptp(V, axis=0))
     area = areas(V, F)
     for i, piece in enumerate(result.pieces):
+        if piece.dimension == 1:  # a needle, which has no facet
+            assert np.count_nonzero(result.piece_of_triangle == i) == 1
+            continue
         mine = np.flatnonzero(result.piece_of_triangle == i)
         original = np.flatnonzero(piece.facet_original)
         normals = piece.facet_normals[original]
@@ -142,26 +135,44 @@ def test_original_facets_are_the_triangles(decomposed):
         assert abs(on_facets - area[mine].sum()) <= 1e-3 * on_facets + 4 * slack
 
 
-def test_hulls_lie_in_the_solid(decomposed):
-    V, F, result = decomposed
+def assert_hulls_lie_in_the_solid(V, F, result):
     size = np.linalg.norm(np.ptp(V, axis=0))
     rng = np.random.default_rng(0)
-    solid_pieces = [p for p in result.pieces if p.dimension == 3]
-    if len(solid_pieces) > 100:
-        picks = rng.choice(len(solid_pieces), 100, replace=False)
-        solid_pieces = [solid_pieces[i] for i in picks]
-    points = np.array(
-        [
-            rng.dirichlet(np.full(len(p.vertices), 0.5)) @ p.vertices
-            for p in solid_pieces
-            for _ in range(max(3, 100 // len(solid_pieces)))
-        ]
-    ).reshape(-1, 3)
-    outside = points[winding_numbers(points, V, F) < 0.5]
-    if len(outside):
-        mesh = trimesh.Trimesh(V, F, process=False)
-        distance = trimesh.proximity.closest_point_naive(mesh, outside)[1]
-        assert distance.max() <= SURFACE * size
+    pieces = [p for p in result.pieces if p.dimension == 3]
+    if len(pieces) > 100:
+        pieces = [pieces[i] for i in rng.choice(len(pieces), 100, replace=False)]
+    points = [
+        rng.dirichlet(np.full(len(p.vertices), 0.5)) @ p.vertices
+        for p in pieces
+        for _ in range(max(3, 100 // len(pieces)))
+    ]
+    outside = np.array(points)[winding_numbers(points, V, F) < 0.5]
+    assert distances(outside, V, F).max(initial=0) <= SURFACE * size
+
+
+def test_original_facets_are_the_triangles(decomposed):
+    assert_original_facets_are_the_triangles(*decomposed)
+
+
+def test_hulls_lie_in_the_solid(decomposed):
+    assert_hulls_lie_in_the_solid(*decomposed)
+
+
+def test_a_mesh_full_of_rounding_loses_no_triangle():
+    """Coordinates with six decimals, needles, and a bore of narrow strips."""
+    V, F = load("socket_round_8mm.npz")
+    result = decompose(V, F)
+    assert_original_facets_are_the_triangles(V, F, result)
+    assert_hulls_lie_in_the_solid(V, F, result)
+    assert sum(piece.dimension < 2 for piece in result.pieces) <= 2
+
+
+def test_distances_do_not_fail_at_needles():
+    """The nearest triangle is a needle of aspect 1e-9, with a bend below it."""
+    V = np.array([[0, 0, 0], [1, 0, 0], [0.4, 1e-9, 0], [0.5, 1, -1]])
+    F = np.array([[0, 1, 2], [2, 1, 3], [2, 3, 0]])
+    points = [[0.7, 0, 1e-6], [0.5, -1e-3, 0], [-1, 0, 0]]
+    np.testing.assert_allclose(distances(points, V, F), [1e-6, 1e-3, 1], rtol=1e-3)
 
 
 def test_features_beyond_the_mesh_are_virtual(decomposed):
@@ -219,6 +230,111 @@ def test_piece_counts_are_near_the_papers(name, triangles, published):
     V, F = SHAPES[name]()
     assert len(F) == triangles
     assert len(decompose(V, F).pieces) <= 1.25 * published
+
+
+NOISES = {
+    "single precision": lambda V: V.astype(np.float32),
+    "single precision, far away": lambda V: (V + 20).astype(np.float32) - 20.0,
+    "eight decimals": lambda V: np.round(0.05 * V, 8) / 0.05,
+}
+
+
+@pytest.mark.parametrize("noise", NOISES)
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    "solid",
+    [
+        trimesh.creation.cylinder(0.5, 1.0, sections=300),
+        trimesh.creation.icosphere(subdivisions=4, radius=0.5),
+        trimesh.creation.box((1, 0.5, 0.2)).subdivide().subdivide(),
+    ],
+    ids=["cylinder", "sphere", "fine box"],
+)
+def test_a_convex_solid_is_one_hull_in_spite_of_rounding(solid, noise, seed):
+    turn = Rotation.random(random_state=seed).as_matrix()
+    exact = np.asarray(solid.vertices) @ turn.T
+    V, F = arrays(NOISES[noise](exact), solid.faces)
+    if "far" in noise:
+        V += 20
+    (piece,) = decompose(V, F).pieces
+    assert piece.facet_original.all() and piece.edge_original.all()
+    heights = V @ piece.facet_normals.T - piece.facet_offsets
+    size = np.linalg.norm(np.ptp(V, axis=0))
+    assert heights.max() <= SURFACE * size
+    assert -heights.max(axis=1).min() <= (5 if "far" in noise else 1) * SURFACE * size
+
+
+def test_the_real_peg_is_one_hull():
+    (piece,) = decompose(*load("peg_round_8mm.npz")).pieces
+    assert piece.facet_original.all()
+
+
+@pytest.mark.parametrize("depth, pieces", [(2e-7, 1), (1e-5, None)])
+def test_a_dent_is_noise_below_a_millionth(depth, pieces):
+    V, F = of_trimesh(trimesh.creation.box().subdivide())
+    middle = np.argmin(np.linalg.norm(V - [0.5, 0, 0], axis=1))
+    V = V.copy()
+    V[middle, 0] -= depth * np.sqrt(3)
+    found = len(decompose(V, F).pieces)
+    assert found == pieces if pieces else found > 1
+
+
+def test_a_convex_solid_with_noise_keeps_its_cavity():
+    outer = trimesh.creation.icosphere(subdivisions=3)
+    inner = trimesh.creation.icosphere(subdivisions=1, radius=0.5)
+    shell = joined(
+        (outer.vertices, outer.faces), (inner.vertices, inner.faces[:, ::-1])
+    )
+    V, F = arrays(shell[0].astype(np.float32), shell[1])
+    assert len(decompose(V, F).pieces) > 1
+
+
+def split_edge(V, F, a, b, shift):
+    """A corner on edge ab of one side's triangle; a needle closes the other side."""
+    (side,) = (
+        i for i, t in enumerate(F) if (a, b) in zip(t, np.roll(t, -1), strict=True)
+    )
+    (c,) = set(F[side]) - {a, b}
+    new = len(V)
+    V = np.vstack([V, (V[a] + V[b]) / 2 + shift])
+    F = np.vstack([np.delete(F, side, axis=0), [[a, new, c], [new, b, c], [a, b, new]]])
+    return arrays(V, F)
+
+
+@pytest.mark.parametrize("height", [0.0, 1e-9, 1e-7])
+def test_a_needle_joins_the_patch_beside_it(height):
+    V, F = l_prism()
+    split = split_edge(V, F, *F[0][:2], [0, 0, height])
+    assert trimesh.Trimesh(*split, process=False).is_watertight
+    pieces = decompose(*split).pieces
+    assert all(piece.dimension >= 2 for piece in pieces)
+    assert len(pieces) == len(decompose(*arrays(V, F)).pieces)
+
+
+def test_a_needle_on_its_own_is_a_segment_that_can_be_touched():
+    V, F = arrays([[0, 0, 0], [1, 0, 0], [0.4, 1e-9, 0]], [[0, 1, 2]])
+    (needle,) = decompose(V, F, solid=False).pieces
+    assert needle.dimension == 1 and needle.edge_original.all()
+    ball = _core.Polytope(np.array(trimesh.creation.icosphere().vertices))
+    pair = _core.ConvexPair(ball, needle)
+    for height, distance in [(1.5, 0.5), (0.25, -0.75), (-0.25, -0.75)]:
+        X_WA = np.eye(4)
+        X_WA[:3, 3] = [0.5, 0, height]
+        contact = pair.query(X_WA, np.eye(4))
+        assert contact.distance == pytest.approx(distance, abs=0.03)
+        assert np.linalg.norm(contact.nhat_BA_W) == pytest.approx(1)
+
+
+def test_labels_of_no_convex_patch_lose_no_triangle():
+    V, F = arrays(*l_prism())
+    result = _core.assemble_surface_pieces(V, F[:-2], np.zeros(len(F) - 2, np.int32))
+    area = areas(V, F[:-2])
+    for i, piece in enumerate(result.pieces):
+        on_facets = sum(
+            facet_area(piece.vertices[piece.facets[f]])
+            for f in np.flatnonzero(piece.facet_original)
+        )
+        assert on_facets == pytest.approx(area[result.piece_of_triangle == i].sum())
 
 
 def test_a_thin_wall_is_not_filled():

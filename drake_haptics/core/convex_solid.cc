@@ -88,7 +88,7 @@ std::vector<Plane> FindConvexSolid(const SurfaceMesh& mesh,
     box.extend(points.back());
   }
   const double tolerance =
-      std::max(mesh.tolerance, kConvexTolerance * box.diagonal().norm());
+      std::max(2 * mesh.tolerance, kConvexTolerance * box.diagonal().norm());
   const Spanning spanning = FindSpanning(points, kFlatTolerances * tolerance);
   if (spanning.dimension < 3) return {};
 

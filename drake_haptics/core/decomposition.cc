@@ -4,14 +4,19 @@
 //
 // - It shares a manifold edge with the patch, with the same winding.
 // - The planes of all triangles have all vertices of the patch on or below
-//   them, within kSurfaceTolerance of the mesh's size: all triangles are on the
-//   boundary of the patch's hull.
+//   them, within the surface tolerance (see surface_mesh.h): all triangles are
+//   on the boundary of the patch's hull.
 // - No other triangle of the same solid meets the interior of the hull, which
-//   begins 4 kSurfaceTolerance below its surface. So the hull is in the solid:
-//   the wall of a cup does not become a filled cylinder.
+//   begins 4 tolerances below its surface. So the hull is in the solid: the
+//   wall of a cup does not become a filled cylinder.
 // - Each facet of the hull is all surface or not at all. So a planar patch is a
 //   convex polygon, without notches and holes.
 // - Where the surface bounds no solid, the patch stays in one plane.
+//
+// A component that is convex but for noise is one patch (see convex_solid.h). A
+// triangle that would be on no original facet of its piece gets a piece of its
+// own. Noise apart, pieces lie in the solid; with it they leave it by no more
+// than 1e-6 of the mesh's size or ten tolerances, whichever is more.
 #include "decomposition.h"
 
 #include <algorithm>

@@ -29,7 +29,10 @@ using Progress = std::function<bool(double)>;
 /// and its hull stays inside the solid. See decomposition.cc for the rules.
 /// `solid` tells for each triangle whether it bounds a solid (its component is
 /// closed and wound outward); the patches of others are kept flat-sided, since
-/// they have no inside. Deterministic.
+/// they have no inside. A solid that differs from its hull by noise alone is
+/// one piece. Pieces leave the solid by no more than 1e-6 of the mesh's size,
+/// or more in a mesh far from its origin in single precision (see
+/// SurfaceTolerance). Deterministic.
 /// @throws std::invalid_argument for bad indices or values,
 ///         std::runtime_error when `progress` asked to stop.
 Decomposition DecomposeSurface(std::span<const Vec3> vertices,
@@ -37,7 +40,8 @@ Decomposition DecomposeSurface(std::span<const Vec3> vertices,
                                std::span<const std::uint8_t> solid,
                                const Progress& progress = {});
 
-/// The same result from known labels (a cache), without the search.
+/// The same result from known labels (a cache), without the search. Triangles
+/// that would be on no original facet of their piece get pieces of their own.
 Decomposition AssembleSurfacePieces(std::span<const Vec3> vertices,
                                     std::span<const Triangle> triangles,
                                     std::span<const int> piece_of_triangle);

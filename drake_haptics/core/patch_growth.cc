@@ -53,7 +53,8 @@ class Growth {
     for (const int seed : seeds) {
       if (work_.label[seed] < 0) GrowFrom(seed);
     }
-    return std::move(work_.label);
+    AttachNeedles();
+    return WithoutGaps(std::move(work_.label));
   }
 
  private:
@@ -136,6 +137,36 @@ class Growth {
         refused_by_[triangle] = num_patches_;
         break;
     }
+  }
+
+  // A triangle without a plane that no patch took, and that would be a piece
+  // without a side, goes to the patch across its longest edge. That edge is an
+  // edge of the patch, so that the hull grows by the triangle's height at most.
+  void AttachNeedles() {
+    std::vector<int> sizes(num_patches_, 0);
+    for (const int label : work_.label) ++sizes[label];
+    const std::vector<int> grown = work_.label;
+    for (std::size_t t = 0; t < grown.size(); ++t) {
+      if (sizes[grown[t]] > 1 || !IsNeedle(static_cast<int>(t))) continue;
+      const int next =
+          mesh_.neighbors[t][LongestSide(mesh_, mesh_.triangles[t])];
+      if (next >= 0 && !IsNeedle(next)) work_.label[t] = grown[next];
+    }
+  }
+
+  bool IsNeedle(int triangle) const {
+    return mesh_.planes[triangle].normal.isZero(0);
+  }
+
+  static std::vector<int> WithoutGaps(std::vector<int> label) {
+    std::vector<int> used = label;
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (int& l : label) {
+      l = static_cast<int>(std::lower_bound(used.begin(), used.end(), l) -
+                           used.begin());
+    }
+    return label;
   }
 
   void Finish(std::size_t num_triangles) {

@@ -26,10 +26,8 @@ void AddVertices(std::span<const Vec3> vertices, SurfaceMesh* mesh) {
   }
 }
 
-double LongestSide(const SurfaceMesh& mesh, const Triangle& t) {
-  const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]],
-             &c = mesh.vertices[t[2]];
-  return std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+double SideLength(const SurfaceMesh& mesh, const Triangle& t, int side) {
+  return (mesh.vertices[t[(side + 1) % 3]] - mesh.vertices[t[side]]).norm();
 }
 
 void AddPlanes(SurfaceMesh* mesh) {
@@ -39,8 +37,9 @@ void AddPlanes(SurfaceMesh* mesh) {
         TriangleCross(a, mesh->vertices[t[1]], mesh->vertices[t[2]]);
     mesh->areas.push_back(cross.norm() / 2);
     // The plane of a thin triangle is noise, and would keep others out.
-    const bool thin = cross.norm() <= kFacetTolerances * mesh->tolerance *
-                                          LongestSide(*mesh, t);
+    const bool thin =
+        cross.norm() <= kFacetTolerances * mesh->tolerance *
+                            SideLength(*mesh, t, LongestSide(*mesh, t));
     const Vec3 normal = thin ? Vec3::Zero() : Vec3(cross.stableNormalized());
     mesh->planes.push_back({normal, normal.dot(a)});
   }
@@ -145,6 +144,17 @@ double SurfaceTolerance(std::span<const Vec3> vertices,
       box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
   const double rounding = single ? 2 * 0x1p-24 * magnitude : 0;
   return std::clamp(rounding, 1e-7 * size, 1e-5 * size);
+}
+
+int LongestSide(const SurfaceMesh& mesh, const Triangle& triangle) {
+  int longest = 0;
+  for (int side = 1; side < 3; ++side) {
+    if (SideLength(mesh, triangle, side) >
+        SideLength(mesh, triangle, longest)) {
+      longest = side;
+    }
+  }
+  return longest;
 }
 
 SurfaceMesh MakeSurfaceMesh(std::span<const Vec3> vertices,

@@ -55,6 +55,9 @@ inline constexpr double kFacetTolerances = 3;
 double SurfaceTolerance(std::span<const Vec3> vertices,
                         std::span<const Triangle> triangles);
 
+/// Index of the longest edge of a triangle.
+int LongestSide(const SurfaceMesh& mesh, const Triangle& triangle);
+
 SurfaceMesh MakeSurfaceMesh(std::span<const Vec3> vertices,
                             std::span<const Triangle> triangles,
                             std::span<const std::uint8_t> solid);

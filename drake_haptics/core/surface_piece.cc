@@ -81,6 +81,41 @@ bool LiesOnOriginalFacet(const MeshTopology& mesh, int triangle,
       });
 }
 
+// Whether original facets and triangles have the same area, but for slivers.
+bool HaveEqualAreas(const MeshTopology& mesh, std::span<const int> patch,
+                    double tolerance, const Polytope& piece) {
+  double patch_area = 0, facet_area = 0, perimeter = 0;
+  for (const int t : patch) patch_area += AreaVector(mesh, t).norm();
+  for (std::size_t f = 0; f < piece.facets.size(); ++f) {
+    if (!piece.facets[f].original) continue;
+    std::vector<Vec3> polygon;
+    for (const int v : piece.loop_of(static_cast<int>(f))) {
+      polygon.push_back(piece.vertices[v]);
+    }
+    facet_area += PolygonArea(polygon);
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      perimeter += (polygon[(k + 1) % polygon.size()] - polygon[k]).norm();
+    }
+  }
+  constexpr double kRoundOff = 1e-9;
+  return std::abs(facet_area - patch_area) <=
+         kRoundOff * patch_area + tolerance * perimeter;
+}
+
+// Triangles that lie on no original facet. All of them, if the facets stand for
+// more or less surface than there is.
+std::vector<int> FindLost(const MeshTopology& mesh, std::span<const int> patch,
+                          double tolerance, const Polytope& piece) {
+  std::vector<int> lost;
+  for (const int t : patch) {
+    if (!LiesOnOriginalFacet(mesh, t, tolerance, piece)) lost.push_back(t);
+  }
+  if (lost.empty() && !HaveEqualAreas(mesh, patch, tolerance, piece)) {
+    lost.assign(patch.begin(), patch.end());
+  }
+  return lost;
+}
+
 }  // namespace
 
 SurfacePiece MakeSurfacePiece(const MeshTopology& mesh,
@@ -105,11 +140,7 @@ SurfacePiece MakeSurfacePiece(const MeshTopology& mesh,
   const double on_facet = kOnFacetTolerances * tolerance;
   ConnectToSurface(mesh, patch, source, on_facet, &piece.polytope);
   if (patch.size() > 1 && !closed) {
-    for (const int t : patch) {
-      if (!LiesOnOriginalFacet(mesh, t, on_facet, piece.polytope)) {
-        piece.lost.push_back(t);
-      }
-    }
+    piece.lost = FindLost(mesh, patch, on_facet, piece.polytope);
   }
   return piece;
 }

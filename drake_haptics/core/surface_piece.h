@@ -10,8 +10,8 @@ namespace drake_haptics {
 /// The polytope of a patch, which knows what of it is mesh.
 struct SurfacePiece {
   Polytope polytope;
-  /// Triangles of the patch that lie on no original facet, so that no contact
-  /// would find them. Only noise of the tolerance's size can cause them.
+  /// Triangles of the patch that no original facet stands for, so that no
+  /// contact would find them. Only noise can cause them.
   std::vector<int> lost;
 };
 
