@@ -11,8 +11,6 @@ namespace {
 
 // Relative to the component's size.
 constexpr double kConvexTolerance = 1e-6;
-// A solid thinner than this is as good as flat.
-constexpr double kFlatTolerances = 12;
 
 // The boundary of a component's hull, to ask what is near it.
 class HullBoundary {

@@ -11,10 +11,6 @@ namespace {
 // the tolerance of the final hull's facets, so that each of those was checked.
 constexpr double kOnPlaneTolerances = 4;
 
-// A hull thinner than this counts as flat: the inset of the obstacle test would
-// leave it no interior, and nothing would keep it in the solid.
-constexpr double kFlatTolerances = 12;
-
 }  // namespace
 
 PatchWorkspace::PatchWorkspace(const SurfaceMesh& mesh_in)

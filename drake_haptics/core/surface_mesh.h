@@ -47,6 +47,10 @@ struct SurfaceMesh {
 /// mesh triangle that is thinner has no plane of its own.
 inline constexpr double kFacetTolerances = 3;
 
+/// A hull thinner than this counts as flat: the inset of the obstacle test
+/// would leave it no interior, and nothing would keep it in the solid.
+inline constexpr double kFlatTolerances = 12;
+
 /// Distance, m, below which points count as lying in a plane: 1e-7 of the
 /// bounding box diagonal, for the vertices that triangles use. If all their
 /// coordinates are numbers of single precision, then they were rounded to it,
