@@ -85,8 +85,11 @@ def decompose(
         mesh: from `load_mesh` or `Mesh.from_arrays`.
         method: "surface" covers the mesh exactly: patches grown for as long as
             they are convex and their hulls stay inside the solid (Kim, Otaduy, Lin
-            and Manocha 2003, section 5.3.1); a convex solid gives one piece. Pieces
-            of a surface that bounds no solid are one-sided. "hull" is one convex
+            and Manocha 2003, section 5.3.1). A solid that differs from its hull
+            by rounding alone gives one piece: pieces may leave the solid by 1e-6
+            of the mesh's size, by more only in a mesh far from its origin in
+            single precision. Pieces of a surface that bounds no solid are
+            one-sided. "hull" is one convex
             hull for each component: it fills hollows. "coacd" fills solids
             approximately with few pieces (optional extra); it fills cavities.
         progress: called now and then with the share done, from 0 to 1. An

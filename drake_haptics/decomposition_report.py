@@ -21,7 +21,8 @@ class DecompositionReport:
         triangles: of the mesh.
         one_sided_triangles: those that bound no solid.
         pieces: convex pieces.
-        flat_pieces: those of them without volume (coplanar patches).
+        flat_pieces: those of them without volume (coplanar patches, and needles
+            thinner than the tolerance).
         facets: of all pieces; a flat piece counts as one.
         virtual_facets: those of them that are not on the mesh.
         seconds: that finding the pieces took, s.
