@@ -89,9 +89,9 @@ def decompose(
             by rounding alone gives one piece: pieces may leave the solid by 1e-6
             of the mesh's size, by more only in a mesh far from its origin in
             single precision. Pieces of a surface that bounds no solid are
-            one-sided. "hull" is one convex
-            hull for each component: it fills hollows. "coacd" fills solids
-            approximately with few pieces (optional extra); it fills cavities.
+            one-sided. "hull" is one convex hull for each component: it fills
+            hollows. "coacd" fills solids approximately with few pieces (optional
+            extra); it fills cavities.
         progress: called now and then with the share done, from 0 to 1. An
             exception that it raises stops the work and comes out here.
         cache: use and keep results on disk, see `decomposition_cache`.

@@ -7,6 +7,7 @@
 namespace drake_haptics {
 namespace {
 
+// The mesh around a piece, as wings and rings tell it.
 class SurfaceAround {
  public:
   SurfaceAround(const MeshTopology& mesh, std::span<const int> patch,
