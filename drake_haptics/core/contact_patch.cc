@@ -236,13 +236,14 @@ struct Blend {
 
 }  // namespace
 
-Vec3 PressureCenter(const PosedPair& pair, const Vec3& n, double h,
-                    const Hub& hub, const Vec3& witness, double spread,
-                    PatchWorkspace* workspace) {
+std::optional<Vec3> PressureCenter(const PosedPair& pair, const Vec3& n,
+                                   double h, const Hub& hub,
+                                   const Vec3& witness, double spread,
+                                   PatchWorkspace* workspace) {
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
   const FlushFacet a = FindFlushFacet(pair.A, hub.a, -n);
   const FlushFacet b = FindFlushFacet(pair.B, hub.b, n_B);
-  if (a.index < 0 && b.index < 0) return witness;
+  if (a.index < 0 && b.index < 0) return std::nullopt;
   Patch patch(pair, n, h, spread, workspace);
   Blend blend;
   if (a.index >= 0 && b.index >= 0) {
@@ -260,10 +261,11 @@ Vec3 PressureCenter(const PosedPair& pair, const Vec3& n, double h,
                 share * a.share * (1 - b.share));
     });
   }
+  if (!(blend.total > 0)) return std::nullopt;
   const Vec3 flat = witness - n * n.dot(witness);
   const Vec3 center =
       (blend.sum + blend.rest * flat) / (blend.total + blend.rest);
-  return center + n * n.dot(witness);
+  return Vec3(center + n * n.dot(witness));
 }
 
 }  // namespace drake_haptics

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "support.h"
@@ -24,10 +25,13 @@ struct PatchWorkspace {
 /// @param n unit normal from B into A, in A's frame.
 /// @param h support gap along n, m.
 /// @param hub vertices that support the pair along n.
-/// @param witness A's witness point, returned where the contact has no extent.
-/// @return the point of A's support plane at the centre, in A's frame, m.
-Vec3 PressureCenter(const PosedPair& pair, const Vec3& n, double h,
-                    const Hub& hub, const Vec3& witness, double spread,
-                    PatchWorkspace* workspace);
+/// @param witness A's witness point, where the contact is as long as no feature
+///     is flush.
+/// @return the point of A's support plane at the centre, in A's frame (m), or
+///     nothing where the contact has no extent.
+std::optional<Vec3> PressureCenter(const PosedPair& pair, const Vec3& n,
+                                   double h, const Hub& hub,
+                                   const Vec3& witness, double spread,
+                                   PatchWorkspace* workspace);
 
 }  // namespace drake_haptics

@@ -16,6 +16,10 @@ void RequireFinite(const Pose& X, const char* what) {
   }
 }
 
+// A tool that moves by more than this share of its radius between two queries
+// was put somewhere else.
+constexpr double kTeleportShare = 0.25;
+
 // How far a point within `radius` (m) of A's origin has moved in B's frame at
 // most, from the last to the present pose X_AB.
 double MotionBound(const Pose& last, const Pose& present, double radius) {
@@ -80,11 +84,22 @@ void ContactTracker::Query(const Pose& X_WTool, ContactSet* out) {
 void ContactTracker::QueryObject(int i, const Pose& X_WTool, ContactSet* out) {
   Object& object = objects_[i];
   const Pose X_AB = RelativePose(X_WTool, object.X_WO);
-  const PairRequest request{tolerance_, SurfaceRule::kSurfaceOnly,
-                            MotionBound(object.X_AB, X_AB, tool_radius_)};
+  // After a teleport what was learnt means nothing.
+  if (MotionBound(object.X_AB, X_AB, tool_radius_) >
+      kTeleportShare * tool_radius_) {
+    Forget(&object);
+  }
+  std::swap(pressed_, object.pressed);
+  object.pressed.clear();
+  double deepest = 0;
+  for (const PressedContact& last : pressed_) {
+    deepest = std::max(deepest, -last.distance);
+  }
+  const PairRequest request{tolerance_, SurfaceRule::kSurfaceOnly, object.X_AB,
+                            pressed_};
   object.X_AB = X_AB;
   candidates_.clear();
-  CollectPairs(*tool_tree_, *object.tree, X_AB, tolerance_, &stack_,
+  CollectPairs(*tool_tree_, *object.tree, X_AB, tolerance_ + deepest, &stack_,
                &candidates_);
   // A pair in contact stays under watch: the tool may have passed behind a
   // shallow piece, out of the reach of its box.
@@ -108,6 +123,11 @@ void ContactTracker::QueryObject(int i, const Pose& X_WTool, ContactSet* out) {
     const auto answer =
         QueryPair(pair, request, &next_tracked_.back().state, &workspace_);
     if (!answer) continue;
+    if (answer->distance < 0) {
+      object.pressed.push_back({answer->distance,
+                                X_AB.R.transpose() * answer->n,
+                                X_AB.inverse() * answer->p_b});
+    }
     Contact contact = InWorld(*answer, X_WTool);
     contact.object = i;
     contact.piece_A = pieces.a;
@@ -118,7 +138,12 @@ void ContactTracker::QueryObject(int i, const Pose& X_WTool, ContactSet* out) {
 }
 
 void ContactTracker::Reset() {
-  for (Object& object : objects_) object.tracked.clear();
+  for (Object& object : objects_) Forget(&object);
+}
+
+void ContactTracker::Forget(Object* object) {
+  object->tracked.clear();
+  object->pressed.clear();
 }
 
 }  // namespace drake_haptics

@@ -49,9 +49,11 @@ class ContactTracker {
     std::shared_ptr<const PieceTree> tree;
     Pose X_WO;
     Pose X_AB;  // at the last query: the object in the tool's frame
-    std::vector<TrackedPair> tracked;  // sorted by pieces
+    std::vector<TrackedPair> tracked;     // sorted by pieces
+    std::vector<PressedContact> pressed;  // last tick's, in the object's frame
   };
 
+  static void Forget(Object* object);
   void QueryObject(int i, const Pose& X_WTool, ContactSet* out);
 
   std::shared_ptr<const Decomposition> tool_;
@@ -63,6 +65,7 @@ class ContactTracker {
   PairWorkspace workspace_;
   std::vector<PiecePair> stack_, candidates_;
   std::vector<TrackedPair> next_tracked_;
+  std::vector<PressedContact> pressed_;
 };
 
 }  // namespace drake_haptics

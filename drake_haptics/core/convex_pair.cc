@@ -33,9 +33,9 @@ constexpr double kSpreadShare = 0.1;
 constexpr double kFreeSpreadShare = 1e-3;
 // Cosine of the largest turn of a held contact's normal in one tick.
 constexpr double kHeldTurn = 0.5;
-// How far beyond a feature's sides a held contact may slide, as a share of the
-// size: the press is over once the tool has left the features sideways.
-constexpr double kHeldSlideShare = 1e-2;
+// How far beyond its features' sides a contact in depth may lie, as a share of
+// the size.
+constexpr double kSlideShare = 1e-2;
 
 Feature SimplexFeature(const Polytope& polytope, const Simplex& simplex,
                        int Hub::* side, const Vec3& n) {
@@ -66,26 +66,39 @@ class Query {
         workspace_(*workspace) {}
 
   std::optional<PairContact> Run() {
-    if (!state_.in_contact && IsBeyondLastNormal()) return std::nullopt;
-    separation_ = ComputeSeparation(pair_, state_.simplex, request_.tolerance);
-    state_.simplex = separation_.simplex;
     std::optional<PairContact> contact;
-    switch (separation_.status) {
-      case SeparationStatus::kApart:
-        contact = Near();
-        break;
-      case SeparationStatus::kTouching:
-        contact = Overlapping();
-        break;
-      case SeparationStatus::kBeyond:
-        if (surface_only_ && state_.in_contact) contact = Held();
+    if (!state_.in_contact && IsBeyondLastNormal()) {
+      contact = TakenOver();
+      if (!contact) return contact;
+    } else {
+      contact = Answer();
     }
     Remember(contact);
-    if (contact) Center(&*contact);
+    if (contact) {
+      const auto center =
+          Center(contact->n, contact->distance, state_.hub, contact->p_a);
+      if (center) {
+        contact->p_a = *center;
+        contact->p_b = *center - contact->distance * contact->n;
+      }
+    }
     return contact;
   }
 
  private:
+  std::optional<PairContact> Answer() {
+    separation_ = ComputeSeparation(pair_, state_.simplex, request_.tolerance);
+    state_.simplex = separation_.simplex;
+    switch (separation_.status) {
+      case SeparationStatus::kApart:
+        return Near();
+      case SeparationStatus::kTouching:
+        return Overlapping();
+      default:
+        return Behind();
+    }
+  }
+
   // Last tick's normal often still proves that the pair is out of reach.
   bool IsBeyondLastNormal() {
     return state_.n.squaredNorm() > 0 &&
@@ -97,11 +110,13 @@ class Query {
       return Overlapping();
     }
     PairContact contact = Apart();
-    if (surface_only_ && !IsSupported(contact)) {
-      if (state_.in_contact) return Held();
-      return std::nullopt;
-    }
+    if (surface_only_ && !IsSupported(contact)) return Behind();
     return contact;
+  }
+
+  // No contact of its own: the tool is out of reach, or behind the surface.
+  std::optional<PairContact> Behind() {
+    return state_.in_contact ? Held(state_.n) : TakenOver();
   }
 
   PairContact Apart() const {
@@ -132,7 +147,7 @@ class Query {
       if (!surface_only_ || IsSupported(contact)) return contact;
     }
     if (depth.status == DepthStatus::kNoFacet) return Grazing();
-    if (surface_only_ && !IsPlausible(depth)) return std::nullopt;
+    if (surface_only_ && !IsPlausible(depth)) return TakenOver();
     ContactStatus status =
         depth.best.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating;
     if (depth.status == DepthStatus::kBounded &&
@@ -157,17 +172,75 @@ class Query {
   // A piece of a thin wall is also met from behind, through its virtual side:
   // its own surface is far then, and the pieces on the near side carry the
   // contact.
-  bool IsPlausible(const Depth& depth) const {
+  bool IsPlausible(const Depth& depth) {
     if (depth.best.support == SurfaceSupport::kVirtual) return false;
-    if (state_.in_contact && GoesOn(depth.best.h)) return true;
-    return depth.best.n.dot(state_.n) >= kComingFrom &&
-           depth.best.h >= depth.shallowest - kEntryShare * request_.tolerance;
+    // What goes on may reach beyond its features: a face wider than the pieces
+    // has its deepest corner over another one.
+    if (GoesOn(depth.best)) return true;
+    if (!IsWithinFeatures(depth)) return false;
+    return IsHandedOver(depth.best) ||
+           (depth.best.n.dot(state_.n) >= kComingFrom &&
+            depth.best.h >=
+                depth.shallowest - kEntryShare * request_.tolerance);
   }
 
-  // Whether the motion since the last contact explains this gap.
-  bool GoesOn(double h) const {
-    return h >= state_.distance - 2 * request_.motion -
-                    kTrackingShare * request_.tolerance;
+  // Whether a contact of the last tick, on another piece, goes on in this one.
+  bool IsHandedOver(const DepthCandidate& facet) const {
+    const auto goes_on = [&](const PressedContact& last) {
+      return IsNear(last) && Follows(facet, last);
+    };
+    return std::any_of(request_.pressed.begin(), request_.pressed.end(),
+                       goes_on);
+  }
+
+  // Whether this pair's own last contact goes on in the facet.
+  bool GoesOn(const DepthCandidate& facet) const {
+    return state_.in_contact &&
+           Follows(facet, {state_.distance, pair_.X_AB.R.transpose() * state_.n,
+                           state_.p_b});
+  }
+
+  // Whether the motion since a contact explains the facet's depth and turn.
+  bool Follows(const DepthCandidate& facet, const PressedContact& last) const {
+    return facet.n.dot(pair_.X_AB.R * last.n) >= kHeldTurn &&
+           facet.h >= last.distance - 2 * Motion(last.p_b) -
+                          kTrackingShare * request_.tolerance;
+  }
+
+  // How far a point of B (in B's frame) has moved against A since the last
+  // query, m.
+  double Motion(const Vec3& p_B) const {
+    return (pair_.X_AB * p_B - request_.last_X_AB * p_B).norm();
+  }
+
+  // Whether both pieces are where the contact was.
+  bool IsNear(const PressedContact& last) const {
+    const double slack = Motion(last.p_b) - last.distance;
+    return (pair_.X_AB * last.p_b - pair_.A.centroid).norm() <=
+               pair_.A.radius + slack &&
+           (last.p_b - pair_.B.centroid).norm() <= pair_.B.radius + slack;
+  }
+
+  // A pair that goes on where another one pressed: the tool may be behind this
+  // piece altogether.
+  std::optional<PairContact> TakenOver() {
+    for (const PressedContact& last : request_.pressed) {
+      if (!IsNear(last)) continue;
+      const auto contact = Held(pair_.X_AB.R * last.n);
+      if (contact) return contact;
+    }
+    return std::nullopt;
+  }
+
+  // Whether the bodies press on the facet's own features: beside them its plane
+  // means nothing.
+  bool IsWithinFeatures(const Depth& depth) {
+    const DepthCandidate& facet = depth.best;
+    const Witness witness = WitnessOfFeatures(
+        pair_, facet.feature_A, facet.feature_B, facet.n, facet.h);
+    return LateralOffset(pair_, facet.feature_A, facet.feature_B, witness) <=
+               kSlideShare * pair_.scale() ||
+           Center(facet.n, facet.h, depth.hub, witness.p_a).has_value();
   }
 
   // From the last answer. On coherent motion its facet mostly still is the
@@ -231,40 +304,34 @@ class Query {
                        ContactStatus::kPenetrating};
   }
 
-  // The pair was in contact and its hulls are apart now, yet the gap along the
-  // way in is negative: the tool went through a shallow piece. The depth is
+  // The tool was in contact and the hulls are apart now, yet the gap along the
+  // way in, n, is negative: it went through a shallow piece. The depth is
   // measured along the surface's own normals, and the way out is the way in.
-  std::optional<PairContact> Held() {
+  std::optional<PairContact> Held(const Vec3& n) {
+    if (!surface_only_) return std::nullopt;
     Hub hub = state_.hub;
-    if (!(SupportGap(pair_, state_.n, &hub) < 0)) return std::nullopt;
+    if (!(SupportGap(pair_, n, &hub) < 0)) return std::nullopt;
     const Depth depth =
         WalkDepth(pair_, hub, nullptr, kWarmPromotionHubs, &workspace_.depth);
     if (depth.status == DepthStatus::kNoFacet ||
         depth.best.support != SurfaceSupport::kSupported ||
-        !(depth.best.h < 0) || !GoesOn(depth.best.h) ||
-        depth.best.n.dot(state_.n) < kHeldTurn) {
+        !(depth.best.h < 0) ||
+        !(GoesOn(depth.best) || IsHandedOver(depth.best)) ||
+        !IsWithinFeatures(depth)) {
       return std::nullopt;
     }
-    const PairContact contact = AtFacet(depth, ContactStatus::kHeld);
-    if (LateralOffset(pair_, contact.feature_A, contact.feature_B,
-                      {contact.p_a, contact.p_b}) >
-        kHeldSlideShare * pair_.scale()) {
-      return std::nullopt;
-    }
-    return contact;
+    return AtFacet(depth, ContactStatus::kHeld);
   }
 
-  // Moves the witness points of nearly flush faces to the centre of pressure.
-  void Center(PairContact* contact) {
+  // The centre of pressure of nearly flush faces.
+  std::optional<Vec3> Center(const Vec3& n, double h, const Hub& hub,
+                             const Vec3& p_a) {
     const double tolerance = request_.tolerance;
-    const double spread = std::isfinite(tolerance)
-                              ? std::clamp(tolerance - contact->distance, 0.0,
-                                           kSpreadShare * tolerance)
-                              : kFreeSpreadShare * pair_.scale();
-    contact->p_a =
-        PressureCenter(pair_, contact->n, contact->distance, state_.hub,
-                       contact->p_a, spread, &workspace_.patch);
-    contact->p_b = contact->p_a - contact->distance * contact->n;
+    const double spread =
+        std::isfinite(tolerance)
+            ? std::clamp(tolerance - h, 0.0, kSpreadShare * tolerance)
+            : kFreeSpreadShare * pair_.scale();
+    return PressureCenter(pair_, n, h, hub, p_a, spread, &workspace_.patch);
   }
 
   void Remember(const std::optional<PairContact>& contact) {
@@ -275,6 +342,7 @@ class Query {
     if (contact) {
       state_.n = contact->n;
       state_.distance = contact->distance;
+      state_.p_b = pair_.X_AB.inverse() * contact->p_b;
     }
     if (is_facet) {
       state_.hub = *facet_hub_;

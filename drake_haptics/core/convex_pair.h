@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "contact_patch.h"
 #include "depth_walk.h"
@@ -38,7 +39,8 @@ struct PairState {
   Feature feature_A;      ///< features of the last depth; none if the last
   Feature feature_B;      ///< answer was not a depth
   bool in_contact = false;
-  double distance = 0;  ///< last contact's, m
+  double distance = 0;      ///< last contact's, m
+  Vec3 p_b = Vec3::Zero();  ///< its witness point of B, in B's frame, m
 };
 
 /// Which contacts of a pair count.
@@ -54,13 +56,24 @@ struct PairWorkspace {
   PatchWorkspace patch;
 };
 
+/// A penetrating contact of the last tick between any pieces of the same two
+/// objects, in B's frame.
+struct PressedContact {
+  double distance = 0;      ///< m
+  Vec3 n = Vec3::UnitX();   ///< unit, from B into A
+  Vec3 p_b = Vec3::Zero();  ///< witness point of B, m
+};
+
 /// What is asked of a pair.
 struct PairRequest {
   double tolerance = 0;  ///< contacts farther apart than this (m) are none
   SurfaceRule rule = SurfaceRule::kWholeBoundary;
-  /// No point of A has moved farther than this (m) in B's frame since the last
-  /// query; used under kSurfaceOnly.
-  double motion = 0;
+  /// Under kSurfaceOnly: the pose at the last query, by which the motion of a
+  /// contact is known.
+  Pose last_X_AB;
+  /// Under kSurfaceOnly: where the tool presses already. A pair that was not in
+  /// contact may take over there.
+  std::span<const PressedContact> pressed{};
 };
 
 /// Answers the pair at its present pose, warm from `state`, and renews it.
@@ -70,9 +83,10 @@ struct PairRequest {
 ///
 /// Under kSurfaceOnly a contact apart counts where both meshes are locally
 /// supported along its normal, so that seams of a decomposition are never
-/// felt; a contact's depth grows no faster than the motion allows; and a pair
-/// that was in contact and has passed behind the surface stays in contact
-/// along the way it went in.
+/// felt; a contact's depth grows no faster than the motion allows; a pair that
+/// was in contact and has passed behind the surface stays in contact along the
+/// way it went in; and where the tool slides from one piece to the next while
+/// it presses, the next takes the contact over at its depth.
 ///
 /// The witness points of faces that lie nearly flush are at the centre of
 /// pressure of a layer as thick as `tolerance` − distance, at most a tenth of

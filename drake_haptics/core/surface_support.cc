@@ -24,6 +24,32 @@ bool FacetHolds(const Polytope& polytope, int facet, int vertex) {
   return std::find(loop.begin(), loop.end(), vertex) != loop.end();
 }
 
+// Whether n leaves the solid at an edge of the mesh: seen from inside, a
+// concave edge is a ridge like any other. The normals of the mesh's faces
+// beside it follow from its wings.
+bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
+                const Vec3& n) {
+  const Vec3 along = polytope.vertices[edge.v1] - polytope.vertices[edge.v0];
+  const double slack = kSlack * along.norm();
+  const auto leaves = [&](const Vec3& wing, const Vec3& normal) {
+    return !wing.isZero(0) && n.dot(normal) > -slack;
+  };
+  return edge.left < 0 || leaves(edge.wings[0], along.cross(edge.wings[0])) ||
+         leaves(edge.wings[1], edge.wings[1].cross(along));
+}
+
+// The same at a vertex, by the faces that the piece has there.
+bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n,
+                  double slack) {
+  bool has_surface = false;
+  for (const int facet : polytope.facets_of(vertex)) {
+    if (!polytope.facets[facet].original) continue;
+    if (n.dot(polytope.facets[facet].normal) > -slack) return true;
+    has_surface = true;
+  }
+  return !has_surface;
+}
+
 // Support of one side; n points out of the polytope, in its frame.
 SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
                             const Vec3& n, double vertex_slack) {
@@ -39,12 +65,14 @@ SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
       const Polytope::Edge& edge = polytope.edges[feature.index()];
       if (!edge.original) return SurfaceSupport::kVirtual;
       return supported_if(n.dot(edge.wings[0]) <= kSlack &&
-                          n.dot(edge.wings[1]) <= kSlack);
+                          n.dot(edge.wings[1]) <= kSlack &&
+                          LeavesEdge(polytope, edge, n));
     }
     default: {
       // Vertices are never created by a decomposition: all are original.
       const auto ring = polytope.ring_of(feature.index());
       return supported_if(
+          LeavesVertex(polytope, feature.index(), n, vertex_slack) &&
           std::all_of(ring.begin(), ring.end(),
                       [&](const Vec3& r) { return n.dot(r) <= vertex_slack; }));
     }
