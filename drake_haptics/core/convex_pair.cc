@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact_passage.h"
 #include "facet_revisit.h"
+#include "separation.h"
 #include "surface_support.h"
 #include "witness.h"
 
@@ -21,18 +23,14 @@ constexpr double kJoinShare = 1e-9;
 // direction from which the pair came together: beyond it the tool came from
 // behind the surface, through a virtual side of the piece.
 constexpr double kComingFrom = -0.2;
-// How much deeper than the shallowest facet a new contact may be, and than the
-// last contact, beyond what the motion explains, an old one; as shares of the
-// tolerance.
+// How much deeper than the shallowest facet a new contact may be, as a share of
+// the tolerance.
 constexpr double kEntryShare = 0.25;
-constexpr double kTrackingShare = 0.1;
 // Thickness of the layer between flush faces, as a share of the tolerance: thin
 // enough that it ends on the face, thick enough to be soft against rocking.
 constexpr double kSpreadShare = 0.1;
 // The same as a share of the size, where no tolerance is given.
 constexpr double kFreeSpreadShare = 1e-3;
-// Cosine of the largest turn of a held contact's normal in one tick.
-constexpr double kHeldTurn = 0.5;
 // How far beyond its features' sides a contact in depth may lie, as a share of
 // the size.
 constexpr double kSlideShare = 1e-2;
@@ -63,6 +61,7 @@ class Query {
         request_(request),
         surface_only_(request.rule == SurfaceRule::kSurfaceOnly),
         state_(*state),
+        passage_(pair, request_, *state),
         workspace_(*workspace) {}
 
   std::optional<PairContact> Run() {
@@ -176,56 +175,19 @@ class Query {
     if (depth.best.support == SurfaceSupport::kVirtual) return false;
     // What goes on may reach beyond its features: a face wider than the pieces
     // has its deepest corner over another one.
-    if (GoesOn(depth.best)) return true;
+    if (passage_.GoesOn(depth.best)) return true;
     if (!IsWithinFeatures(depth)) return false;
-    return IsHandedOver(depth.best) ||
+    return passage_.IsHandedOver(depth.best) ||
            (depth.best.n.dot(state_.n) >= kComingFrom &&
             depth.best.h >=
                 depth.shallowest - kEntryShare * request_.tolerance);
-  }
-
-  // Whether a contact of the last tick, on another piece, goes on in this one.
-  bool IsHandedOver(const DepthCandidate& facet) const {
-    const auto goes_on = [&](const PressedContact& last) {
-      return IsNear(last) && Follows(facet, last);
-    };
-    return std::any_of(request_.pressed.begin(), request_.pressed.end(),
-                       goes_on);
-  }
-
-  // Whether this pair's own last contact goes on in the facet.
-  bool GoesOn(const DepthCandidate& facet) const {
-    return state_.in_contact &&
-           Follows(facet, {state_.distance, pair_.X_AB.R.transpose() * state_.n,
-                           state_.p_b});
-  }
-
-  // Whether the motion since a contact explains the facet's depth and turn.
-  bool Follows(const DepthCandidate& facet, const PressedContact& last) const {
-    return facet.n.dot(pair_.X_AB.R * last.n) >= kHeldTurn &&
-           facet.h >= last.distance - 2 * Motion(last.p_b) -
-                          kTrackingShare * request_.tolerance;
-  }
-
-  // How far a point of B (in B's frame) has moved against A since the last
-  // query, m.
-  double Motion(const Vec3& p_B) const {
-    return (pair_.X_AB * p_B - request_.last_X_AB * p_B).norm();
-  }
-
-  // Whether both pieces are where the contact was.
-  bool IsNear(const PressedContact& last) const {
-    const double slack = Motion(last.p_b) - last.distance;
-    return (pair_.X_AB * last.p_b - pair_.A.centroid).norm() <=
-               pair_.A.radius + slack &&
-           (last.p_b - pair_.B.centroid).norm() <= pair_.B.radius + slack;
   }
 
   // A pair that goes on where another one pressed: the tool may be behind this
   // piece altogether.
   std::optional<PairContact> TakenOver() {
     for (const PressedContact& last : request_.pressed) {
-      if (!IsNear(last)) continue;
+      if (!passage_.IsNear(last)) continue;
       const auto contact = Held(pair_.X_AB.R * last.n);
       if (contact) return contact;
     }
@@ -316,7 +278,7 @@ class Query {
     if (depth.status == DepthStatus::kNoFacet ||
         depth.best.support != SurfaceSupport::kSupported ||
         !(depth.best.h < 0) ||
-        !(GoesOn(depth.best) || IsHandedOver(depth.best)) ||
+        !(passage_.GoesOn(depth.best) || passage_.IsHandedOver(depth.best)) ||
         !IsWithinFeatures(depth)) {
       return std::nullopt;
     }
@@ -357,6 +319,7 @@ class Query {
   const PairRequest request_;
   const bool surface_only_;
   PairState& state_;
+  const ContactPassage passage_;
   PairWorkspace& workspace_;
   Separation separation_;
   std::optional<Hub> facet_hub_;  // of the facet that is the answer, if one is

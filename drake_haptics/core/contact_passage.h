@@ -1,0 +1,36 @@
+#pragma once
+
+#include "depth_walk.h"
+#include "pair_state.h"
+#include "support.h"
+
+namespace drake_haptics {
+
+/// Whether a contact goes on from the last tick to this one: on the same pair
+/// of pieces, or from one pair to another where the tool slides over a seam
+/// while it presses. It may sink only as far as the motion there explains.
+class ContactPassage {
+ public:
+  ContactPassage(const PosedPair& pair, const PairRequest& request,
+                 const PairState& state)
+      : pair_(pair), request_(request), state_(state) {}
+
+  /// Whether this pair's own last contact goes on in the facet of A ⊖ B.
+  bool GoesOn(const DepthCandidate& facet) const;
+
+  /// Whether a contact of the last tick on other pieces goes on in it.
+  bool IsHandedOver(const DepthCandidate& facet) const;
+
+  /// Whether both pieces are where that contact was.
+  bool IsNear(const PressedContact& last) const;
+
+ private:
+  bool Follows(const DepthCandidate& facet, const PressedContact& last) const;
+  double Motion(const Vec3& p_B) const;
+
+  const PosedPair& pair_;
+  const PairRequest& request_;
+  const PairState& state_;
+};
+
+}  // namespace drake_haptics
