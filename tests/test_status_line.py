@@ -1,6 +1,7 @@
 """What the terminal shows during a run."""
 
 import io
+import itertools
 
 import pytest
 from rich.console import Console
@@ -18,10 +19,11 @@ def haptic():
 
 
 def run_with_status(haptic, *, terminal):
-    """Runs into contact and returns what was written and the figures."""
+    """Runs into contact, a tenth of a second of clock time per tick."""
     text = io.StringIO()
     console = Console(file=text, force_terminal=terminal, width=160, color_system=None)
-    with StatusLine(console, haptic) as status:
+    clock = itertools.count(0.0, 0.1)
+    with StatusLine(console, haptic, clock=lambda: next(clock)) as status:
         figures = run(haptic, 1.5, on_tick=status.update).to_dict()
     return text.getvalue(), figures
 
@@ -31,6 +33,7 @@ def test_a_terminal_sees_time_contacts_and_force(haptic):
     assert "1 contacts in  1 clusters" in text
     assert "x real time" in text
     assert " N " in text and "mm deep" in text
+    assert "-0.00" not in text
 
 
 def test_a_file_gets_no_status(haptic):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
@@ -26,10 +27,17 @@ class StatusLine:
     Args:
         console: Where to write.
         haptic: What runs.
+        clock: Reads the time, s.
     """
 
-    def __init__(self, console: Console, haptic: HapticDiagram):
+    def __init__(
+        self,
+        console: Console,
+        haptic: HapticDiagram,
+        clock: Callable[[], float] = time.perf_counter,
+    ):
         self._haptic = haptic
+        self._clock = clock
         self._live = Live(console=console, auto_refresh=False, transient=True)
         self._shown = console.is_terminal
         self._next_s = 0.0
@@ -38,7 +46,7 @@ class StatusLine:
     def __enter__(self) -> StatusLine:
         """Starts the line."""
         self._live.start()
-        self._before = (time.perf_counter(), 0.0)
+        self._before = (self._clock(), 0.0)
         return self
 
     def __exit__(
@@ -52,7 +60,7 @@ class StatusLine:
 
     def update(self, context: Context) -> None:
         """Writes the line anew, if it is time; a call costs well under 1 µs else."""
-        now_s = time.perf_counter()
+        now_s = self._clock()
         if now_s < self._next_s or not self._shown:
             return
         self._next_s = now_s + _PERIOD_S
@@ -72,7 +80,7 @@ class StatusLine:
         F_display = loop.virtual_coupling.get_display_wrench_output_port().Eval(
             coupling
         )
-        deepest_mm = 1e3 * max(-contacts.distance.min(initial=0.0), 0.0)
+        deepest_mm = 1e3 * max(0.0, -contacts.distance.min(initial=0.0))
         return (
             f"[bold]{context.get_time():7.1f} s[/] · {rate:5.2f} x real time"
             f" · {len(contacts):3d} contacts in {len(clusters):2d} clusters"
