@@ -21,9 +21,11 @@ class ArrowPool:
     arrow that is to come and go must exist from the start. The same calls draw the
     live picture.
 
-    Each slot has one arrow per colour, of which at most one is visible. Whatever is
-    drawn under the same key stays in the same slot, so that a recording, which is
-    interpolated between frames, does not sweep arrows across the scene.
+    A slot is placed, and the folder `arrow` in it is scaled: a pose that the page
+    receives resets the scale of the same node. The folder has one arrow per colour, of
+    which at most one is visible. Whatever is drawn under the same key stays in the same
+    slot, so that a recording, which is interpolated between frames, does not sweep
+    arrows across the scene.
     """
 
     def __init__(
@@ -47,9 +49,9 @@ class ArrowPool:
         vertices, triangles = _make_arrow()
         for slot in self._slots:
             for color, rgba in enumerate(colors):
-                child = f"{slot}/{color}"
-                meshcat.SetTriangleMesh(child, vertices, triangles, rgba)
-                meshcat.SetProperty(child, "visible", False)
+                arrow = f"{slot}/arrow/{color}"
+                meshcat.SetTriangleMesh(arrow, vertices, triangles, rgba)
+                meshcat.SetProperty(arrow, "visible", False)
 
     def draw(
         self,
@@ -81,7 +83,8 @@ class ArrowPool:
             length = float(np.linalg.norm(vector))
             if not math.isclose(length, self._lengths[i], rel_tol=1e-6):
                 self._lengths[i] = length
-                self._meshcat.SetProperty(self._slots[i], "scale", [length] * 3, time_s)
+                path = f"{self._slots[i]}/arrow"
+                self._meshcat.SetProperty(path, "scale", [length] * 3, time_s)
         for i, shown in enumerate(visible):
             self._show(i, shown, time_s)
 
@@ -90,7 +93,7 @@ class ArrowPool:
         for slot, shown in zip(self._slots, self._shown, strict=True):
             for color in range(self._num_colors):
                 self._meshcat.SetProperty(
-                    f"{slot}/{color}", "visible", color == shown, time_s
+                    f"{slot}/arrow/{color}", "visible", color == shown, time_s
                 )
 
     def _assign_slots(self, keys: Sequence[Hashable]) -> None:
@@ -106,7 +109,7 @@ class ArrowPool:
             return
         for changed, visible in ((before, False), (color, True)):
             if changed is not None:
-                path = f"{self._slots[slot]}/{changed}"
+                path = f"{self._slots[slot]}/arrow/{changed}"
                 self._meshcat.SetProperty(path, "visible", visible, time_s)
         self._shown[slot] = color
 

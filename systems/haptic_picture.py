@@ -68,7 +68,7 @@ class HapticPicture:
         line = Rgba(*colors.COUPLING_LINE)
         meshcat.SetObject(f"{_ROOT}/grip", Sphere(_GRIP_RADIUS * self._size_m), line)
         meshcat.SetObject(
-            f"{_ROOT}/coupling", Cylinder(_LINE_RADIUS * self._size_m, 1.0), line
+            f"{_ROOT}/coupling/line", Cylinder(_LINE_RADIUS * self._size_m, 1.0), line
         )
         self._force = ArrowPool(meshcat, f"{_ROOT}/force", 1, [line])
         pair = [Rgba(*colors.NEAR_CONTACT), Rgba(*colors.PENETRATING_CONTACT)]
@@ -107,8 +107,9 @@ class HapticPicture:
             X_WLine = RigidTransform(
                 RotationMatrix.MakeFromOneVector(line, 2), p_WH + line / 2
             )
-            path = f"{_ROOT}/coupling"
-            self._meshcat.SetTransform(path, X_WLine, time_s)
+            self._meshcat.SetTransform(f"{_ROOT}/coupling", X_WLine, time_s)
+            # Below the pose, for the reason that ArrowPool gives.
+            path = f"{_ROOT}/coupling/line"
             self._meshcat.SetProperty(path, "scale", [1.0, 1.0, length], time_s)
 
     def draw_display_force(

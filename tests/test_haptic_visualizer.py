@@ -38,6 +38,8 @@ class FakeMeshcat:
 
     def SetTransform(self, path, X_ParentPath, time_in_recording=None):
         self.transforms[path] = X_ParentPath
+        # As the page does: a pose is position, rotation and a scale of 1.
+        self.properties.pop((path, "scale"), None)
         self._record(path, "transform", X_ParentPath, time_in_recording)
 
     def SetProperty(self, path, name, value, time_in_recording=None):
@@ -164,7 +166,7 @@ def test_the_line_joins_the_handle_and_the_point_of_the_tool_that_it_holds():
     offset = RigidTransform(np.array([0.003, 0.0, 0.004]))
     visualizer.ForcedPublish(make_context(visualizer, X_WTool=offset @ X_WH @ X_HT))
     X_WLine = meshcat.transforms["/haptics/coupling"]
-    scale = meshcat.properties["/haptics/coupling", "scale"]
+    scale = meshcat.properties["/haptics/coupling/line", "scale"]
     assert scale == pytest.approx([1, 1, 0.005])
     half = X_WLine.rotation().matrix()[:, 2] * scale[2] / 2
     np.testing.assert_allclose(
@@ -179,7 +181,7 @@ def test_the_line_joins_the_handle_and_the_point_of_the_tool_that_it_holds():
 
 def assert_tip_is_at(meshcat, path, p_W):
     """Checks where an arrow of length 1 along z, scaled and placed, ends."""
-    tip = [0, 0, meshcat.properties[path, "scale"][2]]
+    tip = [0, 0, meshcat.properties[f"{path}/arrow", "scale"][2]]
     np.testing.assert_allclose(meshcat.transforms[path] @ tip, p_W, atol=1e-12)
 
 
@@ -189,10 +191,19 @@ def test_contacts_are_green_near_and_red_penetrating():
     visualizer.ForcedPublish(make_context(visualizer, [0.001, -0.002]))
     # The deepest first; child 0 is green, child 1 is red.
     assert meshcat.visible("/haptics/contacts") == [
-        "/haptics/contacts/0/1",
-        "/haptics/contacts/1/0",
+        "/haptics/contacts/0/arrow/1",
+        "/haptics/contacts/1/arrow/0",
     ]
     assert_tip_is_at(meshcat, "/haptics/contacts/0", [3, 4, 5])
+
+
+def test_an_arrow_that_moves_keeps_its_length():
+    meshcat = FakeMeshcat()
+    pool = ArrowPool(meshcat, "/a", 1, [Rgba(1, 0, 0)])
+    for x in (0.0, 0.1, 0.2):
+        p_W = np.array([[x, 0, 0]])
+        pool.draw([0], p_W, np.array([[0, 0, 0.02]]), [0], 0.0)
+        assert_tip_is_at(meshcat, "/a/0", p_W[0])
 
 
 def test_contact_arrows_point_along_the_normal():
@@ -233,7 +244,9 @@ def test_force_arrows_grow_with_the_force():
     visualizer = make_visualizer(meshcat)
     forces = [(0, 0, 1.0), (0, 2.0, 0), (0, 0, 0)]
     visualizer.ForcedPublish(make_context(visualizer, [-0.001] * 3, forces))
-    length = [meshcat.properties[f"/haptics/clusters/{i}", "scale"][0] for i in (0, 1)]
+    length = [
+        meshcat.properties[f"/haptics/clusters/{i}/arrow", "scale"][0] for i in (0, 1)
+    ]
     assert length[1] == pytest.approx(2 * length[0])
     # No direction, no arrow.
     assert len(meshcat.visible("/haptics/clusters")) == 2
@@ -322,7 +335,7 @@ def test_the_first_recorded_frame_says_of_every_arrow_whether_it_is_seen():
     assert set(first) == arrows
     assert [
         path for path, seen in sorted(first.items()) if "contacts" in path and seen
-    ] == ["/haptics/contacts/0/1"]
+    ] == ["/haptics/contacts/0/arrow/1"]
 
 
 def test_an_arrow_stays_in_its_slot_while_others_come_and_go():
@@ -334,7 +347,9 @@ def test_an_arrow_stays_in_its_slot_while_others_come_and_go():
         p_W = np.array([[ord(key), 0, 1] for key in keys], dtype=float)
         pool.draw(keys, p_W, up[: len(keys)], [0] * len(keys), 0.0)
         return {
-            chr(int(meshcat.transforms[path[:-2]].translation()[0])): path
+            chr(
+                int(meshcat.transforms[path.removesuffix("/arrow/0")].translation()[0])
+            ): path
             for path in meshcat.visible("/a")
         }
 

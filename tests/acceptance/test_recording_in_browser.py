@@ -41,7 +41,7 @@ def visible_arrows(page, folder):
     """Number of arrows of a pool that are visible now."""
     return page.evaluate(
         f"Object.values({TREE.format(folder)}.children)"
-        ".flatMap(slot => Object.values(slot.children))"
+        ".flatMap(slot => Object.values(slot.children.arrow.children))"
         ".filter(arrow => arrow.object.visible).length"
     )
 
