@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 
 import numpy as np
 from pydrake.geometry import Meshcat, Rgba
@@ -60,8 +60,10 @@ class ArrowPool:
         vectors_W: np.ndarray,
         colors: Sequence[int] | np.ndarray,
         time_s: float,
-    ) -> None:
+    ) -> Iterator[None]:
         """Shows these arrows and no others; the first ones if there are too many.
+
+        Works as it is iterated over, an arrow at a time.
 
         Args:
             keys: (n,) what each arrow stands for, each once.
@@ -85,8 +87,11 @@ class ArrowPool:
                 self._lengths[i] = length
                 path = f"{self._slots[i]}/arrow"
                 self._meshcat.SetProperty(path, "scale", [length] * 3, time_s)
+            yield
         for i, shown in enumerate(visible):
-            self._show(i, shown, time_s)
+            if shown != self._shown[i]:
+                self._show(i, shown, time_s)
+                yield
 
     def write_visibility(self, time_s: float) -> None:
         """Sends again what is visible, for the first frame of a recording."""
@@ -103,11 +108,8 @@ class ArrowPool:
         self._slot_of_key = {k: kept[k] if k in kept else next(free) for k in keys}
 
     def _show(self, slot: int, color: int | None, time_s: float) -> None:
-        """Makes one colour of a slot visible; sends only what changes."""
-        before = self._shown[slot]
-        if color == before:
-            return
-        for changed, visible in ((before, False), (color, True)):
+        """Makes another colour of a slot visible, or none."""
+        for changed, visible in ((self._shown[slot], False), (color, True)):
             if changed is not None:
                 path = f"{self._slots[slot]}/arrow/{changed}"
                 self._meshcat.SetProperty(path, "visible", visible, time_s)

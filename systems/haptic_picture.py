@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from pydrake.geometry import Cylinder, Meshcat, Rgba, Sphere
@@ -34,6 +34,9 @@ class HapticPicture:
 
     All of them are below "/haptics" in the scene tree: `tool`, `handle`, `grip`,
     `coupling`, `force`, `contacts`, `clusters` and `objects/<name>`.
+
+    What moves things works as it is iterated over, so that a frame can be drawn a
+    little at a time.
     """
 
     def __init__(
@@ -95,11 +98,13 @@ class HapticPicture:
 
     def place_tool(
         self, X_WH: RigidTransform, X_WTool: RigidTransform, time_s: float
-    ) -> None:
+    ) -> Iterator[None]:
         """Places the tool, its ghost in the handle, and the line that couples them."""
         self._meshcat.SetTransform(f"{_ROOT}/tool", X_WTool, time_s)
+        yield
         self._meshcat.SetTransform(f"{_ROOT}/handle", X_WH @ self._X_HT, time_s)
         self._meshcat.SetTransform(f"{_ROOT}/grip", X_WH, time_s)
+        yield
         p_WH = X_WH.translation()
         line = X_WTool @ self._p_TH - p_WH
         length = float(np.linalg.norm(line))
@@ -114,11 +119,13 @@ class HapticPicture:
 
     def draw_display_force(
         self, p_WH: np.ndarray, f_H_W: np.ndarray, time_s: float
-    ) -> None:
+    ) -> Iterator[None]:
         """Draws the force (3,) N that the hand feels, pushing at the handle (3,) m."""
-        self._draw_forces(self._force, ["force"], p_WH[None], f_H_W[None], [0], time_s)
+        yield from self._draw_forces(
+            self._force, ["force"], p_WH[None], f_H_W[None], [0], time_s
+        )
 
-    def draw_contacts(self, contacts: ContactSet, time_s: float) -> None:
+    def draw_contacts(self, contacts: ContactSet, time_s: float) -> Iterator[None]:
         """Draws a small arrow for each contact, the deepest ones if there are too many.
 
         It points along the normal and ends at the contact's point: there it comes out
@@ -135,7 +142,7 @@ class HapticPicture:
             )
         )
         length = _CONTACT_ARROW * self._size_m
-        self._contacts.draw(
+        yield from self._contacts.draw(
             keys,
             contacts.p_WC[order],
             length * contacts.nhat_BA_W[order],
@@ -145,11 +152,11 @@ class HapticPicture:
 
     def draw_clusters(
         self, clusters: ClusterSet, f_cluster_W: np.ndarray, time_s: float
-    ) -> None:
+    ) -> Iterator[None]:
         """Draws the force (k, 3) N of each cluster, pushing at its point."""
         keys = list(range(len(clusters)))
         penetrating = clusters.distance < 0
-        self._draw_forces(
+        yield from self._draw_forces(
             self._clusters, keys, clusters.p_WC, f_cluster_W, penetrating, time_s
         )
 
@@ -166,7 +173,7 @@ class HapticPicture:
         f_W: np.ndarray,
         colors_of: Sequence[int] | np.ndarray,
         time_s: float,
-    ) -> None:
+    ) -> Iterator[None]:
         """Draws forces as arrows; those too small to have a direction are left out."""
         force = np.linalg.norm(f_W, axis=1)
         felt = np.flatnonzero(force > 1e-6)
@@ -176,7 +183,7 @@ class HapticPicture:
             _LONGEST_FORCE_ARROW,
         )
         scale = self._size_m * length / force[felt]
-        pool.draw(
+        yield from pool.draw(
             [keys[i] for i in felt.tolist()],
             p_W[felt],
             scale[:, None] * f_W[felt],

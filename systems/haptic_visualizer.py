@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
+import numpy as np
 from pydrake.common.value import Value
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context, InputPort, LeafSystem
 
-from drake_haptics._core import Decomposition
+from drake_haptics._core import ClusterSet, ContactSet, Decomposition, PenaltyWrench
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.haptic_picture import HapticPicture
 
 _LONGEST_PERIOD_S = 1 / 30
+# A frame is drawn in slices of this length, one every other tick.
+_SLICE_S = 60e-6
+_SLICE_TICKS = 2
 # Drawing takes at most this share of clock time; the rest is the loop's.
 _LARGEST_SHARE = 0.05
 # A run faster than real time shows no more frames per second of clock time.
@@ -50,9 +54,10 @@ class HapticVisualizer(LeafSystem):
     outputs of `ContactQuery`, `ContactClustering` and `PenaltyForce`.
 
     It draws about 32 times per simulated second, at ticks of the loop, while a browser
-    is connected. Drawing takes at most one twentieth of clock time: after a frame that
-    was slow to draw, the next ones are left out. A recording is complete, whatever time
-    that takes.
+    is connected. So that drawing delays no tick, a frame is drawn in slices of 60 µs
+    spread over the ticks that follow; and drawing takes at most one twentieth of clock
+    time: after a frame that was slow to draw, the next ones are left out. A recording
+    is complete, whatever time that takes.
     """
 
     def __init__(
@@ -82,6 +87,10 @@ class HapticVisualizer(LeafSystem):
         self._recording = False
         self._first_frame = False
         self._not_before_s = 0.0
+        # The frame that is being drawn, and what it has taken so far.
+        self._frame: Iterator[None] | None = None
+        self._frame_start_s = 0.0
+        self._taken_s = 0.0
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
@@ -95,7 +104,9 @@ class HapticVisualizer(LeafSystem):
             for item in objects
             if item.X_WO is None
         }
-        self.DeclarePeriodicPublishEvent(self._period_s, 0.0, self._publish)
+        self._slice_period_s = min(_SLICE_TICKS, ticks) * tick_s
+        self._slices = round(self._period_s / self._slice_period_s)
+        self.DeclarePeriodicPublishEvent(self._slice_period_s, 0.0, self._publish_slice)
         self.DeclareForcedPublishEvent(self._publish)
 
     def get_handle_pose_input_port(self) -> InputPort:
@@ -146,33 +157,90 @@ class HapticVisualizer(LeafSystem):
         self._meshcat.PublishRecording()
 
     def _publish(self, context: Context) -> None:
-        """Draws a frame, if someone sees it and there is time."""
+        """Draws a whole frame, if someone sees it and there is time."""
         if self._recording:
-            self._draw(context)
-            if self._first_frame:
-                self._picture.write_visibility(context.get_time())
-                self._first_frame = False
-            return
-        start_s = time.perf_counter()
-        if start_s < self._not_before_s or not self._meshcat.GetNumActiveConnections():
-            return
-        self._draw(context)
-        taken_s = time.perf_counter() - start_s
-        pause_s = max(taken_s / _LARGEST_SHARE, _SHORTEST_FRAME_S)
-        self._not_before_s = start_s + pause_s
+            self._record(context)
+        elif self._frame is not None or self._begin(context):
+            self._go_on(math.inf)
 
-    def _draw(self, context: Context) -> None:
-        """Draws a frame."""
-        time_s = context.get_time()
-        X_WH = vector_to_pose(self._X_WH.Eval(context))
-        X_WTool = vector_to_pose(self._X_WTool.Eval(context))
+    def _publish_slice(self, context: Context) -> None:
+        """Goes on with a frame, or begins one where that is due."""
+        if self._recording:
+            if self._is_due(context.get_time()):
+                self._record(context)
+        elif self._frame is not None or (
+            self._is_due(context.get_time()) and self._begin(context)
+        ):
+            self._go_on(_SLICE_S)
+
+    def _is_due(self, time_s: float) -> bool:
+        """Whether a frame belongs to this slice."""
+        return round(time_s / self._slice_period_s) % self._slices == 0
+
+    def _record(self, context: Context) -> None:
+        """Draws a frame into the recording."""
+        self._frame = None
+        for _ in self._draw(context):
+            pass
+        if self._first_frame:
+            self._picture.write_visibility(context.get_time())
+            self._first_frame = False
+
+    def _begin(self, context: Context) -> bool:
+        """Begins a frame, if someone sees it and there is time."""
+        now_s = time.perf_counter()
+        if now_s < self._not_before_s or not self._meshcat.GetNumActiveConnections():
+            return False
+        self._frame = self._draw(context)
+        self._frame_start_s = now_s
+        self._taken_s = 0.0
+        return True
+
+    def _go_on(self, slice_s: float) -> None:
+        """Draws on for a slice, which the last step may overrun."""
+        start_s = now_s = time.perf_counter()
+        assert self._frame is not None
+        for _ in self._frame:
+            now_s = time.perf_counter()
+            if now_s - start_s > slice_s:
+                self._taken_s += now_s - start_s
+                return
+        self._frame = None
+        taken_s = self._taken_s + time.perf_counter() - start_s
+        pause_s = max(taken_s / _LARGEST_SHARE, _SHORTEST_FRAME_S)
+        self._not_before_s = self._frame_start_s + pause_s
+
+    def _draw(self, context: Context) -> Iterator[None]:
+        """Draws a frame as it is iterated over; all it shows is read at once."""
+        return self._steps(
+            context.get_time(),
+            vector_to_pose(self._X_WH.Eval(context)),
+            vector_to_pose(self._X_WTool.Eval(context)),
+            {n: vector_to_pose(port.Eval(context)) for n, port in self._X_WO.items()},
+            self._F_display.Eval(context)[3:],
+            self._contacts.Eval(context),
+            self._clusters.Eval(context),
+            self._contact_wrench.Eval(context),
+        )
+
+    def _steps(
+        self,
+        time_s: float,
+        X_WH: RigidTransform,
+        X_WTool: RigidTransform,
+        X_WO: dict[str, RigidTransform],
+        f_H_W: np.ndarray,
+        contacts: ContactSet,
+        clusters: ClusterSet,
+        wrench: PenaltyWrench,
+    ) -> Iterator[None]:
+        """Sends what is drawn, a little at each step."""
         picture = self._picture
-        picture.place_tool(X_WH, X_WTool, time_s)
-        for name, port in self._X_WO.items():
-            picture.place_object(name, vector_to_pose(port.Eval(context)), time_s)
-        f_H_W = self._F_display.Eval(context)[3:]
-        picture.draw_display_force(X_WH.translation(), f_H_W, time_s)
-        picture.draw_contacts(self._contacts.Eval(context), time_s)
-        f_cluster_W = self._contact_wrench.Eval(context).f_cluster_W
-        picture.draw_clusters(self._clusters.Eval(context), f_cluster_W, time_s)
+        yield from picture.place_tool(X_WH, X_WTool, time_s)
+        for name, X in X_WO.items():
+            picture.place_object(name, X, time_s)
+            yield
+        yield from picture.draw_display_force(X_WH.translation(), f_H_W, time_s)
+        yield from picture.draw_contacts(contacts, time_s)
+        yield from picture.draw_clusters(clusters, wrench.f_cluster_W, time_s)
         self._meshcat.SetSimulationTime(time_s)

@@ -202,7 +202,7 @@ def test_an_arrow_that_moves_keeps_its_length():
     pool = ArrowPool(meshcat, "/a", 1, [Rgba(1, 0, 0)])
     for x in (0.0, 0.1, 0.2):
         p_W = np.array([[x, 0, 0]])
-        pool.draw([0], p_W, np.array([[0, 0, 0.02]]), [0], 0.0)
+        list(pool.draw([0], p_W, np.array([[0, 0, 0.02]]), [0], 0.0))
         assert_tip_is_at(meshcat, "/a/0", p_W[0])
 
 
@@ -306,6 +306,31 @@ def test_drawing_takes_at_most_its_share_of_clock_time(monkeypatch):
     assert len(drawn) >= 8
 
 
+def test_a_frame_is_drawn_in_slices_that_no_tick_notices(monkeypatch):
+    clock = SimpleNamespace(now=100.0)
+    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    calls = []
+
+    def call(path, *args):
+        calls.append((ticks[-1], path))
+        clock.now += 20e-6  # what a call of Meshcat's takes
+
+    meshcat.SetTransform = meshcat.SetProperty = call
+    ticks = [0]
+    simulator = Simulator(visualizer, make_context(visualizer, [-1e-3] * 20))
+    simulator.Initialize()
+    for tick in range(1, 97):
+        ticks.append(tick)
+        simulator.AdvanceTo(tick / 1024)
+    # The first frame: 20 contacts and 16 clusters, each placed, scaled and shown.
+    assert len(calls) > 100
+    per_tick = np.bincount([tick for tick, _ in calls])
+    assert per_tick.max() * 20e-6 <= 60e-6 + 4 * 20e-6
+    assert np.count_nonzero(per_tick) > 15
+
+
 def test_a_recording_is_complete_though_nobody_looks():
     meshcat = FakeMeshcat(connections=0)
     visualizer = make_visualizer(meshcat)
@@ -345,7 +370,7 @@ def test_an_arrow_stays_in_its_slot_while_others_come_and_go():
 
     def draw(keys):
         p_W = np.array([[ord(key), 0, 1] for key in keys], dtype=float)
-        pool.draw(keys, p_W, up[: len(keys)], [0] * len(keys), 0.0)
+        list(pool.draw(keys, p_W, up[: len(keys)], [0] * len(keys), 0.0))
         return {
             chr(
                 int(meshcat.transforms[path.removesuffix("/arrow/0")].translation()[0])
@@ -367,12 +392,12 @@ def test_what_does_not_change_is_not_sent_again():
     pool = ArrowPool(meshcat, "/a", 64, [Rgba(1, 0, 0), Rgba(0, 1, 0)])
     calls = []
     meshcat.SetProperty = lambda *args: calls.append(args)
-    pool.draw([1], np.zeros((1, 3)), np.ones((1, 3)), [1], 0.0)
+    list(pool.draw([1], np.zeros((1, 3)), np.ones((1, 3)), [1], 0.0))
     assert [args[1] for args in calls] == ["scale", "visible"]
     calls.clear()
-    pool.draw([1], np.zeros((1, 3)), np.ones((1, 3)), [1], 0.0)
+    list(pool.draw([1], np.zeros((1, 3)), np.ones((1, 3)), [1], 0.0))
     assert calls == []
-    pool.draw([1], np.zeros((1, 3)), 2 * np.ones((1, 3)), [1], 0.0)
+    list(pool.draw([1], np.zeros((1, 3)), 2 * np.ones((1, 3)), [1], 0.0))
     assert [args[1] for args in calls] == ["scale"]
 
 

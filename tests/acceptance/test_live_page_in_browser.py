@@ -29,7 +29,7 @@ def test_arrows_keep_their_size_however_they_move(early):
 
     def draw(x):
         vector = np.array([[0, 0, LENGTH_M]])
-        pool.draw([0], np.array([[x, 0, 0]]), vector, [0], 0.0)
+        list(pool.draw([0], np.array([[x, 0, 0]]), vector, [0], 0.0))
 
     with HeadlessBrowser(executable) as browser:
         if early:
