@@ -16,7 +16,7 @@ namespace {
 // Hubs looked at for a facet that both surfaces carry, on the first tick of an
 // overlap and on later ones.
 constexpr int kColdPromotionHubs = 64;
-constexpr int kWarmPromotionHubs = 12;
+constexpr int kWarmPromotionHubs = 6;
 // Closer than this share of the size, distance and depth are both computed.
 constexpr double kJoinShare = 1e-9;
 // Cosine of the largest angle between the normal of a new contact and the
@@ -26,6 +26,8 @@ constexpr double kComingFrom = -0.2;
 // How much deeper than the shallowest facet a new contact may be, as a share of
 // the tolerance.
 constexpr double kEntryShare = 0.25;
+// Cosine of the angle within which two normals count as one.
+constexpr double kSameNormal = 0.996;
 // Thickness of the layer between flush faces, as a share of the tolerance: thin
 // enough that it ends on the face, thick enough to be soft against rocking.
 constexpr double kSpreadShare = 0.1;
@@ -186,8 +188,12 @@ class Query {
   // A pair that goes on where another one pressed: the tool may be behind this
   // piece altogether.
   std::optional<PairContact> TakenOver() {
+    // Contacts along one normal lead to the same facet: one of them will do.
+    const Vec3* tried = nullptr;
     for (const PressedContact& last : request_.pressed) {
       if (!passage_.IsNear(last)) continue;
+      if (tried != nullptr && tried->dot(last.n) > kSameNormal) continue;
+      tried = &last.n;
       const auto contact = Held(pair_.X_AB.R * last.n);
       if (contact) return contact;
     }
