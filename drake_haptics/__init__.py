@@ -1,1 +1,75 @@
-"""Six-degree-of-freedom haptic rendering of arbitrary meshes, as Drake systems."""
+"""Six-degree-of-freedom haptic rendering of arbitrary meshes, as Drake systems.
+
+What most programs need is here by its own name; the rest is in the modules. The
+geometry (`load_mesh`, `decompose`) works without Drake, which is imported only when
+something that needs it is asked for.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from drake_haptics.builder import (
+        AddHapticLoop,
+        BuildHapticDiagram,
+        HapticDiagram,
+        HapticLoop,
+    )
+    from drake_haptics.decomposition import Decomposition, decompose
+    from drake_haptics.errors import UserError
+    from drake_haptics.mesh import Mesh, load_mesh
+    from drake_haptics.scene import Scene, load_scene
+    from drake_haptics.scene_library import find_scene, list_scenes
+    from drake_haptics.simulation import RunError, make_simulator, run
+
+__all__ = [
+    "AddHapticLoop",
+    "BuildHapticDiagram",
+    "Decomposition",
+    "HapticDiagram",
+    "HapticLoop",
+    "Mesh",
+    "RunError",
+    "Scene",
+    "UserError",
+    "decompose",
+    "find_scene",
+    "list_scenes",
+    "load_mesh",
+    "load_scene",
+    "make_simulator",
+    "run",
+]
+
+_MODULE_OF = {
+    "AddHapticLoop": "builder",
+    "BuildHapticDiagram": "builder",
+    "Decomposition": "decomposition",
+    "HapticDiagram": "builder",
+    "HapticLoop": "builder",
+    "Mesh": "mesh",
+    "RunError": "simulation",
+    "Scene": "scene",
+    "UserError": "errors",
+    "decompose": "decomposition",
+    "find_scene": "scene_library",
+    "list_scenes": "scene_library",
+    "load_mesh": "mesh",
+    "load_scene": "scene",
+    "make_simulator": "simulation",
+    "run": "simulation",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Imports a public name from its module when it is first asked for."""
+    if name not in _MODULE_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """Lists the public names, for completion."""
+    return sorted(__all__)
