@@ -220,8 +220,7 @@ class Query {
           RevisitFacet(pair_, state_.feature_A, state_.feature_B, state_.n);
       if (last.status == RevisitStatus::kMinimum &&
           last.facet.support == SurfaceSupport::kSupported) {
-        return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub,
-                1};
+        return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub};
       }
       if (last.status != RevisitStatus::kGone) {
         return WalkDepth(pair_, last.hub, &last.facet, kWarmPromotionHubs,

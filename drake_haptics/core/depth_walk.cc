@@ -79,7 +79,6 @@ class Walk {
       }
       if (best_ < 0) workspace_.closed[target] = 1;
     }
-    result.num_hubs = static_cast<int>(workspace_.visited.size());
     const int answer = best_ >= 0 ? best_ : BestUnsupported();
     if (answer < 0) return result;
     result.best = workspace_.candidates[answer];

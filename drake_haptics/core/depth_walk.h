@@ -30,7 +30,6 @@ struct Depth {
   DepthCandidate best;
   double shallowest = 0;  ///< largest gap of all facets seen, virtual or not, m
   Hub hub;                ///< one hub of the answer: the next walk's start
-  int num_hubs = 0;       ///< hubs looked at
 };
 
 /// Buffers of a walk, kept between ticks so that a warm walk allocates nothing.

@@ -5,13 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "gauss_overlay.h"
 #include "gauss_turn.h"
 
 namespace drake_haptics {
 namespace {
-
-constexpr double kRegionSlack = 1e-11;
-constexpr double kParallelSine = 1e-8;
 
 // Whether vertex v of P is farthest along the direction among its neighbours.
 bool IsFarthest(const Polytope& P, int v, const Vec3& direction) {

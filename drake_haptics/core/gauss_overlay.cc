@@ -7,13 +7,6 @@
 namespace drake_haptics {
 namespace {
 
-// A direction may miss a region by this share of the edge's length: corners
-// that lie on an arc belong to both sides of it.
-constexpr double kRegionSlack = 1e-11;
-// Edges at a smaller angle than this have no usable cross product; the facets
-// beside them cover its direction.
-constexpr double kParallelSine = 1e-8;
-
 // Whether the arc of edge `id` of P, between the normals of the facets beside
 // it, may meet the great circle of directions perpendicular to `axis` (in P's
 // frame). Segments have no facets, and their arc is the whole circle.
