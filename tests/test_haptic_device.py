@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from coupled_device import add_device_on_fixed_tool
 from pydrake.math import RigidTransform
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
@@ -9,7 +10,6 @@ from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
 
 from drake_haptics._core import CouplingGains
 from drake_haptics.systems.haptic_device import HapticDevice
-from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
 PERIOD = 1e-3
 MASS, DAMPING = 0.1, 0.5
@@ -89,29 +89,9 @@ def test_it_shows_a_wrench_from_its_sample_until_the_next():
 def growth(stiffness):
     """Returns how much the swing against a wall of this stiffness grew in 4 s."""
     builder = DiagramBuilder()
-    device = builder.AddSystem(make_device())
-    coupling = builder.AddSystem(
-        VirtualCoupling(CouplingGains(stiffness, 0.0, 0.0, 0.0), RigidTransform())
-    )
-    pose = builder.AddSystem(ConstantVectorSource([1, 0, 0, 0, 0, 0, 0]))
-    rest = builder.AddSystem(ConstantVectorSource(np.zeros(6)))
-    for output, input in [
-        (
-            device.get_handle_pose_output_port(),
-            coupling.get_handle_pose_input_port(),
-        ),
-        (
-            device.get_handle_velocity_output_port(),
-            coupling.get_handle_velocity_input_port(),
-        ),
-        (pose.get_output_port(), coupling.get_tool_pose_input_port()),
-        (rest.get_output_port(), coupling.get_tool_velocity_input_port()),
-        (
-            coupling.get_display_wrench_output_port(),
-            device.get_display_wrench_input_port(),
-        ),
-    ]:
-        builder.Connect(output, input)
+    device = make_device()
+    gains = CouplingGains(stiffness, 0.0, 0.0, 0.0)
+    add_device_on_fixed_tool(builder, device, gains, RigidTransform())
     log = LogVectorOutput(device.get_handle_pose_output_port(), builder, PERIOD)
     diagram = builder.Build()
     simulator = Simulator(diagram)

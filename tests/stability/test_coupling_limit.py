@@ -7,20 +7,19 @@ al. 2009). One more sample of delay would leave a third of it.
 
 import numpy as np
 import pytest
+from coupled_device import add_device_on_fixed_tool
 from pydrake.math import RigidTransform
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import DiagramBuilder
-from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
+from pydrake.systems.primitives import LogVectorOutput
 
 from drake_haptics._core import CouplingGains
 from drake_haptics.device_preset import load_device_preset
-from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.scene import Coupling
 from drake_haptics.systems.hand_grip import HAND_GRIPS
 from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.simulated_arm import SimulatedArm
-from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
 PERIOD = 1e-3
 DEFAULT = Coupling()
@@ -40,41 +39,16 @@ def growth(grip, stiffness, rotational_stiffness):
     )
     arm.set_name("arm")
     builder = DiagramBuilder()
-    device = builder.AddSystem(
-        HapticDevice(arm, period_s=PERIOD, max_force_N=1e9, max_torque_Nm=1e9)
-    )
-    coupling = builder.AddSystem(
-        VirtualCoupling(
-            CouplingGains(
-                stiffness,
-                DEFAULT.damping_Ns_per_m,
-                rotational_stiffness,
-                DEFAULT.rotational_damping_Nms_per_rad,
-            ),
-            RigidTransform(),
-        )
+    device = HapticDevice(arm, period_s=PERIOD, max_force_N=1e9, max_torque_Nm=1e9)
+    gains = CouplingGains(
+        stiffness,
+        DEFAULT.damping_Ns_per_m,
+        rotational_stiffness,
+        DEFAULT.rotational_damping_Nms_per_rad,
     )
     # Some micrometres away from rest: enough to begin.
     X_WT = X_WH @ RigidTransform([1e-6, 2e-6, 3e-6])
-    pose = builder.AddSystem(ConstantVectorSource(pose_to_vector(X_WT)))
-    rest = builder.AddSystem(ConstantVectorSource(np.zeros(6)))
-    for output, input in [
-        (
-            device.get_handle_pose_output_port(),
-            coupling.get_handle_pose_input_port(),
-        ),
-        (
-            device.get_handle_velocity_output_port(),
-            coupling.get_handle_velocity_input_port(),
-        ),
-        (pose.get_output_port(), coupling.get_tool_pose_input_port()),
-        (rest.get_output_port(), coupling.get_tool_velocity_input_port()),
-        (
-            coupling.get_display_wrench_output_port(),
-            device.get_display_wrench_input_port(),
-        ),
-    ]:
-        builder.Connect(output, input)
+    add_device_on_fixed_tool(builder, device, gains, X_WT)
     log = LogVectorOutput(device.get_handle_velocity_output_port(), builder, PERIOD)
     simulator = Simulator(builder.Build())
     ResetIntegratorFromFlags(simulator, "runge_kutta2", PERIOD)
