@@ -43,9 +43,7 @@ class ConvexPair {
     const Pose X_WB = PoseFromMatrix(X_WB_matrix, "X_WB");
     nb::gil_scoped_release release;
     const PosedPair pair{*A_, *B_, RelativePose(X_WA, X_WB)};
-    const auto answer = QueryPair(
-        pair, {std::numeric_limits<double>::infinity()}, &state_, &workspace_);
-    return InWorld(*answer, X_WA);
+    return InWorld(QueryConvexPair(pair, &state_, &workspace_), X_WA);
   }
 
   void Reset() { state_ = {}; }

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "convex_pair.h"
+#include "pair_contact.h"
 #include "types.h"
 
 namespace drake_haptics {

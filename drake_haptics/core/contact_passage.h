@@ -3,6 +3,7 @@
 #include "depth_walk.h"
 #include "pair_state.h"
 #include "support.h"
+#include "surface_request.h"
 
 namespace drake_haptics {
 
@@ -11,7 +12,7 @@ namespace drake_haptics {
 /// while it presses. It may sink only as far as the motion there explains.
 class ContactPassage {
  public:
-  ContactPassage(const PosedPair& pair, const PairRequest& request,
+  ContactPassage(const PosedPair& pair, const SurfaceRequest& request,
                  const PairState& state)
       : pair_(pair), request_(request), state_(state) {}
 
@@ -29,7 +30,7 @@ class ContactPassage {
   double Motion(const Vec3& p_B) const;
 
   const PosedPair& pair_;
-  const PairRequest& request_;
+  const SurfaceRequest& request_;
   const PairState& state_;
 };
 

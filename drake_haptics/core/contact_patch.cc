@@ -13,6 +13,8 @@ namespace {
 // so that a facet takes over before two edges share the contact.
 constexpr double kFlush = 0.05;
 constexpr double kTilted = 0.0707;
+// A little below the cosine of the latter.
+constexpr double kCosTilted = 0.9974;
 
 double FacetShare(double sine) {
   return std::clamp((kTilted - sine) / (kTilted - kFlush), 0.0, 1.0);
@@ -31,13 +33,12 @@ struct FlushFacet {
 FlushFacet FindFlushFacet(const Polytope& P, int vertex, const Vec3& outward) {
   FlushFacet found;
   double least = kTilted;
-  for (const int facet : P.facets_of(vertex)) {
-    const Vec3& normal = P.facets[facet].normal;
-    if (normal.dot(outward) < 0) continue;
-    const double sine = normal.cross(outward).norm();
+  for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
+    if (!(spoke.normal.dot(outward) > kCosTilted)) continue;
+    const double sine = spoke.normal.cross(outward).norm();
     if (sine < least) {
       least = sine;
-      found = {facet, FacetShare(sine)};
+      found = {spoke.facet, FacetShare(sine)};
     }
   }
   return found;
@@ -47,14 +48,11 @@ FlushFacet FindFlushFacet(const Polytope& P, int vertex, const Vec3& outward) {
 template <typename Visitor>
 void VisitFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
                      const Visitor& visit) {
-  const auto neighbors = P.neighbors_of(vertex);
-  for (std::size_t i = 0; i < neighbors.size(); ++i) {
-    const Vec3 along = P.vertices[neighbors[i]] - P.vertices[vertex];
-    const double rise = along.dot(outward);
-    const double length_squared = along.squaredNorm();
+  for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
+    const double rise = spoke.along.dot(outward);
+    const double length_squared = spoke.along.squaredNorm();
     if (rise * rise < kFlush * kFlush * length_squared) {
-      visit(P.neighbor_edges_of(vertex)[i],
-            EdgeShare(std::abs(rise) / std::sqrt(length_squared)));
+      visit(spoke.edge, EdgeShare(std::abs(rise) / std::sqrt(length_squared)));
     }
   }
 }
@@ -234,7 +232,22 @@ struct Blend {
   }
 };
 
+// How many edges at a vertex fall away from the plane by less than the layer.
+int CountFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
+                    double layer) {
+  const auto fan = P.fan_of(vertex);
+  return static_cast<int>(std::count_if(
+      fan.begin(), fan.end(),
+      [&](const auto& spoke) { return outward.dot(spoke.along) >= -layer; }));
+}
+
 }  // namespace
+
+bool MayHaveExtent(const PosedPair& pair, const Vec3& n, const Hub& hub,
+                   double layer) {
+  return CountFlushEdges(pair.A, hub.a, -n, layer) > 0 &&
+         CountFlushEdges(pair.B, hub.b, pair.X_AB.R.transpose() * n, layer) > 0;
+}
 
 std::optional<Vec3> PressureCenter(const PosedPair& pair, const Vec3& n,
                                    double h, const Hub& hub,

@@ -14,6 +14,11 @@ struct PatchWorkspace {
   std::vector<Vec3> polygon, clipped;
 };
 
+/// Whether edges of both bodies at the hub lie in the contact's plane to within
+/// `layer` (m): a quick test that rules out most contacts between points.
+bool MayHaveExtent(const PosedPair& pair, const Vec3& n, const Hub& hub,
+                   double layer);
+
 /// The centre of pressure of a contact between faces, or a face and an edge,
 /// that lie nearly flush: one point of contact would jump from corner to corner
 /// as the faces rock, and the torque with it. The pressure is that of a layer

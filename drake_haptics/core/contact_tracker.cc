@@ -95,8 +95,7 @@ void ContactTracker::QueryObject(int i, const Pose& X_WTool, ContactSet* out) {
   for (const PressedContact& last : pressed_) {
     deepest = std::max(deepest, -last.distance);
   }
-  const PairRequest request{tolerance_, SurfaceRule::kSurfaceOnly, object.X_AB,
-                            pressed_};
+  const SurfaceRequest request{tolerance_, object.X_AB, pressed_};
   object.X_AB = X_AB;
   candidates_.clear();
   CollectPairs(*tool_tree_, *object.tree, X_AB, tolerance_ + deepest, &stack_,
@@ -120,8 +119,8 @@ void ContactTracker::QueryObject(int i, const Pose& X_WTool, ContactSet* out) {
     next_tracked_.push_back(is_known ? *known : TrackedPair{pieces, {}});
     const PosedPair pair{tool_->pieces[pieces.a],
                          object.decomposition->pieces[pieces.b], X_AB};
-    const auto answer =
-        QueryPair(pair, request, &next_tracked_.back().state, &workspace_);
+    const auto answer = QuerySurfacePair(
+        pair, request, &next_tracked_.back().state, &workspace_);
     if (!answer) continue;
     if (answer->distance < 0) {
       object.pressed.push_back({answer->distance,

@@ -7,6 +7,7 @@
 #include "contact.h"
 #include "decomposition.h"
 #include "piece_tree.h"
+#include "surface_pair.h"
 #include "types.h"
 
 namespace drake_haptics {

@@ -1,342 +1,123 @@
 #include "convex_pair.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
+#include <limits>
 
-#include "contact_passage.h"
 #include "facet_revisit.h"
+#include "pair_answer.h"
 #include "separation.h"
-#include "surface_support.h"
-#include "witness.h"
 
 namespace drake_haptics {
 namespace {
 
-// Hubs looked at for a facet that both surfaces carry, on the first tick of an
-// overlap and on later ones.
-constexpr int kColdPromotionHubs = 64;
-constexpr int kWarmPromotionHubs = 6;
-// Closer than this share of the size, distance and depth are both computed.
-constexpr double kJoinShare = 1e-9;
-// Cosine of the largest angle between the normal of a new contact and the
-// direction from which the pair came together: beyond it the tool came from
-// behind the surface, through a virtual side of the piece.
-constexpr double kComingFrom = -0.2;
-// How much deeper than the shallowest facet a new contact may be, as a share of
-// the tolerance.
-constexpr double kEntryShare = 0.25;
-// Cosine of the angle within which two normals count as one.
-constexpr double kSameNormal = 0.996;
-// Thickness of the layer between flush faces, as a share of the tolerance: thin
-// enough that it ends on the face, thick enough to be soft against rocking.
-constexpr double kSpreadShare = 0.1;
-// The same as a share of the size, where no tolerance is given.
-constexpr double kFreeSpreadShare = 1e-3;
-// How far beyond its features' sides a contact in depth may lie, as a share of
-// the size.
-constexpr double kSlideShare = 1e-2;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Thickness of the layer in which features count as flush, as a share of the
+// size: witness points stay on the bodies to that share.
+constexpr double kLayerShare = 1e-9;
 
-Feature SimplexFeature(const Polytope& polytope, const Simplex& simplex,
-                       int Hub::* side, const Vec3& n) {
-  int vertices[4];
-  for (int i = 0; i < simplex.size; ++i) {
-    vertices[i] = simplex.hubs[i].*side;
-  }
-  return FeatureOfVertices(polytope, vertices, simplex.size, n);
-}
-
-bool BetterOf(const Depth& second, const Depth& first) {
-  if (second.status == DepthStatus::kNoFacet) return false;
-  if (first.status == DepthStatus::kNoFacet) return true;
-  if (second.best.support != first.best.support) {
-    return second.best.support > first.best.support;
-  }
-  return second.best.h > first.best.h;
-}
+// Every facet of a solid counts, so a walk knows an answer from its first hub
+// on and never needs to promote.
+constexpr int kNoPromotion = 1;
 
 class Query {
  public:
-  Query(const PosedPair& pair, const PairRequest& request, PairState* state,
-        PairWorkspace* workspace)
-      : pair_(pair),
-        request_(request),
-        surface_only_(request.rule == SurfaceRule::kSurfaceOnly),
-        state_(*state),
-        passage_(pair, request_, *state),
-        workspace_(*workspace) {}
+  Query(const PosedPair& pair, PairState* state, PairWorkspace* workspace)
+      : pair_(pair), state_(*state), workspace_(*workspace) {}
 
-  std::optional<PairContact> Run() {
-    std::optional<PairContact> contact;
-    if (!state_.in_contact && IsBeyondLastNormal()) {
-      contact = TakenOver();
-      if (!contact) return contact;
-    } else {
-      contact = Answer();
-    }
-    Remember(contact);
-    if (contact) {
-      const auto center =
-          Center(contact->n, contact->distance, state_.hub, contact->p_a);
-      if (center) {
-        contact->p_a = *center;
-        contact->p_b = *center - contact->distance * contact->n;
-      }
-    }
+  PairContact Run() {
+    PairContact contact = Answer();
+    state_.n = contact.n;
+    Center(&contact);
     return contact;
   }
 
  private:
-  std::optional<PairContact> Answer() {
-    separation_ = ComputeSeparation(pair_, state_.simplex, request_.tolerance);
-    state_.simplex = separation_.simplex;
-    switch (separation_.status) {
-      case SeparationStatus::kApart:
-        return Near();
-      case SeparationStatus::kTouching:
-        return Overlapping();
-      default:
-        return Behind();
+  PairContact Answer() {
+    if (HoldsOrigin(pair_, state_.simplex)) return Overlapping(nullptr);
+    const Separation separation =
+        ComputeSeparation(pair_, state_.simplex, kInfinity);
+    state_.simplex = separation.simplex;
+    if (separation.status != SeparationStatus::kApart) {
+      return Overlapping(nullptr);
     }
-  }
-
-  // Last tick's normal often still proves that the pair is out of reach.
-  bool IsBeyondLastNormal() {
-    return state_.n.squaredNorm() > 0 &&
-           SupportGap(pair_, state_.n, &state_.hub) > request_.tolerance;
-  }
-
-  std::optional<PairContact> Near() {
-    if (separation_.distance < kJoinShare * pair_.scale()) {
-      return Overlapping();
+    if (separation.distance < kJoinShare * pair_.scale()) {
+      return Overlapping(&separation);
     }
-    PairContact contact = Apart();
-    if (surface_only_ && !IsSupported(contact)) return Behind();
-    return contact;
+    return Apart(separation);
   }
 
-  // No contact of its own: the tool is out of reach, or behind the surface.
-  std::optional<PairContact> Behind() {
-    return state_.in_contact ? Held(state_.n) : TakenOver();
+  PairContact Apart(const Separation& separation) {
+    state_.hub = separation.simplex.hubs[0];
+    state_.feature_A = state_.feature_B = Feature();
+    return ContactApart(pair_, separation);
   }
 
-  PairContact Apart() const {
-    const Vec3& n = separation_.n;
-    const Vec3 n_B = pair_.X_AB.R.transpose() * n;
-    return {separation_.distance,
-            n,
-            separation_.p_a,
-            separation_.p_b,
-            SimplexFeature(pair_.A, separation_.simplex, &Hub::a, -n),
-            SimplexFeature(pair_.B, separation_.simplex, &Hub::b, n_B),
-            ContactStatus::kNear};
-  }
-
-  bool IsSupported(const PairContact& contact) const {
-    return ClassifySupport(pair_.A, contact.feature_A, contact.n, pair_.B,
-                           contact.feature_B,
-                           pair_.X_AB.R.transpose() * contact.n) ==
-           SurfaceSupport::kSupported;
-  }
-
-  std::optional<PairContact> Overlapping() {
-    const Depth depth = state_.in_contact ? WarmDepth() : ColdDepth();
-    const bool apart = separation_.status == SeparationStatus::kApart;
-    if (apart && (depth.status == DepthStatus::kNoFacet ||
-                  depth.best.h <= separation_.distance)) {
-      const PairContact contact = Apart();
-      if (!surface_only_ || IsSupported(contact)) return contact;
+  // `separation` is given where the pair is apart by next to nothing.
+  PairContact Overlapping(const Separation* separation) {
+    const Depth depth = FindDepth();
+    const bool has_facet = depth.status != DepthStatus::kNoFacet;
+    if (separation != nullptr &&
+        (!has_facet || depth.best.h <= separation->distance)) {
+      return Apart(*separation);
     }
-    if (depth.status == DepthStatus::kNoFacet) return Grazing();
-    if (surface_only_ && !IsPlausible(depth)) return TakenOver();
-    ContactStatus status =
-        depth.best.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating;
-    if (depth.status == DepthStatus::kBounded &&
-        depth.best.support != SurfaceSupport::kOriginal) {
-      status = ContactStatus::kBounded;
+    if (!has_facet) {
+      state_.feature_A = state_.feature_B = Feature();
+      return ContactGrazing(pair_, state_.n);
     }
-    return AtFacet(depth, status);
+    state_.hub = depth.hub;
+    state_.feature_A = depth.best.feature_A;
+    state_.feature_B = depth.best.feature_B;
+    return ContactAtFacet(pair_, depth.best,
+                          depth.best.h > 0 ? ContactStatus::kNear
+                          : depth.status == DepthStatus::kBounded
+                              ? ContactStatus::kBounded
+                              : ContactStatus::kPenetrating);
   }
 
-  // The contact at a facet of A ⊖ B, which is also the next tick's start.
-  PairContact AtFacet(const Depth& depth, ContactStatus status) {
-    const DepthCandidate& facet = depth.best;
-    const Witness witness = WitnessOfFeatures(
-        pair_, facet.feature_A, facet.feature_B, facet.n, facet.h);
-    facet_hub_ = depth.hub;
-    return {facet.h,         facet.n,         witness.p_a, witness.p_b,
-            facet.feature_A, facet.feature_B, status};
-  }
-
-  // Whether the facet found can be the way on which the overlap came about: it
-  // goes on from the last contact, or it is near the shallowest way there is.
-  // A piece of a thin wall is also met from behind, through its virtual side:
-  // its own surface is far then, and the pieces on the near side carry the
-  // contact.
-  bool IsPlausible(const Depth& depth) {
-    if (depth.best.support == SurfaceSupport::kVirtual) return false;
-    // What goes on may reach beyond its features: a face wider than the pieces
-    // has its deepest corner over another one.
-    if (passage_.GoesOn(depth.best)) return true;
-    if (!IsWithinFeatures(depth)) return false;
-    return passage_.IsHandedOver(depth.best) ||
-           (depth.best.n.dot(state_.n) >= kComingFrom &&
-            depth.best.h >=
-                depth.shallowest - kEntryShare * request_.tolerance);
-  }
-
-  // A pair that goes on where another one pressed: the tool may be behind this
-  // piece altogether.
-  std::optional<PairContact> TakenOver() {
-    // Contacts along one normal lead to the same facet: one of them will do.
-    const Vec3* tried = nullptr;
-    for (const PressedContact& last : request_.pressed) {
-      if (!passage_.IsNear(last)) continue;
-      if (tried != nullptr && tried->dot(last.n) > kSameNormal) continue;
-      tried = &last.n;
-      const auto contact = Held(pair_.X_AB.R * last.n);
-      if (contact) return contact;
+  // On coherent motion the last facet mostly still is the answer, and one
+  // comparison proves it.
+  Depth FindDepth() {
+    if (state_.feature_A.is_none()) {
+      return ColdDepth(pair_, SurfaceRule::kWholeBoundary, state_.n, state_.hub,
+                       kNoPromotion, &workspace_.depth);
     }
-    return std::nullopt;
-  }
-
-  // Whether the bodies press on the facet's own features: beside them its plane
-  // means nothing.
-  bool IsWithinFeatures(const Depth& depth) {
-    const DepthCandidate& facet = depth.best;
-    const Witness witness = WitnessOfFeatures(
-        pair_, facet.feature_A, facet.feature_B, facet.n, facet.h);
-    return LateralOffset(pair_, facet.feature_A, facet.feature_B, witness) <=
-               kSlideShare * pair_.scale() ||
-           Center(facet.n, facet.h, depth.hub, witness.p_a).has_value();
-  }
-
-  // From the last answer. On coherent motion its facet mostly still is the
-  // answer, and one comparison proves it.
-  Depth WarmDepth() {
+    const Revisit last =
+        RevisitFacet(pair_, SurfaceRule::kWholeBoundary, state_.feature_A,
+                     state_.feature_B, state_.n);
+    if (last.status == RevisitStatus::kMinimum) {
+      return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub};
+    }
+    if (last.status == RevisitStatus::kFacet) {
+      return WalkDepth(pair_, last.hub, SurfaceRule::kWholeBoundary,
+                       &last.facet, kNoPromotion, &workspace_.depth);
+    }
     Hub hub = state_.hub;
-    if (!state_.feature_A.is_none()) {
-      const Revisit last =
-          RevisitFacet(pair_, state_.feature_A, state_.feature_B, state_.n);
-      if (last.status == RevisitStatus::kMinimum &&
-          last.facet.support == SurfaceSupport::kSupported) {
-        return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub};
-      }
-      if (last.status != RevisitStatus::kGone) {
-        return WalkDepth(pair_, last.hub, &last.facet, kWarmPromotionHubs,
-                         &workspace_.depth);
-      }
-    }
     SupportGap(pair_, state_.n, &hub);
-    return WalkDepth(pair_, hub, nullptr, kWarmPromotionHubs,
-                     &workspace_.depth);
+    return WalkDepth(pair_, hub, SurfaceRule::kWholeBoundary, nullptr,
+                     kNoPromotion, &workspace_.depth);
   }
 
-  // The starts of paper 5.2.2: the last known normal, if any, and the line
-  // that joins the centroids.
-  Depth ColdDepth() {
-    Vec3 between = pair_.A.centroid - pair_.X_AB * pair_.B.centroid;
-    if (!(between.norm() > 1e-12 * pair_.scale())) between = Vec3::UnitX();
-    Hub hub;
-    SupportGap(pair_, between, &hub);
-    Depth depth =
-        WalkDepth(pair_, hub, nullptr, kColdPromotionHubs, &workspace_.depth);
-    if (state_.n.squaredNorm() > 0) {
-      hub = state_.hub;
-      SupportGap(pair_, state_.n, &hub);
-      const Depth other =
-          WalkDepth(pair_, hub, nullptr, kColdPromotionHubs, &workspace_.depth);
-      if (BetterOf(other, depth)) depth = other;
-    }
-    return depth;
-  }
-
-  // Two sets in one line or point: they overlap by nothing across it.
-  std::optional<PairContact> Grazing() {
-    const Vec3 along = pair_.A.num_vertices() > 1
-                           ? Vec3(pair_.A.vertices[1] - pair_.A.vertices[0])
-                       : pair_.B.num_vertices() > 1
-                           ? Vec3(pair_.b(1) - pair_.b(0))
-                           : Vec3::UnitX();
-    Vec3 n = state_.n - along * (along.dot(state_.n) / along.squaredNorm());
-    if (!(n.norm() > 1e-6)) n = along.unitOrthogonal();
-    n.normalize();
-    const Vec3 p = pair_.a(0);
-    return PairContact{0.0,
-                       n,
-                       p,
-                       p,
-                       {FeatureKind::kVertex, 0},
-                       {FeatureKind::kVertex, 0},
-                       ContactStatus::kPenetrating};
-  }
-
-  // The tool was in contact and the hulls are apart now, yet the gap along the
-  // way in, n, is negative: it went through a shallow piece. The depth is
-  // measured along the surface's own normals, and the way out is the way in.
-  std::optional<PairContact> Held(const Vec3& n) {
-    if (!surface_only_) return std::nullopt;
-    Hub hub = state_.hub;
-    if (!(SupportGap(pair_, n, &hub) < 0)) return std::nullopt;
-    const Depth depth =
-        WalkDepth(pair_, hub, nullptr, kWarmPromotionHubs, &workspace_.depth);
-    if (depth.status == DepthStatus::kNoFacet ||
-        depth.best.support != SurfaceSupport::kSupported ||
-        !(depth.best.h < 0) ||
-        !(passage_.GoesOn(depth.best) || passage_.IsHandedOver(depth.best)) ||
-        !IsWithinFeatures(depth)) {
-      return std::nullopt;
-    }
-    return AtFacet(depth, ContactStatus::kHeld);
-  }
-
-  // The centre of pressure of nearly flush faces.
-  std::optional<Vec3> Center(const Vec3& n, double h, const Hub& hub,
-                             const Vec3& p_a) {
-    const double tolerance = request_.tolerance;
-    const double spread =
-        std::isfinite(tolerance)
-            ? std::clamp(tolerance - h, 0.0, kSpreadShare * tolerance)
-            : kFreeSpreadShare * pair_.scale();
-    return PressureCenter(pair_, n, h, hub, p_a, spread, &workspace_.patch);
-  }
-
-  void Remember(const std::optional<PairContact>& contact) {
-    state_.in_contact = contact.has_value();
-    const bool is_facet = contact && facet_hub_;
-    state_.feature_A = is_facet ? contact->feature_A : Feature();
-    state_.feature_B = is_facet ? contact->feature_B : Feature();
-    if (contact) {
-      state_.n = contact->n;
-      state_.distance = contact->distance;
-      state_.p_b = pair_.X_AB.inverse() * contact->p_b;
-    }
-    if (is_facet) {
-      state_.hub = *facet_hub_;
-    } else if (separation_.status != SeparationStatus::kTouching) {
-      // The vertices of the closest features face each other along n.
-      state_.n = separation_.n;
-      state_.hub = separation_.simplex.hubs[0];
-    }
+  void Center(PairContact* contact) {
+    const double layer = kLayerShare * pair_.scale();
+    if (!MayHaveExtent(pair_, contact->n, state_.hub, layer)) return;
+    const auto center =
+        PressureCenter(pair_, contact->n, contact->distance, state_.hub,
+                       contact->p_a, layer, &workspace_.patch);
+    if (!center) return;
+    contact->p_a = *center;
+    contact->p_b = *center - contact->distance * contact->n;
   }
 
   const PosedPair& pair_;
-  const PairRequest request_;
-  const bool surface_only_;
   PairState& state_;
-  const ContactPassage passage_;
   PairWorkspace& workspace_;
-  Separation separation_;
-  std::optional<Hub> facet_hub_;  // of the facet that is the answer, if one is
 };
 
 }  // namespace
 
-std::optional<PairContact> QueryPair(const PosedPair& pair,
-                                     const PairRequest& request,
-                                     PairState* state,
-                                     PairWorkspace* workspace) {
-  return Query(pair, request, state, workspace).Run();
+PairContact QueryConvexPair(const PosedPair& pair, PairState* state,
+                            PairWorkspace* workspace) {
+  return Query(pair, state, workspace).Run();
 }
 
 }  // namespace drake_haptics

@@ -48,8 +48,10 @@ struct Corners {
 
 class Walk {
  public:
-  Walk(const PosedPair& pair, int max_promotion_hubs, DepthWorkspace* workspace)
+  Walk(const PosedPair& pair, SurfaceRule rule, int max_promotion_hubs,
+       DepthWorkspace* workspace)
       : pair_(pair),
+        rule_(rule),
         max_promotion_hubs_(max_promotion_hubs),
         workspace_(*workspace) {
     workspace_.visited.clear();
@@ -101,7 +103,7 @@ class Walk {
     const std::size_t first = workspace_.candidates.size();
     // With a supported answer at hand only better ones are of interest.
     const double floor = best_ >= 0 ? workspace_.candidates[best_].h : kNone;
-    OverlayGaussRegions(pair_, hub, floor, &workspace_);
+    OverlayGaussRegions(pair_, hub, rule_, floor, &workspace_);
     Take(first);
   }
 
@@ -175,6 +177,7 @@ class Walk {
   }
 
   const PosedPair& pair_;
+  const SurfaceRule rule_;
   const int max_promotion_hubs_;
   DepthWorkspace& workspace_;
   int best_ = -1;  // the best candidate that both surfaces support
@@ -182,10 +185,10 @@ class Walk {
 
 }  // namespace
 
-Depth WalkDepth(const PosedPair& pair, const Hub& start,
+Depth WalkDepth(const PosedPair& pair, const Hub& start, SurfaceRule rule,
                 const DepthCandidate* known, int max_promotion_hubs,
                 DepthWorkspace* workspace) {
-  return Walk(pair, max_promotion_hubs, workspace).Run(start, known);
+  return Walk(pair, rule, max_promotion_hubs, workspace).Run(start, known);
 }
 
 }  // namespace drake_haptics

@@ -8,6 +8,13 @@
 
 namespace drake_haptics {
 
+/// Which contacts of a pair count.
+enum class SurfaceRule {
+  kWholeBoundary,  ///< the polytopes are the solids: every contact counts
+  kSurfaceOnly     ///< the polytopes are pieces of surfaces: a contact must be
+                   ///< carried by the meshes that they stand for
+};
+
 /// A facet of the Minkowski difference A ⊖ B that is near a hub: the contact
 /// which separating the pair along n would leave.
 struct DepthCandidate {
@@ -15,6 +22,7 @@ struct DepthCandidate {
   Vec3 n = Vec3::UnitX();  ///< unit, from B into A, in A's frame
   Feature feature_A;       ///< facet, vertex or edge of A
   Feature feature_B;       ///< vertex, facet or edge of B
+  /// Of the surfaces; under kWholeBoundary always kSupported.
   SurfaceSupport support = SurfaceSupport::kVirtual;
 };
 
@@ -36,8 +44,10 @@ struct Depth {
 struct DepthWorkspace {
   std::vector<Hub> visited;
   std::vector<DepthCandidate> candidates;
-  std::vector<Vec3> edges_A, edges_B;
-  std::vector<int> closed, active_B;
+  std::vector<int> closed;
+  std::vector<double> gaps_A, gaps_B;
+  std::vector<int> arcs_B;
+  std::vector<Vec3> edges_B;
 };
 
 /// Walks on the surface of A ⊖ B from a vertex hub pair to a locally optimal
@@ -56,7 +66,7 @@ struct DepthWorkspace {
 ///     spares the look at all that is deeper.
 /// @param max_promotion_hubs bound on the hubs looked at while no supported
 ///     facet is known.
-Depth WalkDepth(const PosedPair& pair, const Hub& start,
+Depth WalkDepth(const PosedPair& pair, const Hub& start, SurfaceRule rule,
                 const DepthCandidate* known, int max_promotion_hubs,
                 DepthWorkspace* workspace);
 

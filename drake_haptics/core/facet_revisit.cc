@@ -13,10 +13,10 @@ namespace {
 
 // Whether vertex v of P is farthest along the direction among its neighbours.
 bool IsFarthest(const Polytope& P, int v, const Vec3& direction) {
-  const double limit = direction.dot(P.vertices[v]) + kRegionSlack * P.radius;
-  const auto neighbors = P.neighbors_of(v);
-  return std::all_of(neighbors.begin(), neighbors.end(), [&](int w) {
-    return direction.dot(P.vertices[w]) <= limit;
+  const double slack = kRegionSlack * P.radius;
+  const auto fan = P.fan_of(v);
+  return std::all_of(fan.begin(), fan.end(), [&](const auto& spoke) {
+    return direction.dot(spoke.along) <= slack;
   });
 }
 
@@ -37,8 +37,8 @@ double Clearance(const Polytope& P, int facet, const Vec3& point) {
 // vertex.
 double TurnAroundVertex(const Polytope& P, int v, const Vec3& direction) {
   double cosine = 1;
-  for (const int facet : P.facets_of(v)) {
-    cosine = std::min(cosine, direction.dot(P.facets[facet].normal));
+  for (const Polytope::Spoke& spoke : P.fan_of(v)) {
+    cosine = std::min(cosine, direction.dot(spoke.normal));
   }
   return P.dimension < 2 ? std::numeric_limits<double>::infinity()
                          : GaussTurn(cosine);
@@ -67,39 +67,44 @@ FacetVisit Visit(const Polytope& P, int facet, const Polytope& Q, int v,
   return result;
 }
 
-Revisit Finish(const PosedPair& pair, const FacetVisit& visit, const Vec3& n,
-               Feature a, Feature b, const Hub& hub) {
+Revisit Finish(const PosedPair& pair, SurfaceRule rule, const FacetVisit& visit,
+               const Vec3& n, Feature a, Feature b, const Hub& hub) {
   Revisit result;
   if (!visit.is_facet) return result;
-  result.facet = {
-      visit.h, n, a, b,
-      ClassifySupport(pair.A, a, n, pair.B, b, pair.X_AB.R.transpose() * n)};
+  const SurfaceSupport support =
+      rule == SurfaceRule::kWholeBoundary
+          ? SurfaceSupport::kSupported
+          : ClassifySupport(pair.A, a, n, pair.B, b,
+                            pair.X_AB.R.transpose() * n);
+  result.facet = {visit.h, n, a, b, support};
   result.hub = hub;
   result.status =
       visit.is_minimum ? RevisitStatus::kMinimum : RevisitStatus::kFacet;
   return result;
 }
 
-Revisit VisitFacetOfA(const PosedPair& pair, Feature a, Feature b) {
+Revisit VisitFacetOfA(const PosedPair& pair, SurfaceRule rule, Feature a,
+                      Feature b) {
   const int facet = a.index(), vertex = b.index();
   const Vec3& outward = pair.A.facets[facet].normal;
   const Vec3 outward_B = pair.X_AB.R.transpose() * outward;
   const FacetVisit visit =
       Visit(pair.A, facet, pair.B, vertex, pair.b(vertex), outward_B);
-  return Finish(pair, visit, -outward, a, b,
+  return Finish(pair, rule, visit, -outward, a, b,
                 {pair.A.loop_of(facet)[0], vertex});
 }
 
-Revisit VisitFacetOfB(const PosedPair& pair, Feature a, Feature b) {
+Revisit VisitFacetOfB(const PosedPair& pair, SurfaceRule rule, Feature a,
+                      Feature b) {
   const int facet = b.index(), vertex = a.index();
   const Vec3 n = pair.X_AB.R * pair.B.facets[facet].normal;
   const Vec3 point_B = pair.X_AB.R.transpose() * (pair.a(vertex) - pair.X_AB.p);
   const FacetVisit visit = Visit(pair.B, facet, pair.A, vertex, point_B, n);
-  return Finish(pair, visit, n, a, b, {vertex, pair.B.loop_of(facet)[0]});
+  return Finish(pair, rule, visit, n, a, b, {vertex, pair.B.loop_of(facet)[0]});
 }
 
-Revisit VisitEdges(const PosedPair& pair, Feature a, Feature b,
-                   const Vec3& n_last) {
+Revisit VisitEdges(const PosedPair& pair, SurfaceRule rule, Feature a,
+                   Feature b, const Vec3& n_last) {
   Revisit result;
   const Polytope::Edge& edge_A = pair.A.edges[a.index()];
   const Polytope::Edge& edge_B = pair.B.edges[b.index()];
@@ -129,20 +134,20 @@ Revisit VisitEdges(const PosedPair& pair, Feature a, Feature b,
   visit.h = h;
   visit.is_minimum =
       clearance > 0 && clearance > -h * std::min(edge_A.turn, edge_B.turn);
-  return Finish(pair, visit, n, a, b, {edge_A.v0, edge_B.v0});
+  return Finish(pair, rule, visit, n, a, b, {edge_A.v0, edge_B.v0});
 }
 
 }  // namespace
 
-Revisit RevisitFacet(const PosedPair& pair, Feature feature_A,
+Revisit RevisitFacet(const PosedPair& pair, SurfaceRule rule, Feature feature_A,
                      Feature feature_B, const Vec3& n_last) {
   if (feature_A.kind() == FeatureKind::kFacet) {
-    return VisitFacetOfA(pair, feature_A, feature_B);
+    return VisitFacetOfA(pair, rule, feature_A, feature_B);
   }
   if (feature_B.kind() == FeatureKind::kFacet) {
-    return VisitFacetOfB(pair, feature_A, feature_B);
+    return VisitFacetOfB(pair, rule, feature_A, feature_B);
   }
-  return VisitEdges(pair, feature_A, feature_B, n_last);
+  return VisitEdges(pair, rule, feature_A, feature_B, n_last);
 }
 
 }  // namespace drake_haptics

@@ -3,129 +3,115 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 namespace drake_haptics {
 namespace {
 
-// Whether the arc of edge `id` of P, between the normals of the facets beside
-// it, may meet the great circle of directions perpendicular to `axis` (in P's
-// frame). Segments have no facets, and their arc is the whole circle.
-bool ArcMayCross(const Polytope& P, int id, const Vec3& axis) {
-  const Polytope::Edge& edge = P.edges[id];
-  if (edge.left < 0) return true;
-  const double left = axis.dot(P.facets[edge.left].normal);
-  const double right = axis.dot(P.facets[edge.right].normal);
-  const double slack = kRegionSlack * P.radius;
-  return (left <= slack && right >= -slack) ||
-         (left >= -slack && right <= slack);
-}
+using Fan = std::span<const Polytope::Spoke>;
 
-// Whether the arc of an edge may hold a direction whose gap with w exceeds the
-// floor. Along an arc the gap is a cosine, convex where it is negative, and so
-// is largest at an end. `sign` turns the facets' normals into directions.
-bool ArcMayExceed(const Polytope& P, int id, const Vec3& w, double sign,
-                  double floor) {
-  const Polytope::Edge& edge = P.edges[id];
-  return edge.left < 0 || sign * P.facets[edge.left].normal.dot(w) > floor ||
-         sign * P.facets[edge.right].normal.dot(w) > floor || floor >= 0;
-}
-
-// The overlay at one hub. Edge vectors are made on first use: while a good
-// answer is known, most hubs have nothing to offer above its gap.
+// The overlay at one hub.
+//
+// While a good answer is known, its gap is the floor, and most hubs have
+// nothing above it. A direction in a vertex's region is a combination of the
+// normals around the vertex, with weights that sum to one or more, so where
+// none of these exceeds a negative floor, no direction of the region does.
+// The same holds along each arc for the normals at its ends.
 class Overlay {
  public:
-  Overlay(const PosedPair& pair, const Hub& hub, double floor,
+  Overlay(const PosedPair& pair, const Hub& hub, SurfaceRule rule, double floor,
           DepthWorkspace* workspace)
       : pair_(pair),
         hub_(hub),
+        rule_(rule),
         floor_(floor),
         workspace_(*workspace),
+        fan_A_(pair.A.fan_of(hub.a)),
+        fan_B_(pair.B.fan_of(hub.b)),
         w_(pair.a(hub.a) - pair.b(hub.b)),
         w_B_(pair.X_AB.R.transpose() * w_) {}
 
+  void Run() {
+    if (!FillGaps(pair_.A, fan_A_, -w_, &workspace_.gaps_A)) return;
+    if (!FillGaps(pair_.B, fan_B_, w_B_, &workspace_.gaps_B)) return;
+    AddFacetsOfA();
+    AddFacetsOfB();
+    AddEdgePairs();
+  }
+
+ private:
+  // The gap along each facet's normal; false where the region of the vertex
+  // has nothing above the floor. Segments have no facets, and all is open.
+  bool FillGaps(const Polytope& P, Fan fan, const Vec3& w,
+                std::vector<double>* gaps) const {
+    gaps->resize(fan.size());
+    double largest = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < fan.size(); ++k) {
+      const double gap = fan[k].facet < 0
+                             ? std::numeric_limits<double>::infinity()
+                             : fan[k].normal.dot(w);
+      (*gaps)[k] = gap;
+      largest = std::max(largest, gap);
+    }
+    // Outside its plane the region of a flat polytope's vertex is no cone of
+    // normals.
+    return P.dimension < 3 || floor_ >= 0 || largest > floor_;
+  }
+
   void AddFacetsOfA() {
-    for (const int f : pair_.A.facets_of(hub_.a)) {
-      const Vec3 n = -pair_.A.facets[f].normal;
-      const double h = n.dot(w_);
-      if (h > floor_ && IsInRegionOfB(n)) {
-        Append(h, n, {FeatureKind::kFacet, f}, {FeatureKind::kVertex, hub_.b});
+    for (std::size_t k = 0; k < fan_A_.size(); ++k) {
+      const double h = workspace_.gaps_A[k];
+      if (!(h > floor_) || fan_A_[k].facet < 0) continue;
+      const Vec3 n = -fan_A_[k].normal;
+      if (IsInRegionOfB(n)) {
+        Append(h, n, {FeatureKind::kFacet, fan_A_[k].facet},
+               {FeatureKind::kVertex, hub_.b});
       }
     }
   }
 
   void AddFacetsOfB() {
-    for (const int f : pair_.B.facets_of(hub_.b)) {
-      const double h = pair_.B.facets[f].normal.dot(w_B_);
-      if (!(h > floor_)) continue;
-      const Vec3 n = pair_.X_AB.R * pair_.B.facets[f].normal;
+    for (std::size_t k = 0; k < fan_B_.size(); ++k) {
+      const double h = workspace_.gaps_B[k];
+      if (!(h > floor_) || fan_B_[k].facet < 0) continue;
+      const Vec3 n = pair_.X_AB.R * fan_B_[k].normal;
       if (IsInRegionOfA(n)) {
-        Append(h, n, {FeatureKind::kVertex, hub_.a}, {FeatureKind::kFacet, f});
+        Append(h, n, {FeatureKind::kVertex, hub_.a},
+               {FeatureKind::kFacet, fan_B_[k].facet});
       }
     }
   }
 
   void AddEdgePairs() {
-    const auto ids_A = pair_.A.neighbor_edges_of(hub_.a);
-    const auto ids_B = pair_.B.neighbor_edges_of(hub_.b);
-    std::vector<int>& active_B = workspace_.active_B;
-    active_B.clear();
-    for (std::size_t j = 0; j < ids_B.size(); ++j) {
-      if (ArcMayExceed(pair_.B, ids_B[j], w_B_, 1.0, floor_)) {
-        active_B.push_back(static_cast<int>(j));
+    std::vector<int>& arcs_B = workspace_.arcs_B;
+    std::vector<Vec3>& edges_B = workspace_.edges_B;
+    arcs_B.clear();
+    edges_B.clear();
+    for (std::size_t j = 0; j < fan_B_.size(); ++j) {
+      if (!ArcMayExceed(workspace_.gaps_B, j)) continue;
+      arcs_B.push_back(static_cast<int>(j));
+      edges_B.push_back(pair_.X_AB.R * fan_B_[j].along);
+    }
+    if (arcs_B.empty()) return;
+    for (std::size_t i = 0; i < fan_A_.size(); ++i) {
+      if (!ArcMayExceed(workspace_.gaps_A, i)) continue;
+      const Vec3 edge_A_in_B = pair_.X_AB.R.transpose() * fan_A_[i].along;
+      for (std::size_t j = 0; j < arcs_B.size(); ++j) {
+        if (ArcMayCross(pair_.B, fan_B_, arcs_B[j], edge_A_in_B) &&
+            ArcMayCross(pair_.A, fan_A_, i, edges_B[j])) {
+          AddEdgePair(fan_A_[i], fan_B_[arcs_B[j]], edges_B[j]);
+        }
       }
     }
-    if (active_B.empty()) return;
-    for (std::size_t i = 0; i < ids_A.size(); ++i) {
-      if (!ArcMayExceed(pair_.A, ids_A[i], w_, -1.0, floor_)) continue;
-      FillEdges();
-      for (const int j : active_B) {
-        AddEdgePair(workspace_.edges_A[i], ids_A[i], workspace_.edges_B[j],
-                    ids_B[j]);
-      }
-    }
   }
 
- private:
-  void FillEdges() {
-    if (filled_) return;
-    filled_ = true;
-    workspace_.edges_A.clear();
-    workspace_.edges_B.clear();
-    for (const int v : pair_.A.neighbors_of(hub_.a)) {
-      workspace_.edges_A.push_back(pair_.A.vertices[v] -
-                                   pair_.A.vertices[hub_.a]);
-    }
-    for (const int v : pair_.B.neighbors_of(hub_.b)) {
-      workspace_.edges_B.push_back(
-          pair_.X_AB.R * (pair_.B.vertices[v] - pair_.B.vertices[hub_.b]));
-    }
-  }
-
-  // n is in the region of A's vertex when no neighbour lies further against n.
-  bool IsInRegionOfA(const Vec3& n) {
-    FillEdges();
-    const double slack = kRegionSlack * pair_.A.radius;
-    return std::all_of(workspace_.edges_A.begin(), workspace_.edges_A.end(),
-                       [&](const Vec3& e) { return n.dot(e) >= -slack; });
-  }
-
-  // n is in the region of B's vertex when no neighbour lies further along n.
-  bool IsInRegionOfB(const Vec3& n) {
-    FillEdges();
-    const double slack = kRegionSlack * pair_.B.radius;
-    return std::all_of(workspace_.edges_B.begin(), workspace_.edges_B.end(),
-                       [&](const Vec3& e) { return n.dot(e) <= slack; });
-  }
-
-  void AddEdgePair(const Vec3& edge_A, int id_A, const Vec3& edge_B, int id_B) {
-    if (!ArcMayCross(pair_.B, id_B, pair_.X_AB.R.transpose() * edge_A) ||
-        !ArcMayCross(pair_.A, id_A, edge_B)) {
-      return;
-    }
-    const Vec3 cross = edge_A.cross(edge_B);
+  void AddEdgePair(const Polytope::Spoke& a, const Polytope::Spoke& b,
+                   const Vec3& edge_B) {
+    const Vec3 cross = a.along.cross(edge_B);
     const double length_squared = cross.squaredNorm();
     if (!(length_squared > kParallelSine * kParallelSine *
-                               edge_A.squaredNorm() * edge_B.squaredNorm())) {
+                               a.along.squaredNorm() * edge_B.squaredNorm())) {
       return;
     }
     const double length = std::sqrt(length_squared);
@@ -133,35 +119,78 @@ class Overlay {
       const Vec3 n = cross * (sign / length);
       const double h = n.dot(w_);
       if (h > floor_ && IsInRegionOfA(n) && IsInRegionOfB(n)) {
-        Append(h, n, {FeatureKind::kEdge, id_A}, {FeatureKind::kEdge, id_B});
+        Append(h, n, {FeatureKind::kEdge, a.edge},
+               {FeatureKind::kEdge, b.edge});
       }
     }
   }
 
+  static std::size_t Before(std::size_t k, std::size_t size) {
+    return (k == 0 ? size : k) - 1;
+  }
+
+  // Whether the arc of an edge, between the normals beside it, may hold a
+  // direction whose gap exceeds the floor.
+  bool ArcMayExceed(const std::vector<double>& gaps, std::size_t k) const {
+    return floor_ >= 0 || gaps[k] > floor_ ||
+           gaps[Before(k, gaps.size())] > floor_;
+  }
+
+  // Whether the arc of a fan's edge may meet the great circle of directions
+  // perpendicular to `axis`. The arc of a segment is a whole circle.
+  static bool ArcMayCross(const Polytope& P, Fan fan, std::size_t k,
+                          const Vec3& axis) {
+    if (fan[k].facet < 0) return true;
+    const double left = axis.dot(fan[k].normal);
+    const double right = axis.dot(fan[Before(k, fan.size())].normal);
+    const double slack = kRegionSlack * P.radius;
+    return (left <= slack && right >= -slack) ||
+           (left >= -slack && right <= slack);
+  }
+
+  // n is in the region of A's vertex when no neighbour lies further against n.
+  bool IsInRegionOfA(const Vec3& n) const {
+    const double slack = kRegionSlack * pair_.A.radius;
+    return std::all_of(fan_A_.begin(), fan_A_.end(), [&](const auto& spoke) {
+      return n.dot(spoke.along) >= -slack;
+    });
+  }
+
+  // n is in the region of B's vertex when no neighbour lies further along n.
+  bool IsInRegionOfB(const Vec3& n) const {
+    const Vec3 n_B = pair_.X_AB.R.transpose() * n;
+    const double slack = kRegionSlack * pair_.B.radius;
+    return std::all_of(fan_B_.begin(), fan_B_.end(), [&](const auto& spoke) {
+      return n_B.dot(spoke.along) <= slack;
+    });
+  }
+
   void Append(double h, const Vec3& n, Feature a, Feature b) {
-    workspace_.candidates.push_back(
-        {h, n, a, b,
-         ClassifySupport(pair_.A, a, n, pair_.B, b,
-                         pair_.X_AB.R.transpose() * n)});
+    const SurfaceSupport support =
+        rule_ == SurfaceRule::kWholeBoundary
+            ? SurfaceSupport::kSupported
+            : ClassifySupport(pair_.A, a, n, pair_.B, b,
+                              pair_.X_AB.R.transpose() * n);
+    workspace_.candidates.push_back({h, n, a, b, support});
+    if (support == SurfaceSupport::kSupported) floor_ = std::max(floor_, h);
   }
 
   const PosedPair& pair_;
   const Hub hub_;
-  const double floor_;
+  const SurfaceRule rule_;
+  double floor_;
   DepthWorkspace& workspace_;
+  const Fan fan_A_, fan_B_;
   const Vec3 w_;    // the vertex of A ⊖ B, in A's frame
   const Vec3 w_B_;  // the same in B's frame
-  bool filled_ = false;
 };
 
 }  // namespace
 
-void OverlayGaussRegions(const PosedPair& pair, const Hub& hub, double floor,
+void OverlayGaussRegions(const PosedPair& pair, const Hub& hub,
+                         SurfaceRule rule, double floor,
                          DepthWorkspace* workspace) {
-  Overlay overlay(pair, hub, floor, workspace);
-  overlay.AddFacetsOfA();
-  overlay.AddFacetsOfB();
-  overlay.AddEdgePairs();
+  Overlay(pair, hub, rule, floor, workspace).Run();
 }
 
 }  // namespace drake_haptics

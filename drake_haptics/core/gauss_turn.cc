@@ -11,8 +11,8 @@ namespace {
 // Cosine of the largest angle between n and the facets around a vertex.
 double SmallestCosine(const Polytope& P, const Vec3& n, int vertex) {
   double cosine = 1;
-  for (const int facet : P.facets_of(vertex)) {
-    cosine = std::min(cosine, n.dot(P.facets[facet].normal));
+  for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
+    cosine = std::min(cosine, n.dot(spoke.normal));
   }
   return cosine;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <span>
-
+#include "contact_patch.h"
+#include "depth_walk.h"
 #include "simplex.h"
 #include "support.h"
 #include "types.h"
@@ -20,31 +20,10 @@ struct PairState {
   Vec3 p_b = Vec3::Zero();  ///< its witness point of B, in B's frame, m
 };
 
-/// Which contacts of a pair count.
-enum class SurfaceRule {
-  kWholeBoundary,  ///< the polytopes are the solids: every contact counts
-  kSurfaceOnly     ///< the polytopes are pieces of surfaces: a contact must be
-                   ///< carried by the meshes that they stand for
-};
-
-/// A penetrating contact of the last tick between any pieces of the same two
-/// objects, in B's frame.
-struct PressedContact {
-  double distance = 0;      ///< m
-  Vec3 n = Vec3::UnitX();   ///< unit, from B into A
-  Vec3 p_b = Vec3::Zero();  ///< witness point of B, m
-};
-
-/// What is asked of a pair.
-struct PairRequest {
-  double tolerance = 0;  ///< contacts farther apart than this (m) are none
-  SurfaceRule rule = SurfaceRule::kWholeBoundary;
-  /// Under kSurfaceOnly: the pose at the last query, by which the motion of a
-  /// contact is known.
-  Pose last_X_AB;
-  /// Under kSurfaceOnly: where the tool presses already. A pair that was not in
-  /// contact may take over there.
-  std::span<const PressedContact> pressed{};
+/// Buffers of a query, kept between ticks so that a warm one allocates nothing.
+struct PairWorkspace {
+  DepthWorkspace depth;
+  PatchWorkspace patch;
 };
 
 }  // namespace drake_haptics

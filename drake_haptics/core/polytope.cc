@@ -41,31 +41,31 @@ void AddFacets(const HullShape& shape, Polytope* P) {
 // One edge for each pair of opposite steps of the loops, in the order and the
 // direction in which the loops meet it first.
 void AddEdges(Polytope* P) {
-  struct Step {
+  struct Side {
     int low, high, facet, slot, from;
   };
-  std::vector<Step> steps;
-  steps.reserve(P->facet_loop.size());
+  std::vector<Side> sides;
+  sides.reserve(P->facet_loop.size());
   for (int f = 0; f < static_cast<int>(P->facets.size()); ++f) {
     const auto loop = P->loop_of(f);
     for (int k = 0; k < static_cast<int>(loop.size()); ++k) {
       const auto [low, high] =
           std::minmax({loop[k], loop[(k + 1) % loop.size()]});
-      steps.push_back({low, high, f, P->facet_loop_start[f] + k, loop[k]});
+      sides.push_back({low, high, f, P->facet_loop_start[f] + k, loop[k]});
     }
   }
-  std::sort(steps.begin(), steps.end(), [](const Step& s, const Step& t) {
+  std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
     return std::tie(s.low, s.high, s.slot) < std::tie(t.low, t.high, t.slot);
   });
   // Pairs, by the slot that comes first.
   std::vector<std::pair<int, int>> pairs;
-  for (std::size_t i = 0; i + 1 < steps.size(); i += 2) {
-    pairs.emplace_back(steps[i].slot, static_cast<int>(i));
+  for (std::size_t i = 0; i + 1 < sides.size(); i += 2) {
+    pairs.emplace_back(sides[i].slot, static_cast<int>(i));
   }
   std::sort(pairs.begin(), pairs.end());
   P->facet_loop_edge.resize(P->facet_loop.size());
   for (const auto& [slot, i] : pairs) {
-    const Step &first = steps[i], &second = steps[i + 1];
+    const Side &first = sides[i], &second = sides[i + 1];
     Polytope::Edge edge;
     edge.v0 = first.from;
     edge.v1 = second.from;
@@ -88,32 +88,50 @@ void AddWings(Polytope* P) {
   }
 }
 
-void AddNeighborsAndRings(Polytope* P) {
-  std::vector<int> ends;
-  for (const Polytope::Edge& edge : P->edges) {
-    ends.push_back(edge.v0);
-    ends.push_back(edge.v1);
+// An edge that leaves a vertex, the facet to its left and where that facet's
+// loop came from: the end of the next edge around the vertex.
+struct Step {
+  int from, to, before, edge, facet;
+};
+
+std::vector<Step> StepsOf(const Polytope& P) {
+  std::vector<Step> steps;
+  for (int f = 0; f < static_cast<int>(P.facets.size()); ++f) {
+    const auto loop = P.loop_of(f);
+    const int size = static_cast<int>(loop.size());
+    for (int k = 0; k < size; ++k) {
+      steps.push_back({loop[k], loop[(k + 1) % size],
+                       loop[(k + size - 1) % size],
+                       P.facet_loop_edge[P.facet_loop_start[f] + k], f});
+    }
   }
-  P->neighbor_start = StartsFromOwners(ends, P->num_vertices());
-  P->neighbor.resize(ends.size());
-  P->neighbor_edge.resize(ends.size());
-  P->ring_start = P->neighbor_start;
-  P->ring.resize(ends.size());
-  std::vector<int> next = P->neighbor_start;
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    const int v = ends[i], w = ends[i ^ 1], slot = next[v]++;
-    P->neighbor[slot] = w;
-    P->neighbor_edge[slot] = static_cast<int>(i / 2);
-    P->ring[slot] = (P->vertices[w] - P->vertices[v]).stableNormalized();
-  }
+  if (P.dimension == 1) steps = {{0, 1, 1, 0, -1}, {1, 0, 0, 0, -1}};
+  std::sort(steps.begin(), steps.end(), [](const Step& s, const Step& t) {
+    return std::tie(s.from, s.to) < std::tie(t.from, t.to);
+  });
+  return steps;
 }
 
-void AddVertexFacets(Polytope* P) {
-  P->vertex_facet_start = StartsFromOwners(P->facet_loop, P->num_vertices());
-  P->vertex_facet.resize(P->facet_loop.size());
-  std::vector<int> next = P->vertex_facet_start;
-  for (int f = 0; f < static_cast<int>(P->facets.size()); ++f) {
-    for (const int v : P->loop_of(f)) P->vertex_facet[next[v]++] = f;
+void AddFansAndRings(Polytope* P) {
+  const std::vector<Step> steps = StepsOf(*P);
+  std::vector<int> owners;
+  for (const Step& step : steps) owners.push_back(step.from);
+  P->fan_start = StartsFromOwners(owners, P->num_vertices());
+  P->ring_start = P->fan_start;
+  for (int v = 0; v < P->num_vertices(); ++v) {
+    const auto first = steps.begin() + P->fan_start[v];
+    const auto last = steps.begin() + P->fan_start[v + 1];
+    auto step = first;
+    for (auto count = last - first; count > 0; --count) {
+      const Vec3 along = P->vertices[step->to] - P->vertices[v];
+      const Vec3 normal =
+          step->facet < 0 ? Vec3::Zero() : P->facets[step->facet].normal;
+      P->fan.push_back({along, normal, step->to, step->edge, step->facet});
+      P->ring.push_back(along.stableNormalized());
+      step = std::lower_bound(
+          first, last, step->before,
+          [](const Step& s, int vertex) { return s.to < vertex; });
+    }
   }
 }
 
@@ -134,8 +152,7 @@ Polytope MakePolytope(std::span<const Vec3> points, const HullShape& shape) {
   AddFacets(shape, &P);
   AddEdges(&P);
   AddWings(&P);
-  AddNeighborsAndRings(&P);
-  AddVertexFacets(&P);
+  AddFansAndRings(&P);
   AddBall(&P);
   FillGaussTurns(&P);
   return P;

@@ -41,6 +41,16 @@ struct Polytope {
     double turn = 0;             ///< see gauss_turn.h
   };
 
+  /// An edge at a vertex and the facet that follows it, with copies of what a
+  /// search reads: going round a vertex is one run through memory.
+  struct Spoke {
+    Vec3 along = Vec3::Zero();   ///< from the vertex to its neighbour, m
+    Vec3 normal = Vec3::Zero();  ///< of the facet; zero on a segment
+    int neighbor = -1;           ///< vertex at the edge's other end
+    int edge = -1;
+    int facet = -1;  ///< -1 on a segment
+  };
+
   int dimension = 0;
   std::vector<Vec3> vertices;  ///< extreme points only
   std::vector<Edge> edges;
@@ -54,14 +64,10 @@ struct Polytope {
   /// Unit normal of that edge in the facet's plane, out of the facet.
   std::vector<Vec3> facet_loop_side;
 
-  /// Neighbours of each vertex along edges, and the edges that lead there.
-  std::vector<int> neighbor_start{0};
-  std::vector<int> neighbor;
-  std::vector<int> neighbor_edge;
-
-  /// Facets around each vertex.
-  std::vector<int> vertex_facet_start{0};
-  std::vector<int> vertex_facet;
+  /// The edges and facets around each vertex, counter-clockwise seen from
+  /// outside: a facet lies between its spoke's edge and the next one's.
+  std::vector<int> fan_start{0};
+  std::vector<Spoke> fan;
 
   /// Unit directions from each vertex along all edges of the surface there.
   /// The surface is locally supported by n at the vertex when n · r <= 0 for
@@ -74,17 +80,8 @@ struct Polytope {
 
   int num_vertices() const { return static_cast<int>(vertices.size()); }
 
-  std::span<const int> neighbors_of(int v) const {
-    return {neighbor.data() + neighbor_start[v],
-            neighbor.data() + neighbor_start[v + 1]};
-  }
-  std::span<const int> neighbor_edges_of(int v) const {
-    return {neighbor_edge.data() + neighbor_start[v],
-            neighbor_edge.data() + neighbor_start[v + 1]};
-  }
-  std::span<const int> facets_of(int v) const {
-    return {vertex_facet.data() + vertex_facet_start[v],
-            vertex_facet.data() + vertex_facet_start[v + 1]};
+  std::span<const Spoke> fan_of(int v) const {
+    return {fan.data() + fan_start[v], fan.data() + fan_start[v + 1]};
   }
   std::span<const Vec3> ring_of(int v) const {
     return {ring.data() + ring_start[v], ring.data() + ring_start[v + 1]};

@@ -1,7 +1,9 @@
 #include "separation.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace drake_haptics {
 namespace {
@@ -44,6 +46,24 @@ Vec3 FeatureNormal(const Simplex& simplex, const Vec3& v) {
 }
 
 }  // namespace
+
+bool HoldsOrigin(const PosedPair& pair, const Simplex& simplex) {
+  if (simplex.size < 4) return false;
+  Vec3 p[4];
+  for (int i = 0; i < 4; ++i) {
+    p[i] = pair.a(simplex.hubs[i].a) - pair.b(simplex.hubs[i].b);
+  }
+  // Volumes, with signs, of the tetrahedra that the origin makes with the
+  // faces: the origin is inside where all are alike.
+  const Vec3 u = p[2].cross(p[3]), v = p[0].cross(p[1]);
+  const double volumes[4] = {p[1].dot(u), -p[0].dot(u), p[3].dot(v),
+                             -p[2].dot(v)};
+  const double scale = pair.scale();
+  const double round_off = 1e-13 * scale * scale * scale;
+  const double sign = volumes[0] < 0 ? -1.0 : 1.0;
+  return std::all_of(std::begin(volumes), std::end(volumes),
+                     [&](double volume) { return sign * volume > round_off; });
+}
 
 Separation ComputeSeparation(const PosedPair& pair, const Simplex& start,
                              double limit) {

@@ -23,6 +23,10 @@ struct Separation {
   Simplex simplex;          ///< the features; also the next query's start
 };
 
+/// Whether four vertices of A ⊖ B still hold the origin between them, strictly
+/// and beyond round-off: then the pair overlaps. False for fewer vertices.
+bool HoldsOrigin(const PosedPair& pair, const Simplex& simplex);
+
 /// Computes the distance of the pair by the method of Gilbert, Johnson and
 /// Keerthi (1988) on supports that climb from the last answer. Starts from the
 /// vertices of `start` (may be empty), evaluated at the present pose. Ends on

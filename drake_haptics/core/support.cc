@@ -1,40 +1,23 @@
 #include "support.h"
 
 namespace drake_haptics {
-namespace {
-
-// Up to this many vertices, reading all of them beats climbing.
-constexpr int kScanLimit = 12;
-
-}  // namespace
 
 int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
-  const std::vector<Vec3>& vertices = polytope.vertices;
-  const int count = polytope.num_vertices();
-  int best = start;
-  double best_value = direction.dot(vertices[best]);
-  if (count <= kScanLimit) {
-    for (int i = 0; i < count; ++i) {
-      const double value = direction.dot(vertices[i]);
-      if (value > best_value) {
-        best_value = value;
-        best = i;
-      }
-    }
-    return best;
-  }
   // Every vertex is extreme, so a vertex that no neighbour beats is the
-  // farthest one; the strict test ends the climb.
-  for (bool climbing = true; climbing;) {
-    climbing = false;
-    for (const int neighbor : polytope.neighbors_of(best)) {
-      const double value = direction.dot(vertices[neighbor]);
-      if (value > best_value) {
-        best_value = value;
-        best = neighbor;
-        climbing = true;
+  // farthest one. The bound ends a walk in circles that round-off allows.
+  int best = start;
+  for (int left = polytope.num_vertices(); left > 0; --left) {
+    double gain = 0;
+    int next = -1;
+    for (const Polytope::Spoke& spoke : polytope.fan_of(best)) {
+      const double value = direction.dot(spoke.along);
+      if (value > gain) {
+        gain = value;
+        next = spoke.neighbor;
       }
     }
+    if (next < 0) break;
+    best = next;
   }
   return best;
 }

@@ -6,9 +6,8 @@
 namespace drake_haptics {
 
 /// The vertex of `polytope` that is farthest along `direction` (any length,
-/// in the polytope's frame). Climbs from vertex `start` over the neighbour
-/// rings, so that on coherent motion it costs one ring whatever the size;
-/// small polytopes are scanned whole.
+/// in the polytope's frame). Climbs from vertex `start` from fan to fan, so
+/// that on coherent motion it costs one fan whatever the size.
 int SupportVertex(const Polytope& polytope, const Vec3& direction, int start);
 
 /// Two polytopes in A's frame: A as it is, B posed by X_AB. The difference of

@@ -13,10 +13,10 @@ constexpr double kSlack = 1e-3;
 constexpr double kFacetPartnerSlack = 0.5;
 
 int FindEdge(const Polytope& polytope, int v0, int v1) {
-  const auto neighbors = polytope.neighbors_of(v0);
-  const auto found = std::find(neighbors.begin(), neighbors.end(), v1);
-  if (found == neighbors.end()) return -1;
-  return polytope.neighbor_edges_of(v0)[found - neighbors.begin()];
+  for (const Polytope::Spoke& spoke : polytope.fan_of(v0)) {
+    if (spoke.neighbor == v1) return spoke.edge;
+  }
+  return -1;
 }
 
 bool FacetHolds(const Polytope& polytope, int facet, int vertex) {
@@ -42,9 +42,9 @@ bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
 bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n,
                   double slack) {
   bool has_surface = false;
-  for (const int facet : polytope.facets_of(vertex)) {
-    if (!polytope.facets[facet].original) continue;
-    if (n.dot(polytope.facets[facet].normal) > -slack) return true;
+  for (const Polytope::Spoke& spoke : polytope.fan_of(vertex)) {
+    if (spoke.facet < 0 || !polytope.facets[spoke.facet].original) continue;
+    if (n.dot(spoke.normal) > -slack) return true;
     has_surface = true;
   }
   return !has_surface;
@@ -111,13 +111,14 @@ Feature FeatureOfVertices(const Polytope& polytope, const int* vertices,
   }
   Feature best(FeatureKind::kVertex, distinct[0]);
   double best_facing = -2;
-  for (const int facet : polytope.facets_of(distinct[0])) {
-    const double facing = n.dot(polytope.facets[facet].normal);
-    if (facing > best_facing &&
-        std::all_of(distinct + 1, distinct + size,
-                    [&](int v) { return FacetHolds(polytope, facet, v); })) {
+  for (const Polytope::Spoke& spoke : polytope.fan_of(distinct[0])) {
+    const double facing = n.dot(spoke.normal);
+    if (spoke.facet >= 0 && facing > best_facing &&
+        std::all_of(distinct + 1, distinct + size, [&](int v) {
+          return FacetHolds(polytope, spoke.facet, v);
+        })) {
       best_facing = facing;
-      best = {FeatureKind::kFacet, facet};
+      best = {FeatureKind::kFacet, spoke.facet};
     }
   }
   return best;

@@ -1,0 +1,79 @@
+#include "pair_answer.h"
+
+#include "surface_support.h"
+#include "witness.h"
+
+namespace drake_haptics {
+namespace {
+
+Feature SimplexFeature(const Polytope& polytope, const Simplex& simplex,
+                       int Hub::* side, const Vec3& n) {
+  int vertices[4];
+  for (int i = 0; i < simplex.size; ++i) {
+    vertices[i] = simplex.hubs[i].*side;
+  }
+  return FeatureOfVertices(polytope, vertices, simplex.size, n);
+}
+
+bool IsBetter(const Depth& second, const Depth& first) {
+  if (second.status == DepthStatus::kNoFacet) return false;
+  if (first.status == DepthStatus::kNoFacet) return true;
+  if (second.best.support != first.best.support) {
+    return second.best.support > first.best.support;
+  }
+  return second.best.h > first.best.h;
+}
+
+}  // namespace
+
+PairContact ContactApart(const PosedPair& pair, const Separation& separation) {
+  const Vec3& n = separation.n;
+  const Vec3 n_B = pair.X_AB.R.transpose() * n;
+  return {separation.distance,
+          n,
+          separation.p_a,
+          separation.p_b,
+          SimplexFeature(pair.A, separation.simplex, &Hub::a, -n),
+          SimplexFeature(pair.B, separation.simplex, &Hub::b, n_B),
+          ContactStatus::kNear};
+}
+
+PairContact ContactAtFacet(const PosedPair& pair, const DepthCandidate& facet,
+                           ContactStatus status) {
+  const Witness witness = WitnessOfFeatures(pair, facet.feature_A,
+                                            facet.feature_B, facet.n, facet.h);
+  return {facet.h,         facet.n,         witness.p_a, witness.p_b,
+          facet.feature_A, facet.feature_B, status};
+}
+
+PairContact ContactGrazing(const PosedPair& pair, const Vec3& n_last) {
+  const Vec3 along = pair.A.num_vertices() > 1
+                         ? Vec3(pair.A.vertices[1] - pair.A.vertices[0])
+                     : pair.B.num_vertices() > 1 ? Vec3(pair.b(1) - pair.b(0))
+                                                 : Vec3::UnitX();
+  Vec3 n = n_last - along * (along.dot(n_last) / along.squaredNorm());
+  if (!(n.norm() > 1e-6)) n = along.unitOrthogonal();
+  n.normalize();
+  const Vec3 p = pair.a(0);
+  const Feature vertex(FeatureKind::kVertex, 0);
+  return {0.0, n, p, p, vertex, vertex, ContactStatus::kPenetrating};
+}
+
+Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
+                const Hub& hub_last, int max_promotion_hubs,
+                DepthWorkspace* workspace) {
+  Vec3 between = pair.A.centroid - pair.X_AB * pair.B.centroid;
+  if (!(between.norm() > 1e-12 * pair.scale())) between = Vec3::UnitX();
+  Hub hub;
+  SupportGap(pair, between, &hub);
+  const Depth first =
+      WalkDepth(pair, hub, rule, nullptr, max_promotion_hubs, workspace);
+  if (!(n_last.squaredNorm() > 0)) return first;
+  hub = hub_last;
+  SupportGap(pair, n_last, &hub);
+  const Depth second =
+      WalkDepth(pair, hub, rule, nullptr, max_promotion_hubs, workspace);
+  return IsBetter(second, first) ? second : first;
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "depth_walk.h"
+#include "pair_contact.h"
+#include "separation.h"
+#include "support.h"
+
+namespace drake_haptics {
+
+/// Closer than this share of the size, distance and depth are both computed;
+/// the larger of the two support gaps is the answer.
+inline constexpr double kJoinShare = 1e-9;
+
+/// The contact at the closest points of a pair that is apart.
+PairContact ContactApart(const PosedPair& pair, const Separation& separation);
+
+/// The contact at a facet of A ⊖ B.
+PairContact ContactAtFacet(const PosedPair& pair, const DepthCandidate& facet,
+                           ContactStatus status);
+
+/// The contact of two sets that touch and lie in one line or point: they
+/// overlap by nothing across it. The normal stays near n_last (zero if none).
+PairContact ContactGrazing(const PosedPair& pair, const Vec3& n_last);
+
+/// The facet found by the starts of paper 5.2.2 where no facet is known: the
+/// line that joins the centroids and, unless it is zero, the last normal.
+Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
+                const Hub& hub_last, int max_promotion_hubs,
+                DepthWorkspace* workspace);
+
+}  // namespace drake_haptics

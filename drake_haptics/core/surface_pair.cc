@@ -1,0 +1,269 @@
+#include "surface_pair.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "contact_passage.h"
+#include "facet_revisit.h"
+#include "pair_answer.h"
+#include "separation.h"
+#include "surface_support.h"
+#include "witness.h"
+
+namespace drake_haptics {
+namespace {
+
+// Hubs looked at for a facet that both surfaces carry, on the first tick of an
+// overlap and on later ones.
+constexpr int kColdPromotionHubs = 64;
+constexpr int kWarmPromotionHubs = 6;
+// Cosine of the largest angle between the normal of a new contact and the
+// direction from which the pair came together: beyond it the tool came from
+// behind the surface, through a virtual side of the piece.
+constexpr double kComingFrom = -0.2;
+// How much deeper than the shallowest facet a new contact may be, as a share of
+// the tolerance.
+constexpr double kEntryShare = 0.25;
+// Cosine of the angle within which two normals count as one.
+constexpr double kSameNormal = 0.996;
+// Thickness of the layer between flush faces, as a share of the tolerance: thin
+// enough that it ends on the face, thick enough to be soft against rocking.
+constexpr double kSpreadShare = 0.1;
+// How far beyond its features' sides a contact in depth may lie, as a share of
+// the size.
+constexpr double kSlideShare = 1e-2;
+
+class Query {
+ public:
+  Query(const PosedPair& pair, const SurfaceRequest& request, PairState* state,
+        PairWorkspace* workspace)
+      : pair_(pair),
+        request_(request),
+        state_(*state),
+        passage_(pair, request_, *state),
+        workspace_(*workspace) {}
+
+  std::optional<PairContact> Run() {
+    std::optional<PairContact> contact;
+    if (!state_.in_contact && IsBeyondLastNormal()) {
+      contact = TakenOver();
+      if (!contact) return contact;
+    } else {
+      contact = Answer();
+    }
+    Remember(contact);
+    if (contact) {
+      const auto center =
+          Center(contact->n, contact->distance, state_.hub, contact->p_a);
+      if (center) {
+        contact->p_a = *center;
+        contact->p_b = *center - contact->distance * contact->n;
+      }
+    }
+    return contact;
+  }
+
+ private:
+  std::optional<PairContact> Answer() {
+    separation_ = ComputeSeparation(pair_, state_.simplex, request_.tolerance);
+    state_.simplex = separation_.simplex;
+    switch (separation_.status) {
+      case SeparationStatus::kApart:
+        return Near();
+      case SeparationStatus::kTouching:
+        return Overlapping();
+      default:
+        return Behind();
+    }
+  }
+
+  // Last tick's normal often still proves that the pair is out of reach.
+  bool IsBeyondLastNormal() {
+    return state_.n.squaredNorm() > 0 &&
+           SupportGap(pair_, state_.n, &state_.hub) > request_.tolerance;
+  }
+
+  std::optional<PairContact> Near() {
+    if (separation_.distance < kJoinShare * pair_.scale()) {
+      return Overlapping();
+    }
+    const PairContact contact = ContactApart(pair_, separation_);
+    if (!IsSupported(contact)) return Behind();
+    return contact;
+  }
+
+  // No contact of its own: the tool is out of reach, or behind the surface.
+  std::optional<PairContact> Behind() {
+    return state_.in_contact ? Held(state_.n) : TakenOver();
+  }
+
+  bool IsSupported(const PairContact& contact) const {
+    return ClassifySupport(pair_.A, contact.feature_A, contact.n, pair_.B,
+                           contact.feature_B,
+                           pair_.X_AB.R.transpose() * contact.n) ==
+           SurfaceSupport::kSupported;
+  }
+
+  std::optional<PairContact> Overlapping() {
+    const Depth depth =
+        state_.in_contact
+            ? WarmDepth()
+            : ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
+                        kColdPromotionHubs, &workspace_.depth);
+    const bool apart = separation_.status == SeparationStatus::kApart;
+    if (apart && (depth.status == DepthStatus::kNoFacet ||
+                  depth.best.h <= separation_.distance)) {
+      const PairContact contact = ContactApart(pair_, separation_);
+      if (IsSupported(contact)) return contact;
+    }
+    if (depth.status == DepthStatus::kNoFacet) {
+      return ContactGrazing(pair_, state_.n);
+    }
+    if (!IsPlausible(depth)) return TakenOver();
+    ContactStatus status =
+        depth.best.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating;
+    if (depth.status == DepthStatus::kBounded &&
+        depth.best.support != SurfaceSupport::kOriginal) {
+      status = ContactStatus::kBounded;
+    }
+    return AtFacet(depth, status);
+  }
+
+  // The contact at a facet of A ⊖ B, which is also the next tick's start.
+  PairContact AtFacet(const Depth& depth, ContactStatus status) {
+    facet_hub_ = depth.hub;
+    return ContactAtFacet(pair_, depth.best, status);
+  }
+
+  // Whether the facet found can be the way on which the overlap came about: it
+  // goes on from the last contact, or it is near the shallowest way there is.
+  // A piece of a thin wall is also met from behind, through its virtual side:
+  // its own surface is far then, and the pieces on the near side carry the
+  // contact.
+  bool IsPlausible(const Depth& depth) {
+    if (depth.best.support == SurfaceSupport::kVirtual) return false;
+    // What goes on may reach beyond its features: a face wider than the pieces
+    // has its deepest corner over another one.
+    if (passage_.GoesOn(depth.best)) return true;
+    if (!IsWithinFeatures(depth)) return false;
+    return passage_.IsHandedOver(depth.best) ||
+           (depth.best.n.dot(state_.n) >= kComingFrom &&
+            depth.best.h >=
+                depth.shallowest - kEntryShare * request_.tolerance);
+  }
+
+  // A pair that goes on where another one pressed: the tool may be behind this
+  // piece altogether.
+  std::optional<PairContact> TakenOver() {
+    // Contacts along one normal lead to the same facet: one of them will do.
+    const Vec3* tried = nullptr;
+    for (const PressedContact& last : request_.pressed) {
+      if (!passage_.IsNear(last)) continue;
+      if (tried != nullptr && tried->dot(last.n) > kSameNormal) continue;
+      tried = &last.n;
+      const auto contact = Held(pair_.X_AB.R * last.n);
+      if (contact) return contact;
+    }
+    return std::nullopt;
+  }
+
+  // Whether the bodies press on the facet's own features: beside them its plane
+  // means nothing.
+  bool IsWithinFeatures(const Depth& depth) {
+    const DepthCandidate& facet = depth.best;
+    const Witness witness = WitnessOfFeatures(
+        pair_, facet.feature_A, facet.feature_B, facet.n, facet.h);
+    return LateralOffset(pair_, facet.feature_A, facet.feature_B, witness) <=
+               kSlideShare * pair_.scale() ||
+           Center(facet.n, facet.h, depth.hub, witness.p_a).has_value();
+  }
+
+  // From the last answer. On coherent motion its facet mostly still is the
+  // answer, and one comparison proves it.
+  Depth WarmDepth() {
+    Hub hub = state_.hub;
+    if (!state_.feature_A.is_none()) {
+      const Revisit last =
+          RevisitFacet(pair_, SurfaceRule::kSurfaceOnly, state_.feature_A,
+                       state_.feature_B, state_.n);
+      if (last.status == RevisitStatus::kMinimum &&
+          last.facet.support == SurfaceSupport::kSupported) {
+        return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub};
+      }
+      if (last.status != RevisitStatus::kGone) {
+        return WalkDepth(pair_, last.hub, SurfaceRule::kSurfaceOnly,
+                         &last.facet, kWarmPromotionHubs, &workspace_.depth);
+      }
+    }
+    SupportGap(pair_, state_.n, &hub);
+    return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
+                     kWarmPromotionHubs, &workspace_.depth);
+  }
+
+  // The tool was in contact and the hulls are apart now, yet the gap along the
+  // way in, n, is negative: it went through a shallow piece. The depth is
+  // measured along the surface's own normals, and the way out is the way in.
+  std::optional<PairContact> Held(const Vec3& n) {
+    Hub hub = state_.hub;
+    if (!(SupportGap(pair_, n, &hub) < 0)) return std::nullopt;
+    const Depth depth =
+        WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
+                  kWarmPromotionHubs, &workspace_.depth);
+    if (depth.status == DepthStatus::kNoFacet ||
+        depth.best.support != SurfaceSupport::kSupported ||
+        !(depth.best.h < 0) ||
+        !(passage_.GoesOn(depth.best) || passage_.IsHandedOver(depth.best)) ||
+        !IsWithinFeatures(depth)) {
+      return std::nullopt;
+    }
+    return AtFacet(depth, ContactStatus::kHeld);
+  }
+
+  // The centre of pressure of nearly flush faces.
+  std::optional<Vec3> Center(const Vec3& n, double h, const Hub& hub,
+                             const Vec3& p_a) {
+    const double tolerance = request_.tolerance;
+    const double spread =
+        std::clamp(tolerance - h, 0.0, kSpreadShare * tolerance);
+    return PressureCenter(pair_, n, h, hub, p_a, spread, &workspace_.patch);
+  }
+
+  void Remember(const std::optional<PairContact>& contact) {
+    state_.in_contact = contact.has_value();
+    const bool is_facet = contact && facet_hub_;
+    state_.feature_A = is_facet ? contact->feature_A : Feature();
+    state_.feature_B = is_facet ? contact->feature_B : Feature();
+    if (contact) {
+      state_.n = contact->n;
+      state_.distance = contact->distance;
+      state_.p_b = pair_.X_AB.inverse() * contact->p_b;
+    }
+    if (is_facet) {
+      state_.hub = *facet_hub_;
+    } else if (separation_.status != SeparationStatus::kTouching) {
+      // The vertices of the closest features face each other along n.
+      state_.n = separation_.n;
+      state_.hub = separation_.simplex.hubs[0];
+    }
+  }
+
+  const PosedPair& pair_;
+  const SurfaceRequest request_;
+  PairState& state_;
+  const ContactPassage passage_;
+  PairWorkspace& workspace_;
+  Separation separation_;
+  std::optional<Hub> facet_hub_;  // of the facet that is the answer, if one is
+};
+
+}  // namespace
+
+std::optional<PairContact> QuerySurfacePair(const PosedPair& pair,
+                                            const SurfaceRequest& request,
+                                            PairState* state,
+                                            PairWorkspace* workspace) {
+  return Query(pair, request, state, workspace).Run();
+}
+
+}  // namespace drake_haptics
