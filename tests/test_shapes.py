@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 import trimesh
+from surface_crossings import crossing_edges
 
 from drake_haptics.shapes import SHAPES, Surface
 from drake_haptics.shapes.surface import SurfaceBuilder
@@ -67,40 +68,17 @@ def test_vertices_are_manifold(name):
 
 def test_no_triangle_crosses_another(name):
     surface = SHAPES[name]()
-    assert crossing_edges(surface) == []
+    assert crossing_edges(surface.vertices, surface.triangles) == []
 
 
 def test_crossing_is_found():
     # Two tetrahedra pushed into each other: the check above can fail.
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
     faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-    both = Surface(np.vstack([corners, corners + 0.1]), np.vstack([faces, faces + 4]))
-    assert crossing_edges(both)
-
-
-def crossing_edges(surface: Surface) -> list[tuple[int, int]]:
-    """Pairs (edge of one triangle, triangle) that cross and share no vertex."""
-    vertices, triangles = surface.vertices, surface.triangles
-    mesh = as_trimesh(surface)
-    edges = mesh.edges_unique
-    corners = vertices[triangles]
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    crossings = []
-    for start, end in edges:
-        p, d = vertices[start], vertices[end] - vertices[start]
-        box_low, box_high = np.minimum(p, p + d), np.maximum(p, p + d)
-        near = np.all((low <= box_high) & (high >= box_low), axis=1)
-        near &= ~np.any((triangles == start) | (triangles == end), axis=1)
-        for i in np.flatnonzero(near):
-            a, b, c = corners[i]
-            # p + t d = a + u (b - a) + v (c - a)
-            matrix = np.column_stack([d, a - b, a - c])
-            if abs(np.linalg.det(matrix)) < 1e-18:
-                continue
-            t, u, v = np.linalg.solve(matrix, a - p)
-            if 0 <= t <= 1 and u >= 0 and v >= 0 and u + v <= 1:
-                crossings.append((int(start), int(i)))
-    return crossings
+    both = np.vstack([corners, corners + 0.1])
+    assert crossing_edges(both, np.vstack([faces, faces + 4]))
+    apart = np.vstack([corners, corners + 0.6])
+    assert not crossing_edges(apart, np.vstack([faces, faces + 4]))
 
 
 def test_convex_shapes_are_convex(name):
