@@ -1,8 +1,8 @@
 """Six-degree-of-freedom haptic rendering of arbitrary meshes, as Drake systems.
 
 What most programs need is here by its own name; the rest is in the modules. The
-geometry (`load_mesh`, `decompose`) works without Drake, which is imported only when
-something that needs it is asked for.
+geometry (`load_mesh`, `decompose`, `ConvexPair`, `ContactTracker`, `SceneTracker`)
+works without Drake, which is imported only when something that needs it is asked for.
 """
 
 from __future__ import annotations
@@ -11,6 +11,19 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from drake_haptics._core import (
+        Contact,
+        ContactSet,
+        ContactStatus,
+        ContactTracker,
+        ContactTrajectory,
+        ConvexPair,
+        ConvexPolytope,
+        Feature,
+        FeatureKind,
+        PairTrajectory,
+        SceneTracker,
+    )
     from drake_haptics.builder import (
         AddHapticLoop,
         BuildHapticDiagram,
@@ -27,12 +40,23 @@ if TYPE_CHECKING:
 __all__ = [
     "AddHapticLoop",
     "BuildHapticDiagram",
+    "Contact",
+    "ContactSet",
+    "ContactStatus",
+    "ContactTracker",
+    "ContactTrajectory",
+    "ConvexPair",
+    "ConvexPolytope",
     "Decomposition",
+    "Feature",
+    "FeatureKind",
     "HapticDiagram",
     "HapticLoop",
     "Mesh",
+    "PairTrajectory",
     "RunError",
     "Scene",
+    "SceneTracker",
     "UserError",
     "decompose",
     "find_scene",
@@ -46,12 +70,23 @@ __all__ = [
 _MODULE_OF = {
     "AddHapticLoop": "builder",
     "BuildHapticDiagram": "builder",
+    "Contact": "_core",
+    "ContactSet": "_core",
+    "ContactStatus": "_core",
+    "ContactTracker": "_core",
+    "ContactTrajectory": "_core",
+    "ConvexPair": "_core",
+    "ConvexPolytope": "_core",
     "Decomposition": "decomposition",
+    "Feature": "_core",
+    "FeatureKind": "_core",
     "HapticDiagram": "builder",
     "HapticLoop": "builder",
     "Mesh": "mesh",
+    "PairTrajectory": "_core",
     "RunError": "simulation",
     "Scene": "scene",
+    "SceneTracker": "_core",
     "UserError": "errors",
     "decompose": "decomposition",
     "find_scene": "scene_library",

@@ -1,25 +1,30 @@
 """
-The compiled core of drake_haptics: geometry, contact query, clustering and wrenches. Use the classes of drake_haptics, which document and check their input; this module is their engine.
+The compiled core of drake_haptics: geometry, contact query, clustering and wrenches. What of it is for programs of your own has its name in drake_haptics; the rest is the engine behind it.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Annotated
+import enum
+from typing import Annotated, Literal
 
 import numpy
+import numpy.typing
 from numpy.typing import NDArray
 
+import drake_haptics.decomposition
+import drake_haptics.pose_like
 
-class Polytope:
+
+class ConvexPolytope:
     """
-    Convex hull of points, with the adjacency that the contact query walks on. Immutable.
+    Convex hull of points, with the adjacency that the contact query walks on, in the frame of its body. A flat one (dimension 2) has two facets: 0 is its front, 1 its back with the opposite normal. Immutable.
     """
 
-    def __init__(self, vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> None:
+    def __init__(self, vertices: numpy.typing.ArrayLike) -> None:
         """
         Builds the hull of (n, 3) points, m. Coplanar triangles become one facet; points that are not extreme are dropped; sets that are flat, straight or a single point are valid.
 
         Raises:
-            ValueError: no points, or not finite.
+            ValueError: no points, not finite, or 1e100 m and beyond.
         """
 
     @property
@@ -77,6 +82,14 @@ class Polytope:
     def radius(self) -> float:
         """Radius of the ball about the centroid, m."""
 
+    def __reduce__(self) -> tuple: ...
+
+    def __repr__(self) -> str: ...
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
 class Decomposition:
     """A mesh and the convex pieces that stand for its surface. Immutable."""
 
@@ -89,7 +102,7 @@ class Decomposition:
         """(m, 3) vertex indices, counter-clockwise seen from outside."""
 
     @property
-    def pieces(self) -> list[Polytope]:
+    def pieces(self) -> list[ConvexPolytope]:
         """The polytopes that queries run on."""
 
     @property
@@ -140,69 +153,123 @@ def adopt_convex_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(
         ValueError: bad indices or values.
     """
 
+class FeatureKind(enum.IntEnum):
+    """
+    What a feature of a `ConvexPolytope` is: the list that its index counts in.
+    """
+
+    VERTEX = 0
+    """a row of `vertices`"""
+
+    EDGE = 1
+    """a row of `edges`"""
+
+    FACET = 2
+    """an item of `facets`"""
+
+class Feature:
+    """
+    A vertex, edge or facet of a `ConvexPolytope`. Equal if kind and index are. Immutable.
+    """
+
+    def __init__(self, kind: FeatureKind, index: int) -> None: ...
+
+    @property
+    def kind(self) -> FeatureKind:
+        """Which list the index counts in."""
+
+    @property
+    def index(self) -> int:
+        """Place in `vertices`, `edges` or `facets`, from 0."""
+
+    def __eq__(self, other: object) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __repr__(self) -> str: ...
+
+class ContactStatus(enum.IntEnum):
+    """How the answer of a pair of polytopes was reached."""
+
+    NEAR = 0
+    """apart; closest features"""
+
+    PENETRATING = 1
+    """overlapping; penetration depth"""
+
+    HELD = 2
+    """passed behind the surface that it had pressed on; trackers only"""
+
+    BOUNDED = 3
+    """a search met its bound; best answer seen"""
+
 class Contact:
-    """One contact in the world frame."""
+    """
+    One contact of two convex polytopes A and B, in the world frame W, in the words and signs of Drake's `SignedDistancePair`. Immutable.
+    """
 
     @property
     def distance(self) -> float:
-        """m; > 0 apart, < 0 penetrating (then −distance is the depth)."""
+        """
+        Signed distance, m; > 0 apart, < 0 penetrating (then −distance is the depth).
+        """
 
     @property
-    def nhat_BA_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+    def nhat_BA_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), writable=False)]:
         """(3,) unit normal out of B into A."""
 
     @property
-    def p_WCa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
-        """(3,) witness point on A, m."""
+    def p_WCa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), writable=False)]:
+        """(3,) witness point on A, m: p_WCa − p_WCb = distance · nhat_BA_W."""
 
     @property
-    def p_WCb(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+    def p_WCb(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), writable=False)]:
         """(3,) witness point on B, m."""
 
     @property
-    def p_WC(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
-        """(3,) mean of both (Eq. 1), m."""
+    def p_WC(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), writable=False)]:
+        """(3,) mean of both (paper, Eq. 1), m."""
 
     @property
-    def feature_A(self) -> int:
-        """Feature of A: index * 4 + (0 vertex, 1 edge, 2 facet)."""
+    def feature_A(self) -> Feature:
+        """`Feature` of A in contact."""
 
     @property
-    def feature_B(self) -> int:
-        """Feature of B, likewise."""
+    def feature_B(self) -> Feature:
+        """`Feature` of B in contact."""
 
     @property
-    def status(self) -> int:
-        """
-        0 near, 1 penetrating, 2 held behind the surface, 3 a search met its bound.
-        """
+    def status(self) -> ContactStatus:
+        """`ContactStatus`."""
 
-class ConvexPair:
-    """
-    Signed distance of two convex polytopes, warm from query to query: the exact distance apart, the tracked penetration depth in overlap (paper, 5.2).
-    """
+    @property
+    def object_index(self) -> int:
+        """Which object B is; 0 from a pair."""
 
-    def __init__(self, A: Polytope, B: Polytope) -> None: ...
+    @property
+    def piece_A(self) -> int:
+        """Which piece of the tool A is; 0 from a pair."""
 
-    def query(self, X_WA: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='F')], X_WB: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='F')]) -> Contact:
-        """
-        Contact at the poses X_WA and X_WB, (4, 4) rigid.
+    @property
+    def piece_B(self) -> int:
+        """Which piece of the object B is; 0 from a pair."""
 
-        Raises:
-            ValueError: a pose is not finite or not rigid.
-        """
+    def __repr__(self) -> object: ...
 
-    def reset(self) -> None:
-        """Forgets what earlier queries found."""
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
 
 class ContactSet:
     """
-    The contacts of one tick, as read-only columns over n contacts. Immutable; copies are the object itself.
+    The contacts of one query, one for each pair of pieces within the tolerance, ordered by object, piece of A, piece of B: read-only columns over n contacts, and a sequence of `Contact`. Immutable; copies are the object itself, so that it crosses Drake's abstract ports.
     """
 
     def __len__(self) -> int: ...
 
-    def __getitem__(self, arg: int, /) -> Contact: ...
+    def __getitem__(self, i: int) -> Contact: ...
+
+    def __repr__(self) -> object: ...
 
     @property
     def query_seconds(self) -> float:
@@ -210,47 +277,226 @@ class ContactSet:
 
     @property
     def distance(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
-        """(n,) m; > 0 apart, < 0 penetrating."""
+        """
+        (n,) signed distance, m; > 0 apart, < 0 penetrating (then −distance is the depth).
+        """
 
     @property
     def nhat_BA_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
-        """(n, 3) unit normals out of the object into the tool."""
+        """(n, 3) unit normal out of B into A, in the world."""
 
     @property
     def p_WCa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
-        """(n, 3) witness points on the tool, m."""
+        """(n, 3) witness point on A, in the world, m."""
 
     @property
     def p_WCb(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
-        """(n, 3) witness points on the objects, m."""
+        """(n, 3) witness point on B, in the world, m."""
 
     @property
     def p_WC(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
-        """(n, 3) their means (Eq. 1), m."""
+        """(n, 3) mean of both (paper, Eq. 1), in the world, m."""
 
     @property
-    def object_index(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) object of each contact."""
+    def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
+        """(n, 2) int32, feature of A in contact: [FeatureKind, index]."""
 
     @property
-    def piece_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) tool's piece."""
-
-    @property
-    def piece_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) object's piece."""
-
-    @property
-    def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) index * 4 + (0 vertex, 1 edge, 2 facet)."""
-
-    @property
-    def feature_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) likewise, of the object."""
+    def feature_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
+        """(n, 2) int32, feature of B in contact: [FeatureKind, index]."""
 
     @property
     def status(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) 0 near, 1 penetrating, 2 held, 3 bounded."""
+        """(n,) int32, ContactStatus."""
+
+    @property
+    def object_index(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) int32, which of the objects B is."""
+
+    @property
+    def piece_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) int32, piece of A (the tool), whose feature it is."""
+
+    @property
+    def piece_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) int32, piece of B (the object)."""
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
+class PairTrajectory:
+    """
+    The contact of a `ConvexPair` at each of n poses: read-only columns, and a sequence of `Contact`. Immutable.
+    """
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, k: int) -> Contact: ...
+
+    def __repr__(self) -> str: ...
+
+    @property
+    def distance(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """
+        (n,) signed distance, m; > 0 apart, < 0 penetrating (then −distance is the depth).
+        """
+
+    @property
+    def nhat_BA_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) unit normal out of B into A, in the world."""
+
+    @property
+    def p_WCa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) witness point on A, in the world, m."""
+
+    @property
+    def p_WCb(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) witness point on B, in the world, m."""
+
+    @property
+    def p_WC(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) mean of both (paper, Eq. 1), in the world, m."""
+
+    @property
+    def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
+        """(n, 2) int32, feature of A in contact: [FeatureKind, index]."""
+
+    @property
+    def feature_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
+        """(n, 2) int32, feature of B in contact: [FeatureKind, index]."""
+
+    @property
+    def status(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) int32, ContactStatus."""
+
+    @property
+    def seconds(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """
+        (n,) time that each query took inside the core, s, by a steady clock whose own reading (some 0.03 µs) is in it.
+        """
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
+class ConvexPair:
+    """
+    Signed distance of two convex polytopes A and B, each query starting from the last one's answer. Apart it is the distance of the closest features. In overlap it is minus the penetration depth: `tracked` walks from the last answer to the locally least way out (paper, 5.2), and so does not pop through a thin plate.
+
+    A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector [qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt as it is. Threads that share a pair take turns.
+    """
+
+    def __init__(self, A: ConvexPolytope, B: ConvexPolytope, depth: Literal['tracked'] = 'tracked') -> None:
+        """
+        Pairs two `ConvexPolytope`.
+
+        Raises:
+            ValueError: not polytopes, or no such depth.
+        """
+
+    @property
+    def A(self) -> ConvexPolytope: ...
+
+    @property
+    def B(self) -> ConvexPolytope: ...
+
+    def query(self, X_WA: drake_haptics.pose_like.PoseLike, X_WB: drake_haptics.pose_like.PoseLike) -> Contact:
+        """
+        `Contact` of the pair at the poses X_WA and X_WB.
+
+        Raises:
+            ValueError: a pose is not finite or not rigid.
+        """
+
+    def query_trajectory(self, X_WA: drake_haptics.pose_like.PoseLike, X_WB: drake_haptics.pose_like.PoseLike) -> PairTrajectory:
+        """
+        What n single queries would give, in one call without the GIL.
+
+        Args:
+            X_WA: (n, 4, 4) or (n, 7) poses of A in turn, or one pose if A rests.
+            X_WB: the same of B.
+
+        Raises:
+            ValueError: a pose is not finite or not rigid, or numbers of poses differ; nothing was asked then.
+        """
+
+    def reset(self) -> None:
+        """Forgets what earlier queries found."""
+
+    def __deepcopy__(self, arg: object, /) -> ConvexPair: ...
+
+    def __copy__(self) -> ConvexPair: ...
+
+    def __repr__(self) -> str: ...
+
+class ContactTrajectory:
+    """
+    The contacts of a tracker at each of k poses: read-only columns over all n contacts, pose after pose, and a sequence of `ContactSet`. Immutable.
+    """
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, k: int) -> ContactSet:
+        """The contacts at pose k."""
+
+    def __repr__(self) -> str: ...
+
+    @property
+    def distance(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """
+        (n,) signed distance, m; > 0 apart, < 0 penetrating (then −distance is the depth).
+        """
+
+    @property
+    def nhat_BA_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) unit normal out of B into A, in the world."""
+
+    @property
+    def p_WCa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) witness point on A, in the world, m."""
+
+    @property
+    def p_WCb(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) witness point on B, in the world, m."""
+
+    @property
+    def p_WC(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(n, 3) mean of both (paper, Eq. 1), in the world, m."""
+
+    @property
+    def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
+        """(n, 2) int32, feature of A in contact: [FeatureKind, index]."""
+
+    @property
+    def feature_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
+        """(n, 2) int32, feature of B in contact: [FeatureKind, index]."""
+
+    @property
+    def status(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) int32, ContactStatus."""
+
+    @property
+    def object_index(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) int32, which of the objects B is."""
+
+    @property
+    def piece_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) int32, piece of A (the tool), whose feature it is."""
+
+    @property
+    def piece_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """(n,) int32, piece of B (the object)."""
+
+    @property
+    def start(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), writable=False)]:
+        """
+        (k + 1,) int64: the contacts at pose i are the rows start[i] to start[i + 1] of the columns.
+        """
+
+    @property
+    def seconds(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """(k,) time that each query took inside the core, s."""
 
     def __deepcopy__(self, arg: object, /) -> object: ...
 
@@ -258,45 +504,108 @@ class ContactSet:
 
 class ContactTracker:
     """
-    Finds all contacts between a moving tool and many objects, each query starting from the last one's answer.
+    All contacts of two decomposed bodies A and B, each query starting from the last one's answer (paper, sections 3 and 5.3): one for each pair of convex pieces nearer than the tolerance. Seams between pieces are not felt, and what has been pressed in stays in contact, out the way it came.
+
+    A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector [qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt as it is. Threads that share a tracker take turns.
     """
 
-    def __init__(self, tool: Decomposition, objects: Sequence[Decomposition], tolerance: float) -> None:
+    def __init__(self, A: drake_haptics.decomposition.Decomposition | Decomposition, B: drake_haptics.decomposition.Decomposition | Decomposition, tolerance: float) -> None:
         """
-        Watches `tool` against `objects`, all at the identity pose, for contacts up to `tolerance` (m).
+        Watches A against B for contacts up to `tolerance` (m).
 
         Raises:
-            ValueError: the tolerance is negative or not finite.
+            ValueError: not decompositions, or the tolerance is negative or not finite.
         """
 
-    @property
-    def num_objects(self) -> int: ...
+    def query(self, X_WA: drake_haptics.pose_like.PoseLike, X_WB: drake_haptics.pose_like.PoseLike) -> ContactSet:
+        """
+        `ContactSet` of the bodies at the poses X_WA and X_WB.
+
+        Raises:
+            ValueError: a pose is not finite or not rigid.
+        """
+
+    def query_trajectory(self, X_WA: drake_haptics.pose_like.PoseLike, X_WB: drake_haptics.pose_like.PoseLike) -> ContactTrajectory:
+        """
+        What k single queries would give, in one call without the GIL.
+
+        Args:
+            X_WA: (k, 4, 4) or (k, 7) poses of A in turn, or one pose if A rests.
+            X_WB: the same of B.
+
+        Raises:
+            ValueError: a pose is not finite or not rigid, or numbers of poses differ; nothing was asked then.
+        """
+
+    def __repr__(self) -> str: ...
 
     @property
     def tolerance(self) -> float:
-        """m."""
-
-    def set_object_pose(self, i: int, q_WO: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> None:
-        """
-        Poses object i by (7,) [qw qx qy qz x y z].
-
-        Raises:
-            ValueError: not a pose.
-            IndexError: no such object.
-        """
-
-    def query(self, q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> ContactSet:
-        """
-        Contacts at the tool's pose (7,) [qw qx qy qz x y z].
-
-        Raises:
-            ValueError: not a pose; what was remembered is kept.
-        """
+        """Distance up to which there are contacts, m."""
 
     def reset(self) -> None:
         """Forgets what earlier queries found."""
 
     def __deepcopy__(self, arg: object, /) -> ContactTracker: ...
+
+    def __copy__(self) -> ContactTracker: ...
+
+class SceneTracker:
+    """
+    All contacts of a moving tool with many objects at once; else a `ContactTracker`, A the tool and B each object. Objects are posed one by one and stay there, so that those at rest cost nothing.
+    """
+
+    def __init__(self, tool: drake_haptics.decomposition.Decomposition | Decomposition, objects: Sequence[drake_haptics.decomposition.Decomposition | Decomposition], tolerance: float) -> None:
+        """
+        Watches `tool` against `objects`, all at the identity pose, for contacts up to `tolerance` (m).
+
+        Raises:
+            ValueError: not decompositions, no objects, or the tolerance is negative or not finite.
+        """
+
+    @property
+    def num_objects(self) -> int: ...
+
+    def set_object_pose(self, i: int, X_WO: drake_haptics.pose_like.PoseLike) -> None:
+        """
+        Poses object i.
+
+        Raises:
+            ValueError: not a pose; the object stays where it is.
+            IndexError: no such object.
+        """
+
+    def query(self, X_WTool: drake_haptics.pose_like.PoseLike) -> ContactSet:
+        """
+        `ContactSet` of the tool at the pose X_WTool.
+
+        Raises:
+            ValueError: the pose is not finite or not rigid.
+        """
+
+    def query_trajectory(self, X_WTool: drake_haptics.pose_like.PoseLike) -> ContactTrajectory:
+        """
+        What k single queries would give, in one call without the GIL; the objects rest.
+
+        Args:
+            X_WTool: (k, 4, 4) or (k, 7) poses of the tool in turn.
+
+        Raises:
+            ValueError: a pose is not finite or not rigid; nothing was asked then.
+        """
+
+    def __repr__(self) -> str: ...
+
+    @property
+    def tolerance(self) -> float:
+        """Distance up to which there are contacts, m."""
+
+    def reset(self) -> None:
+        """Forgets what earlier queries found."""
+
+    def __deepcopy__(self, arg: object, /) -> SceneTracker: ...
+
+    def __copy__(self) -> SceneTracker: ...
 
 class ClusterSet:
     """

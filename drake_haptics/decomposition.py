@@ -47,7 +47,7 @@ class Decomposition:
     _data: PieceData
 
     @property
-    def pieces(self) -> list[_core.Polytope]:
+    def pieces(self) -> list[_core.ConvexPolytope]:
         """The convex pieces; facets that are not on the mesh are marked."""
         return self.core.pieces
 

@@ -32,7 +32,7 @@ class ColoredTriangles:
 
 
 def piece_surfaces(
-    pieces: list[_core.Polytope],
+    pieces: list[_core.ConvexPolytope],
 ) -> tuple[ColoredTriangles, ColoredTriangles]:
     """Returns the facets on the mesh, a colour for each piece, and the virtual ones.
 

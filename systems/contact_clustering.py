@@ -22,7 +22,7 @@ class ContactClustering(LeafSystem):
         output_ports:
         - clusters
 
-    `contacts` is a `drake_haptics._core.ContactSet`, `clusters` a
+    `contacts` is a `drake_haptics.ContactSet`, `clusters` a
     `drake_haptics._core.ClusterSet`; both are immutable and in the world frame.
     """
 

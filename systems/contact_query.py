@@ -9,8 +9,7 @@ from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context, InputPort, LeafSystem, OutputPort
 
-from drake_haptics._core import ContactTracker, Decomposition
-from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics._core import Decomposition, SceneTracker
 from drake_haptics.systems.scratch import declare_scratch, get_scratch
 
 
@@ -46,7 +45,7 @@ class ContactQuery(LeafSystem):
         - contacts
 
     `X_WTool` and `X_WO_<name>` are poses [qw qx qy qz x y z] in the world, m.
-    `contacts` is a `drake_haptics._core.ContactSet`, immutable.
+    `contacts` is a `drake_haptics.ContactSet`, immutable.
 
     The search starts from its last answer in the same Context (paper, 5.2). Objects
     with a pose of their own are placed once, when a Context is made.
@@ -66,11 +65,14 @@ class ContactQuery(LeafSystem):
             tolerance_m: Pairs up to this distance are contacts, m.
 
         Raises:
-            ValueError: The tolerance is negative or a name is used twice.
+            ValueError: The tolerance is negative, there is no object, or a name is
+                used twice.
         """
         super().__init__()
         if not tolerance_m >= 0.0:
             raise ValueError(f"tolerance_m must not be negative, is {tolerance_m}")
+        if not objects:
+            raise ValueError("objects must name something that the tool can meet")
         if len({item.name for item in objects}) < len(objects):
             raise ValueError("two objects have the same name")
         self._tool = tool
@@ -102,12 +104,12 @@ class ContactQuery(LeafSystem):
         """Returns the output `contacts`."""
         return self._contacts
 
-    def _make_tracker(self) -> ContactTracker:
+    def _make_tracker(self) -> SceneTracker:
         decompositions = [item.decomposition for item in self._objects]
-        tracker = ContactTracker(self._tool, decompositions, self._tolerance_m)
+        tracker = SceneTracker(self._tool, decompositions, self._tolerance_m)
         for i, item in enumerate(self._objects):
             if item.X_WO is not None:
-                tracker.set_object_pose(i, pose_to_vector(item.X_WO))
+                tracker.set_object_pose(i, item.X_WO)
         return tracker
 
     def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:

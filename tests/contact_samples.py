@@ -17,7 +17,7 @@ def pose(p: object, quaternion: object = (1, 0, 0, 0)) -> np.ndarray:
 def hull(points: object) -> _core.Decomposition:
     """One convex piece, whole boundary."""
     points = np.asarray(points, dtype=float)
-    polytope = _core.Polytope(points)
+    polytope = _core.ConvexPolytope(points)
     triangles = []
     for loop in polytope.facets:
         triangles += [[loop[0], loop[k], loop[k + 1]] for k in range(1, len(loop) - 1)]
@@ -59,4 +59,4 @@ def contacts_at(points: object, depths: object, tolerance: float) -> _core.Conta
     ones = np.ones(len(triangles), dtype=np.uint8)
     body = _core.decompose_surface(vertices, triangles, ones)
     slab = box([10, 10, 1], [0, 0, -0.5])
-    return _core.ContactTracker(body, [slab], tolerance).query(IDENTITY)
+    return _core.SceneTracker(body, [slab], tolerance).query(IDENTITY)

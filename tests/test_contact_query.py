@@ -103,6 +103,8 @@ def test_impossible_arguments_are_refused(tool, plate):
         ContactQuery(tool, [], -1.0)
     with pytest.raises(ValueError, match="tolerance_m"):
         ContactQuery(tool, [], float("nan"))
+    with pytest.raises(ValueError, match="objects"):
+        ContactQuery(tool, [], TOLERANCE)
     twice = [ContactObject("plate", plate), ContactObject("plate", plate)]
     with pytest.raises(ValueError, match="same name"):
         ContactQuery(tool, twice, TOLERANCE)

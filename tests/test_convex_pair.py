@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 from drake_haptics import _core
 
 
-def polytope(points: object) -> _core.Polytope:
-    return _core.Polytope(np.asarray(points, dtype=float))
+def polytope(points: object) -> _core.ConvexPolytope:
+    return _core.ConvexPolytope(np.asarray(points, dtype=float))
 
 
 CUBE = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]

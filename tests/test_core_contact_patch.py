@@ -54,7 +54,7 @@ def test_the_centre_is_that_of_a_sampled_layer(
 ) -> None:
     ground = box([0.1, 0.1, 0.02], [0, 0, -0.01])
     q, R = tilted(height, np.array(tilt), yaw=0.4, x=x)
-    contacts = _core.ContactTracker(box(2 * HALF), [ground], T).query(q)
+    contacts = _core.SceneTracker(box(2 * HALF), [ground], T).query(q)
     assert len(contacts) == 1
     assert contacts.distance[0] == pytest.approx(height, abs=1e-12)
     np.testing.assert_allclose(contacts.nhat_BA_W[0], [0, 0, 1], atol=1e-12)
@@ -69,7 +69,7 @@ def test_the_centre_is_that_of_a_sampled_layer(
 
 def test_the_centre_moves_continuously_as_the_box_rocks_through_flush() -> None:
     ground = box([0.1, 0.1, 0.02], [0, 0, -0.01])
-    tracker = _core.ContactTracker(box(2 * HALF), [ground], T)
+    tracker = _core.SceneTracker(box(2 * HALF), [ground], T)
     step = 1e-5
     centers = []
     for tilt in np.arange(-0.1, 0.1, step):
@@ -93,7 +93,7 @@ def test_an_edge_on_a_face_is_centred_too() -> None:
             for y, z in ((0, 0), (-0.01, 0.01), (0.01, 0.01))
         ]
     )
-    tracker = _core.ContactTracker(roof, [ground], T)
+    tracker = _core.SceneTracker(roof, [ground], T)
     contacts = tracker.query(pose([0.01, 0.0, 5e-4]))
     np.testing.assert_allclose(contacts.p_WC[0][:2], [0.01, 0], atol=1e-9)
     # Tilted about y the layer is a trapezoid along the edge.
@@ -115,7 +115,7 @@ def test_an_edge_on_a_face_is_centred_too() -> None:
 def test_a_corner_on_a_face_stays_where_it_is() -> None:
     ground = box([0.1, 0.1, 0.02], [0, 0, -0.01])
     q, R = tilted(1e-3, np.array([0.5, 0.4]))
-    contacts = _core.ContactTracker(box(2 * HALF), [ground], T).query(q)
+    contacts = _core.SceneTracker(box(2 * HALF), [ground], T).query(q)
     corners = (
         R.apply(HALF * [[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
         + q[4:]

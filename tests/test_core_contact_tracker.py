@@ -61,7 +61,7 @@ def coal_distance(A: trimesh.Trimesh, B: trimesh.Trimesh, q_WA: np.ndarray) -> f
 def test_the_nearest_contact_is_the_distance_of_the_meshes() -> None:
     rng = np.random.default_rng(0)
     A, B = ring(), ring()
-    tracker = _core.ContactTracker(pieces_of(A), [pieces_of(B)], T)
+    tracker = _core.SceneTracker(pieces_of(A), [pieces_of(B)], T)
     found = 0
     for _ in range(150):
         q_WA = random_pose(rng, 0.035)
@@ -88,7 +88,7 @@ def test_the_trees_miss_no_pair_and_every_pair_gets_its_own_answer() -> None:
     rng = np.random.default_rng(1)
     A, B = swarm(rng, 40), swarm(rng, 40)
     assert len(A.pieces) == len(B.pieces) == 40
-    tracker = _core.ContactTracker(A, [B], T)
+    tracker = _core.SceneTracker(A, [B], T)
     deep = near = 0
     for _ in range(5):
         q_WA = random_pose(rng, 0.02)
@@ -117,12 +117,12 @@ def test_the_trees_miss_no_pair_and_every_pair_gets_its_own_answer() -> None:
 
 def test_warm_and_cold_answers_agree_while_apart() -> None:
     A, B = pieces_of(ring()), pieces_of(ring())
-    warm = _core.ContactTracker(A, [B], T)
+    warm = _core.SceneTracker(A, [B], T)
     compared = 0
     for k in range(400):
         q_WA = pose([0.04 + 0.03 * np.sin(0.02 * k), 0.01, 0.024])
         contacts = warm.query(q_WA)
-        cold = _core.ContactTracker(A, [B], T).query(q_WA)
+        cold = _core.SceneTracker(A, [B], T).query(q_WA)
         if len(cold) and cold.distance.min() > 1e-6:
             compared += 1
             np.testing.assert_array_equal(contacts.piece_A, cold.piece_A)
@@ -155,7 +155,7 @@ def test_a_seam_in_a_flat_face_is_not_felt() -> None:
     plate = strip_plate(np.linspace(-0.05, 0.05, 11))
     assert len(plate.pieces) == 42
     assert all(piece.dimension == 2 for piece in plate.pieces)
-    tracker = _core.ContactTracker(spike([0, 0, 0]), [plate], 2e-3)
+    tracker = _core.SceneTracker(spike([0, 0, 0]), [plate], 2e-3)
     for height in (1e-3, -5e-4):
         for x in np.linspace(-0.045, 0.045, 901):
             contacts = tracker.query(pose([x, 0.003, 0.005 + height]))
@@ -174,7 +174,7 @@ def test_a_press_through_a_flat_piece_is_held_along_the_way_in() -> None:
         mesh.vertices, mesh.faces.astype(np.int32), labels
     )
     assert all(piece.dimension == 2 for piece in shell.pieces)
-    flat_tool = _core.ContactTracker(spike([0, 0, 0]), [shell], 2e-3)
+    flat_tool = _core.SceneTracker(spike([0, 0, 0]), [shell], 2e-3)
     for z in np.arange(0.0215, 0.002, -2.5e-4):
         contacts = flat_tool.query(pose([0.001, 0.002, z]))
         top = contacts.nhat_BA_W[:, 2] > 0.999
@@ -205,7 +205,7 @@ def test_a_piece_met_from_behind_does_not_push_the_tool_through_the_wall() -> No
         vertices, np.array(triangles, np.int32), np.array(labels, np.int32)
     )
     assert [piece.dimension for piece in wall.pieces] == [2, 2, 3, 2, 2, 2]
-    tracker = _core.ContactTracker(spike([0, 0, 0]), [wall], 2e-3)
+    tracker = _core.SceneTracker(spike([0, 0, 0]), [wall], 2e-3)
     for z in np.arange(1e-3, -4.2e-3, -2.5e-4):
         contacts = tracker.query(pose([0.001, 0.0, z]))
         assert len(contacts) > 0
@@ -219,13 +219,13 @@ def test_nothing_pulls_a_tool_that_comes_from_behind_an_open_sheet() -> None:
         np.zeros(2, dtype=np.uint8),
     )
     flipped = np.array([[0, 0, 0], [1, 0, -20], [-0.5, 0.8, -20], [-0.5, -0.8, -20]])
-    tracker = _core.ContactTracker(hull(flipped * 1e-3), [sheet], 2e-3)
+    tracker = _core.SceneTracker(hull(flipped * 1e-3), [sheet], 2e-3)
     for z in np.arange(-3e-3, -1e-4, 1e-4):
         assert len(tracker.query(pose([0, 0, z]))) == 0
 
 
 def test_objects_are_posed_and_named_by_their_index() -> None:
-    tracker = _core.ContactTracker(
+    tracker = _core.SceneTracker(
         spike([0, 0, 0]), [box([0.1, 0.1, 0.1]), box([0.1, 0.1, 0.1])], T
     )
     tracker.set_object_pose(0, pose([0, 0, -0.05]))
@@ -240,11 +240,11 @@ def test_objects_are_posed_and_named_by_their_index() -> None:
 
 
 def test_a_bad_pose_changes_nothing_and_a_copy_goes_its_own_way() -> None:
-    tracker = _core.ContactTracker(spike([0, 0, 0]), [box([1, 1, 1])], T)
+    tracker = _core.SceneTracker(spike([0, 0, 0]), [box([1, 1, 1])], T)
     q = pose([0, 0, 0.501])
     before = tracker.query(q)
     for bad in (np.full(7, np.nan), np.zeros(7), pose([np.inf, 0, 0])):
-        with pytest.raises(ValueError, match="q_WTool"):
+        with pytest.raises(ValueError, match="X_WTool"):
             tracker.query(bad)
     twin = copy.deepcopy(tracker)
     twin.query(pose([0, 0, 5.0]))
@@ -256,4 +256,4 @@ def test_a_bad_pose_changes_nothing_and_a_copy_goes_its_own_way() -> None:
 @pytest.mark.parametrize("bad", [-1e-3, np.nan, np.inf])
 def test_the_tolerance_is_checked(bad: float) -> None:
     with pytest.raises(ValueError, match="tolerance"):
-        _core.ContactTracker(box([1, 1, 1]), [], bad)
+        _core.SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], bad)

@@ -315,7 +315,7 @@ def test_a_needle_on_its_own_is_a_segment_that_can_be_touched():
     V, F = arrays([[0, 0, 0], [1, 0, 0], [0.4, 1e-9, 0]], [[0, 1, 2]])
     (needle,) = decompose(V, F, solid=False).pieces
     assert needle.dimension == 1 and needle.edge_original.all()
-    ball = _core.Polytope(np.array(trimesh.creation.icosphere().vertices))
+    ball = _core.ConvexPolytope(np.array(trimesh.creation.icosphere().vertices))
     pair = _core.ConvexPair(ball, needle)
     for height, distance in [(1.5, 0.5), (0.25, -0.75), (-0.25, -0.75)]:
         X_WA = np.eye(4)

@@ -72,7 +72,7 @@ def test_no_force_pulls_however_fast_the_tool_leaves() -> None:
 def test_a_ball_of_contact_on_a_plane_has_the_force_of_hookes_law() -> None:
     slab = box([1, 1, 1], [0, 0, -0.5])
     cube = box([0.02, 0.02, 0.02])
-    tracker = _core.ContactTracker(cube, [slab], T)
+    tracker = _core.SceneTracker(cube, [slab], T)
     for height in (0.0115, 0.0105, 0.01, 0.0095):
         contacts = tracker.query(pose([0.1, 0.2, height]))
         clusters = _core.cluster_contacts(contacts, 5e-3, T)

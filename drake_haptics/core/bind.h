@@ -9,7 +9,9 @@ namespace drake_haptics {
 
 void BindPolytope(nanobind::module_& m);
 void BindDecomposition(nanobind::module_& m);
-void BindQuery(nanobind::module_& m);
+void BindContact(nanobind::module_& m);
+void BindConvexPair(nanobind::module_& m);
+void BindTracker(nanobind::module_& m);
 void BindForce(nanobind::module_& m);
 void BindHand(nanobind::module_& m);
 

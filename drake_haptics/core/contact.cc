@@ -1,6 +1,13 @@
 #include "contact.h"
 
 namespace drake_haptics {
+namespace {
+
+std::array<std::int32_t, 2> KindAndIndex(const Feature& feature) {
+  return {static_cast<std::int32_t>(feature.kind()), feature.index()};
+}
+
+}  // namespace
 
 Contact InWorld(const PairContact& pair, const Pose& X_WA) {
   Contact contact;
@@ -9,8 +16,8 @@ Contact InWorld(const PairContact& pair, const Pose& X_WA) {
   contact.p_WCa = X_WA * pair.p_a;
   contact.p_WCb = X_WA * pair.p_b;
   contact.p_WC = (contact.p_WCa + contact.p_WCb) / 2;
-  contact.feature_A = pair.feature_A.code();
-  contact.feature_B = pair.feature_B.code();
+  contact.feature_A = KindAndIndex(pair.feature_A);
+  contact.feature_B = KindAndIndex(pair.feature_B);
   contact.status = static_cast<std::int32_t>(pair.status);
   return contact;
 }

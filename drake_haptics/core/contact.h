@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -20,8 +21,8 @@ struct Contact {
   std::int32_t object = 0;
   std::int32_t piece_A = 0;
   std::int32_t piece_B = 0;
-  std::int32_t feature_A = 0;  ///< Feature::code()
-  std::int32_t feature_B = 0;
+  std::array<std::int32_t, 2> feature_A{};  ///< FeatureKind, index
+  std::array<std::int32_t, 2> feature_B{};
   std::int32_t status = 0;  ///< ContactStatus
 };
 

@@ -33,7 +33,7 @@ def test_a_spoon_dragged_through_a_cup_wall_never_jumps(
     """
     tool, cup = pieces("spoon.obj"), pieces("cup.obj")
     tolerance = 1e-3
-    tracker = _core.ContactTracker(tool, [cup], tolerance)
+    tracker = _core.SceneTracker(tool, [cup], tolerance)
     vertices = tool.vertices
     last, deepest = None, tolerance
     worst, seen = 0.0, 0

@@ -1,0 +1,317 @@
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+
+#include "bind.h"
+#include "bind_contact.h"
+#include "bind_pose.h"
+#include "bind_real_array.h"
+#include "bind_trajectory.h"
+#include "bind_turn.h"
+#include "contact_tracker.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+using DecompositionPtr = std::shared_ptr<const Decomposition>;
+
+// The public Decomposition holds the core's one as its attribute `core`.
+DecompositionPtr ToDecomposition(nb::handle value, const std::string& name) {
+  DecompositionPtr decomposition;
+  const nb::object core = nb::getattr(value, "core", value);
+  if (core.is_none() || !nb::try_cast(core, decomposition)) {
+    throw std::invalid_argument(name + " must be a Decomposition, got " +
+                                TypeName(value) + "; see decompose()");
+  }
+  return decomposition;
+}
+
+std::vector<DecompositionPtr> ToDecompositions(nb::handle values) {
+  if (!PySequence_Check(values.ptr()) || nb::len(values) == 0) {
+    throw std::invalid_argument(
+        "objects must be a list of one Decomposition or more, got " +
+        (PySequence_Check(values.ptr()) ? std::string("none of them")
+                                        : TypeName(values)));
+  }
+  std::vector<DecompositionPtr> decompositions;
+  for (const nb::handle value : values) {
+    const std::string name =
+        "objects[" + std::to_string(decompositions.size()) + "]";
+    decompositions.push_back(ToDecomposition(value, name));
+  }
+  return decompositions;
+}
+
+// The contacts at each pose of a trajectory, one pose after the other.
+struct ContactTrajectory {
+  std::vector<Contact> contacts;
+  std::vector<std::int64_t> start{0};
+  std::vector<double> seconds;
+
+  void Append(const ContactSet& set) {
+    contacts.insert(contacts.end(), set.contacts.begin(), set.contacts.end());
+    start.push_back(static_cast<std::int64_t>(contacts.size()));
+    seconds.push_back(set.query_seconds);
+  }
+
+  ContactSet At(std::size_t k) const {
+    return {{contacts.begin() + start[k], contacts.begin() + start[k + 1]},
+            seconds[k]};
+  }
+};
+
+// A tracker whose users take turns.
+class SharedTracker {
+ public:
+  explicit SharedTracker(ContactTracker tracker)
+      : tracker_(std::move(tracker)) {}
+  SharedTracker(const SharedTracker& other) : SharedTracker(other.Copy()) {}
+
+  const ContactTracker& constants() const { return tracker_; }
+
+  void Reset() {
+    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    tracker_.Reset();
+  }
+
+ protected:
+  ContactTracker Copy() const {
+    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    return tracker_;
+  }
+
+  // Calls place(k, &tracker) before the query of pose k.
+  template <typename Place>
+  ContactTrajectory QueryEach(std::size_t size, const PoseSeries& X_WA,
+                              const Place& place) {
+    ContactTrajectory out;
+    ContactSet contacts;
+    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    RunTrajectory(size, [&](std::size_t k) {
+      place(k, &tracker_);
+      tracker_.Query(X_WA[k], &contacts);
+      out.Append(contacts);
+    });
+    return out;
+  }
+
+  mutable std::mutex mutex_;
+  ContactTracker tracker_;
+};
+
+class PairTracker : public SharedTracker {
+ public:
+  PairTracker(nb::handle A, nb::handle B, nb::handle tolerance)
+      : SharedTracker({ToDecomposition(A, "A"),
+                       {ToDecomposition(B, "B")},
+                       ToReal(tolerance, "tolerance")}) {}
+
+  ContactSet Query(nb::handle X_WA_value, nb::handle X_WB_value) {
+    const Pose X_WA = ToPose(X_WA_value, "X_WA");
+    const Pose X_WB = ToPose(X_WB_value, "X_WB");
+    ContactSet contacts;
+    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    tracker_.SetObjectPose(0, X_WB);
+    tracker_.Query(X_WA, &contacts);
+    return contacts;
+  }
+
+  ContactTrajectory QueryTrajectory(nb::handle X_WA_value,
+                                    nb::handle X_WB_value) {
+    const PoseSeries X_WA(X_WA_value, "X_WA");
+    const PoseSeries X_WB(X_WB_value, "X_WB");
+    return QueryEach(CommonSize(X_WA, X_WB), X_WA,
+                     [&](std::size_t k, ContactTracker* tracker) {
+                       tracker->SetObjectPose(0, X_WB[k]);
+                     });
+  }
+};
+
+class SceneTracker : public SharedTracker {
+ public:
+  SceneTracker(nb::handle tool, nb::handle objects, nb::handle tolerance)
+      : SharedTracker({ToDecomposition(tool, "tool"), ToDecompositions(objects),
+                       ToReal(tolerance, "tolerance")}) {}
+
+  void SetObjectPose(Py_ssize_t i, nb::handle X_WO_value) {
+    const Pose X_WO = ToPose(X_WO_value, "X_WO");
+    const Py_ssize_t size = tracker_.num_objects();
+    if (i < 0 || i >= size) {
+      const auto text =
+          "no object " + std::to_string(i) + " of " + std::to_string(size);
+      throw nb::index_error(text.c_str());
+    }
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    tracker_.SetObjectPose(static_cast<int>(i), X_WO);
+  }
+
+  ContactSet Query(nb::handle X_WTool_value) {
+    const Pose X_WTool = ToPose(X_WTool_value, "X_WTool");
+    ContactSet contacts;
+    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    tracker_.Query(X_WTool, &contacts);
+    return contacts;
+  }
+
+  ContactTrajectory QueryTrajectory(nb::handle X_WTool_value) {
+    const PoseSeries X_WTool(X_WTool_value, "X_WTool");
+    return QueryEach(X_WTool.size(), X_WTool,
+                     [](std::size_t, ContactTracker*) {});
+  }
+};
+
+void BindContactTrajectory(nb::module_& m) {
+  nb::class_<ContactTrajectory> trajectory(
+      m, "ContactTrajectory",
+      "The contacts of a tracker at each of k poses: read-only columns over "
+      "all n contacts, pose after pose, and a sequence of `ContactSet`. "
+      "Immutable.");
+  trajectory.def("__len__",
+                 [](const ContactTrajectory& t) { return t.seconds.size(); });
+  trajectory.def(
+      "__getitem__",
+      [](const ContactTrajectory& t, Py_ssize_t k) {
+        return t.At(PlaceOf(k, t.seconds.size()));
+      },
+      nb::arg("k"), "The contacts at pose k.");
+  trajectory.def("__repr__", [](const ContactTrajectory& t) {
+    return nb::str("ContactTrajectory({} poses, {} contacts)")
+        .format(t.seconds.size(), t.contacts.size());
+  });
+  constexpr auto kItems = &ContactTrajectory::contacts;
+  DefContactColumns<kItems>(&trajectory);
+  DefPieceColumns<kItems>(&trajectory);
+  DefNumbers<&ContactTrajectory::start>(
+      &trajectory, "start",
+      "(k + 1,) int64: the contacts at pose i are the rows start[i] to "
+      "start[i + 1] of the columns.");
+  DefNumbers<&ContactTrajectory::seconds>(
+      &trajectory, "seconds",
+      "(k,) time that each query took inside the core, s.");
+  DefFrozenCopy(&trajectory);
+}
+
+// What both trackers have.
+template <typename Tracker>
+void DefTracker(nb::class_<Tracker>* tracker) {
+  tracker
+      ->def_prop_ro(
+          "tolerance",
+          [](const Tracker& self) { return self.constants().tolerance(); },
+          "Distance up to which there are contacts, m.")
+      .def("reset", &Tracker::Reset, "Forgets what earlier queries found.")
+      .def("__deepcopy__",
+           [](const Tracker& self, nb::handle) { return Tracker(self); })
+      .def("__copy__", [](const Tracker& self) { return Tracker(self); });
+}
+
+void BindContactTracker(nb::module_& m) {
+  nb::class_<PairTracker> tracker(
+      m, "ContactTracker",
+      "All contacts of two decomposed bodies A and B, each query starting from "
+      "the last one's answer (paper, sections 3 and 5.3): one for each pair of "
+      "convex pieces nearer than the tolerance. Seams between pieces are not "
+      "felt, and what has been pressed in stays in contact, out the way it "
+      "came.\n\n"
+      "A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector "
+      "[qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt "
+      "as it is. Threads that share a tracker take turns.");
+  tracker
+      .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("A"),
+           nb::arg("B"), nb::arg("tolerance"),
+           nb::sig("def __init__(self, A: drake_haptics.decomposition."
+                   "Decomposition | Decomposition, B: drake_haptics."
+                   "decomposition.Decomposition | Decomposition, tolerance: "
+                   "float) -> None"),
+           "Watches A against B for contacts up to `tolerance` (m).\n\n"
+           "Raises:\n    ValueError: not decompositions, or the tolerance is "
+           "negative or not finite.")
+      .def("query", &PairTracker::Query, nb::arg("X_WA"), nb::arg("X_WB"),
+           nb::sig("def query(self, X_WA: drake_haptics.pose_like.PoseLike, "
+                   "X_WB: drake_haptics.pose_like.PoseLike) -> ContactSet"),
+           "`ContactSet` of the bodies at the poses X_WA and X_WB.\n\n"
+           "Raises:\n    ValueError: a pose is not finite or not rigid.")
+      .def("query_trajectory", &PairTracker::QueryTrajectory, nb::arg("X_WA"),
+           nb::arg("X_WB"),
+           nb::sig("def query_trajectory(self, X_WA: "
+                   "drake_haptics.pose_like.PoseLike, X_WB: "
+                   "drake_haptics.pose_like.PoseLike) -> ContactTrajectory"),
+           "What k single queries would give, in one call without the GIL.\n\n"
+           "Args:\n"
+           "    X_WA: (k, 4, 4) or (k, 7) poses of A in turn, or one pose if A "
+           "rests.\n"
+           "    X_WB: the same of B.\n\n"
+           "Raises:\n    ValueError: a pose is not finite or not rigid, or "
+           "numbers of poses differ; nothing was asked then.")
+      .def("__repr__", [](const PairTracker& self) {
+        return nb::str("ContactTracker(tolerance={} m)")
+            .format(self.constants().tolerance());
+      });
+  DefTracker(&tracker);
+}
+
+void BindSceneTracker(nb::module_& m) {
+  nb::class_<SceneTracker> tracker(
+      m, "SceneTracker",
+      "All contacts of a moving tool with many objects at once; else a "
+      "`ContactTracker`, A the tool and B each object. Objects are posed one "
+      "by one and stay there, so that those at rest cost nothing.");
+  tracker
+      .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("tool"),
+           nb::arg("objects"), nb::arg("tolerance"),
+           nb::sig("def __init__(self, tool: drake_haptics.decomposition."
+                   "Decomposition | Decomposition, objects: collections.abc."
+                   "Sequence[drake_haptics.decomposition.Decomposition | "
+                   "Decomposition], tolerance: float) -> None"),
+           "Watches `tool` against `objects`, all at the identity pose, for "
+           "contacts up to `tolerance` (m).\n\n"
+           "Raises:\n    ValueError: not decompositions, no objects, or the "
+           "tolerance is negative or not finite.")
+      .def_prop_ro("num_objects",
+                   [](const SceneTracker& self) {
+                     return self.constants().num_objects();
+                   })
+      .def("set_object_pose", &SceneTracker::SetObjectPose, nb::arg("i"),
+           nb::arg("X_WO"),
+           nb::sig("def set_object_pose(self, i: int, X_WO: "
+                   "drake_haptics.pose_like.PoseLike) -> None"),
+           "Poses object i.\n\n"
+           "Raises:\n    ValueError: not a pose; the object stays where it is."
+           "\n    IndexError: no such object.")
+      .def("query", &SceneTracker::Query, nb::arg("X_WTool"),
+           nb::sig("def query(self, X_WTool: drake_haptics.pose_like.PoseLike) "
+                   "-> ContactSet"),
+           "`ContactSet` of the tool at the pose X_WTool.\n\n"
+           "Raises:\n    ValueError: the pose is not finite or not rigid.")
+      .def("query_trajectory", &SceneTracker::QueryTrajectory,
+           nb::arg("X_WTool"),
+           nb::sig("def query_trajectory(self, X_WTool: "
+                   "drake_haptics.pose_like.PoseLike) -> ContactTrajectory"),
+           "What k single queries would give, in one call without the GIL; the "
+           "objects rest.\n\n"
+           "Args:\n"
+           "    X_WTool: (k, 4, 4) or (k, 7) poses of the tool in turn.\n\n"
+           "Raises:\n    ValueError: a pose is not finite or not rigid; "
+           "nothing was asked then.")
+      .def("__repr__", [](const SceneTracker& self) {
+        return nb::str("SceneTracker({} objects, tolerance={} m)")
+            .format(self.constants().num_objects(),
+                    self.constants().tolerance());
+      });
+  DefTracker(&tracker);
+}
+
+}  // namespace
+
+void BindTracker(nb::module_& m) {
+  BindContactTrajectory(m);
+  BindContactTracker(m);
+  BindSceneTracker(m);
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <mutex>
+#include <optional>
+
+/// Objects that remember something between calls, used from several Python
+/// threads: the calls take turns.
+namespace drake_haptics {
+
+/// Takes a turn for as long as it lives. Nobody waits for a turn while holding
+/// the GIL, so that who has the turn can always get it.
+class Turn {
+ public:
+  enum class Gil {
+    kRelease,  ///< other threads run meanwhile
+    kHold      ///< for calls that take less time than releasing it
+  };
+
+  Turn(std::mutex* mutex, Gil gil) : lock_(*mutex, std::defer_lock) {
+    if (gil == Gil::kHold && lock_.try_lock()) return;
+    release_.emplace();
+    lock_.lock();
+  }
+
+ private:
+  // The turn ends before the GIL is asked for again: reverse order.
+  std::optional<nanobind::gil_scoped_release> release_;
+  std::unique_lock<std::mutex> lock_;
+};
+
+}  // namespace drake_haptics
