@@ -39,12 +39,11 @@ bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
 }
 
 // The same at a vertex, by the faces that the piece has there.
-bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n,
-                  double slack) {
+bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
   bool has_surface = false;
   for (const Polytope::Spoke& spoke : polytope.fan_of(vertex)) {
     if (spoke.facet < 0 || !polytope.facets[spoke.facet].original) continue;
-    if (n.dot(spoke.normal) > -slack) return true;
+    if (n.dot(spoke.normal) > -kSlack) return true;
     has_surface = true;
   }
   return !has_surface;
@@ -72,7 +71,7 @@ SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
       // Vertices are never created by a decomposition: all are original.
       const auto ring = polytope.ring_of(feature.index());
       return supported_if(
-          LeavesVertex(polytope, feature.index(), n, vertex_slack) &&
+          LeavesVertex(polytope, feature.index(), n) &&
           std::all_of(ring.begin(), ring.end(),
                       [&](const Vec3& r) { return n.dot(r) <= vertex_slack; }));
     }
