@@ -141,6 +141,15 @@ def test_duplicates_change_nothing():
     assert len(once.facets) == len(often.facets)
 
 
+@pytest.mark.parametrize("distance", [1e-16, 1e-13, 1e-11])
+def test_vertices_nearly_twice_count_once(distance):
+    rng = np.random.default_rng(8)
+    points = rng.normal(size=(40, 3))
+    once = polytope(points)
+    twice = polytope([*points, *(points + distance * rng.uniform(-1, 1, (40, 3)))])
+    np.testing.assert_array_equal(once.vertices, twice.vertices)
+
+
 def test_vertices_keep_the_order_of_the_input():
     points = np.random.default_rng(6).normal(size=(200, 3))
     rank = {tuple(p): i for i, p in enumerate(points)}

@@ -3,16 +3,20 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "convex_hull.h"
 #include "convex_polygon.h"
+#include "distinct_points.h"
 #include "facet_merge.h"
 #include "predicates.h"
 #include "spanning.h"
 
 namespace drake_haptics {
 namespace {
+
+// Points closer than this share of the size are one: a hundred times the
+// flatness that merges facets, which must not merge the edge between two.
+constexpr double kSamePointShare = 1e-10;
 
 // Drops corners that stand out of the line of their neighbours by less than
 // the tolerance. Neighbours never go in the same pass, so that a fine polygon
@@ -94,26 +98,6 @@ std::vector<int> ExtremePoints(const Spanning& spanning,
   return extreme;
 }
 
-// Indices of distinct points, the first of each kind, ascending.
-std::vector<int> DistinctPoints(std::span<const Vec3> points) {
-  std::vector<int> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto less = [&](int i, int j) {
-    const Vec3 &p = points[i], &q = points[j];
-    for (int axis = 0; axis < 3; ++axis) {
-      if (p[axis] != q[axis]) return p[axis] < q[axis];
-    }
-    return i < j;
-  };
-  std::sort(order.begin(), order.end(), less);
-  const auto last = std::unique(order.begin(), order.end(), [&](int i, int j) {
-    return points[i] == points[j];
-  });
-  order.erase(last, order.end());
-  std::sort(order.begin(), order.end());
-  return order;
-}
-
 }  // namespace
 
 bool AreUsable(std::span<const Vec3> points) {
@@ -135,7 +119,10 @@ HullShape FindHullShape(std::span<const Vec3> points, double tolerance,
   for (const Vec3& p : points) {
     normalized.push_back(NormalizeForPredicates(p, scale));
   }
-  const std::vector<int> source = DistinctPoints(normalized);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : normalized) box.extend(p);
+  const std::vector<int> source =
+      DistinctPoints(normalized, kSamePointShare * box.diagonal().norm());
   std::vector<Vec3> distinct;
   distinct.reserve(source.size());
   for (const int i : source) distinct.push_back(normalized[i]);
