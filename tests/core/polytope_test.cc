@@ -37,8 +37,12 @@ std::vector<Vec3> Cube(int points_per_edge) {
   return points;
 }
 
-bool Contains(std::span<const int> list, int item) {
-  return std::find(list.begin(), list.end(), item) != list.end();
+// The spoke from one vertex to another, or null.
+const Polytope::Spoke* SpokeTo(const Polytope& P, int from, int to) {
+  for (const Polytope::Spoke& spoke : P.fan_of(from)) {
+    if (spoke.neighbor == to) return &spoke;
+  }
+  return nullptr;
 }
 
 void CheckLoops(const Polytope& P) {
@@ -52,20 +56,24 @@ void CheckLoops(const Polytope& P) {
       CHECK(edge.left == f
                 ? edge.v0 == from && edge.v1 == to
                 : edge.right == f && edge.v0 == to && edge.v1 == from);
-      CHECK(Contains(P.facets_of(from), f));
+      // Counter-clockwise about a vertex its edge comes before its facet.
+      const Polytope::Spoke* spoke = SpokeTo(P, from, to);
+      CHECK(spoke != nullptr && spoke->facet == f &&
+            spoke->normal == P.facets[f].normal);
     }
   }
 }
 
 void CheckNeighbors(const Polytope& P) {
   for (int v = 0; v < P.num_vertices(); ++v) {
-    const auto neighbors = P.neighbors_of(v);
-    CHECK(neighbors.size() == P.ring_of(v).size());
-    for (std::size_t i = 0; i < neighbors.size(); ++i) {
-      CHECK(Contains(P.neighbors_of(neighbors[i]), v));
-      const Polytope::Edge& edge = P.edges[P.neighbor_edges_of(v)[i]];
-      CHECK(std::minmax(edge.v0, edge.v1) == std::minmax(v, neighbors[i]));
-      const Vec3 along = P.vertices[neighbors[i]] - P.vertices[v];
+    const auto fan = P.fan_of(v);
+    CHECK(fan.size() == P.ring_of(v).size());
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      CHECK(SpokeTo(P, fan[i].neighbor, v) != nullptr);
+      const Polytope::Edge& edge = P.edges[fan[i].edge];
+      CHECK(std::minmax(edge.v0, edge.v1) == std::minmax(v, fan[i].neighbor));
+      const Vec3 along = P.vertices[fan[i].neighbor] - P.vertices[v];
+      CHECK(fan[i].along == along);
       CHECK((P.ring_of(v)[i] - along.normalized()).norm() < 1e-12);
     }
     CHECK((P.vertices[v] - P.centroid).norm() <= P.radius);
