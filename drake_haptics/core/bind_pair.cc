@@ -136,21 +136,22 @@ void BindConvexPair(nb::module_& m) {
       "A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector "
       "[qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt "
       "as it is. Threads that share a pair take turns.")
-      .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("A"),
-           nb::arg("B"), nb::arg("depth") = "tracked",
+      .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("A").none(),
+           nb::arg("B").none(), nb::arg("depth").none() = "tracked",
            nb::sig("def __init__(self, A: ConvexPolytope, B: ConvexPolytope, "
                    "depth: typing.Literal['tracked'] = 'tracked') -> None"),
            "Pairs two `ConvexPolytope`.\n\n"
            "Raises:\n    ValueError: not polytopes, or no such depth.")
       .def_prop_ro("A", &ConvexPair::A)
       .def_prop_ro("B", &ConvexPair::B)
-      .def("query", &ConvexPair::Query, nb::arg("X_WA"), nb::arg("X_WB"),
+      .def("query", &ConvexPair::Query, nb::arg("X_WA").none(),
+           nb::arg("X_WB").none(),
            nb::sig("def query(self, X_WA: drake_haptics.pose_like.PoseLike, "
                    "X_WB: drake_haptics.pose_like.PoseLike) -> Contact"),
            "`Contact` of the pair at the poses X_WA and X_WB.\n\n"
            "Raises:\n    ValueError: a pose is not finite or not rigid.")
-      .def("query_trajectory", &ConvexPair::QueryTrajectory, nb::arg("X_WA"),
-           nb::arg("X_WB"),
+      .def("query_trajectory", &ConvexPair::QueryTrajectory,
+           nb::arg("X_WA").none(), nb::arg("X_WB").none(),
            nb::sig("def query_trajectory(self, X_WA: "
                    "drake_haptics.pose_like.PoseLike, X_WB: "
                    "drake_haptics.pose_like.PoseLike) -> PairTrajectory"),

@@ -92,7 +92,7 @@ void BindPolytope(nb::module_& m) {
             nb::gil_scoped_release release;
             new (self) Polytope(HullOf(points));
           },
-          nb::arg("vertices"),
+          nb::arg("vertices").none(),
           nb::sig("def __init__(self, vertices: numpy.typing.ArrayLike) -> "
                   "None"),
           "Builds the hull of (n, 3) points, m. Coplanar triangles become one "

@@ -32,6 +32,10 @@ struct Source {
   throw std::invalid_argument(source.text() + " " + why);
 }
 
+bool IsOrthonormal(const Mat3& R) {
+  return ((R * R.transpose() - Mat3::Identity()).array().abs() <= kRigid).all();
+}
+
 // Called only once a pose is known to be bad: says what is wrong with it.
 [[noreturn]] void RefuseMatrix(const Eigen::Matrix4d& X, const Source& source) {
   if (!X.allFinite()) Refuse(source, "holds a value that is not finite");
@@ -41,8 +45,7 @@ struct Source {
   if (!(X.topRightCorner<3, 1>().array().abs() < kFarthest).all()) {
     Refuse(source, "must have a position below 1e100 m");
   }
-  const Mat3 R = X.topLeftCorner<3, 3>();
-  if (R.determinant() < 0) {
+  if (IsOrthonormal(X.topLeftCorner<3, 3>())) {
     Refuse(source, "must be a rigid pose: its rotation mirrors (det R < 0)");
   }
   Refuse(source,
@@ -50,11 +53,10 @@ struct Source {
          "more; make R orthonormal");
 }
 
+// Not, if there is a NaN anywhere.
 bool IsRigid(const Pose& X) {
-  // A NaN anywhere makes one of these false.
-  return ((X.R * X.R.transpose() - Mat3::Identity()).array().abs() <= kRigid)
-             .all() &&
-         X.R.determinant() > 0 && (X.p.array().abs() < kFarthest).all();
+  return IsOrthonormal(X.R) && X.R.determinant() > 0 &&
+         (X.p.array().abs() < kFarthest).all();
 }
 
 // The (4, 4) matrix with its first item at `data`.

@@ -74,7 +74,8 @@ double ToReal(nb::handle value, const char* name) {
 std::string TypeName(nb::handle value) {
   // An array says more by its numbers than by its class.
   if (nb::hasattr(value, "dtype")) {
-    return nb::cast<std::string>(nb::str(value.attr("dtype"))) + " values";
+    return std::string(nb::str(nb::object(value.attr("dtype"))).c_str()) +
+           " values";
   }
   return nb::cast<std::string>(value.type().attr("__name__"));
 }

@@ -138,8 +138,11 @@ class SceneTracker : public SharedTracker {
       : SharedTracker({ToDecomposition(tool, "tool"), ToDecompositions(objects),
                        ToReal(tolerance, "tolerance")}) {}
 
-  void SetObjectPose(Py_ssize_t i, nb::handle X_WO_value) {
+  void SetObjectPose(nb::handle place, nb::handle X_WO_value) {
     const Pose X_WO = ToPose(X_WO_value, "X_WO");
+    // By `__index__`, as lists do: NumPy's integers count.
+    const Py_ssize_t i = PyNumber_AsSsize_t(place.ptr(), PyExc_IndexError);
+    if (i == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
     const Py_ssize_t size = tracker_.num_objects();
     if (i < 0 || i >= size) {
       const auto text =
@@ -222,8 +225,8 @@ void BindContactTracker(nb::module_& m) {
       "[qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt "
       "as it is. Threads that share a tracker take turns.");
   tracker
-      .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("A"),
-           nb::arg("B"), nb::arg("tolerance"),
+      .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("A").none(),
+           nb::arg("B").none(), nb::arg("tolerance").none(),
            nb::sig("def __init__(self, A: drake_haptics.decomposition."
                    "Decomposition | Decomposition, B: drake_haptics."
                    "decomposition.Decomposition | Decomposition, tolerance: "
@@ -231,13 +234,14 @@ void BindContactTracker(nb::module_& m) {
            "Watches A against B for contacts up to `tolerance` (m).\n\n"
            "Raises:\n    ValueError: not decompositions, or the tolerance is "
            "negative or not finite.")
-      .def("query", &PairTracker::Query, nb::arg("X_WA"), nb::arg("X_WB"),
+      .def("query", &PairTracker::Query, nb::arg("X_WA").none(),
+           nb::arg("X_WB").none(),
            nb::sig("def query(self, X_WA: drake_haptics.pose_like.PoseLike, "
                    "X_WB: drake_haptics.pose_like.PoseLike) -> ContactSet"),
            "`ContactSet` of the bodies at the poses X_WA and X_WB.\n\n"
            "Raises:\n    ValueError: a pose is not finite or not rigid.")
-      .def("query_trajectory", &PairTracker::QueryTrajectory, nb::arg("X_WA"),
-           nb::arg("X_WB"),
+      .def("query_trajectory", &PairTracker::QueryTrajectory,
+           nb::arg("X_WA").none(), nb::arg("X_WB").none(),
            nb::sig("def query_trajectory(self, X_WA: "
                    "drake_haptics.pose_like.PoseLike, X_WB: "
                    "drake_haptics.pose_like.PoseLike) -> ContactTrajectory"),
@@ -262,8 +266,9 @@ void BindSceneTracker(nb::module_& m) {
       "`ContactTracker`, A the tool and B each object. Objects are posed one "
       "by one and stay there, so that those at rest cost nothing.");
   tracker
-      .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("tool"),
-           nb::arg("objects"), nb::arg("tolerance"),
+      .def(nb::init<nb::handle, nb::handle, nb::handle>(),
+           nb::arg("tool").none(), nb::arg("objects").none(),
+           nb::arg("tolerance").none(),
            nb::sig("def __init__(self, tool: drake_haptics.decomposition."
                    "Decomposition | Decomposition, objects: collections.abc."
                    "Sequence[drake_haptics.decomposition.Decomposition | "
@@ -277,19 +282,19 @@ void BindSceneTracker(nb::module_& m) {
                      return self.constants().num_objects();
                    })
       .def("set_object_pose", &SceneTracker::SetObjectPose, nb::arg("i"),
-           nb::arg("X_WO"),
+           nb::arg("X_WO").none(),
            nb::sig("def set_object_pose(self, i: int, X_WO: "
                    "drake_haptics.pose_like.PoseLike) -> None"),
            "Poses object i.\n\n"
            "Raises:\n    ValueError: not a pose; the object stays where it is."
            "\n    IndexError: no such object.")
-      .def("query", &SceneTracker::Query, nb::arg("X_WTool"),
+      .def("query", &SceneTracker::Query, nb::arg("X_WTool").none(),
            nb::sig("def query(self, X_WTool: drake_haptics.pose_like.PoseLike) "
                    "-> ContactSet"),
            "`ContactSet` of the tool at the pose X_WTool.\n\n"
            "Raises:\n    ValueError: the pose is not finite or not rigid.")
       .def("query_trajectory", &SceneTracker::QueryTrajectory,
-           nb::arg("X_WTool"),
+           nb::arg("X_WTool").none(),
            nb::sig("def query_trajectory(self, X_WTool: "
                    "drake_haptics.pose_like.PoseLike) -> ContactTrajectory"),
            "What k single queries would give, in one call without the GIL; the "

@@ -25,11 +25,11 @@ Vec3 RotationLog(const Eigen::Quaterniond& q) {
 
 Pose PoseFromVector(const PoseVector& q, const char* what) {
   const double norm = q.head<4>().norm();
-  if (!q.allFinite() || !(norm > 1e-6)) {
+  if (!q.allFinite() || !(norm > 1e-6 && norm < 1e100)) {
     throw std::invalid_argument(
         std::string(what) +
         " must be finite values [qw qx qy qz x y z] with a quaternion that is "
-        "not zero");
+        "not zero and not huge");
   }
   return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
 }
