@@ -34,6 +34,17 @@ constexpr double kSpreadShare = 0.1;
 // the size.
 constexpr double kSlideShare = 1e-2;
 
+int FirstVertex(const Polytope& polytope, Feature feature) {
+  switch (feature.kind()) {
+    case FeatureKind::kVertex:
+      return feature.index();
+    case FeatureKind::kEdge:
+      return polytope.edges[feature.index()].v0;
+    default:
+      return polytope.loop_of(feature.index())[0];
+  }
+}
+
 class Query {
  public:
   Query(const PosedPair& pair, const SurfaceRequest& request, PairState* state,
@@ -120,7 +131,10 @@ class Query {
     if (depth.status == DepthStatus::kNoFacet) {
       return ContactGrazing(pair_, state_.n);
     }
-    if (!IsPlausible(depth)) return TakenOver();
+    if (!IsPlausible(depth)) {
+      const auto contact = GoneOn();
+      return contact ? contact : TakenOver();
+    }
     ContactStatus status =
         depth.best.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating;
     if (depth.status == DepthStatus::kBounded &&
@@ -151,6 +165,23 @@ class Query {
            (depth.best.n.dot(state_.n) >= kComingFrom &&
             depth.best.h >=
                 depth.shallowest - kEntryShare * request_.tolerance);
+  }
+
+  // The contact in the shallowest facet seen in which it goes on: the walk may
+  // have left that facet for one to the side, by which the tool did not come.
+  std::optional<PairContact> GoneOn() {
+    const DepthCandidate* best = nullptr;
+    for (const DepthCandidate& facet : workspace_.depth.candidates) {
+      if (facet.support == SurfaceSupport::kSupported && facet.h < 0 &&
+          (best == nullptr || facet.h > best->h) && passage_.GoesOn(facet)) {
+        best = &facet;
+      }
+    }
+    if (best == nullptr) return std::nullopt;
+    const Hub hub{FirstVertex(pair_.A, best->feature_A),
+                  FirstVertex(pair_.B, best->feature_B)};
+    return AtFacet({DepthStatus::kLocalMinimum, *best, best->h, hub},
+                   ContactStatus::kPenetrating);
   }
 
   // A pair that goes on where another one pressed: the tool may be behind this

@@ -62,16 +62,19 @@ SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
                  : SurfaceSupport::kVirtual;
     case FeatureKind::kEdge: {
       const Polytope::Edge& edge = polytope.edges[feature.index()];
-      if (!edge.original) return SurfaceSupport::kVirtual;
+      if (!edge.original || !LeavesEdge(polytope, edge, n)) {
+        return SurfaceSupport::kVirtual;
+      }
       return supported_if(n.dot(edge.wings[0]) <= kSlack &&
-                          n.dot(edge.wings[1]) <= kSlack &&
-                          LeavesEdge(polytope, edge, n));
+                          n.dot(edge.wings[1]) <= kSlack);
     }
     default: {
       // Vertices are never created by a decomposition: all are original.
+      if (!LeavesVertex(polytope, feature.index(), n)) {
+        return SurfaceSupport::kVirtual;
+      }
       const auto ring = polytope.ring_of(feature.index());
       return supported_if(
-          LeavesVertex(polytope, feature.index(), n) &&
           std::all_of(ring.begin(), ring.end(),
                       [&](const Vec3& r) { return n.dot(r) <= vertex_slack; }));
     }

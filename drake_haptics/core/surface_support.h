@@ -7,7 +7,7 @@ namespace drake_haptics {
 
 /// How far a feature of a piece can carry a contact along a direction.
 enum class SurfaceSupport {
-  kVirtual = 0,   ///< not on the mesh (paper, 5.3.1)
+  kVirtual = 0,   ///< not on the mesh (paper, 5.3.1), or met from behind it
   kOriginal = 1,  ///< on the mesh, but the mesh goes on beyond it there
   kSupported = 2  ///< on the mesh, and the mesh around it stays behind it
 };
