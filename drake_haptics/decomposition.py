@@ -51,6 +51,17 @@ class Decomposition:
         """The convex pieces; facets that are not on the mesh are marked."""
         return self.core.pieces
 
+    def __repr__(self) -> str:
+        count = len(self.core.pieces)
+        return (
+            f"Decomposition({self.report.source!r}, {count} pieces, "
+            f"method={self.method!r})"
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The core's part is put together again from what a file would hold.
+        return _assemble, (self.mesh, self.method, self._data, self.report.from_cache)
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes mesh and pieces to an .npz file, whole or not at all.
 
@@ -97,8 +108,14 @@ def decompose(
         cache: use and keep results on disk, see `decomposition_cache`.
 
     Raises:
-        UserError: if the method is unknown or its optional package is missing.
+        UserError: if the mesh is none, the method is unknown or its optional package
+            is missing.
     """
+    if not isinstance(mesh, Mesh):
+        raise UserError(
+            f"mesh must be a Mesh, got {type(mesh).__name__}; see load_mesh() and "
+            f"Mesh.from_arrays()"
+        )
     method = _checked_method(method)
     report_share = progress or (lambda share: None)
     parameters = _parameters(method)

@@ -1,7 +1,9 @@
 """Decomposition: the right pieces, the same after a file, errors with reasons."""
 
+import copy
 import dataclasses
 import itertools
+import pickle
 
 import numpy as np
 import pytest
@@ -26,6 +28,10 @@ def same_pieces(a, b):
         and np.array_equal(p.facet_original, q.facet_original)
         for p, q in zip(a.pieces, b.pieces, strict=True)
     )
+
+
+def through_pickle(value):
+    return pickle.loads(pickle.dumps(value))
 
 
 def test_a_convex_solid_gives_one_hull_without_virtual_facets():
@@ -91,6 +97,18 @@ def test_an_unknown_method_is_refused():
         decompose(Mesh.from_arrays(*box()), "convex")
 
 
+@pytest.mark.parametrize("bad", [None, "cup.obj", box()])
+def test_what_is_no_mesh_is_refused(bad):
+    with pytest.raises(UserError, match=r"^mesh must be a Mesh, got .* load_mesh"):
+        decompose(bad)
+
+
+def test_a_decomposition_says_what_it_is():
+    result = decompose(Mesh.from_arrays(*l_prism(), name="prism"), cache=False)
+    count = len(result.pieces)
+    assert repr(result) == f"Decomposition('prism', {count} pieces, method='surface')"
+
+
 def test_an_open_surface_is_reported_as_one_sided():
     V, F = box()
     report = decompose(Mesh.from_arrays(V, F[2:]), cache=False).report
@@ -149,6 +167,15 @@ def test_a_file_brings_back_mesh_pieces_and_reports(tmp_path, method):
         a, b = getattr(saved.mesh, name), getattr(loaded.mesh, name)
         assert a.dtype == b.dtype and not b.flags.writeable
         np.testing.assert_array_equal(a, b)
+
+
+@pytest.mark.parametrize("method", ["surface", "hull"])
+@pytest.mark.parametrize("duplicate", [copy.deepcopy, through_pickle])
+def test_a_copy_has_the_same_pieces(method, duplicate):
+    result = decompose(Mesh.from_arrays(*l_prism()), method, cache=False)
+    copied = duplicate(result)
+    assert same_pieces(result, copied) and copied.report == result.report
+    np.testing.assert_array_equal(copied.mesh.vertices, result.mesh.vertices)
 
 
 def test_a_damaged_file_is_refused_wherever_the_damage_is(tmp_path):

@@ -1,7 +1,11 @@
 """Convex hulls against qhull, and the invariants of a polytope."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
+import trimesh
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
@@ -163,6 +167,55 @@ def test_vertices_keep_the_order_of_the_input():
 def test_bad_points_are_refused(points):
     with pytest.raises(ValueError):
         polytope(points)
+
+
+def test_the_one_point_that_is_bad_is_named():
+    points = grid(2)
+    points[5, 1] = np.nan
+    with pytest.raises(ValueError, match=r"^vertices\[5\] holds .* not finite"):
+        polytope(points)
+
+
+@pytest.mark.parametrize(
+    "bad", [None, "cube", [], [1.0, 2.0, 3.0], np.eye(3, dtype=complex), [[1], [2, 3]]]
+)
+def test_what_is_no_array_of_points_is_refused(bad):
+    with pytest.raises(ValueError, match=r"^vertices must be an "):
+        _core.ConvexPolytope(bad)
+
+
+def test_any_real_array_will_do():
+    points = grid(3)
+    whole = polytope(points)
+    for same in (points.tolist(), np.asfortranarray(points), np.repeat(points, 2, 0)):
+        np.testing.assert_array_equal(
+            _core.ConvexPolytope(same).vertices, whole.vertices
+        )
+    corners = (2 * points).astype(np.int8)
+    assert len(_core.ConvexPolytope(corners).vertices) == 8
+
+
+def test_a_polytope_is_pickled_by_its_vertices():
+    for points in (np.random.default_rng(8).normal(size=(50, 3)), grid(2) * [1, 1, 0]):
+        whole = polytope(points)
+        again = pickle.loads(pickle.dumps(whole))
+        np.testing.assert_array_equal(again.vertices, whole.vertices)
+        assert again.facets == whole.facets
+        assert copy.deepcopy(whole) is whole
+
+
+def test_a_piece_of_a_surface_is_not_pickled_without_it():
+    box = trimesh.creation.box()
+    open_box = box.faces[:-1].astype(np.int32)
+    pieces = _core.decompose_surface(
+        box.vertices, open_box, np.zeros(len(open_box), dtype=np.uint8)
+    ).pieces
+    with pytest.raises(TypeError, match="save the Decomposition"):
+        pickle.dumps(pieces[0])
+
+
+def test_a_polytope_says_what_it_is():
+    assert repr(polytope(grid(3))) == "ConvexPolytope(8 vertices, 12 edges, 6 facets)"
 
 
 def test_wrong_shapes_and_indices_are_refused():
