@@ -1,0 +1,64 @@
+"""What docs/geometry.md shows runs, and prints what it says."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import drake_haptics
+
+ROOT = Path(__file__).parents[2]
+TEXT = (ROOT / "docs" / "geometry.md").read_text(encoding="utf-8")
+NAMES_OF_OTHERS = ("SignedDistancePair", "RigidTransform", "ValueError")
+SNIPPETS = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def printed():
+    """What each snippet prints, run one after the other as a reader would."""
+    lines = []
+    names = {"print": lambda *values: lines[-1].append(values)}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(ROOT)
+        for number, snippet in enumerate(SNIPPETS):
+            lines.append([])
+            exec(compile(snippet, f"geometry.md, snippet {number}", "exec"), names)
+    return [values for (values,) in lines]
+
+
+def test_each_snippet_is_ten_lines_or_less():
+    assert len(SNIPPETS) == 4
+    for snippet in SNIPPETS:
+        assert len([line for line in snippet.splitlines() if line.strip()]) <= 10
+
+
+def test_a_pair(printed):
+    distance, normal, status = printed[0]
+    assert distance == pytest.approx(-0.01, abs=1e-12)
+    assert tuple(normal) == (0, 0, 1)
+    assert status == "PENETRATING"
+
+
+def test_a_trajectory(printed):
+    least, seconds = printed[1]
+    assert least == pytest.approx(-0.1, abs=1e-12)
+    assert 0 < seconds < 1e-5
+
+
+def test_two_meshes(printed):
+    distance, piece, feature = printed[2]
+    assert len(distance) == len(piece) == len(feature) > 0
+    assert distance.min() == pytest.approx(-0.0007, abs=5e-5)
+
+
+def test_a_scene(printed):
+    objects, distance = printed[3]
+    assert set(objects) == {1}
+    assert distance.min() == pytest.approx(-0.0007, abs=5e-5)
+
+
+def test_names_in_the_text_exist():
+    enums = (drake_haptics.ContactStatus, drake_haptics.FeatureKind)
+    known = [*drake_haptics.__all__, *(item.name for enum in enums for item in enum)]
+    for name in re.findall(r"`([A-Z]\w+)[.(`]", TEXT):
+        assert name in known or name in NAMES_OF_OTHERS
