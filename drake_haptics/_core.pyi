@@ -781,3 +781,8 @@ class HeldArm:
         """
         Joint torques (6,), N·m, of the hand and of a wrench (6,) on the handle at its origin in the world, [N·m; N].
         """
+
+def clock_interval() -> float:
+    """
+    Seconds between two readings of the clock that times queries, with nothing between them. Each timed query includes it.
+    """

@@ -14,5 +14,6 @@ void BindConvexPair(nanobind::module_& m);
 void BindTracker(nanobind::module_& m);
 void BindForce(nanobind::module_& m);
 void BindHand(nanobind::module_& m);
+void BindClock(nanobind::module_& m);
 
 }  // namespace drake_haptics

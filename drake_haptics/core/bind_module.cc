@@ -15,4 +15,5 @@ NB_MODULE(_core, m) {
   drake_haptics::BindTracker(m);
   drake_haptics::BindForce(m);
   drake_haptics::BindHand(m);
+  drake_haptics::BindClock(m);
 }
