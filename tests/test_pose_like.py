@@ -114,6 +114,10 @@ def test_a_bad_pose_of_a_series_is_named_by_its_place() -> None:
         ConvexPair(CUBE, CUBE).query_trajectory(series, IDENTITY)
     with pytest.raises(ValueError, match=r"^X_WB\[0\] .*mirrors"):
         ConvexPair(CUBE, CUBE).query_trajectory(MATRIX, [np.diag([1.0, 1, -1, 1])])
+    vectors = np.tile(pose_to_vector(X_WA), (3, 1))
+    vectors[2, :4] = 0
+    with pytest.raises(ValueError, match=r"^X_WB\[2\] .*quaternion"):
+        ConvexPair(CUBE, CUBE).query_trajectory(MATRIX, vectors)
     with pytest.raises(ValueError, match=r"^X_WA must be poses .* shape \(2, 3, 4\)"):
         ConvexPair(CUBE, CUBE).query_trajectory(series[:2, :3], IDENTITY)
 

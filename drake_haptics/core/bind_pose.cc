@@ -32,11 +32,20 @@ struct Source {
   throw std::invalid_argument(source.text() + " " + why);
 }
 
+// False if there is a NaN.
 bool IsOrthonormal(const Mat3& R) {
-  return ((R * R.transpose() - Mat3::Identity()).array().abs() <= kRigid).all();
+  const Vec3 x = R.row(0), y = R.row(1), z = R.row(2);
+  return std::abs(x.dot(x) - 1) <= kRigid && std::abs(y.dot(y) - 1) <= kRigid &&
+         std::abs(z.dot(z) - 1) <= kRigid && std::abs(x.dot(y)) <= kRigid &&
+         std::abs(y.dot(z)) <= kRigid && std::abs(z.dot(x)) <= kRigid;
 }
 
-// Called only once a pose is known to be bad: says what is wrong with it.
+bool IsRigid(const Pose& X) {
+  return IsOrthonormal(X.R) && X.R.determinant() > 0 &&
+         (X.p.array().abs() < kFarthest).all();
+}
+
+// Says what is wrong with a matrix that is known to be no pose.
 [[noreturn]] void RefuseMatrix(const Eigen::Matrix4d& X, const Source& source) {
   if (!X.allFinite()) Refuse(source, "holds a value that is not finite");
   if (X.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
@@ -53,23 +62,21 @@ bool IsOrthonormal(const Mat3& R) {
          "more; make R orthonormal");
 }
 
-// Not, if there is a NaN anywhere.
-bool IsRigid(const Pose& X) {
-  return IsOrthonormal(X.R) && X.R.determinant() > 0 &&
-         (X.p.array().abs() < kFarthest).all();
-}
-
 // The (4, 4) matrix with its first item at `data`.
 Pose FromMatrix(const char* data, Py_ssize_t row, Py_ssize_t column,
                 const Source& source) {
-  Eigen::Matrix4d X;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j)
-      X(i, j) = RealArray::Load(data + i * row + j * column);
+  const auto item = [&](int i, int j) {
+    return RealArray::Load(data + i * row + j * column);
+  };
+  Pose pose;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) pose.R(i, j) = item(i, j);
+    pose.p[i] = item(i, 3);
   }
-  const Pose pose{X.topLeftCorner<3, 3>(), X.topRightCorner<3, 1>()};
-  if (!IsRigid(pose) || X.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    RefuseMatrix(X, source);
+  const bool is_affine =
+      item(3, 0) == 0 && item(3, 1) == 0 && item(3, 2) == 0 && item(3, 3) == 1;
+  if (!is_affine || !IsRigid(pose)) {
+    RefuseMatrix(Eigen::Matrix4d::NullaryExpr(item), source);
   }
   return pose;
 }
@@ -81,7 +88,7 @@ Pose FromVector(const char* data, Py_ssize_t stride, const Source& source) {
   if (!(q.tail<3>().array().abs() < kFarthest).all()) {
     Refuse(source, "must have a position below 1e100 m");
   }
-  return PoseFromVector(q, source.name);
+  return PoseFromVector(q, source.text().c_str());
 }
 
 // Drake's RigidTransform is known by its interface, so that Drake need not be
