@@ -160,6 +160,7 @@ class Query {
     // What goes on may reach beyond its features: a face wider than the pieces
     // has its deepest corner over another one.
     if (passage_.GoesOn(depth.best)) return true;
+    if (depth.best.support != SurfaceSupport::kSupported) return false;
     if (!IsWithinFeatures(depth)) return false;
     return passage_.IsHandedOver(depth.best) ||
            (depth.best.n.dot(state_.n) >= kComingFrom &&

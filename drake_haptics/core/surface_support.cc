@@ -9,8 +9,6 @@ namespace {
 // wide enough for the noise of single-precision mesh files, too narrow to be
 // felt.
 constexpr double kSlack = 1e-3;
-// The same at a vertex that meets a facet.
-constexpr double kFacetPartnerSlack = 0.5;
 
 int FindEdge(const Polytope& polytope, int v0, int v1) {
   for (const Polytope::Spoke& spoke : polytope.fan_of(v0)) {
@@ -51,7 +49,7 @@ bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
 
 // Support of one side; n points out of the polytope, in its frame.
 SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
-                            const Vec3& n, double vertex_slack) {
+                            const Vec3& n) {
   const auto supported_if = [](bool condition) {
     return condition ? SurfaceSupport::kSupported : SurfaceSupport::kOriginal;
   };
@@ -76,13 +74,9 @@ SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
       const auto ring = polytope.ring_of(feature.index());
       return supported_if(
           std::all_of(ring.begin(), ring.end(),
-                      [&](const Vec3& r) { return n.dot(r) <= vertex_slack; }));
+                      [&](const Vec3& r) { return n.dot(r) <= kSlack; }));
     }
   }
-}
-
-double VertexSlack(Feature partner) {
-  return partner.kind() == FeatureKind::kFacet ? kFacetPartnerSlack : kSlack;
 }
 
 }  // namespace
@@ -90,11 +84,9 @@ double VertexSlack(Feature partner) {
 SurfaceSupport ClassifySupport(const Polytope& A, Feature feature_A,
                                const Vec3& n_A, const Polytope& B,
                                Feature feature_B, const Vec3& n_B) {
-  const SurfaceSupport of_A =
-      ClassifySide(A, feature_A, -n_A, VertexSlack(feature_B));
+  const SurfaceSupport of_A = ClassifySide(A, feature_A, -n_A);
   if (of_A == SurfaceSupport::kVirtual) return of_A;
-  return std::min(of_A,
-                  ClassifySide(B, feature_B, n_B, VertexSlack(feature_A)));
+  return std::min(of_A, ClassifySide(B, feature_B, n_B));
 }
 
 Feature FeatureOfVertices(const Polytope& polytope, const int* vertices,

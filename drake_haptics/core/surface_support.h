@@ -19,9 +19,7 @@ enum class SurfaceSupport {
 /// A contact between solids that is a local minimum of the distance is
 /// supported: the surface of A around its feature stays on A's side of the
 /// plane, that of B on B's side. At the seam of two pieces, where the surface
-/// goes on, it is not. Against a facet the vertex may be one beside the
-/// nearest: n is a normal of the surface then, and the neighbours of a nearest
-/// vertex share the load when faces meet nearly flush.
+/// goes on, it is not.
 SurfaceSupport ClassifySupport(const Polytope& A, Feature feature_A,
                                const Vec3& n_A, const Polytope& B,
                                Feature feature_B, const Vec3& n_B);
