@@ -1,0 +1,81 @@
+"""`drake-haptics bench`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table as RichTable
+
+from drake_haptics.bench.benchmark import (
+    PARTS,
+    QUICK,
+    BenchFigures,
+    Effort,
+    run_benchmarks,
+)
+from drake_haptics.bench.report import machine_line, make_tables, missing_lines
+from drake_haptics.cli.mesh_options import json_option, write_json
+
+
+@click.command()
+@click.argument("parts", nargs=-1, type=click.Choice(PARTS))
+@click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
+@click.option(
+    "--meshes",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    metavar="FOLDER",
+    help="Take the scenes' meshes from here where it has them (cup_500.obj, ...).",
+)
+@json_option
+def bench(
+    parts: tuple[str, ...], quick: bool, meshes: Path | None, json_file: str | None
+) -> None:
+    """Measure the contact query on this machine, beside other libraries.
+
+    PARTS are pairs (convex pairs, apart and in depth), python (one query from
+    Python) and scenes; all if none is named. Some minutes. The others are measured
+    where they are installed: pip install "drake_haptics[peers]".
+    """
+    figures = _with_progress(parts or PARTS, QUICK if quick else Effort(), meshes)
+    if json_file is not None:
+        write_json(figures.to_dict(), json_file)
+    if json_file != "-":
+        _print(figures)
+
+
+def _with_progress(
+    parts: tuple[str, ...], effort: Effort, meshes: Path | None
+) -> BenchFigures:
+    console = Console(stderr=True)
+    columns = (BarColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as bar:
+        task = bar.add_task("", total=1.0)
+
+        def show(what: str, share: float) -> None:
+            bar.update(task, description=what, completed=share)
+            bar.refresh()
+
+        return run_benchmarks(parts, effort, meshes, show)
+
+
+def _print(figures: BenchFigures) -> None:
+    console = Console(highlight=False)
+    for table in make_tables(figures):
+        shown = RichTable(box=None, title=table.title, title_justify="left")
+        first, *others = table.header
+        shown.add_column(first, no_wrap=True)
+        for heading in others:
+            shown.add_column(heading, justify="right", overflow="fold")
+        for row in table.rows:
+            shown.add_row(*row)
+        console.print(shown)
+        console.print(table.note, style="dim")
+        console.print()
+    console.print(machine_line(figures))
+    for line in missing_lines(figures):
+        console.print(line)
