@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
+from functools import cached_property
 
 import numpy as np
+from press_tools import PressTool
 from scipy.spatial.transform import Rotation
 
-import drake_haptics
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mass_properties import calc_mass_properties
-from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.mesh import Mesh
 
-MODELS = Path(drake_haptics.__file__).parent / "models" / "meshes"
 PERIOD_S = 1e-3
 LARGEST_FORCE_N = 8.5
 START_M = 5e-3  # how far outside a press starts
 LONGEST_TRAVEL_M = 40e-3  # where it gives up if nothing resists
 HOLD_S = 0.2
-TOOL_MASS_KG = 0.05
 _REST = np.array([1.0, 0, 0, 0, 0, 0, 0])
 
 
@@ -43,90 +39,6 @@ GAINS = {
     "soft": Gains(1e-3, 6e-3, 2e3, 4.0),
 }
 COUPLING = _core.CouplingGains(800.0, 2.0, 1.0, 0.004)
-
-
-@dataclass(frozen=True, eq=False)
-class PressTool:
-    """A tool in its frame T, with the directions in which it is pushed.
-
-    Attributes:
-        mesh: Its surface.
-        core: Its pieces.
-        dynamics: Its mass and inertia.
-        pushes_T: (k, 3) unit directions; a press takes one of them.
-    """
-
-    mesh: Mesh
-    core: _core.Decomposition
-    dynamics: _core.RigidToolDynamics
-    pushes_T: np.ndarray
-
-    def probe(self, push: int) -> np.ndarray:
-        """The foremost vertex (3,) along a push, m."""
-        V = self.mesh.vertices
-        return V[np.argmax(V @ self.pushes_T[push])]
-
-
-def make_tool(mesh: Mesh, pushes_T: object, *, flat: bool = False) -> PressTool:
-    """Cuts and weighs a tool.
-
-    Args:
-        mesh: Its surface.
-        pushes_T: (k, 3) directions of any length.
-        flat: Every triangle is a piece of its own.
-    """
-    core = (
-        _core.assemble_surface_pieces(
-            mesh.vertices, mesh.triangles, np.arange(len(mesh.triangles), dtype="i4")
-        )
-        if flat
-        else decompose(mesh).core
-    )
-    pushes = np.array(pushes_T, dtype=float)
-    return PressTool(
-        mesh,
-        core,
-        _core.RigidToolDynamics(
-            TOOL_MASS_KG, *calc_mass_properties(mesh, TOOL_MASS_KG)
-        ),
-        pushes / np.linalg.norm(pushes, axis=1, keepdims=True),
-    )
-
-
-def hull_mesh(points: np.ndarray) -> Mesh:
-    """The convex hull of points (n, 3), m, as a mesh."""
-    hull = _core.Polytope(points)
-    triangles = [
-        (loop[0], loop[i], loop[i + 1])
-        for loop in hull.facets
-        for i in range(1, len(loop) - 1)
-    ]
-    return Mesh.from_arrays(hull.vertices, np.array(triangles))
-
-
-def make_tools() -> dict[str, PressTool]:
-    """The tools by name."""
-    turn = 2 * np.pi * np.arange(8) / 8
-    ring = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
-    spike = np.concatenate([ring * 2e-3 + [0, 0, 0.03], [[0, 0, -0.01]]])
-    ball = load_mesh(MODELS / "sphere.obj", scale=0.1)
-    points = np.unique(np.round(ball.vertices[::8], 9), axis=0)
-    corners = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
-    down = [[0, 0, -1]]
-    return {
-        "spike": make_tool(hull_mesh(spike), down),
-        "ball": make_tool(hull_mesh(points), [*down, [1, 0, 0], [1, 1, 1]]),
-        "box": make_tool(
-            hull_mesh(corners * [6e-3, 4e-3, 3e-3]),
-            [*down, [1, 0, 0], [1, 1, 0], [1, 1, 1]],
-        ),
-        "spoon": make_tool(
-            load_mesh(MODELS / "spoon.obj", scale=1.0), [*down, [-1, 0, -0.3]]
-        ),
-        "shell": make_tool(
-            load_mesh(MODELS / "torus.obj", scale=0.3), [*down, [1, 0, 0]], flat=True
-        ),
-    }
 
 
 @dataclass(frozen=True)
@@ -158,19 +70,28 @@ class Press:
     def q_WH(self, travel_m: float, slid_m: float) -> np.ndarray:
         """The handle's pose (7,) after `travel_m` from the start."""
         p_WP = self.p_W + (travel_m - START_M) * self.push_W + slid_m * self.slide_W
+        return np.concatenate([self._quaternion, p_WP - self.R_WT @ self.p_TP])
+
+    @cached_property
+    def _quaternion(self) -> np.ndarray:
         x, y, z, w = Rotation.from_matrix(self.R_WT).as_quat()
-        return np.array([w, x, y, z, *(p_WP - self.R_WT @ self.p_TP)])
+        return np.array([w, x, y, z])
 
 
 MOTIONS = ("press", "oblique", "slide", "jab")
 
 
 def sample_presses(
-    mesh: Mesh, tool: PressTool, motion: str, count: int, seed: int
+    mesh: Mesh, tool: PressTool, motion: str, points: Iterable[int], seed: int
 ) -> list[Press]:
     """Presses on points of a surface, spread evenly over its area.
 
-    Press i is the same whatever the count.
+    Args:
+        mesh: The surface.
+        tool: What is pressed.
+        motion: One of MOTIONS.
+        points: Numbers of points; a number and a seed always mean the same press.
+        seed: Of the random points.
     """
     corners = mesh.vertices[mesh.triangles]
     area_vectors = (
@@ -179,7 +100,7 @@ def sample_presses(
     areas = np.linalg.norm(area_vectors, axis=1)
     shares = np.cumsum(areas) / areas.sum()
     presses = []
-    for i in range(count):
+    for i in points:
         rng = np.random.default_rng([seed, i])
         t = int(np.searchsorted(shares, rng.random()))
         u, v = rng.random(2)
@@ -227,7 +148,7 @@ def run_press(
     press: Press, tool: PressTool, solid: _core.Decomposition, gains: Gains
 ) -> Iterator[Tick]:
     """Runs a press tick by tick, wired as `drake_haptics.builder` wires the loop."""
-    tracker = _core.ContactTracker(tool.core, [solid], gains.tolerance_m)
+    tracker = _core.SceneTracker(tool.core, [solid], gains.tolerance_m)
     zeros3, zeros6 = np.zeros((1, 3)), np.zeros((1, 6))
     q_WH = press.q_WH(0.0, 0.0)
     state = np.concatenate([q_WH, np.zeros(6)])

@@ -5,16 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from press_rig import (
-    LARGEST_FORCE_N,
-    PERIOD_S,
-    TOOL_MASS_KG,
-    Gains,
-    Press,
-    PressTool,
-    Tick,
-    run_press,
-)
+from press_continuity import Jumps, count_jumps
+from press_rig import LARGEST_FORCE_N, PERIOD_S, Gains, Press, Tick, run_press
+from press_tools import TOOL_MASS_KG, PressTool
 from solid_surface import Overlap, Surface, rotation_of
 
 from drake_haptics import _core
@@ -42,12 +35,11 @@ class Verdict:
             for it there.
         depth_m: Largest depth of any contact.
         shallow: Deepest contact at rest over how deep the innermost vertex was.
-        jump_N: Largest change of the contact's force in a tick beyond three times
-            what the motion explains.
+        jumps: Where contacts and their force jumped, until the retreat.
         rest_J: Largest kinetic energy in the last 0.1 s of the hold.
         drift_m: How far the tool wandered then.
         finite: No NaN, no Inf.
-        ticks: Where the worst was: "made", "jump".
+        made_tick: Until when most energy was made.
     """
 
     skipped: str = ""
@@ -58,11 +50,11 @@ class Verdict:
     hooked_m: float = 0.0
     depth_m: float = 0.0
     shallow: float = 1.0
-    jump_N: float = 0.0
+    jumps: Jumps = field(default_factory=Jumps)
     rest_J: float = 0.0
     drift_m: float = 0.0
     finite: bool = True
-    ticks: dict[str, int] = field(default_factory=dict)
+    made_tick: int = -1
 
 
 def judge(
@@ -88,9 +80,11 @@ def judge(
         return Verdict(skipped="no contact")
     verdict = Verdict(lost_tick=lost_tick)
     pressed = np.array([t.phase in ("in", "slide", "hold") for t in ticks])
-    _judge_normals(verdict, ticks, solid)
+    _judge_normals(verdict, ticks, solid, pieces)
     _judge_energy(verdict, ticks, states, forces, gains)
-    _judge_jumps(verdict, states[pressed], forces[pressed, 3:], tool, gains)
+    verdict.jumps = count_jumps(
+        [t for t, on in zip(ticks, pressed, strict=True) if on], tool, gains
+    )
     _judge_rest(verdict, ticks, tool, solid)
     verdict.depth_m = max(-float(min(t.contacts.distance, default=0)) for t in ticks)
     probe = np.array([rotation_of(s) @ press.p_TP + s[4:7] for s in states[pressed]])
@@ -101,21 +95,37 @@ def judge(
         sunk_m > spring_m + _BELOW_SPRING_M and solid.is_pierced(probe[::8])
     )
     # A handle that slid along a hollow ends in the wall: nothing to say there.
-    end = _core.ContactTracker(tool.core, [pieces], gains.tolerance_m)
+    end = _core.SceneTracker(tool.core, [pieces], gains.tolerance_m)
     if len(end.query(ticks[-1].q_WH)) == 0:
         gap_W = states[-1][4:7] - ticks[-1].q_WH[4:]
         verdict.hooked_m = float(np.linalg.norm(gap_W))
     return verdict
 
 
-def _judge_normals(verdict: Verdict, ticks: list[Tick], solid: Surface) -> None:
-    """A contact pushes along its normal: it must leave the surface where it is."""
+def _judge_normals(
+    verdict: Verdict, ticks: list[Tick], solid: Surface, pieces: _core.Decomposition
+) -> None:
+    """A contact pushes along its normal: out of the surface at the solid's feature.
+
+    The witness itself is inside where the contact is deep, and the nearest surface
+    there may be a thin wall's other side.
+    """
     for i in range(0, len(ticks), _LOOK_EVERY):
         contacts = ticks[i].contacts
         for k in np.argsort(contacts.distance)[:3]:
-            if solid.facing(contacts.p_WCb[k], contacts.nhat_BA_W[k]) < -1e-3:
+            piece = pieces.pieces[contacts.piece_B[k]]
+            p_W = _center_of(piece, *contacts.feature_B[k])
+            if solid.facing(p_W, contacts.nhat_BA_W[k]) < -1e-3:
                 verdict.inward_tick = i
                 return
+
+
+def _center_of(piece: _core.ConvexPolytope, kind: int, index: int) -> np.ndarray:
+    """The middle (3,) of a vertex (kind 0), an edge (1) or a facet (2), m."""
+    if kind == 0:
+        return piece.vertices[index]
+    corners = piece.edges[index] if kind == 1 else piece.facets[index]
+    return piece.vertices[corners].mean(axis=0)
 
 
 def _judge_energy(
@@ -135,26 +145,8 @@ def _judge_energy(
         for t in ticks
     ]
     rise = (work + held) - np.minimum.accumulate(work + held)
-    verdict.ticks["made"] = int(np.argmax(rise))
+    verdict.made_tick = int(np.argmax(rise))
     verdict.made_J = float(rise.max())
-
-
-def _judge_jumps(
-    verdict: Verdict,
-    states: np.ndarray,
-    forces: np.ndarray,
-    tool: PressTool,
-    gains: Gains,
-) -> None:
-    radius = np.linalg.norm(tool.mesh.vertices, axis=1).max()
-    speed = np.linalg.norm(states[:, 10:], axis=1)
-    speed += radius * np.linalg.norm(states[:, 7:10], axis=1)
-    # The step is implicit: the speed after it is that of the motion.
-    explained = gains.stiffness_N_per_m * speed[1:] * PERIOD_S
-    explained += gains.damping_Ns_per_m * (speed[1:] + speed[:-1])
-    excess = np.linalg.norm(np.diff(forces, axis=0), axis=1) - 3 * explained
-    verdict.ticks["jump"] = int(np.argmax(excess)) + 1
-    verdict.jump_N = max(0.0, float(excess.max()))
 
 
 def _judge_rest(

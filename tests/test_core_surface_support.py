@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from cell_mesh import cell_mesh
 from contact_samples import box, hull, spike
 from scipy.spatial.transform import Rotation
 from solid_surface import Surface
@@ -19,22 +20,7 @@ T = 2e-3
 
 def cube_with_a_notch() -> Mesh:
     """A cube of 2 × 2 × 2 cells without its farthest: at (1, 1, 1) a hollow corner."""
-    filled = set(product((0, 1), repeat=3)) - {(1, 1, 1)}
-    corners, quads = [], []
-    for cell, axis, side in product(sorted(filled), range(3), (0, 1)):
-        beside = list(cell)
-        beside[axis] += 2 * side - 1
-        if tuple(beside) in filled:
-            continue
-        u, v = np.roll(np.eye(3, dtype=int), -axis, axis=0)[1:]
-        p = np.array(cell)
-        p[axis] += side
-        loop = [p, p + u, p + u + v, p + v]
-        quads.append(len(corners) + np.arange(4))
-        corners += loop if side else loop[::-1]
-    V, index = np.unique(np.array(corners), axis=0, return_inverse=True)
-    Q = index.ravel()[np.array(quads)]
-    return Mesh.from_arrays(CELL * V, np.concatenate([Q[:, :3], Q[:, [0, 2, 3]]]))
+    return cell_mesh(set(product((0, 1), repeat=3)) - {(1, 1, 1)}, CELL)
 
 
 TOOLS = {

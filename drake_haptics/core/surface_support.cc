@@ -24,13 +24,15 @@ bool FacetHolds(const Polytope& polytope, int facet, int vertex) {
 
 // Whether n leaves the solid at an edge of the mesh: seen from inside, a
 // concave edge is a ridge like any other. The normals of the mesh's faces
-// beside it follow from its wings.
+// beside it follow from its wings. Along the rim of an open mesh, n may lie in
+// the one face there is.
 bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
                 const Vec3& n) {
   const Vec3 along = polytope.vertices[edge.v1] - polytope.vertices[edge.v0];
-  const double slack = kSlack * along.norm();
+  const bool is_rim = edge.wings[0].isZero(0) || edge.wings[1].isZero(0);
+  const double least = (is_rim ? -kSlack : kSlack) * along.norm();
   const auto leaves = [&](const Vec3& wing, const Vec3& normal) {
-    return !wing.isZero(0) && n.dot(normal) > -slack;
+    return !wing.isZero(0) && n.dot(normal) > least;
   };
   return edge.left < 0 || leaves(edge.wings[0], along.cross(edge.wings[0])) ||
          leaves(edge.wings[1], edge.wings[1].cross(along));

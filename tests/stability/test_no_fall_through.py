@@ -14,14 +14,13 @@ from mesh_samples import box, real_mesh
 from press_rig import (
     GAINS,
     LARGEST_FORCE_N,
-    MODELS,
     PERIOD_S,
     Gains,
     Press,
-    make_tools,
     run_press,
     sample_presses,
 )
+from press_tools import MODELS, make_tools
 from press_verdict import Verdict, judge
 from solid_surface import Overlap, Surface
 
@@ -48,7 +47,7 @@ def solid(path: Path) -> tuple[Mesh, Surface, _core.Decomposition]:
 def verdicts(path: Path, tool: str, motion: str, gains: str, count: int):
     """Presses on a solid by point: those that met it."""
     mesh, surface, pieces = solid(path)
-    presses = sample_presses(mesh, tools()[tool], motion, count, SEED)
+    presses = sample_presses(mesh, tools()[tool], motion, range(count), SEED)
     overlap = Overlap(tools()[tool].mesh, surface)
     found = {
         i: judge(press, tools()[tool], surface, pieces, GAINS[gains], overlap)
