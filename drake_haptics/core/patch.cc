@@ -13,13 +13,13 @@ constexpr double kOnPlaneTolerances = 4;
 
 }  // namespace
 
-PatchWorkspace::PatchWorkspace(const SurfaceMesh& mesh_in)
+PatchBuffers::PatchBuffers(const SurfaceMesh& mesh_in)
     : mesh(mesh_in),
       obstacles(mesh_in),
       label(mesh_in.triangles.size(), -1),
       vertex_label(mesh_in.vertices.size(), -1) {}
 
-Patch::Patch(PatchWorkspace* work, int label, std::span<const int> triangles)
+Patch::Patch(PatchBuffers* work, int label, std::span<const int> triangles)
     : work_(*work), mesh_(work->mesh), label_(label) {
   for (const int t : triangles) Append(t);
 }

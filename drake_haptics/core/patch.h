@@ -12,8 +12,8 @@
 namespace drake_haptics {
 
 /// What all patches of a mesh share while they grow.
-struct PatchWorkspace {
-  explicit PatchWorkspace(const SurfaceMesh& mesh);
+struct PatchBuffers {
+  explicit PatchBuffers(const SurfaceMesh& mesh);
 
   const SurfaceMesh& mesh;
   Obstacles obstacles;
@@ -33,7 +33,7 @@ class Patch {
 
   /// @param label number of this patch.
   /// @param triangles to start with: a triangle, or a convex planar region.
-  Patch(PatchWorkspace* work, int label, std::span<const int> triangles);
+  Patch(PatchBuffers* work, int label, std::span<const int> triangles);
 
   /// Adds triangles that are all free, or leaves the patch as it is. To
   /// complete a facet it may take further free triangles of its plane.
@@ -58,7 +58,7 @@ class Patch {
   bool FlatHullIsCovered(std::span<const Vec3> points) const;
   bool HullIsInside(const Sizes& before);
 
-  PatchWorkspace& work_;
+  PatchBuffers& work_;
   const SurfaceMesh& mesh_;
   int label_;
   std::vector<int> triangles_;

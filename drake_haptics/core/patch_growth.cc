@@ -176,7 +176,7 @@ class Growth {
   }
 
   const SurfaceMesh& mesh_;
-  PatchWorkspace work_;
+  PatchBuffers work_;
   ProgressReport report_;
   std::vector<int> refused_by_;  // Patch that can never take the triangle.
   int num_patches_ = 0;
