@@ -245,8 +245,11 @@ int CountFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
 
 bool MayHaveExtent(const PosedPair& pair, const Vec3& n, const Hub& hub,
                    double layer) {
-  return CountFlushEdges(pair.A, hub.a, -n, layer) > 0 &&
-         CountFlushEdges(pair.B, hub.b, pair.X_AB.R.transpose() * n, layer) > 0;
+  const int of_A = CountFlushEdges(pair.A, hub.a, -n, layer);
+  if (of_A == 0) return false;
+  const Vec3 n_B = pair.X_AB.R.transpose() * n;
+  const int of_B = CountFlushEdges(pair.B, hub.b, n_B, layer);
+  return of_B > 0 && of_A + of_B > 2;
 }
 
 std::optional<Vec3> PressureCenter(const PosedPair& pair, const Vec3& n,

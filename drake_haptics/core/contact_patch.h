@@ -15,7 +15,8 @@ struct PatchWorkspace {
 };
 
 /// Whether edges of both bodies at the hub lie in the contact's plane to within
-/// `layer` (m): a quick test that rules out most contacts between points.
+/// `layer` (m), and more than one of either: a quick test that rules out most
+/// contacts at a point.
 bool MayHaveExtent(const PosedPair& pair, const Vec3& n, const Hub& hub,
                    double layer);
 

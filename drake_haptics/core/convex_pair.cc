@@ -33,17 +33,30 @@ class Query {
 
  private:
   PairContact Answer() {
-    if (HoldsOrigin(pair_, state_.simplex)) return Overlapping(nullptr);
+    if (HoldsOrigin(pair_, state_.simplex)) return AtFacet(FindDepth());
     const Separation separation =
         ComputeSeparation(pair_, state_.simplex, kInfinity);
     state_.simplex = separation.simplex;
-    if (separation.status != SeparationStatus::kApart) {
-      return Overlapping(nullptr);
+    const bool is_apart = separation.status == SeparationStatus::kApart;
+    if (is_apart && separation.is_proven &&
+        separation.distance >= kJoinShare * pair_.scale()) {
+      return Apart(separation);
     }
-    if (separation.distance < kJoinShare * pair_.scale()) {
-      return Overlapping(&separation);
+    return Touching(separation, is_apart);
+  }
+
+  // Overlapping, or apart by so little that both answers are wanted.
+  PairContact Touching(const Separation& separation, bool is_apart) {
+    const Depth depth = FindDepth();
+    const bool has_facet = depth.status != DepthStatus::kNoFacet;
+    if (is_apart) {
+      Hub hub = separation.simplex.hubs[0];
+      const double gap = SupportGap(pair_, separation.n, &hub);
+      if (!has_facet || depth.best.h <= gap) return Apart(separation);
     }
-    return Apart(separation);
+    if (has_facet) return AtFacet(depth);
+    state_.feature_A = state_.feature_B = Feature();
+    return ContactGrazing(pair_, separation, state_.n);
   }
 
   PairContact Apart(const Separation& separation) {
@@ -52,18 +65,7 @@ class Query {
     return ContactApart(pair_, separation);
   }
 
-  // `separation` is given where the pair is apart by next to nothing.
-  PairContact Overlapping(const Separation* separation) {
-    const Depth depth = FindDepth();
-    const bool has_facet = depth.status != DepthStatus::kNoFacet;
-    if (separation != nullptr &&
-        (!has_facet || depth.best.h <= separation->distance)) {
-      return Apart(*separation);
-    }
-    if (!has_facet) {
-      state_.feature_A = state_.feature_B = Feature();
-      return ContactGrazing(pair_, state_.n);
-    }
+  PairContact AtFacet(const Depth& depth) {
     state_.hub = depth.hub;
     state_.feature_A = depth.best.feature_A;
     state_.feature_B = depth.best.feature_B;

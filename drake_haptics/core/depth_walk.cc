@@ -10,41 +10,19 @@ namespace drake_haptics {
 namespace {
 
 constexpr double kNone = -std::numeric_limits<double>::infinity();
-// A facet is shallower only by more than this share of the size; within it
-// two facets are a tie, and the walk stays where it is.
-constexpr double kTieShare = 1e-12;
 // Bound on a whole walk, far above what any start needs.
 constexpr int kMaxHubs = 1024;
 
-// The vertices of a feature.
-struct Corners {
-  int count;
-  const int* vertices;
-  int storage[2];
-
-  Corners(const Polytope& polytope, Feature feature) {
-    switch (feature.kind()) {
-      case FeatureKind::kVertex:
-        storage[0] = feature.index();
-        count = 1;
-        vertices = storage;
-        break;
-      case FeatureKind::kEdge:
-        storage[0] = polytope.edges[feature.index()].v0;
-        storage[1] = polytope.edges[feature.index()].v1;
-        count = 2;
-        vertices = storage;
-        break;
-      default: {
-        const auto loop = polytope.loop_of(feature.index());
-        count = static_cast<int>(loop.size());
-        vertices = loop.data();
-      }
-    }
+int FirstVertex(const Polytope& P, Feature feature) {
+  switch (feature.kind()) {
+    case FeatureKind::kVertex:
+      return feature.index();
+    case FeatureKind::kEdge:
+      return P.edges[feature.index()].v0;
+    default:
+      return P.loop_of(feature.index())[0];
   }
-  Corners(const Corners&) = delete;
-  Corners& operator=(const Corners&) = delete;
-};
+}
 
 class Walk {
  public:
@@ -91,9 +69,8 @@ class Walk {
     if (result.status == DepthStatus::kNoFacet) {
       result.status = DepthStatus::kLocalMinimum;
     }
-    const Corners a(pair_.A, result.best.feature_A);
-    const Corners b(pair_.B, result.best.feature_B);
-    result.hub = {a.vertices[0], b.vertices[0]};
+    result.hub = {FirstVertex(pair_.A, result.best.feature_A),
+                  FirstVertex(pair_.B, result.best.feature_B)};
     return result;
   }
 
@@ -102,7 +79,8 @@ class Walk {
     workspace_.visited.push_back(hub);
     const std::size_t first = workspace_.candidates.size();
     // With a supported answer at hand only better ones are of interest.
-    const double floor = best_ >= 0 ? workspace_.candidates[best_].h : kNone;
+    const double floor =
+        best_ >= 0 ? workspace_.candidates[best_].h + Tie(pair_) : kNone;
     OverlayGaussRegions(pair_, hub, rule_, floor, &workspace_);
     Take(first);
   }
@@ -115,7 +93,7 @@ class Walk {
   // Notes what the candidates from the given one on mean for the answer.
   void Take(std::size_t first) {
     workspace_.closed.resize(workspace_.candidates.size(), 0);
-    const double tie = kTieShare * pair_.scale();
+    const double tie = Tie(pair_);
     for (std::size_t i = first; i < workspace_.candidates.size(); ++i) {
       const DepthCandidate& candidate = workspace_.candidates[i];
       if (candidate.support != SurfaceSupport::kSupported) continue;
@@ -127,22 +105,18 @@ class Walk {
 
   // Looks at all hubs of a facet; false where the bound stopped it.
   bool VisitHubsOf(int target, Hub* last) {
-    const Feature feature_A = workspace_.candidates[target].feature_A;
-    const Feature feature_B = workspace_.candidates[target].feature_B;
-    const Corners a(pair_.A, feature_A);
-    const Corners b(pair_.B, feature_B);
-    for (int i = 0; i < a.count; ++i) {
-      for (int j = 0; j < b.count; ++j) {
-        const Hub hub{a.vertices[i], b.vertices[j]};
-        const auto& visited = workspace_.visited;
-        if (std::find(visited.begin(), visited.end(), hub) != visited.end()) {
-          continue;
-        }
-        const int bound = best_ >= 0 ? kMaxHubs : max_promotion_hubs_;
-        if (static_cast<int>(visited.size()) >= bound) return false;
-        Visit(hub);
-        *last = hub;
+    const DepthCandidate facet = workspace_.candidates[target];
+    ListFacetHubs(pair_, facet.feature_A, facet.feature_B, facet.n,
+                  &workspace_.corners);
+    for (const Hub& hub : workspace_.corners) {
+      const auto& visited = workspace_.visited;
+      if (std::find(visited.begin(), visited.end(), hub) != visited.end()) {
+        continue;
       }
+      const int bound = best_ >= 0 ? kMaxHubs : max_promotion_hubs_;
+      if (static_cast<int>(visited.size()) >= bound) return false;
+      Visit(hub);
+      *last = hub;
     }
     return true;
   }

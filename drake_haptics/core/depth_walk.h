@@ -42,7 +42,7 @@ struct Depth {
 
 /// Buffers of a walk, kept between ticks so that a warm walk allocates nothing.
 struct DepthWorkspace {
-  std::vector<Hub> visited;
+  std::vector<Hub> visited, corners;
   std::vector<DepthCandidate> candidates;
   std::vector<int> closed;
   std::vector<double> gaps_A, gaps_B;

@@ -11,13 +11,17 @@
 namespace drake_haptics {
 namespace {
 
-// Whether vertex v of P is farthest along the direction among its neighbours.
+// How far the neighbours of vertex v of P reach beyond it along a direction, m.
+double Reach(const Polytope& P, int v, const Vec3& direction) {
+  double reach = -std::numeric_limits<double>::infinity();
+  for (const Polytope::Spoke& spoke : P.fan_of(v)) {
+    reach = std::max(reach, direction.dot(spoke.along));
+  }
+  return reach;
+}
+
 bool IsFarthest(const Polytope& P, int v, const Vec3& direction) {
-  const double slack = kRegionSlack * P.radius;
-  const auto fan = P.fan_of(v);
-  return std::all_of(fan.begin(), fan.end(), [&](const auto& spoke) {
-    return direction.dot(spoke.along) <= slack;
-  });
+  return Reach(P, v, direction) <= kRegionSlack * P.radius;
 }
 
 // The least clearance of a point on a facet's plane from the facet's rim;
@@ -55,15 +59,20 @@ struct FacetVisit {
 FacetVisit Visit(const Polytope& P, int facet, const Polytope& Q, int v,
                  const Vec3& point_P, const Vec3& outward_Q) {
   FacetVisit result;
-  result.is_facet = IsFarthest(Q, v, -outward_Q);
+  const double reach = Reach(Q, v, -outward_Q);
+  const double slack = kRegionSlack * Q.radius;
+  result.is_facet = reach <= slack;
   if (!result.is_facet) return result;
   const Polytope::Facet& plane = P.facets[facet];
   result.h = plane.normal.dot(point_P) - plane.offset;
   const double depth = -result.h;
   const double clearance = Clearance(P, facet, point_P);
+  // Where Q lies flush, facets around its other vertices touch this one too.
+  const bool is_flush = reach >= -slack;
   result.is_minimum =
-      clearance > 0 && (clearance > depth * plane.turn ||
-                        clearance > depth * TurnAroundVertex(Q, v, -outward_Q));
+      clearance > 0 &&
+      (clearance > depth * plane.turn ||
+       (!is_flush && clearance > depth * TurnAroundVertex(Q, v, -outward_Q)));
   return result;
 }
 
@@ -132,8 +141,15 @@ Revisit VisitEdges(const PosedPair& pair, SurfaceRule rule, Feature a,
   FacetVisit visit;
   visit.is_facet = true;
   visit.h = h;
+  // Where one body lies flush only the other one bounds the turn.
+  const auto proves = [&](const Polytope& P, Feature edge,
+                          const Vec3& outward) {
+    return clearance > -h * P.edges[edge.index()].turn &&
+           WidestSupport(P, edge, outward) == edge;
+  };
   visit.is_minimum =
-      clearance > 0 && clearance > -h * std::min(edge_A.turn, edge_B.turn);
+      clearance > 0 &&
+      (proves(pair.A, a, -n) || proves(pair.B, b, pair.X_AB.R.transpose() * n));
   return Finish(pair, rule, visit, n, a, b, {edge_A.v0, edge_B.v0});
 }
 

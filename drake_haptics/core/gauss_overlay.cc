@@ -6,18 +6,16 @@
 #include <limits>
 #include <span>
 
+#include "gauss_clip.h"
+
 namespace drake_haptics {
 namespace {
 
 using Fan = std::span<const Polytope::Spoke>;
 
-// The overlay at one hub.
-//
-// While a good answer is known, its gap is the floor, and most hubs have
-// nothing above it. A direction in a vertex's region is a combination of the
-// normals around the vertex, with weights that sum to one or more, so where
-// none of these exceeds a negative floor, no direction of the region does.
-// The same holds along each arc for the normals at its ends.
+// The overlay at one hub. Where an answer is known, its gap is the floor, and
+// what lies below is passed over. Along an arc the gap is largest at an end
+// where it is negative.
 class Overlay {
  public:
   Overlay(const PosedPair& pair, const Hub& hub, SurfaceRule rule, double floor,
@@ -33,30 +31,24 @@ class Overlay {
         w_B_(pair.X_AB.R.transpose() * w_) {}
 
   void Run() {
-    if (!FillGaps(pair_.A, fan_A_, -w_, &workspace_.gaps_A)) return;
-    if (!FillGaps(pair_.B, fan_B_, w_B_, &workspace_.gaps_B)) return;
+    // While a good answer is known most hubs have nothing above its gap.
+    if (floor_ < 0 && !OverlayMayExceed(pair_, hub_, w_, floor_)) return;
+    FillGaps(fan_A_, -w_, &workspace_.gaps_A);
+    FillGaps(fan_B_, w_B_, &workspace_.gaps_B);
     AddFacetsOfA();
     AddFacetsOfB();
     AddEdgePairs();
   }
 
  private:
-  // The gap along each facet's normal; false where the region of the vertex
-  // has nothing above the floor. Segments have no facets, and all is open.
-  bool FillGaps(const Polytope& P, Fan fan, const Vec3& w,
-                std::vector<double>* gaps) const {
+  // The gap along each facet's normal. Segments have no facets, and all is
+  // open.
+  static void FillGaps(Fan fan, const Vec3& w, std::vector<double>* gaps) {
     gaps->resize(fan.size());
-    double largest = -std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < fan.size(); ++k) {
-      const double gap = fan[k].facet < 0
-                             ? std::numeric_limits<double>::infinity()
-                             : fan[k].normal.dot(w);
-      (*gaps)[k] = gap;
-      largest = std::max(largest, gap);
+      (*gaps)[k] = fan[k].facet < 0 ? std::numeric_limits<double>::infinity()
+                                    : fan[k].normal.dot(w);
     }
-    // Outside its plane the region of a flat polytope's vertex is no cone of
-    // normals.
-    return P.dimension < 3 || floor_ >= 0 || largest > floor_;
   }
 
   void AddFacetsOfA() {
@@ -172,7 +164,7 @@ class Overlay {
             : ClassifySupport(pair_.A, a, n, pair_.B, b,
                               pair_.X_AB.R.transpose() * n);
     workspace_.candidates.push_back({h, n, a, b, support});
-    if (support == SurfaceSupport::kSupported) floor_ = std::max(floor_, h);
+    if (support == SurfaceSupport::kSupported) floor_ = h + Tie(pair_);
   }
 
   const PosedPair& pair_;

@@ -1,16 +1,17 @@
 #pragma once
 
 #include "depth_walk.h"
+#include "facet_hubs.h"
 
 namespace drake_haptics {
-
-/// A direction may miss a Gauss region by this share of the polytope's radius:
-/// corners that lie on an arc belong to both sides of it.
-inline constexpr double kRegionSlack = 1e-11;
 
 /// Edges at a smaller angle than this have no usable cross product; the facets
 /// beside them cover its direction.
 inline constexpr double kParallelSine = 1e-8;
+
+/// A facet is shallower only by more than this length (m); within it two facets
+/// are a tie, and a walk stays where it is.
+inline double Tie(const PosedPair& pair) { return 1e-12 * pair.scale(); }
 
 /// Lists the corners of the overlay of the two Gauss regions at a hub (paper,
 /// 5.2.3 steps 1 to 3): the facets of A ⊖ B around that vertex of it. Appends

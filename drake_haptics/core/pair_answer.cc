@@ -46,7 +46,8 @@ PairContact ContactAtFacet(const PosedPair& pair, const DepthCandidate& facet,
           facet.feature_A, facet.feature_B, status};
 }
 
-PairContact ContactGrazing(const PosedPair& pair, const Vec3& n_last) {
+PairContact ContactGrazing(const PosedPair& pair, const Separation& separation,
+                           const Vec3& n_last) {
   const Vec3 along = pair.A.num_vertices() > 1
                          ? Vec3(pair.A.vertices[1] - pair.A.vertices[0])
                      : pair.B.num_vertices() > 1 ? Vec3(pair.b(1) - pair.b(0))
@@ -54,9 +55,14 @@ PairContact ContactGrazing(const PosedPair& pair, const Vec3& n_last) {
   Vec3 n = n_last - along * (along.dot(n_last) / along.squaredNorm());
   if (!(n.norm() > 1e-6)) n = along.unitOrthogonal();
   n.normalize();
-  const Vec3 p = pair.a(0);
-  const Feature vertex(FeatureKind::kVertex, 0);
-  return {0.0, n, p, p, vertex, vertex, ContactStatus::kPenetrating};
+  return {0.0,
+          n,
+          separation.p_a,
+          separation.p_a,
+          SimplexFeature(pair.A, separation.simplex, &Hub::a, -n),
+          SimplexFeature(pair.B, separation.simplex, &Hub::b,
+                         pair.X_AB.R.transpose() * n),
+          ContactStatus::kPenetrating};
 }
 
 Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
@@ -64,7 +70,7 @@ Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
                 DepthWorkspace* workspace) {
   Vec3 between = pair.A.centroid - pair.X_AB * pair.B.centroid;
   if (!(between.norm() > 1e-12 * pair.scale())) between = Vec3::UnitX();
-  Hub hub;
+  Hub hub = hub_last;
   SupportGap(pair, between, &hub);
   const Depth first =
       WalkDepth(pair, hub, rule, nullptr, max_promotion_hubs, workspace);

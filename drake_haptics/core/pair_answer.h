@@ -20,7 +20,8 @@ PairContact ContactAtFacet(const PosedPair& pair, const DepthCandidate& facet,
 
 /// The contact of two sets that touch and lie in one line or point: they
 /// overlap by nothing across it. The normal stays near n_last (zero if none).
-PairContact ContactGrazing(const PosedPair& pair, const Vec3& n_last);
+PairContact ContactGrazing(const PosedPair& pair, const Separation& separation,
+                           const Vec3& n_last);
 
 /// The facet found by the starts of paper 5.2.2 where no facet is known: the
 /// line that joins the centroids and, unless it is zero, the last normal.

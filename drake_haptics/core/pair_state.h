@@ -10,7 +10,7 @@ namespace drake_haptics {
 
 /// What a pair remembers from one tick to the next.
 struct PairState {
-  Simplex simplex;        ///< of the last separation query
+  SimplexHubs simplex;    ///< of the last separation query
   Vec3 n = Vec3::Zero();  ///< last normal, in A's frame; zero if none
   Hub hub;                ///< supports along the last normal
   Feature feature_A;      ///< features of the last depth; none if the last

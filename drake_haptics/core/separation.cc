@@ -11,43 +11,80 @@ namespace {
 constexpr int kMaxRounds = 128;
 // The gap that ends the search, relative to the size of the pair.
 constexpr double kRelativeGap = 4e-16;
+// The gap, relative to the same size, up to which an answer counts as proven.
+constexpr double kProvenShare = 1e-12;
 // Below this share of the size the difference of the closest points carries
 // no direction any more.
 constexpr double kTouchingShare = 1e-13;
 
-Simplex Start(const PosedPair& pair, const Simplex& start) {
-  Simplex simplex;
+void Start(const PosedPair& pair, const SimplexHubs& start, Simplex* simplex) {
   for (int i = 0; i < start.size; ++i) {
     const Hub hub = start.hubs[i];
-    if (!simplex.Contains(hub)) simplex.Add(hub, pair.a(hub.a) - pair.b(hub.b));
+    simplex->Add(hub, pair.a(hub.a) - pair.b(hub.b));
   }
-  if (simplex.size == 0) {
-    const Hub hub;
-    simplex.Add(hub, pair.a(hub.a) - pair.b(hub.b));
+  if (simplex->size == 0) {
+    simplex->Add({0, 0}, pair.a(0) - pair.b(0));
   }
-  ReduceToClosest(&simplex);
-  return simplex;
+  ReduceToClosest(simplex);
 }
 
-// The normal of the features where three vertices define it: exact to
-// round-off however small the distance is.
-Vec3 FeatureNormal(const Simplex& simplex, const Vec3& v) {
-  if (simplex.size == 3) {
-    const Vec3 u = simplex.points[1] - simplex.points[0];
-    const Vec3 w = simplex.points[2] - simplex.points[0];
-    Vec3 n = u.cross(w);
-    const double length = n.norm();
-    if (length > 1e-8 * u.norm() * w.norm()) {
-      n /= length;
-      return n.dot(v) < 0 ? Vec3(-n) : n;
-    }
+// The direction of the closest point: the normal of the features where three
+// vertices define it, which is exact to round-off however small the distance.
+Vec3 Direction(const Simplex& simplex, const Vec3& closest, double length) {
+  return simplex.size == 3 ? simplex.normal.normalized() : closest / length;
+}
+
+void SetClosestPoints(const PosedPair& pair, Separation* result) {
+  const Simplex& simplex = result->simplex;
+  result->p_a.setZero();
+  for (int i = 0; i < simplex.size; ++i) {
+    result->p_a += simplex.weights[i] * pair.a(simplex.hubs[i].a);
   }
-  return v.normalized();
+  result->p_b = result->p_a - result->distance * result->n;
+}
+
+Separation Search(const PosedPair& pair, const SimplexHubs& start,
+                  double limit) {
+  Separation result;
+  Simplex& simplex = result.simplex;
+  Start(pair, start, &simplex);
+  const double scale = pair.scale() + simplex.points[0].norm();
+  Hub hub = simplex.hubs[0];
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const Vec3 v = simplex.Closest();
+    const double length = v.norm();
+    if (simplex.size == 4 || !(length > kTouchingShare * scale)) {
+      result.status = SeparationStatus::kTouching;
+      result.distance = 0;
+      break;
+    }
+    result.status = SeparationStatus::kApart;
+    result.n = Direction(simplex, v, length);
+    result.distance = result.n.dot(v);
+    const double gap = SupportGap(pair, result.n, &hub);
+    if (gap > limit) {
+      result.status = SeparationStatus::kBeyond;
+      result.distance = gap;
+      return result;
+    }
+    result.is_proven = length - gap <= kProvenShare * scale;
+    if (length - gap <= kRelativeGap * scale || simplex.Contains(hub)) break;
+    Simplex next = simplex;
+    next.Add(hub, pair.a(hub.a) - pair.b(hub.b));
+    ReduceToClosest(&next);
+    // Round-off can stop the descent a hair short of the gap above.
+    if (next.size < 4 && !(next.Closest().squaredNorm() < length * length)) {
+      break;
+    }
+    simplex = next;
+  }
+  SetClosestPoints(pair, &result);
+  return result;
 }
 
 }  // namespace
 
-bool HoldsOrigin(const PosedPair& pair, const Simplex& simplex) {
+bool HoldsOrigin(const PosedPair& pair, const SimplexHubs& simplex) {
   if (simplex.size < 4) return false;
   Vec3 p[4];
   for (int i = 0; i < 4; ++i) {
@@ -65,46 +102,16 @@ bool HoldsOrigin(const PosedPair& pair, const Simplex& simplex) {
                      [&](double volume) { return sign * volume > round_off; });
 }
 
-Separation ComputeSeparation(const PosedPair& pair, const Simplex& start,
+Separation ComputeSeparation(const PosedPair& pair, const SimplexHubs& start,
                              double limit) {
-  Separation result;
-  Simplex& simplex = result.simplex;
-  simplex = Start(pair, start);
-  const double scale = pair.scale() + simplex.points[0].norm();
-  Hub hub = simplex.hubs[0];
-  for (int round = 0; round < kMaxRounds; ++round) {
-    if (simplex.size == 4) return result;
-    const Vec3 v = simplex.Closest();
-    const double length = v.norm();
-    if (!(length > kTouchingShare * scale)) return result;
-    const Vec3 n = v / length;
-    const double gap = SupportGap(pair, n, &hub);
-    if (gap > limit) {
-      result.status = SeparationStatus::kBeyond;
-      result.distance = gap;
-      result.n = n;
-      return result;
-    }
-    if (length - gap <= kRelativeGap * scale || simplex.Contains(hub)) break;
-    Simplex next = simplex;
-    next.Add(hub, pair.a(hub.a) - pair.b(hub.b));
-    ReduceToClosest(&next);
-    // Round-off can stop the descent a hair short of the gap above.
-    if (next.size < 4 && !(next.Closest().squaredNorm() < length * length)) {
-      break;
-    }
-    simplex = next;
+  const Separation result = Search(pair, start, limit);
+  if (result.status != SeparationStatus::kApart || result.is_proven ||
+      start.size == 0) {
+    return result;
   }
-  result.status = SeparationStatus::kApart;
-  result.n = FeatureNormal(simplex, simplex.Closest());
-  result.p_a.setZero();
-  result.p_b.setZero();
-  for (int i = 0; i < simplex.size; ++i) {
-    result.p_a += simplex.weights[i] * pair.a(simplex.hubs[i].a);
-    result.p_b += simplex.weights[i] * pair.b(simplex.hubs[i].b);
-  }
-  result.distance = result.n.dot(result.p_a - result.p_b);
-  return result;
+  const Separation again = Search(pair, {}, limit);
+  return again.status != SeparationStatus::kApart || again.is_proven ? again
+                                                                     : result;
 }
 
 }  // namespace drake_haptics

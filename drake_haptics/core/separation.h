@@ -20,20 +20,24 @@ struct Separation {
   Vec3 n = Vec3::UnitX();   ///< unit, from B into A; unset where kTouching
   Vec3 p_a = Vec3::Zero();  ///< closest point of A, m; unset where kBeyond
   Vec3 p_b = Vec3::Zero();  ///< closest point of B, m; unset where kBeyond
-  Simplex simplex;          ///< the features; also the next query's start
+  /// Where kApart: whether the supports along n prove the distance. Round-off
+  /// can end the search before.
+  bool is_proven = false;
+  Simplex simplex;  ///< the features; also the next query's start
 };
 
 /// Whether four vertices of A ⊖ B still hold the origin between them, strictly
 /// and beyond round-off: then the pair overlaps. False for fewer vertices.
-bool HoldsOrigin(const PosedPair& pair, const Simplex& simplex);
+bool HoldsOrigin(const PosedPair& pair, const SimplexHubs& simplex);
 
 /// Computes the distance of the pair by the method of Gilbert, Johnson and
 /// Keerthi (1988) on supports that climb from the last answer. Starts from the
 /// vertices of `start` (may be empty), evaluated at the present pose. Ends on
-/// the duality gap |v| − h(v/|v|), on a repeated vertex, or after a bounded
-/// number of rounds with the best answer so far.
+/// the duality gap |v| − h(n), on a repeated vertex, or after a bounded number
+/// of rounds with the best answer so far. A warm search that ends unproven is
+/// made again from nothing.
 /// @param limit distance (m) beyond which the exact answer is not wanted.
-Separation ComputeSeparation(const PosedPair& pair, const Simplex& start,
+Separation ComputeSeparation(const PosedPair& pair, const SimplexHubs& start,
                              double limit);
 
 }  // namespace drake_haptics

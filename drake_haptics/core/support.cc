@@ -1,18 +1,31 @@
 #include "support.h"
 
 namespace drake_haptics {
+namespace {
+
+// How much farther along the direction a spoke leads; zero if less than the
+// round-off of the product. An absolute threshold would end the climb at edges
+// that are short beside the polytope.
+double Gain(const Vec3& direction, const Vec3& along) {
+  constexpr double kRoundOff = 4e-16;
+  const Vec3 terms = direction.cwiseProduct(along);
+  const double gain = terms.sum();
+  return gain > kRoundOff * terms.cwiseAbs().sum() ? gain : 0.0;
+}
+
+}  // namespace
 
 int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
   // Every vertex is extreme, so a vertex that no neighbour beats is the
   // farthest one. The bound ends a walk in circles that round-off allows.
   int best = start;
   for (int left = polytope.num_vertices(); left > 0; --left) {
-    double gain = 0;
+    double most = 0;
     int next = -1;
     for (const Polytope::Spoke& spoke : polytope.fan_of(best)) {
-      const double value = direction.dot(spoke.along);
-      if (value > gain) {
-        gain = value;
+      const double gain = Gain(direction, spoke.along);
+      if (gain > most) {
+        most = gain;
         next = spoke.neighbor;
       }
     }

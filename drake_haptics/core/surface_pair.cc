@@ -96,7 +96,8 @@ class Query {
   }
 
   std::optional<PairContact> Near() {
-    if (separation_.distance < kJoinShare * pair_.scale()) {
+    if (!separation_.is_proven ||
+        separation_.distance < kJoinShare * pair_.scale()) {
       return Overlapping();
     }
     const PairContact contact = ContactApart(pair_, separation_);
@@ -123,13 +124,14 @@ class Query {
             : ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
                         kColdPromotionHubs, &workspace_.depth);
     const bool apart = separation_.status == SeparationStatus::kApart;
+    Hub hub = separation_.simplex.hubs[0];
     if (apart && (depth.status == DepthStatus::kNoFacet ||
-                  depth.best.h <= separation_.distance)) {
+                  depth.best.h <= SupportGap(pair_, separation_.n, &hub))) {
       const PairContact contact = ContactApart(pair_, separation_);
       if (IsSupported(contact)) return contact;
     }
     if (depth.status == DepthStatus::kNoFacet) {
-      return ContactGrazing(pair_, state_.n);
+      return ContactGrazing(pair_, separation_, state_.n);
     }
     if (!IsPlausible(depth)) {
       const auto contact = GoneOn();

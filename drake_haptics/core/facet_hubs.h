@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "support.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+/// A direction may miss a Gauss region by this share of the polytope's radius:
+/// corners that lie on an arc belong to both sides of it.
+inline constexpr double kRegionSlack = 1e-11;
+
+/// The widest feature of P that faces the direction `outward` (unit, in P's
+/// frame) and holds `feature`: where a face or an edge lies flush in the
+/// supporting plane, that face or edge, else the feature itself.
+Feature WidestSupport(const Polytope& P, Feature feature, const Vec3& outward);
+
+/// Lists the hubs of the facet of A ⊖ B with normal n: its vertices. Where
+/// both bodies lie flush the facet is the difference of two polygons, and has
+/// as many vertices as both of them together.
+/// @param feature_A, feature_B features on the facet, at least.
+/// @param n from B into A, in A's frame, unit.
+void ListFacetHubs(const PosedPair& pair, Feature feature_A, Feature feature_B,
+                   const Vec3& n, std::vector<Hub>* hubs);
+
+}  // namespace drake_haptics

@@ -1,0 +1,93 @@
+#include "gauss_clip.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <span>
+#include <utility>
+
+namespace drake_haptics {
+namespace {
+
+// Regions with more corners than this go to the overlay without a clip.
+constexpr int kMaxCorners = 24;
+constexpr int kMaxClips = 6;
+
+// A spherical polygon: directions of any length.
+struct Region {
+  int size = 0;
+  std::array<Vec3, kMaxCorners> corner;
+
+  void Add(const Vec3& direction) { corner[size++] = direction; }
+};
+
+// Whether the gap along a direction of any length exceeds a negative floor.
+bool Exceeds(const Vec3& direction, const Vec3& w, double floor) {
+  const double gap = direction.dot(w);
+  return gap > 0 || gap * gap < floor * floor * direction.squaredNorm();
+}
+
+// A corner that exceeds the floor, or -1.
+int FindExceeding(const Region& region, const Vec3& w, double floor) {
+  for (int k = 0; k < region.size; ++k) {
+    if (Exceeds(region.corner[k], w, floor)) return k;
+  }
+  return -1;
+}
+
+// The part of a region within the half-space direction · edge <= 0.
+Region Clip(const Region& region, const Vec3& edge) {
+  Region out;
+  double before = region.corner[region.size - 1].dot(edge);
+  for (int k = 0; k < region.size; ++k) {
+    const Vec3& p = region.corner[k];
+    const double here = p.dot(edge);
+    if ((before <= 0) != (here <= 0)) {
+      const Vec3& q = region.corner[k == 0 ? region.size - 1 : k - 1];
+      // Weights of opposite signs: made positive by the sign of `here`.
+      out.Add(here > 0 ? Vec3(here * q - before * p)
+                       : Vec3(before * p - here * q));
+    }
+    if (here <= 0) out.Add(p);
+    before = here;
+  }
+  return out;
+}
+
+// The edge of B that excludes a direction (in B's frame) most; null if none.
+const Polytope::Spoke* FindExcluding(std::span<const Polytope::Spoke> fan_B,
+                                     const Vec3& n_B) {
+  const Polytope::Spoke* found = nullptr;
+  double most = 0;
+  for (const Polytope::Spoke& spoke : fan_B) {
+    const double value = n_B.dot(spoke.along);
+    if (value > most) {
+      most = value;
+      found = &spoke;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+bool OverlayMayExceed(const PosedPair& pair, const Hub& hub, const Vec3& w,
+                      double floor) {
+  const auto fan_A = pair.A.fan_of(hub.a);
+  if (pair.A.dimension < 3 || fan_A.size() + kMaxClips > kMaxCorners) {
+    return true;
+  }
+  Region region;
+  for (const Polytope::Spoke& spoke : fan_A) region.Add(-spoke.normal);
+  for (int clips = 0; clips <= kMaxClips; ++clips) {
+    const int k = FindExceeding(region, w, floor);
+    if (k < 0) return false;
+    const Polytope::Spoke* spoke = FindExcluding(
+        pair.B.fan_of(hub.b), pair.X_AB.R.transpose() * region.corner[k]);
+    if (spoke == nullptr) return true;
+    region = Clip(region, pair.X_AB.R * spoke->along);
+    if (region.size == 0) return false;
+  }
+  return true;
+}
+
+}  // namespace drake_haptics
