@@ -15,6 +15,12 @@ from press_rig import GAINS, Gains
 from press_tools import MODELS
 from scipy.spatial.transform import Rotation
 from slide_rig import cut, feel, line, make_slide_tools, slide, velocity
+from slide_scenes import (
+    fifty_pieces,
+    fifty_pieces_path,
+    pitted_block,
+    pitted_block_path,
+)
 
 from drake_haptics.decomposition import decompose
 from drake_haptics.mesh import load_mesh
@@ -28,36 +34,14 @@ HELD = 1.5e-4
 TURN = np.deg2rad(0.5)  # and its normal this much farther turned
 
 
-def top_of(mesh, height):
-    """Which triangles lie in the plane z = height."""
-    z = mesh.vertices[mesh.triangles][:, :, 2]
-    return np.abs(z - height).max(axis=1) < 1e-9
-
-
 @pytest.fixture(scope="module")
 def plate():
-    """A plate of 10 × 5 cells of 10 mm, each cell's top a piece of its own: 50."""
-    mesh = cell_mesh(product(range(10), range(5), (0,)), 0.01)
-    middles = mesh.vertices[mesh.triangles].mean(axis=1)
-    cells = (middles[:, :2] // 0.01) @ [10, 1]
-    a, b, c = np.swapaxes(mesh.vertices[mesh.triangles], 0, 1)
-    sides = np.round(np.cross(b - a, c - a) @ [1e4, 2e4, 3e4])
-    top = top_of(mesh, 0.01)
-    solid = cut(mesh, np.where(top, 1000 + cells, sides))
-    assert len(set(solid.piece_of_triangle[top])) == 50
-    return solid
+    return fifty_pieces()
 
 
 @pytest.fixture(scope="module")
 def pitted():
-    """A block with pits of one cell, as the decomposition cuts it: coplanar pieces."""
-    pits = set(product((2, 5, 8), (2, 5), (1,)))
-    cells = set(product(range(11), range(8), range(2))) - pits
-    mesh = cell_mesh(cells, 5e-3)
-    decomposition = decompose(mesh, cache=False).core
-    top = top_of(mesh, 0.01)
-    assert len(set(decomposition.piece_of_triangle[top])) >= 7
-    return decomposition
+    return pitted_block()
 
 
 def assert_a_plane_is_felt(tool, solid, path, height, R_WT, n=UP, least=1):
@@ -74,7 +58,7 @@ HEIGHTS = (1e-3, 0.0, -5e-4, -1.2e-3)
 @pytest.mark.parametrize("height", HEIGHTS)
 @pytest.mark.parametrize("tool", TOOLS)
 def test_a_face_cut_into_fifty_pieces_is_one_plane(plate, tool, height):
-    path = line([0.02, 0.02, 0.01 + height], [0.08, 0.031, 0.01 + height])
+    path = fifty_pieces_path(height)
     turned = Rotation.from_rotvec([0, 0, 0.7]).as_matrix()
     assert_a_plane_is_felt(TOOLS[tool], plate, path, height, turned)
 
@@ -83,7 +67,7 @@ def test_a_face_cut_into_fifty_pieces_is_one_plane(plate, tool, height):
 @pytest.mark.parametrize("tool", ["box", "ball", "edge"])
 def test_coplanar_pieces_of_a_decomposition_are_one_plane(pitted, tool, height):
     """Between rows of pits, a tool's lowest feature never over one of them."""
-    path = line([0.008, 0.0202, 0.01 + height], [0.047, 0.0198, 0.01 + height])
+    path = pitted_block_path(height)
     assert_a_plane_is_felt(TOOLS[tool], pitted, path, height, np.eye(3))
 
 
@@ -91,7 +75,7 @@ def test_coplanar_pieces_of_a_decomposition_are_one_plane(pitted, tool, height):
 def test_the_chain_feels_no_ripple_where_contacts_are_one_cluster(plate, tool):
     gains = Gains(delta_m=0.04)
     for height in HEIGHTS:
-        path = line([0.02, 0.02, 0.01 + height], [0.08, 0.031, 0.01 + height])
+        path = fifty_pieces_path(height)
         for contacts in slide(TOOLS[tool], plate, path, UP, np.eye(3), T):
             felt = feel(contacts, gains, velocity(path))
             assert felt.clusters == 1
