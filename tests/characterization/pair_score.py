@@ -1,0 +1,103 @@
+"""Counts how a library answers all poses of a hard case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+from exact_minkowski import ExactPair
+from hard_cases import Passage
+from pair_peers import Query
+from pair_verdict import Verdict, judge
+
+# From this error on, as a share of the size, a distance is grossly wrong.
+GROSS_SHARE = 1e-3
+
+
+@dataclass(frozen=True)
+class Library:
+    """How a library is asked.
+
+    Attributes:
+        make: gives a query of two vertex sets; raises for bodies it cannot hold.
+        is_tracked: a depth need only be a proven local minimum.
+        is_warm: the query remembers; each pose is asked in turn and once more afresh.
+    """
+
+    make: Callable[[np.ndarray, np.ndarray], Query]
+    is_tracked: bool = False
+    is_warm: bool = False
+
+
+@dataclass
+class Score:
+    """What came of all questions of a case to one library.
+
+    Attributes:
+        asked: number of questions.
+        refused: questions about bodies that the library cannot hold; not asked.
+        wrong: answers with any complaint.
+        gross: answers that are not finite, exceptions, or grossly wrong distances.
+        not_global: right answers that are a local but not the exact depth.
+        worst: largest error of a finite distance, as a share of the size.
+        complaints: the first ones, in words.
+    """
+
+    asked: int = 0
+    refused: int = 0
+    wrong: int = 0
+    gross: int = 0
+    not_global: int = 0
+    worst: float = 0.0
+    complaints: list[str] = field(default_factory=list)
+
+    def add(self, where: str, verdict: Verdict) -> None:
+        """Counts one answer."""
+        self.asked += 1
+        self.gross += not verdict.error <= GROSS_SHARE
+        if np.isfinite(verdict.error):
+            self.worst = max(self.worst, verdict.error)
+        if not verdict.complaints:
+            self.not_global += not verdict.is_global
+            return
+        self.wrong += 1
+        if len(self.complaints) < 5:
+            self.complaints.append(f"{where}: {'; '.join(verdict.complaints)}")
+
+
+def ask(
+    query: Query, exact: ExactPair, k: int, passage: Passage, tracked: bool
+) -> Verdict:
+    """The verdict on a library's answer at pose k; on its exception, if it raises."""
+    try:
+        answer = query(passage.X_WA[k], passage.X_WB[k])
+    except (RuntimeError, ValueError) as error:
+        return Verdict(np.inf, (f"raises {error}",), False)
+    return judge(exact, answer, tracked)
+
+
+def score_case(
+    passages: Iterable[Passage], libraries: dict[str, Library]
+) -> dict[str, Score]:
+    """Asks each library at each pose of a case."""
+    scores = {name: Score() for name in libraries}
+    for number, passage in enumerate(passages):
+        count = len(passage.X_WA)
+        queries = {}
+        for name, library in libraries.items():
+            try:
+                queries[name] = library.make(passage.A, passage.B)
+            except (RuntimeError, ValueError):
+                scores[name].refused += count
+        for k in range(count):
+            exact = ExactPair(passage.A, passage.B, passage.X_WA[k], passage.X_WB[k])
+            for name, query in queries.items():
+                library = libraries[name]
+                fresh = library.make(passage.A, passage.B) if library.is_warm else None
+                for how, asked in (("in turn", query), ("afresh", fresh)):
+                    if asked is not None:
+                        where = f"passage {number}, pose {k}, {how}"
+                        verdict = ask(asked, exact, k, passage, library.is_tracked)
+                        scores[name].add(where, verdict)
+    return scores
