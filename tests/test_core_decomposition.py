@@ -311,6 +311,17 @@ def test_a_needle_joins_the_patch_beside_it(height):
     assert len(pieces) == len(decompose(*arrays(V, F)).pieces)
 
 
+@pytest.mark.parametrize("height", [3.2e-7, 5e-7])
+def test_a_needle_behind_a_needle_joins_too(height):
+    """Both too high to be in the patch's plane, too thin to have one of their own."""
+    V, F = l_prism()
+    a, b = F[0][:2]
+    once = split_edge(V, F, a, b, [0, 0, -height])
+    twice = split_edge(*once, a, len(once[0]) - 1, [0, 0, height])
+    assert trimesh.Trimesh(*twice, process=False).is_watertight
+    assert all(piece.dimension >= 2 for piece in decompose(*twice).pieces)
+
+
 def test_a_needle_on_its_own_is_a_segment_that_can_be_touched():
     V, F = arrays([[0, 0, 0], [1, 0, 0], [0.4, 1e-9, 0]], [[0, 1, 2]])
     (needle,) = decompose(V, F, solid=False).pieces

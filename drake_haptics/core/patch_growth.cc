@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -139,19 +140,32 @@ class Growth {
     }
   }
 
-  // A triangle without a plane that no patch took, and that would be a piece
-  // without a side, goes to the patch across its longest edge. That edge is an
-  // edge of the patch, so that the hull grows by the triangle's height at most.
+  // Triangles without a plane that no patch took, and that would be pieces
+  // without a side, go to a patch across one of their two long edges. That edge
+  // is an edge of the patch, so that the hull grows by the triangle's height at
+  // most. Needles may lie behind needles: those beside a patch go first.
   void AttachNeedles() {
-    std::vector<int> sizes(num_patches_, 0);
-    for (const int label : work_.label) ++sizes[label];
-    const std::vector<int> grown = work_.label;
-    for (std::size_t t = 0; t < grown.size(); ++t) {
-      if (sizes[grown[t]] > 1 || !IsNeedle(static_cast<int>(t))) continue;
-      const int next =
-          mesh_.neighbors[t][LongestSide(mesh_, mesh_.triangles[t])];
-      if (next >= 0 && !IsNeedle(next)) work_.label[t] = grown[next];
+    std::vector<std::uint8_t> has_side(num_patches_, false);
+    for (std::size_t t = 0; t < work_.label.size(); ++t) {
+      if (!IsNeedle(static_cast<int>(t))) has_side[work_.label[t]] = true;
     }
+    std::vector<int> needles;
+    for (std::size_t t = 0; t < work_.label.size(); ++t) {
+      if (!has_side[work_.label[t]]) needles.push_back(static_cast<int>(t));
+    }
+    std::size_t before;
+    do {
+      before = needles.size();
+      std::erase_if(needles, [&](int t) {
+        for (const int side : LongSides(mesh_, mesh_.triangles[t])) {
+          const int next = mesh_.neighbors[t][side];
+          if (next < 0 || !has_side[work_.label[next]]) continue;
+          work_.label[t] = work_.label[next];
+          return true;
+        }
+        return false;
+      });
+    } while (needles.size() < before);
   }
 
   bool IsNeedle(int triangle) const {

@@ -39,7 +39,7 @@ void AddPlanes(SurfaceMesh* mesh) {
     // The plane of a thin triangle is noise, and would keep others out.
     const bool thin =
         cross.norm() <= kFacetTolerances * mesh->tolerance *
-                            SideLength(*mesh, t, LongestSide(*mesh, t));
+                            SideLength(*mesh, t, LongSides(*mesh, t)[0]);
     const Vec3 normal = thin ? Vec3::Zero() : Vec3(cross.stableNormalized());
     mesh->planes.push_back({normal, normal.dot(a)});
   }
@@ -146,15 +146,13 @@ double SurfaceTolerance(std::span<const Vec3> vertices,
   return std::clamp(rounding, 1e-7 * size, 1e-5 * size);
 }
 
-int LongestSide(const SurfaceMesh& mesh, const Triangle& triangle) {
-  int longest = 0;
-  for (int side = 1; side < 3; ++side) {
-    if (SideLength(mesh, triangle, side) >
-        SideLength(mesh, triangle, longest)) {
-      longest = side;
-    }
-  }
-  return longest;
+std::array<int, 2> LongSides(const SurfaceMesh& mesh,
+                             const Triangle& triangle) {
+  std::array<int, 3> sides{0, 1, 2};
+  std::stable_sort(sides.begin(), sides.end(), [&](int i, int j) {
+    return SideLength(mesh, triangle, i) > SideLength(mesh, triangle, j);
+  });
+  return {sides[0], sides[1]};
 }
 
 SurfaceMesh MakeSurfaceMesh(std::span<const Vec3> vertices,

@@ -59,8 +59,8 @@ inline constexpr double kFlatTolerances = 12;
 double SurfaceTolerance(std::span<const Vec3> vertices,
                         std::span<const Triangle> triangles);
 
-/// Index of the longest edge of a triangle.
-int LongestSide(const SurfaceMesh& mesh, const Triangle& triangle);
+/// Indices of the longest and the second longest edge of a triangle.
+std::array<int, 2> LongSides(const SurfaceMesh& mesh, const Triangle& triangle);
 
 SurfaceMesh MakeSurfaceMesh(std::span<const Vec3> vertices,
                             std::span<const Triangle> triangles,
