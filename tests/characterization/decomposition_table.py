@@ -1,0 +1,181 @@
+"""What the decomposition makes of many meshes: counts, truth, time and memory.
+
+python tests/characterization/decomposition_table.py --meshes cup organ
+python tests/characterization/decomposition_table.py --write
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TESTS))
+from hull_truth import deepest_outside, deepest_surface, lost_share  # noqa: E402
+from mesh_samples import REAL_MESHES  # noqa: E402
+
+from drake_haptics import Mesh, decompose, load_mesh  # noqa: E402
+from drake_haptics.shapes import SHAPES  # noqa: E402
+from drake_haptics.shapes.organ import make_organ  # noqa: E402
+
+PAGE = TESTS.parent / "docs" / "decomposition.md"
+# Table 1 of Kim, Otaduy, Lin and Manocha, for meshes of the same kind and size.
+PAPER = {"torus": 67, "cup": 190, "spoon": 78, "hammer": 425, "organ": 9913}
+PAPER |= {
+    "torus_2000.obj": 67,
+    "cup_500.obj": 190,
+    "spoon_336.obj": 78,
+    "hammer_1692.obj": 425,
+    "armadillo_31240.stl": 9098,
+    "digestive_24846.ply": 9913,
+}
+GENERATED = {**SHAPES, "organ": make_organ}
+REAL = (
+    *list(PAPER)[5:],
+    "power_drill.stl",
+    "mug.stl",
+    "magnifying_glass.stl",
+    "gear_base.obj",
+    "gear_small.npz",
+    "gear_medium.npz",
+    "peg_round_8mm.npz",
+    "socket_round_8mm.npz",
+    "tooth.ply",
+    "dental_drill.obj",
+    "fcl_env.obj",
+    "fcl_rob.obj",
+    "bunny_scan_raw.ply",
+)
+TITLES = (
+    "mesh",
+    "triangles",
+    "pieces",
+    "paper's",
+    "flat",
+    "virtual facets",
+    "outside",
+    "within",
+    "lost",
+    "time",
+    "peak memory",
+)
+# Within this share of the mesh's size a triangle is on its facet.
+ON_FACET = 1e-6
+
+
+def find_mesh(name: str) -> Mesh | None:
+    """The mesh of that name, None if it is not beside the repository."""
+    if name in GENERATED:
+        surface = GENERATED[name]()
+        return Mesh.from_arrays(surface.vertices, surface.triangles, name=name)
+    path = REAL_MESHES / name
+    return load_mesh(path) if path.exists() else None
+
+
+def measure(name: str, points: int) -> dict[str, Any]:
+    """Cuts a mesh; call it in a process of its own, whose peak memory it tells.
+
+    Args:
+        name: of the mesh.
+        points: of its hulls that are looked at.
+
+    Returns:
+        Counts and shares; lengths as shares of the mesh's size, its box's diagonal.
+    """
+    mesh = find_mesh(name)
+    if mesh is None:
+        raise SystemExit(f"no mesh {name}")
+    start = time.perf_counter()
+    pieces = decompose(mesh, cache=False)
+    seconds = time.perf_counter() - start
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    report = pieces.report
+    is_solid = bool(mesh.solid.all())
+    return {
+        "mesh": name,
+        "triangles": report.triangles,
+        "pieces": report.pieces,
+        "flat": report.flat_pieces,
+        "virtual": report.virtual_facets / report.facets,
+        "outside": deepest_outside(pieces, points) / size if is_solid else None,
+        "within": deepest_surface(pieces) / size if is_solid else None,
+        "lost": lost_share(pieces, ON_FACET * size),
+        "seconds": seconds,
+        "peak_mib": peak / (2**20 if sys.platform == "darwin" else 2**10),
+    }
+
+
+def row(result: dict[str, Any]) -> list[str]:
+    """The cells of the table for what `measure` returned."""
+
+    def share(value: float | None) -> str:
+        if value is None:
+            return "–"
+        return "0" if value < 1e-12 else f"{value:.0e}"
+
+    paper = PAPER.get(result["mesh"])
+    return [
+        result["mesh"],
+        f"{result['triangles']:,}",
+        f"{result['pieces']:,}",
+        f"{paper:,}" if paper else "",
+        f"{result['flat']:,}",
+        f"{result['virtual']:.0%}",
+        share(result["outside"]),
+        share(result["within"]),
+        share(result["lost"]),
+        f"{result['seconds']:.2f} s",
+        f"{result['peak_mib']:.0f} MiB",
+    ]
+
+
+def write_page(rows: Sequence[Sequence[str]]) -> None:
+    """Puts the table into the page, between its heading and the text after it."""
+    lines = ["| " + " | ".join(TITLES) + " |"]
+    lines.append("|---" + "|--:" * (len(TITLES) - 1) + "|")
+    lines += ["| " + " | ".join(cells) + " |" for cells in rows]
+    before, _, rest = PAGE.read_text(encoding="utf-8").partition("\n| mesh |")
+    after = rest.partition("\n\n")[2]
+    PAGE.write_text(before + "\n" + "\n".join(lines) + "\n\n" + after, encoding="utf-8")
+
+
+def main() -> None:
+    """Measures each mesh in a process of its own and prints the table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--meshes", nargs="*", default=[*GENERATED, *REAL])
+    parser.add_argument("--measure", metavar="MESH", help="one mesh, in this process")
+    parser.add_argument("--points", type=int, default=1000, help="of hulls, per mesh")
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    args = parser.parse_args()
+    if args.measure:
+        print(json.dumps(measure(args.measure, args.points)))
+        return
+    rows = []
+    print("  ".join(TITLES))
+    for name in args.meshes:
+        if name not in GENERATED and not (REAL_MESHES / name).exists():
+            print(f"{name} is not beside the repository: skipped", file=sys.stderr)
+            continue
+        command = [sys.executable, __file__, "--measure", name]
+        command += ["--points", str(args.points)]
+        answer = subprocess.run(command, check=True, capture_output=True, text=True)
+        rows.append(row(json.loads(answer.stdout)))
+        print("  ".join(rows[-1]), flush=True)
+    if args.write:
+        write_page(rows)
+
+
+if __name__ == "__main__":
+    main()

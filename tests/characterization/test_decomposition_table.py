@@ -1,0 +1,98 @@
+"""The documented table is whole, and what it says of pieces can be seen to fail."""
+
+import json
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from decomposition_table import GENERATED, PAGE, REAL, TITLES, find_mesh
+from hull_truth import deepest_outside, deepest_surface, lost_share
+from mesh_samples import box, l_prism
+
+from drake_haptics import Mesh, decompose
+
+BOUND = 1e-6
+GIB = 1024
+
+
+def rows_of_page():
+    lines = PAGE.read_text(encoding="utf-8").splitlines()
+    cells = [line.strip("| ").split(" | ") for line in lines if line.startswith("| ")]
+    assert tuple(cells[0]) == TITLES
+    return {row[0]: dict(zip(TITLES, row, strict=True)) for row in cells[1:]}
+
+
+def number(cell):
+    return float(cell.replace(",", "").split()[0])
+
+
+def test_the_page_has_a_row_for_each_mesh():
+    assert list(rows_of_page()) == [*GENERATED, *REAL]
+
+
+@pytest.mark.parametrize("name", GENERATED)
+def test_the_page_has_the_counts_of_today(name):
+    row = rows_of_page()[name]
+    mesh = find_mesh(name)
+    assert number(row["triangles"]) == len(mesh.triangles)
+    pieces = len(decompose(mesh, cache=False).pieces)
+    # Another platform's rounding may cut a little otherwise.
+    assert number(row["pieces"]) == pytest.approx(pieces, rel=0.02)
+
+
+def test_the_page_says_what_was_asked_for():
+    for name, row in rows_of_page().items():
+        for title in ("outside", "within"):
+            assert row[title] == "–" or number(row[title]) <= BOUND, name
+        assert number(row["lost"]) <= BOUND, name
+        assert number(row["time"]) < 60, name
+        assert number(row["peak memory"]) < GIB, name
+
+
+def test_an_organ_is_cut_exactly_and_in_little_memory():
+    """In a process of its own, whose memory is its own."""
+    script = PAGE.parents[1] / "tests" / "characterization" / "decomposition_table.py"
+    command = [sys.executable, script, "--measure", "organ", "--points", "150"]
+    answer = subprocess.run(command, check=True, capture_output=True, text=True)
+    result = json.loads(answer.stdout)
+    assert result["pieces"] < 2000
+    assert result["outside"] <= BOUND and result["within"] <= BOUND
+    assert result["lost"] == 0
+    assert result["peak_mib"] < GIB
+
+
+def test_a_hull_that_fills_a_notch_is_found():
+    pieces = decompose(Mesh.from_arrays(*l_prism()), "hull", cache=False)
+    # The middle of the hull's side across the notch is 0.5 m from all walls.
+    assert 0.4 < deepest_outside(pieces, 2000) <= 0.5
+    exact = decompose(Mesh.from_arrays(*l_prism()), cache=False)
+    assert deepest_outside(exact, 1000) < 1e-12
+
+
+def test_surface_within_a_hull_is_found():
+    pieces = decompose(Mesh.from_arrays(*l_prism()), "hull", cache=False)
+    labels = np.zeros(len(pieces.mesh.triangles), dtype=int)
+    whole = with_labels(pieces, labels)
+    assert deepest_surface(whole) > 0.3
+    exact = decompose(Mesh.from_arrays(*l_prism()), cache=False)
+    assert deepest_surface(exact) < 1e-12
+
+
+def test_lost_surface_is_found():
+    pieces = decompose(Mesh.from_arrays(*l_prism()), "hull", cache=False)
+    labels = np.zeros(len(pieces.mesh.triangles), dtype=int)
+    # Of the L's 14 m² the notch's walls, 2 m², are on no side of its hull. The caps,
+    # 6 m², do not fill theirs, so that those are virtual.
+    assert lost_share(with_labels(pieces, labels), 1e-9) == pytest.approx(8 / 14)
+    cube = decompose(Mesh.from_arrays(*box()), cache=False)
+    assert lost_share(cube, 1e-9) == 0
+
+
+def with_labels(pieces, labels):
+    return SimpleNamespace(
+        mesh=pieces.mesh,
+        pieces=pieces.pieces,
+        core=SimpleNamespace(piece_of_triangle=labels),
+    )
