@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drake_haptics import _core
+from drake_haptics import ConvexPair, ConvexPolytope
 from drake_haptics.bench.pair_shapes import PairShape
 
 RATE_HZ = 1000.0
@@ -62,9 +62,7 @@ def _press(pair: PairShape, rng: np.random.Generator) -> Press:
 
 def _touching_offset(pair: PairShape, R_WA: np.ndarray, way_W: np.ndarray) -> float:
     """How far along `way_W` A's centre is where the bodies just touch, m."""
-    query = _core.ConvexPair(
-        _core.ConvexPolytope(pair.A_vertices), _core.ConvexPolytope(pair.B_vertices)
-    )
+    query = ConvexPair(ConvexPolytope(pair.A_vertices), ConvexPolytope(pair.B_vertices))
     X_WA = np.eye(4)
     X_WA[:3, :3] = R_WA
     inside = 0.0

@@ -7,7 +7,7 @@ from importlib.metadata import version
 import fcl
 import numpy as np
 
-from drake_haptics import _core
+from drake_haptics import ConvexPolytope
 from drake_haptics.bench.pair_library import PairAnswers, PairLibrary, normals_between
 from drake_haptics.bench.pair_shapes import PairShape
 from drake_haptics.bench.timing import CallTimer
@@ -47,7 +47,7 @@ class FclQuery:
 
 
 def _convex(vertices: np.ndarray) -> fcl.Convex:
-    hull = _core.ConvexPolytope(vertices)
+    hull = ConvexPolytope(vertices)
     faces = [index for loop in hull.facets for index in (len(loop), *loop)]
     return fcl.Convex(np.asarray(hull.vertices), len(hull.facets), np.array(faces))
 

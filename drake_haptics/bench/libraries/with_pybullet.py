@@ -23,15 +23,17 @@ _DISTANCE, _NORMAL_ON_B = 8, 7
 @contextlib.contextmanager
 def _without_banner() -> Iterator[None]:
     """Keeps what pybullet's C code prints on import off the terminal."""
-    kept = os.dup(1)
+    kept = [os.dup(stream) for stream in (1, 2)]
     nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
+    for stream in (1, 2):
+        os.dup2(nowhere, stream)
     try:
         yield
     finally:
         ctypes.CDLL(None).fflush(None)  # what C still holds back goes nowhere too
-        os.dup2(kept, 1)
-        os.close(kept)
+        for stream, own in zip((1, 2), kept, strict=True):
+            os.dup2(own, stream)
+            os.close(own)
         os.close(nowhere)
 
 

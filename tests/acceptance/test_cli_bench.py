@@ -1,0 +1,41 @@
+"""`drake-haptics bench`, as a user runs it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PROGRAM = [str(Path(sys.executable).with_name("drake-haptics")), "bench"]
+
+
+def run(*arguments):
+    return subprocess.run(
+        [*PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=300
+    )
+
+
+def test_scenes_are_measured_and_written(tmp_path):
+    result = run("scenes", "--quick", "--json", tmp_path / "figures.json")
+    assert result.returncode == 0 and result.stderr == ""
+    assert "spoon on cup" in result.stdout and "Scenes" in result.stdout
+    assert "Convex pairs" not in result.stdout
+    figures = json.loads((tmp_path / "figures.json").read_text())
+    assert figures["pairs"] == figures["python"] == []
+    assert {s["scene"] for s in figures["scenes"]} >= {"spoon on cup", "peg in hole"}
+    assert all(s["near"]["median_us"] > 0 for s in figures["scenes"])
+
+
+def test_json_alone_goes_to_stdout():
+    pytest.importorskip("coal")
+    result = run("python", "--quick", "--json", "-")
+    assert result.returncode == 0
+    figures = json.loads(result.stdout)
+    assert {p["size"] for p in figures["python"]} == {42, 2562}
+
+
+def test_an_unknown_part_is_a_wrong_call():
+    result = run("paris")
+    assert result.returncode == 2 and "paris" in result.stderr
+    assert "Traceback" not in result.stderr

@@ -1,0 +1,57 @@
+"""docs/benchmarks.md has the tables that the benchmark makes now."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
+from test_bench_figures import EVERYTHING
+from write_docs import PAGE, figures_of, with_figures
+
+from drake_haptics.bench.pair_shapes import KINDS, SIZES
+from drake_haptics.bench.report import make_tables
+from drake_haptics.bench.scenes import scene_makers
+
+_SECTION = figures_of(PAGE.read_text(encoding="utf-8"))
+
+
+def rows_below(title: str) -> list[list[str]]:
+    """The cells of the table under a title, headings first."""
+    section = _SECTION.split(f"### {title}\n")[1].split("###")[0]
+    rows = re.findall(r"^\| (.*) \|$", section, flags=re.MULTILINE)
+    return [row.split(" | ") for row in rows]
+
+
+def test_every_table_is_there_with_its_headings() -> None:
+    for table in make_tables(EVERYTHING):
+        headings = rows_below(table.title)[0]
+        if table.title.startswith("Convex pairs: times"):
+            continue  # has a column for each depth
+        assert tuple(headings) == table.header
+        assert table.note.split(".")[0] in _SECTION
+
+
+def test_every_pair_and_scene_has_a_row() -> None:
+    pairs = [f"{kind}, {size}" for kind in KINDS for size in SIZES]
+    for title in (
+        "Convex pairs: times in µs, median / p99",
+        "One pair query from Python",
+    ):
+        assert [row[0] for row in rows_below(title)[2:]] == pairs
+    scenes = [row[0] for row in rows_below(make_tables(EVERYTHING)[-1].title)[2:]]
+    assert set(scenes) >= set(scene_makers(1))
+
+
+def test_every_library_has_a_row() -> None:
+    libraries = [row[0] for row in rows_below(make_tables(EVERYTHING)[0].title)[2:]]
+    for name in ("drake_haptics", "coal", "MuJoCo", "FCL", "Bullet", "Drake"):
+        assert any(row.startswith(name) for row in libraries)
+
+
+def test_new_figures_replace_the_old_ones_and_nothing_else() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    renewed = with_figures(page, EVERYTHING)
+    assert "abacus" in figures_of(renewed) and "abacus" not in page
+    assert renewed.replace(figures_of(renewed), "") == page.replace(_SECTION, "")

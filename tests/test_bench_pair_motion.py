@@ -1,0 +1,71 @@
+"""The benchmark's pairs and their motion are what their docstrings say."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from minkowski_truth import place, signed_distance
+from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
+
+from drake_haptics.bench.pair_motion import (
+    DEPTH_SHARE,
+    MAX_SPEED_M_S,
+    MAX_TURN_RAD_S,
+    RATE_HZ,
+    make_presses,
+)
+from drake_haptics.bench.pair_shapes import KINDS, SIZES, make_pair
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("size", SIZES)
+def test_every_vertex_is_extreme(kind: str, size: int) -> None:
+    pair = make_pair(kind, size)
+    for vertices in (pair.A_vertices, pair.B_vertices):
+        assert len(ConvexHull(vertices).vertices) == len(vertices) == size
+
+
+def test_an_unknown_size_is_refused() -> None:
+    with pytest.raises(ValueError, match="43"):
+        make_pair("ball", 43)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_motion_keeps_to_its_speeds_and_nearly_reaches_them(kind: str) -> None:
+    for press in make_presses(make_pair(kind, 42), 2):
+        step = np.linalg.norm(np.diff(press.X_WA[:, :3, 3], axis=0), axis=1)
+        R = press.X_WA[:, :3, :3]
+        turn = Rotation.from_matrix(
+            np.swapaxes(R[:-1], 1, 2) @ R[1:],
+        ).magnitude()
+        assert 0.99 * MAX_SPEED_M_S < step.max() * RATE_HZ <= MAX_SPEED_M_S
+        assert (
+            0.99 * MAX_TURN_RAD_S < turn.max() * RATE_HZ < MAX_TURN_RAD_S * (1 + 1e-9)
+        )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_press_goes_from_apart_to_a_fifth_deep_and_back(kind: str) -> None:
+    pair = make_pair(kind, 8)
+
+    def exact(X: np.ndarray) -> float:
+        return signed_distance(place(pair.A_vertices, X), pair.B_vertices)
+
+    for press in make_presses(pair, 2):
+        middle = np.linalg.norm(press.X_WA[:, :3, 3], axis=1).argmin()
+        assert exact(press.X_WA[0]) > 0 and exact(press.X_WA[-1]) > 0
+        assert exact(press.X_WA[middle]) < 0
+        # In the deepest attitude the bodies touch where a fifth of the way is not yet
+        # gone; the deepest frame is up to half a millisecond off.
+        touching = press.X_WA[middle].copy()
+        touching[:3, 3] /= 1 - DEPTH_SHARE
+        assert exact(touching) == pytest.approx(0, abs=5e-5)
+
+
+def test_presses_are_the_same_on_every_call() -> None:
+    pair = make_pair("slab", 42)
+    first, second = make_presses(pair, 2), make_presses(pair, 2)
+    for a, b in zip(first, second, strict=True):
+        np.testing.assert_array_equal(a.X_WA, b.X_WA)
+    assert not np.allclose(first[0].X_WA[0], first[1].X_WA[0])
