@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.drake_haptics
 CORE := $(wildcard drake_haptics/core/*.cc drake_haptics/core/*.h) drake_haptics/core/CMakeLists.txt
 
-.PHONY: demo test lint unit format build clean
+.PHONY: demo test lint unit format build fuzz clean
 .DEFAULT_GOAL := demo
 
 demo: $(STAMP)
@@ -22,12 +22,12 @@ lint: $(STAMP)-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/clang-format --dry-run -Werror drake_haptics/core/*.cc drake_haptics/core/*.h tests/core/*.cc tests/core/*.h
+	$(BIN)/clang-format --dry-run -Werror drake_haptics/core/*.cc drake_haptics/core/*.h tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
 
 format: $(STAMP)-test
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
-	$(BIN)/clang-format -i drake_haptics/core/*.cc drake_haptics/core/*.h tests/core/*.cc tests/core/*.h
+	$(BIN)/clang-format -i drake_haptics/core/*.cc drake_haptics/core/*.h tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
 
 # Rebuilds the C++ core after an edit, without a fresh build environment.
 build: $(STAMP)-test
@@ -56,6 +56,22 @@ $(STAMP)-test: pyproject.toml $(CORE) | $(VENV)/bin/python
 	@echo "Setting up $(VENV): Drake, the C++ core and the test tools, a few minutes the first time."
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[test]"
 	@touch $@ $(STAMP)
+
+# Fuzzes the core until a fault is found or the time is over; see docs/testing.md.
+FUZZ ?= pair
+FUZZ_SECONDS ?= 900
+fuzz: $(STAMP)-test
+	@command -v clang++ >/dev/null || { \
+	  echo "Fuzzing needs clang and its libFuzzer; clang++ was not found."; \
+	  echo "On Debian or Ubuntu: sudo apt-get install clang libclang-rt-14-dev"; exit 1; }
+	$(BIN)/cmake -S drake_haptics/core -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ \
+	  -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja -DCMAKE_BUILD_TYPE=None \
+	  -DDRAKE_HAPTICS_FUZZERS=ON -DDRAKE_HAPTICS_BINDINGS=OFF \
+	  -DCMAKE_PREFIX_PATH=$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+	$(BIN)/cmake --build build/fuzz --target $(FUZZ)_libfuzzer
+	mkdir -p build/fuzz/found
+	build/fuzz/fuzzers/$(FUZZ)_libfuzzer -max_len=700 -timeout=20 -max_total_time=$(FUZZ_SECONDS) \
+	  -artifact_prefix=build/fuzz/found/ build/fuzz/found tests/fuzz/corpus/$(FUZZ)
 
 clean:
 	rm -rf $(VENV) build
