@@ -61,7 +61,7 @@ def judge(exact: ExactPair, answer: Answer, tracked: bool) -> Verdict:
         found.append(f"normal of length {np.linalg.norm(n):.3g}")
     gap = exact.float_gap(n) if np.any(n) else -np.inf
     if abs(gap - d) > tolerance and not (tracked and d > truth):
-        found.append(f"gap {gap:.3e} along the normal is not the distance {d:.3e}")
+        found.append(f"the gap along the normal is off {d:.3e} by {gap - d:.1e}")
     is_global = abs(d - truth) <= tolerance
     error = abs(d - truth) / size
     if not is_global:

@@ -57,7 +57,7 @@ def over_an_edge() -> Iterator[Passage]:
             for y in (0.1, 1.0):
                 poses = [
                     pose([x, y, 1 + low - depth], [0.0, 0.0, 0.3])
-                    for x in np.linspace(0.5, 1.5, 41)
+                    for x in np.linspace(0.5, 1.5, 25)
                 ]
                 yield moved(A, cube(), poses)
                 tilted = [X @ pose(rotvec=[0.2, 0.3, 0]) for X in poses]
@@ -117,7 +117,7 @@ def grazing() -> Iterator[Passage]:
         lowest = -A[:, 2].min()
         for d in (1e-3, 1e-9, 1e-12, 0.0, -1e-12, -1e-9):
             for y in (0.2, 1.0):
-                poses = [pose([x, y, 1 + lowest + d]) for x in np.linspace(-2, 2, 33)]
+                poses = [pose([x, y, 1 + lowest + d]) for x in np.linspace(-2, 2, 25)]
                 yield moved(A, cube(), poses)
 
 

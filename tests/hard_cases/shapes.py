@@ -69,7 +69,7 @@ def near_duplicates() -> Iterator[Passage]:
     rng = np.random.default_rng(4)
     for k, apart in enumerate((1e-6, 1e-9, 1e-12, 1e-15, 1e-16)):
         A = np.concatenate([cube(), cube() + apart * rng.normal(size=(8, 3))])
-        B = blob(rng, 10)
+        B = blob(rng, 7)
         B = np.concatenate([B, B + apart * rng.normal(size=B.shape)])
         yield from wander(A, B, k, 1.2)
         yield from wander(A, cube(), k, 1.2)
