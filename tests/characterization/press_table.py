@@ -1,153 +1,119 @@
-"""Prints how presses and jabs with many tools on many solids end.
+"""Presses, jabs and slides tools at many points of many solids; tells what became.
 
 python tests/characterization/press_table.py --points 40 --gains sinking
+python tests/characterization/press_table.py --points 1000 --jobs 3 --write
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
-import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
-import numpy as np
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from mesh_samples import REAL_MESHES
-from press_rig import (
-    GAINS,
-    LARGEST_FORCE_N,
-    MODELS,
-    MOTIONS,
-    Gains,
-    make_tools,
-    sample_presses,
+sys.path.insert(0, str(Path(__file__).parent))
+from press_cells import (
+    REAL,
+    SHIPPED,
+    TITLES,
+    TOOLS,
+    Cell,
+    complaints,
+    find_mesh,
+    row,
+    run_points,
 )
-from press_verdict import Verdict, judge
-from solid_surface import Overlap, Surface
+from press_page import write_page
+from press_rig import GAINS, MOTIONS
+from press_tools import make_tools
+from press_verdict import Verdict
 
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import load_mesh
-
-SHIPPED = ("cup", "spoon", "torus", "hammer", "block", "peg", "pen", "sphere")
-REAL = ("cup_500.obj", "torus_2000.obj", "mug.stl")
-HEADER = (
-    f"{'solid':12} {'tool':6} {'motion':8} {'gains':8} {'n':>4} {'lost%':>6} "
-    f"{'inwd%':>6} {'made%':>6} {'thru%':>6} {'hook%':>6} {'shall%':>6} "
-    f"{'depth mm':>8} "
-    f"{'jump N':>7} {'rest uJ':>8} {'drift um':>8}"
-)
-
-
-def find_mesh(name: str) -> Path | None:
-    """The file of a solid by name; None if it is not there."""
-    path = MODELS / f"{name}.obj" if name in SHIPPED else REAL_MESHES / name
-    return path if path.exists() else None
-
-
-def makes_energy(verdict: Verdict, gains: Gains) -> bool:
-    """Whether the contact gave more than the largest force stores in its spring."""
-    return verdict.made_J > 0.5 * LARGEST_FORCE_N**2 / gains.stiffness_N_per_m
-
-
-def row(verdicts: list[Verdict], gains: Gains) -> str:
-    """The figures of a cell of the table."""
-    done = [v for v in verdicts if not v.skipped]
-    if not done:
-        return f"{0:4d}  no press met the solid"
-
-    def share(bad):
-        return 100.0 * sum(map(bad, done)) / len(done)
-
-    def worst(value, factor):
-        return factor * max(map(value, done))
-
-    return (
-        f"{len(done):4d} {share(lambda v: v.lost_tick >= 0):6.1f} "
-        f"{share(lambda v: v.inward_tick >= 0):6.1f} "
-        f"{share(lambda v: makes_energy(v, gains)):6.1f} "
-        f"{share(lambda v: v.through):6.1f} "
-        f"{share(lambda v: v.hooked_m > 1e-3):6.1f} "
-        f"{share(lambda v: v.shallow < 0.8):6.1f} "
-        f"{worst(lambda v: v.depth_m, 1e3):8.2f} "
-        f"{np.percentile([v.jump_N for v in done], 90):7.2f} "
-        f"{np.percentile([v.rest_J for v in done], 90) * 1e6:8.3f} "
-        f"{np.percentile([v.drift_m for v in done], 90) * 1e6:8.2f}"
-        + ("" if all(v.finite for v in done) else " NaN!")
-    )
-
-
-def complaints(verdict: Verdict, gains: Gains) -> str:
-    """Why a press failed, or nothing."""
-    found = []
-    if verdict.lost_tick >= 0:
-        found.append(f"lost at tick {verdict.lost_tick}")
-    if verdict.inward_tick >= 0:
-        found.append(f"inward at tick {verdict.inward_tick}")
-    if makes_energy(verdict, gains):
-        found.append(
-            f"made {1e3 * verdict.made_J:.1f} mJ by tick {verdict.ticks['made']}"
-        )
-    if verdict.through:
-        found.append("through")
-    if verdict.hooked_m > 1e-3:
-        found.append(f"hooked {1e3 * verdict.hooked_m:.1f} mm")
-    if verdict.shallow < 0.8:
-        found.append(f"shallow {verdict.shallow:.2f}")
-    if not verdict.finite:
-        found.append("NaN")
-    return ", ".join(found)
+# Points that a worker takes at a time.
+CHUNK = 25
 
 
 def main() -> None:
     """Runs the presses that the arguments name."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--points", type=int, default=40)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--solids", nargs="*", default=[*SHIPPED, *REAL])
-    parser.add_argument("--tools", nargs="*")
-    parser.add_argument("--motions", nargs="*", default=MOTIONS)
-    parser.add_argument("--gains", nargs="*", default=list(GAINS))
+    parser.add_argument(
+        "--tools",
+        nargs="*",
+        default=TOOLS,
+        choices=make_tools(),
+        help="point i is met by tool i modulo their number",
+    )
+    parser.add_argument(
+        "--motions", nargs="*", default=["press", "jab"], choices=MOTIONS
+    )
+    parser.add_argument(
+        "--gains", nargs="*", default=["default", "sinking"], choices=GAINS
+    )
+    parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--failures", type=Path, help="file that gets each failure")
+    parser.add_argument(
+        "--write", action="store_true", help="write docs/no-fall-through.md"
+    )
     args = parser.parse_args()
-    tools = make_tools()
-    failures = args.failures.open("a") if args.failures else None
-    print(HEADER, flush=True)
     for name in args.solids:
-        path = find_mesh(name)
-        if path is None:
-            print(f"{name:12} is not beside the repository: skipped")
-            continue
-        mesh = load_mesh(path, scale=1.0)
-        solid, pieces = Surface(mesh), decompose(mesh).core
-        for tool_name in args.tools or tools:
-            tool = tools[tool_name]
-            overlap = Overlap(tool.mesh, solid)
-            for motion in args.motions:
-                presses = sample_presses(mesh, tool, motion, args.points, args.seed)
-                for gains in args.gains:
-                    start = time.perf_counter()
-                    verdicts = []
-                    for i, press in enumerate(presses):
-                        verdicts.append(
-                            judge(press, tool, solid, pieces, GAINS[gains], overlap)
-                        )
-                        if sys.stderr.isatty():
-                            print(f"\r{i + 1}/{len(presses)}", end="", file=sys.stderr)
-                        why = complaints(verdicts[-1], GAINS[gains])
-                        if why and failures:
-                            print(
-                                f"{name} {tool_name} {motion} {gains} seed {args.seed} "
-                                f"point {i}: {why}",
-                                file=failures,
-                                flush=True,
-                            )
-                    label = f"{name:12} {tool_name:6} {motion:8} {gains:8}"
-                    seconds = time.perf_counter() - start
-                    print(
-                        f"\r{label} {row(verdicts, GAINS[gains])} {seconds:.0f}s",
-                        flush=True,
-                    )
+        if find_mesh(name) is None:
+            print(f"{name} is not beside the repository: skipped", file=sys.stderr)
+    cells = [
+        Cell(solid, tuple(args.tools), motion, gains, args.seed)
+        for gains in args.gains
+        for motion in args.motions
+        for solid in args.solids
+        if find_mesh(solid) is not None
+    ]
+    rows = []
+    print(*TITLES, sep="  ", flush=True)
+    with ProcessPoolExecutor(args.jobs) as pool:
+        for cell, verdicts in _run(pool, cells, args.points):
+            rows.append(row(cell, verdicts.values()))
+            print(*rows[-1], sep="  ", flush=True)
+            if args.failures:
+                _note(args.failures, cell, verdicts)
+    if args.write:
+        rows.sort(key=lambda texts: (texts[2], texts[1], texts[0]))
+        write_page(rows, args.points, args.tools, args.seed)
+
+
+def _run(
+    pool: ProcessPoolExecutor, cells: list[Cell], points: int
+) -> Iterator[tuple[Cell, dict[int, Verdict]]]:
+    """Yields each cell when all its points are done."""
+    chunks = [range(i, min(i + CHUNK, points)) for i in range(0, points, CHUNK)]
+    jobs = {pool.submit(_chunk, c, chunk): c for c in cells for chunk in chunks}
+    found: dict[Cell, dict[int, Verdict]] = {cell: {} for cell in cells}
+    for done, job in enumerate(as_completed(jobs), 1):
+        cell = jobs[job]
+        found[cell].update(job.result())
+        if sys.stderr.isatty():
+            print(f"\r{done}/{len(jobs)}", end="\r", file=sys.stderr)
+        if len(found[cell]) == points:
+            yield cell, found.pop(cell)
+
+
+def _chunk(cell: Cell, points: range) -> dict[int, Verdict]:
+    return dict(run_points(cell, points))
+
+
+def _note(path: Path, cell: Cell, verdicts: dict[int, Verdict]) -> None:
+    with path.open("a") as file:
+        for i, verdict in sorted(verdicts.items()):
+            why = complaints(verdict, GAINS[cell.gains])
+            if why:
+                tool = cell.tools[i % len(cell.tools)]
+                print(
+                    f"{cell.solid} {tool} {cell.motion} {cell.gains} "
+                    f"seed {cell.seed} point {i}: {why}",
+                    file=file,
+                )
 
 
 if __name__ == "__main__":

@@ -1,0 +1,120 @@
+"""docs/no-fall-through.md: the press table as a page, and how it is read."""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections.abc import Sequence
+from pathlib import Path
+
+from press_cells import TITLES
+from press_rig import GAINS, HOLD_S, LARGEST_FORCE_N, START_M
+
+PAGE = Path(__file__).parents[2] / "docs" / "no-fall-through.md"
+COMMAND = "python tests/characterization/press_table.py"
+
+_TEXT = """\
+# No fall-through
+
+Pressed or jabbed anywhere onto a closed solid, a tool never loses contact while the two
+overlap, and no contact pushes it further in. With the default gains, which carry the
+device's largest force before the shapes touch, none gets through. This page is written
+by
+
+    {command}
+
+Each row is one solid under one motion, at {points} random points of its surface (seed
+{seed}) and in random orientations; point i is met by tool i modulo {tool_count} of
+{tools}. The handle comes from {start:.0f} mm outside
+along the normal, at 0.1 m/s until the coupling carries {force:g} N, the largest of the
+device (press), or at 0.5 m/s to 10 mm inside the surface (jab); it rests {hold:g} s and
+goes back the way it came. The core's own loop runs (contacts, clusters, penalty, coupling, rigid tool at 1 kHz); what
+happened is judged by the solid's triangles alone (`tests/press_verdict.py`).
+
+| gains | tolerance | stiffness | {force:g} N are carried |
+|---|---|---|---|
+{gains}
+
+- **met**: presses that touched the solid. Some points have no room for the tool.
+- **lost**: presses with a tick on which tool and solid overlap and nothing pushes.
+- **inward**: presses with a contact whose normal enters the surface at the solid's
+  feature.
+- **through**: the tool's foremost point ended beyond the far side. Tools that sink in
+  slip around rims and knife edges that are thinner than they sink: contact is kept, but
+  the way out is no longer the way in.
+- **hooked**: after the retreat the tool was more than 1 mm from the handle, with room
+  for it there: it had slipped behind an edge.
+- **NaN**: a force or a pose that was not finite.
+- **energy**: the contact gave more than the largest force stores in its spring.
+- **deepest mm**: the deepest contact of all; negative where the spring answered before
+  the shapes touched.
+- **distance jumps ‰**: ticks of contact, in a thousand, on which the least distance
+  changed by more than twice the tool's motion. **turns ‰**: on which a pair of pieces
+  in depth turned its normal by over 60°. **force jumps ‰**: on which the force changed
+  by more than three times what the motion explains, and 0.1 N. **of clusters ‰**: those
+  on which no contact jumped, so that the clustering did it. **largest N**: the largest
+  such change.
+
+{rows}
+
+Taken on {machine}; nothing here is a time.
+"""
+
+
+def write_page(
+    rows: Sequence[Sequence[str]], points: int, tools: Sequence[str], seed: int
+) -> None:
+    """Writes the page.
+
+    Args:
+        rows: Of press_cells.row.
+        points: Of each row.
+        tools: That met them in turn.
+        seed: Of the points.
+    """
+    gains = [
+        f"| {name} | {1e3 * g.tolerance_m:g} mm | {g.stiffness_N_per_m:g} N/m | "
+        + _carried(LARGEST_FORCE_N / g.stiffness_N_per_m - g.tolerance_m)
+        for name, g in GAINS.items()
+        if any(row[2] == name for row in rows)
+    ]
+    lines = [_line(TITLES), "|" + "---|" * len(TITLES), *map(_line, rows)]
+    PAGE.write_text(
+        _TEXT.format(
+            command=f"{COMMAND} --points {points} --jobs 3 --write",
+            points=f"{points:,}",
+            seed=seed,
+            tool_count=len(tools),
+            tools=", ".join(tools),
+            start=1e3 * START_M,
+            force=LARGEST_FORCE_N,
+            hold=HOLD_S,
+            gains="\n".join(gains),
+            rows="\n".join(lines),
+            machine=f"{platform.machine()}, {os.cpu_count()} cores",
+        ),
+        encoding="utf-8",
+    )
+
+
+def read_rows() -> list[dict[str, str]]:
+    """The page's rows by title."""
+    lines = PAGE.read_text(encoding="utf-8").splitlines()
+    start = lines.index(_line(TITLES)) + 2
+    rows = []
+    for line in lines[start:]:
+        if not line.startswith("|"):
+            break
+        rows.append(
+            dict(zip(TITLES, map(str.strip, line.split("|")[1:-1]), strict=True))
+        )
+    return rows
+
+
+def _line(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cells) + " |"
+
+
+def _carried(depth_m: float) -> str:
+    where = "inside" if depth_m > 0 else "before the shapes touch"
+    return f"{abs(1e3 * depth_m):.2g} mm {where} |"
