@@ -28,8 +28,9 @@ Each row is one solid under one motion, at {points} random points of its surface
 {tools}. The handle comes from {start:.0f} mm outside
 along the normal, at 0.1 m/s until the coupling carries {force:g} N, the largest of the
 device (press), or at 0.5 m/s to 10 mm inside the surface (jab); it rests {hold:g} s and
-goes back the way it came. The core's own loop runs (contacts, clusters, penalty, coupling, rigid tool at 1 kHz); what
-happened is judged by the solid's triangles alone (`tests/press_verdict.py`).
+goes back the way it came. The core's own loop runs (contacts, clusters, penalty,
+coupling, rigid tool at 1 kHz); what happened is judged by the solid's triangles alone
+(`tests/press_verdict.py`).
 
 | gains | tolerance | stiffness | {force:g} N are carried |
 |---|---|---|---|
