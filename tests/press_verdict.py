@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from press_continuity import Jumps, count_jumps
 from press_rig import LARGEST_FORCE_N, PERIOD_S, Gains, Press, Tick, run_press
-from press_tools import TOOL_MASS_KG, PressTool
+from press_tools import PressTool
 from solid_surface import Overlap, Surface, rotation_of
 
 from drake_haptics import _core
@@ -36,8 +36,6 @@ class Verdict:
         depth_m: Largest depth of any contact.
         shallow: Deepest contact at rest over how deep the innermost vertex was.
         jumps: Where contacts and their force jumped, until the retreat.
-        rest_J: Largest kinetic energy in the last 0.1 s of the hold.
-        drift_m: How far the tool wandered then.
         finite: No NaN, no Inf.
         made_tick: Until when most energy was made.
     """
@@ -51,8 +49,6 @@ class Verdict:
     depth_m: float = 0.0
     shallow: float = 1.0
     jumps: Jumps = field(default_factory=Jumps)
-    rest_J: float = 0.0
-    drift_m: float = 0.0
     finite: bool = True
     made_tick: int = -1
 
@@ -85,7 +81,7 @@ def judge(
     verdict.jumps = count_jumps(
         [t for t, on in zip(ticks, pressed, strict=True) if on], tool, gains
     )
-    _judge_rest(verdict, ticks, tool, solid)
+    _judge_depth(verdict, ticks, tool, solid)
     verdict.depth_m = max(-float(min(t.contacts.distance, default=0)) for t in ticks)
     probe = np.array([rotation_of(s) @ press.p_TP + s[4:7] for s in states[pressed]])
     # Springs as soft as some let the tool sink through a thin wall.
@@ -149,15 +145,11 @@ def _judge_energy(
     verdict.made_J = float(rise.max())
 
 
-def _judge_rest(
+def _judge_depth(
     verdict: Verdict, ticks: list[Tick], tool: PressTool, solid: Surface
 ) -> None:
-    rest = [t for t in ticks if t.phase == "hold"][-100:]
-    states = np.array([t.state for t in rest])
-    speed = np.linalg.norm(states[:, 10:], axis=1)
-    verdict.rest_J = float(0.5 * TOOL_MASS_KG * (speed**2).max())
-    verdict.drift_m = float(np.ptp(states[:, 4:7], axis=0).max())
-    R, p = rotation_of(states[-1]), states[-1, 4:7]
+    last = [t for t in ticks if t.phase == "hold"][-1]
+    R, p = rotation_of(last.state), last.state[4:7]
     inner = solid.inner_depth(tool.mesh.vertices @ R.T + p)
     if inner > _LEAST_DEPTH_M:
-        verdict.shallow = -float(min(rest[-1].contacts.distance, default=0.0)) / inner
+        verdict.shallow = -float(min(last.contacts.distance, default=0.0)) / inner
