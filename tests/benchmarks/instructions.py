@@ -3,9 +3,9 @@
 python tests/benchmarks/instructions.py [KIND ...]
 
 Needs valgrind. Each figure is the difference between a run of the trajectory and one
-of it 301 times, so that starting Python cancels; what a pose costs in
-`query_trajectory` around the query (two readings of the clock) is in it. Each press
-is cut at first and last touch: apart and in depth are counted by themselves, warm.
+of it 301 times, so that starting Python cancels, less that of two single points, so
+that checking the poses and reading the clock do. Each press is cut at first and last
+touch: apart and in depth are counted by themselves, warm.
 """
 
 from __future__ import annotations
@@ -37,11 +37,18 @@ for _ in range(int(sys.argv[2])):
 
 
 def count(pair: PairShape, X_WA: np.ndarray) -> float:
-    """Returns instructions per pose, going there and back so that it stays warm."""
+    """Returns instructions per query, going there and back so that it stays warm."""
+    point = np.zeros((1, 3))
+    return _per_pose(pair.A_vertices, pair.B_vertices, X_WA) - _per_pose(
+        point, point, X_WA
+    )
+
+
+def _per_pose(A: np.ndarray, B: np.ndarray, X_WA: np.ndarray) -> float:
     there_and_back = np.concatenate([X_WA, X_WA[::-1]])
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "poses.npz"
-        np.savez(file, A=pair.A_vertices, B=pair.B_vertices, X_WA=there_and_back)
+        np.savez(file, A=A, B=B, X_WA=there_and_back)
         few, many = (_instructions(file, passes) for passes in (1, 1 + _MORE))
     return (many - few) / (_MORE * len(there_and_back))
 
