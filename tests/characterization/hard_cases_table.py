@@ -22,7 +22,8 @@ LIBRARIES = {
     "Drake": Library(with_drake),
 }
 COLUMNS = " | ".join(f"{name}: wrong | gross | worst error" for name in LIBRARIES)
-HEADER = f"| case | poses | {COLUMNS} |\n|---|--:|{'--:|--:|--:|' * len(LIBRARIES)}\n"
+RULES = "--:|" * (2 + 3 * len(LIBRARIES))
+HEADER = f"| case | poses | local | {COLUMNS} |\n|---|{RULES}\n"
 
 
 def cells(score: Score) -> list[str]:
@@ -35,7 +36,8 @@ def cells(score: Score) -> list[str]:
 def row(name: str, scores: dict[str, Score]) -> str:
     """A case's line of the table."""
     coal = scores["coal"]
-    line = [name, str(coal.asked + coal.refused)]
+    local = str(scores["tracked"].not_global)
+    line = [name, str(coal.asked + coal.refused), local]
     for library in scores:
         line += cells(scores[library])
     return f"| {' | '.join(line)} |\n"
