@@ -1,22 +1,24 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "contact.h"
 #include "decomposition.h"
-#include "piece_tree.h"
-#include "surface_pair.h"
+#include "tracked_object.h"
 #include "types.h"
+#include "wake_times.h"
 
 namespace drake_haptics {
 
 /// Finds all contacts between a moving tool and many objects, tick after tick,
 /// each starting from the last tick's answer (paper, sections 3 and 5.3.2).
-/// Copies are independent and keep what was learnt.
+/// An object costs nothing while the motion since it was last looked at cannot
+/// have brought it within reach. Copies are independent and keep what was
+/// learnt.
 class ContactTracker {
  public:
+  /// Objects that share a decomposition share its tree.
   /// @param tolerance contacts up to this distance (m) are reported.
   /// @throws std::invalid_argument if it is negative or not finite, or if a
   ///         decomposition is missing.
@@ -27,7 +29,8 @@ class ContactTracker {
   int num_objects() const { return static_cast<int>(objects_.size()); }
   double tolerance() const { return tolerance_; }
 
-  /// Poses object i. @throws std::out_of_range, std::invalid_argument.
+  /// Poses object i; the pose that it has costs nothing.
+  /// @throws std::out_of_range, std::invalid_argument.
   void SetObjectPose(int i, const Pose& X_WO);
 
   /// Writes the contacts at the tool's pose to `out`, reusing its memory.
@@ -39,34 +42,30 @@ class ContactTracker {
   void Reset();
 
  private:
-  // What is remembered of a pair of pieces that is or was within reach.
-  struct TrackedPair {
-    PiecePair pieces;
-    PairState state;
-  };
-
   struct Object {
-    std::shared_ptr<const Decomposition> decomposition;
-    std::shared_ptr<const PieceTree> tree;
+    TrackedObject tracked;
     Pose X_WO;
-    Pose X_AB;  // at the last query: the object in the tool's frame
-    std::vector<TrackedPair> tracked;     // sorted by pieces
-    std::vector<PressedContact> pressed;  // last tick's, in the object's frame
+    Pose last_X_WO;  // at the last query
+    bool has_moved = false;
+    // What its own odometer is ahead of the tool's, by its own motion, m.
+    double ahead = 0;
   };
 
-  static void Forget(Object* object);
-  void QueryObject(int i, const Pose& X_WTool, ContactSet* out);
+  void QueryObject(int i, const Pose& X_WTool, const Motion& tool_motion,
+                   ContactSet* out);
 
-  std::shared_ptr<const Decomposition> tool_;
-  std::shared_ptr<const PieceTree> tool_tree_;
+  TreedShape tool_;
   std::vector<Object> objects_;
   double tolerance_;
-  double tool_radius_ = 0;  // of the tool about its origin, m
-  // Buffers, kept so that a warm query allocates nothing.
-  PairWorkspace workspace_;
-  std::vector<PiecePair> stack_, candidates_;
-  std::vector<TrackedPair> next_tracked_;
-  std::vector<PressedContact> pressed_;
+  double teleport_;    // m; longer motions forget the contacts
+  Vec3 middle_;        // of the tool, in its frame, m
+  double radius_;      // of the tool about its middle, m
+  Pose last_X_WTool_;  // at the last query
+  bool is_first_ = true;
+  double odometer_ = 0;   // of the tool in the world, m
+  WakeTimes wake_times_;  // of the objects, by the tool's odometer
+  std::vector<int> awake_;
+  TrackerWorkspace workspace_;
 };
 
 }  // namespace drake_haptics

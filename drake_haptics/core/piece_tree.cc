@@ -20,23 +20,25 @@ Node Leaf(const Polytope& piece, int index) {
     high = high.cwiseMax(v);
   }
   Node node;
-  node.center = (low + high) / 2;
-  node.half = (high - low) / 2;
+  node.box.center = (low + high) / 2;
+  node.box.half = (high - low) / 2;
   node.piece = index;
   return node;
 }
 
 Node Merge(const Node& p, const Node& q) {
-  const Vec3 low = (p.center - p.half).cwiseMin(q.center - q.half);
-  const Vec3 high = (p.center + p.half).cwiseMax(q.center + q.half);
+  const Vec3 low =
+      (p.box.center - p.box.half).cwiseMin(q.box.center - q.box.half);
+  const Vec3 high =
+      (p.box.center + p.box.half).cwiseMax(q.box.center + q.box.half);
   Node node;
-  node.center = (low + high) / 2;
-  node.half = (high - low) / 2;
+  node.box.center = (low + high) / 2;
+  node.box.half = (high - low) / 2;
   return node;
 }
 
 double MergedArea(const Node& p, const Node& q) {
-  const Vec3 h = Merge(p, q).half;
+  const Vec3 h = Merge(p, q).box.half;
   return h.x() * h.y() + h.y() * h.z() + h.z() * h.x();
 }
 
@@ -64,14 +66,14 @@ std::uint64_t CurveKey(const Vec3& p, const Vec3& low, const Vec3& size) {
 
 // Indices of the leaves in the order of the curve.
 std::vector<int> CurveOrder(const std::vector<Node>& leaves) {
-  Vec3 low = leaves[0].center, high = low;
+  Vec3 low = leaves[0].box.center, high = low;
   for (const Node& leaf : leaves) {
-    low = low.cwiseMin(leaf.center);
-    high = high.cwiseMax(leaf.center);
+    low = low.cwiseMin(leaf.box.center);
+    high = high.cwiseMax(leaf.box.center);
   }
   std::vector<std::uint64_t> keys;
   for (const Node& leaf : leaves) {
-    keys.push_back(CurveKey(leaf.center, low, high - low));
+    keys.push_back(CurveKey(leaf.box.center, low, high - low));
   }
   std::vector<int> order(leaves.size());
   std::iota(order.begin(), order.end(), 0);
@@ -130,8 +132,6 @@ std::vector<int> MergeRound(const std::vector<int>& active,
   return next;
 }
 
-double Size(const Node& node) { return node.half.sum(); }
-
 }  // namespace
 
 PieceTree::PieceTree(std::span<const Polytope> pieces) {
@@ -141,46 +141,14 @@ PieceTree::PieceTree(std::span<const Polytope> pieces) {
     leaves.push_back(Leaf(pieces[i], static_cast<int>(i)));
   }
   nodes_.reserve(2 * leaves.size());
-  for (const int i : CurveOrder(leaves)) nodes_.push_back(leaves[i]);
+  leaf_of_.resize(leaves.size());
+  for (const int i : CurveOrder(leaves)) {
+    leaf_of_[i] = static_cast<int>(nodes_.size());
+    nodes_.push_back(leaves[i]);
+  }
   std::vector<int> active(nodes_.size());
   std::iota(active.begin(), active.end(), 0);
   while (active.size() > 1) active = MergeRound(active, &nodes_);
-}
-
-void CollectPairs(const PieceTree& A, const PieceTree& B, const Pose& X_AB,
-                  double tolerance, std::vector<PiecePair>* stack,
-                  std::vector<PiecePair>* pairs) {
-  if (A.empty() || B.empty()) return;
-  const Mat3& R = X_AB.R;
-  const Mat3 R_T = R.transpose();
-  const Mat3 reach = R.cwiseAbs();
-  const Mat3 reach_T = reach.transpose();
-  // Boxes are apart if one of their six face normals separates them.
-  const auto within = [&](const Node& a, const Node& b) {
-    const Vec3 c = X_AB * b.center - a.center;
-    const Vec3 on_A = a.half + reach * b.half;
-    if (((c.cwiseAbs() - on_A).array() > tolerance).any()) return false;
-    const Vec3 on_B = b.half + reach_T * a.half;
-    return !(((R_T * c).cwiseAbs() - on_B).array() > tolerance).any();
-  };
-  stack->clear();
-  stack->push_back({A.root(), B.root()});
-  while (!stack->empty()) {
-    const PiecePair top = stack->back();
-    stack->pop_back();
-    const Node& a = A.node(top.a);
-    const Node& b = B.node(top.b);
-    if (!within(a, b)) continue;
-    if (a.is_leaf() && b.is_leaf()) {
-      pairs->push_back({a.piece, b.piece});
-    } else if (b.is_leaf() || (!a.is_leaf() && Size(a) >= Size(b))) {
-      stack->push_back({a.left, top.b});
-      stack->push_back({a.right, top.b});
-    } else {
-      stack->push_back({top.a, b.left});
-      stack->push_back({top.a, b.right});
-    }
-  }
 }
 
 }  // namespace drake_haptics

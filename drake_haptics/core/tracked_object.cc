@@ -1,0 +1,206 @@
+#include "tracked_object.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+namespace drake_haptics {
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
+                          std::vector<Contact>* out) {
+  double deepest = 0;
+  for (PressedContact& last : pressed_) {
+    last.Advance(tick.X_AB, tick.last_X_AB);
+    deepest = std::max(deepest, -last.distance);
+  }
+  // Where the tool presses, pieces beside may take over from as far as it is
+  // deep.
+  const double reach = tick.tolerance + deepest;
+  const PosedBoxes boxes(tick.X_AB);
+  const PairFront::Tick front_tick{*tick.tool.tree, *shape_.tree, boxes,
+                                   tick.odometer, reach};
+  workspace->entered.clear();
+  front_.Advance(front_tick, &workspace->entered);
+  if (!workspace->entered.empty()) Admit(tick.tolerance, &workspace->entered);
+
+  workspace->pressed.clear();
+  const std::size_t first = out->size();
+  AskPairsInContact(tick, workspace, out);
+  double least_slack = kForever;
+  auto kept = watched_.begin();
+  for (auto pair = watched_.begin(); pair != watched_.end(); ++pair) {
+    if (!pair->was_in_contact &&
+        !Tend(tick, front_tick, workspace, &*pair, out)) {
+      free_states_.push_back(pair->state);
+      continue;
+    }
+    least_slack = std::min(least_slack, pair->slack);
+    if (kept != pair) *kept = *pair;
+    ++kept;
+  }
+  watched_.erase(kept, watched_.end());
+  std::sort(out->begin() + static_cast<std::ptrdiff_t>(first), out->end(),
+            [](const Contact& p, const Contact& q) {
+              return std::tie(p.piece_A, p.piece_B) <
+                     std::tie(q.piece_A, q.piece_B);
+            });
+  is_first_ = false;
+  // Copied, so that each object keeps the memory that it has needed.
+  pressed_.assign(workspace->pressed.begin(), workspace->pressed.end());
+  quiet_until_ = least_slack > 0 ? std::min(tick.odometer + least_slack,
+                                            front_.mark() - tick.tolerance)
+                                 : -kForever;
+}
+
+// Takes the motion off each pair's slack and asks the pairs that were in
+// contact: where the tool goes on pressing on the same pieces, no others are
+// needed. A pair in contact stays under watch, since the tool may have passed
+// behind a shallow piece, out of the reach of its box.
+void TrackedObject::AskPairsInContact(const Tick& tick,
+                                      TrackerWorkspace* workspace,
+                                      std::vector<Contact>* out) {
+  // What the tool moved while there was nothing to be found here.
+  const double missed = tick.odometer - tick.step - odometer_;
+  odometer_ = tick.odometer;
+  int piece = -1;
+  double motion = 0;
+  for (WatchedPair& pair : watched_) {
+    if (pair.pieces.a != piece) {
+      piece = pair.pieces.a;
+      const Polytope& A = tick.tool.decomposition->pieces[piece];
+      motion = tick.motion.Bound(A.centroid, A.radius);
+    }
+    pair.slack -= missed + motion;
+    pair.was_in_contact = states_[pair.state].in_contact;
+    if (pair.was_in_contact) Ask(tick, workspace, &pair, out);
+  }
+}
+
+// Whether the tool pressed here on other pieces, and does no more.
+bool TrackedObject::MayTakeOver(const Tick& tick,
+                                const PiecePair& pieces) const {
+  return std::any_of(
+      pressed_.begin(), pressed_.end(), [&](const PressedContact& last) {
+        return !last.is_kept &&
+               last.IsNear(tick.tool.decomposition->pieces[pieces.a],
+                           shape_.decomposition->pieces[pieces.b]);
+      });
+}
+
+// Merges the pairs into those under watch, from behind and in place.
+void TrackedObject::Admit(double tolerance, std::vector<EnteredPair>* entered) {
+  const auto by_pieces = [](const auto& p, const auto& q) {
+    return p.pieces < q.pieces;
+  };
+  std::sort(entered->begin(), entered->end(), by_pieces);
+  auto old = static_cast<std::ptrdiff_t>(watched_.size()) - 1;
+  watched_.resize(watched_.size() + entered->size());
+  auto place = watched_.rbegin();
+  for (auto added = entered->rbegin(); added != entered->rend(); ++place) {
+    if (old >= 0 && by_pieces(*added, watched_[old])) {
+      *place = watched_[old--];
+    } else {
+      *place = {added->pieces, added->node, added->gap - tolerance, NewState()};
+      ++added;
+    }
+  }
+}
+
+int TrackedObject::NewState() {
+  if (free_states_.empty()) {
+    states_.emplace_back();
+    return static_cast<int>(states_.size()) - 1;
+  }
+  const int state = free_states_.back();
+  free_states_.pop_back();
+  states_[state] = {};
+  return state;
+}
+
+// Asks the pair unless it is sure to have no contact. Returns whether it stays
+// under watch.
+bool TrackedObject::Tend(const Tick& tick, const PairFront::Tick& front_tick,
+                         TrackerWorkspace* workspace, WatchedPair* pair,
+                         std::vector<Contact>* out) {
+  const bool may_take_over = MayTakeOver(tick, pair->pieces);
+  if (pair->slack > 0 && !may_take_over) return true;
+  PairState& state = states_[pair->state];
+  if (!may_take_over && state.n.squaredNorm() > 0) {
+    // Last tick's normal often still proves that the pair is out of reach.
+    const double gap =
+        SupportGap(Posed(tick, pair->pieces), state.n, &state.hub);
+    pair->slack = gap - tick.tolerance;
+    if (pair->slack > 0) return true;
+  }
+  const double gap =
+      front_tick.boxes.Gap(tick.tool.tree->box_of(pair->pieces.a),
+                           shape_.tree->box_of(pair->pieces.b));
+  if (gap > front_tick.reach) {
+    front_.Return(pair->node, gap, tick.odometer);
+    return false;
+  }
+  Ask(tick, workspace, pair, out);
+  return true;
+}
+
+void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
+                        WatchedPair* pair, std::vector<Contact>* out) {
+  SurfaceRequest request;
+  request.tolerance = tick.tolerance;
+  request.last_X_AB = tick.last_X_AB;
+  request.pressed = pressed_;
+  PairState& state = states_[pair->state];
+  const int last_press = state.press;
+  const auto answer =
+      QuerySurfacePair(Posed(tick, pair->pieces),
+                       {tick.tolerance, is_first_, tick.last_X_AB, pressed_},
+                       &state, &workspace->pair);
+  pair->slack = 0;
+  state.press = -1;
+  if (!answer) return;
+  if (answer->distance < 0) {
+    if (last_press >= 0 && state.is_settled)
+      pressed_[last_press].is_kept = true;
+    state.press = static_cast<int>(workspace->pressed.size());
+    PressedContact press;
+    press.distance = answer->distance;
+    press.n = tick.X_AB.R.transpose() * answer->n;
+    press.p_b = tick.X_AB.inverse() * answer->p_b;
+    workspace->pressed.push_back(press);
+  }
+  Contact contact = InWorld(*answer, tick.X_WA);
+  contact.piece_A = pair->pieces.a;
+  contact.piece_B = pair->pieces.b;
+  out->push_back(contact);
+}
+
+PosedPair TrackedObject::Posed(const Tick& tick,
+                               const PiecePair& pieces) const {
+  return {tick.tool.decomposition->pieces[pieces.a],
+          shape_.decomposition->pieces[pieces.b], tick.X_AB};
+}
+
+void TrackedObject::ForgetContacts() {
+  for (WatchedPair& pair : watched_) {
+    states_[pair.state] = {};
+    pair.slack = 0;
+  }
+  pressed_.clear();
+  is_first_ = true;
+}
+
+void TrackedObject::Reset() {
+  watched_.clear();
+  states_.clear();
+  free_states_.clear();
+  pressed_.clear();
+  front_.Clear();
+  is_first_ = true;
+}
+
+}  // namespace drake_haptics

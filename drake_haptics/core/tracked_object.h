@@ -1,0 +1,96 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "contact.h"
+#include "decomposition.h"
+#include "motion.h"
+#include "pair_front.h"
+#include "piece_tree.h"
+#include "surface_pair.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+/// A decomposition with the tree over its pieces; shared by all that use it.
+struct TreedShape {
+  std::shared_ptr<const Decomposition> decomposition;
+  std::shared_ptr<const PieceTree> tree;
+};
+
+/// Buffers of a tick, kept so that a warm one allocates nothing.
+struct TrackerWorkspace {
+  PairWorkspace pair;
+  std::vector<EnteredPair> entered;
+  std::vector<PressedContact> pressed;
+};
+
+/// One object that the tool may touch: which pairs of pieces are within reach,
+/// and what is known of each. Copies are independent and keep what was learnt.
+class TrackedObject {
+ public:
+  struct Tick {
+    const TreedShape& tool;
+    double tolerance;       ///< contacts up to this distance (m) are reported
+    const Pose& X_WA;       ///< the tool in the world
+    const Pose& X_AB;       ///< the object in the tool's frame
+    const Pose& last_X_AB;  ///< at the last tick
+    const Motion& motion;   ///< of the tool since then, seen from the object
+    double step;            ///< bound of it for all points of the tool, m
+    double odometer;        ///< all such steps added up, this one included, m
+  };
+
+  explicit TrackedObject(TreedShape shape) : shape_(std::move(shape)) {}
+
+  /// Appends the contacts to `out`, ordered by pieces, the object's index left
+  /// at zero.
+  void Query(const Tick& tick, TrackerWorkspace* workspace,
+             std::vector<Contact>* out);
+
+  /// The odometer up to which there is nothing to be found.
+  double quiet_until() const { return quiet_until_; }
+
+  /// Forgets contacts and what is known of pairs, but not where they are.
+  void ForgetContacts();
+
+  /// Forgets everything.
+  void Reset();
+
+ private:
+  // A pair of pieces whose boxes are near, or which is in contact.
+  struct WatchedPair {
+    PiecePair pieces;
+    int node;  // in the front
+    // The motion of the tool's piece for which the pair is sure to stay apart
+    // by more than the tolerance, m.
+    double slack;
+    int state;  // its place in states_
+    bool was_in_contact = false;
+  };
+
+  void Admit(double tolerance, std::vector<EnteredPair>* entered);
+  bool Tend(const Tick& tick, const PairFront::Tick& front_tick,
+            TrackerWorkspace* workspace, WatchedPair* pair,
+            std::vector<Contact>* out);
+  void AskPairsInContact(const Tick& tick, TrackerWorkspace* workspace,
+                         std::vector<Contact>* out);
+  bool MayTakeOver(const Tick& tick, const PiecePair& pieces) const;
+  int NewState();
+  void Ask(const Tick& tick, TrackerWorkspace* workspace, WatchedPair* pair,
+           std::vector<Contact>* out);
+  PosedPair Posed(const Tick& tick, const PiecePair& pieces) const;
+
+  TreedShape shape_;
+  PairFront front_;
+  std::vector<WatchedPair> watched_;  // sorted by pieces
+  std::vector<PairState> states_;
+  std::vector<int> free_states_;
+  std::vector<PressedContact> pressed_;  // last tick's
+  double odometer_ = 0;                  // at the last tick, m
+  double quiet_until_ = 0;
+  bool is_first_ = true;  // nothing is known of an earlier tick
+};
+
+}  // namespace drake_haptics
