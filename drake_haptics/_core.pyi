@@ -382,12 +382,12 @@ class PairTrajectory:
 
 class ConvexPair:
     """
-    Signed distance of two convex polytopes A and B, each query starting from the last one's answer. Apart it is the distance of the closest features. In overlap it is minus the penetration depth: `tracked` walks from the last answer to the locally least way out (paper, 5.2), and so does not pop through a thin plate.
+    Signed distance of two convex polytopes A and B, each query starting from the last one's answer. Apart it is the distance of the closest features. In overlap it is minus the penetration depth: `tracked` walks from the last answer to the locally least way out (paper, 5.2), and so does not pop through a thin plate; `global` is the least way out of all, exact and proven.
 
     A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector [qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt as it is. Threads that share a pair take turns.
     """
 
-    def __init__(self, A: ConvexPolytope, B: ConvexPolytope, depth: Literal['tracked'] = 'tracked') -> None:
+    def __init__(self, A: ConvexPolytope, B: ConvexPolytope, depth: Literal['tracked', 'global'] = 'tracked') -> None:
         """
         Pairs two `ConvexPolytope`.
 
@@ -400,6 +400,10 @@ class ConvexPair:
 
     @property
     def B(self) -> ConvexPolytope: ...
+
+    @property
+    def depth(self) -> str:
+        """'tracked' or 'global'."""
 
     def query(self, X_WA: drake_haptics.pose_like.PoseLike, X_WB: drake_haptics.pose_like.PoseLike) -> Contact:
         """

@@ -30,12 +30,14 @@ PolytopePtr ToPolytope(nb::handle value, const char* name) {
   return polytope;
 }
 
-void RequireTracked(nb::handle depth) {
+bool IsGlobal(nb::handle depth) {
   std::string name;
-  if (!nb::try_cast(depth, name) || name != "tracked") {
-    throw std::invalid_argument("depth must be 'tracked', got " +
-                                nb::cast<std::string>(nb::repr(depth)));
+  if (nb::try_cast(depth, name)) {
+    if (name == "tracked") return false;
+    if (name == "global") return true;
   }
+  throw std::invalid_argument("depth must be 'tracked' or 'global', got " +
+                              nb::cast<std::string>(nb::repr(depth)));
 }
 
 // The contact of a pair at each pose of a trajectory.
@@ -48,17 +50,20 @@ struct PairTrajectory {
 class ConvexPair {
  public:
   ConvexPair(nb::handle A, nb::handle B, nb::handle depth)
-      : A_(ToPolytope(A, "A")), B_(ToPolytope(B, "B")) {
-    RequireTracked(depth);
-  }
+      : A_(ToPolytope(A, "A")),
+        B_(ToPolytope(B, "B")),
+        is_global_(IsGlobal(depth)) {}
 
-  ConvexPair(const ConvexPair& other) : A_(other.A_), B_(other.B_) {
+  ConvexPair(const ConvexPair& other)
+      : A_(other.A_), B_(other.B_), is_global_(other.is_global_) {
     const Turn turn(&other.mutex_, Turn::Gil::kHold);
     state_ = other.state_;
+    global_ = other.global_;
   }
 
   const PolytopePtr& A() const { return A_; }
   const PolytopePtr& B() const { return B_; }
+  const char* depth() const { return is_global_ ? "global" : "tracked"; }
 
   Contact Query(nb::handle X_WA_value, nb::handle X_WB_value) {
     const Pose X_WA = ToPose(X_WA_value, "X_WA");
@@ -84,16 +89,21 @@ class ConvexPair {
   void Reset() {
     const Turn turn(&mutex_, Turn::Gil::kHold);
     state_ = {};
+    global_.Reset();
   }
 
  private:
   Contact Answer(const Pose& X_WA, const Pose& X_WB) {
     const PosedPair pair{*A_, *B_, RelativePose(X_WA, X_WB)};
-    return InWorld(QueryConvexPair(pair, &state_, &workspace_), X_WA);
+    return InWorld(QueryConvexPair(pair, &state_, &workspace_,
+                                   is_global_ ? &global_ : nullptr),
+                   X_WA);
   }
 
   PolytopePtr A_, B_;
+  const bool is_global_;
   PairState state_;
+  GlobalDepthState global_;
   PairWorkspace workspace_;
   mutable std::mutex mutex_;
 };
@@ -132,18 +142,21 @@ void BindConvexPair(nb::module_& m) {
       "from the last one's answer. Apart it is the distance of the closest "
       "features. In overlap it is minus the penetration depth: `tracked` "
       "walks from the last answer to the locally least way out (paper, 5.2), "
-      "and so does not pop through a thin plate.\n\n"
+      "and so does not pop through a thin plate; `global` is the least way out "
+      "of all, exact and proven.\n\n"
       "A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector "
       "[qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt "
       "as it is. Threads that share a pair take turns.")
       .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("A").none(),
            nb::arg("B").none(), nb::arg("depth").none() = "tracked",
            nb::sig("def __init__(self, A: ConvexPolytope, B: ConvexPolytope, "
-                   "depth: typing.Literal['tracked'] = 'tracked') -> None"),
+                   "depth: typing.Literal['tracked', 'global'] = 'tracked') -> "
+                   "None"),
            "Pairs two `ConvexPolytope`.\n\n"
            "Raises:\n    ValueError: not polytopes, or no such depth.")
       .def_prop_ro("A", &ConvexPair::A)
       .def_prop_ro("B", &ConvexPair::B)
+      .def_prop_ro("depth", &ConvexPair::depth, "'tracked' or 'global'.")
       .def("query", &ConvexPair::Query, nb::arg("X_WA").none(),
            nb::arg("X_WB").none(),
            nb::sig("def query(self, X_WA: drake_haptics.pose_like.PoseLike, "
@@ -167,8 +180,8 @@ void BindConvexPair(nb::module_& m) {
            [](const ConvexPair& self, nb::handle) { return ConvexPair(self); })
       .def("__copy__", [](const ConvexPair& self) { return ConvexPair(self); })
       .def("__repr__", [](const ConvexPair& self) {
-        return nb::str("ConvexPair({}, {}, depth='tracked')")
-            .format(nb::cast(self.A()), nb::cast(self.B()));
+        return nb::str("ConvexPair({}, {}, depth='{}')")
+            .format(nb::cast(self.A()), nb::cast(self.B()), self.depth());
       });
 }
 

@@ -22,13 +22,8 @@ class ContactPassage {
   /// Whether a contact of the last tick on other pieces goes on in it.
   bool IsHandedOver(const DepthCandidate& facet) const;
 
-  /// Whether both pieces are where that contact was.
-  bool IsNear(const PressedContact& last) const;
-
  private:
   bool Follows(const DepthCandidate& facet, const PressedContact& last) const;
-  double Motion(const Vec3& p_B) const;
-
   const PosedPair& pair_;
   const SurfaceRequest& request_;
   const PairState& state_;

@@ -1,11 +1,13 @@
 #include "convex_pair.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <limits>
 
 #include "facet_revisit.h"
 #include "pair_answer.h"
 #include "separation.h"
+#include "witness.h"
 
 namespace drake_haptics {
 namespace {
@@ -21,8 +23,9 @@ constexpr int kNoPromotion = 1;
 
 class Query {
  public:
-  Query(const PosedPair& pair, PairState* state, PairWorkspace* workspace)
-      : pair_(pair), state_(*state), workspace_(*workspace) {}
+  Query(const PosedPair& pair, PairState* state, PairWorkspace* workspace,
+        GlobalDepthState* global)
+      : pair_(pair), state_(*state), workspace_(*workspace), global_(global) {}
 
   PairContact Run() {
     PairContact contact = Answer();
@@ -38,11 +41,9 @@ class Query {
         ComputeSeparation(pair_, state_.simplex, kInfinity);
     state_.simplex = separation.simplex;
     const bool is_apart = separation.status == SeparationStatus::kApart;
-    if (is_apart && separation.is_proven &&
-        separation.distance >= kJoinShare * pair_.scale()) {
-      return Apart(separation);
-    }
-    return Touching(separation, is_apart);
+    return is_apart && !AreBothWanted(pair_, separation)
+               ? Apart(separation)
+               : Touching(separation, is_apart);
   }
 
   // Overlapping, or apart by so little that both answers are wanted.
@@ -54,7 +55,11 @@ class Query {
       const double gap = SupportGap(pair_, separation.n, &hub);
       if (!has_facet || depth.best.h <= gap) return Apart(separation);
     }
-    if (has_facet) return AtFacet(depth);
+    if (has_facet) {
+      PairContact contact = AtFacet(depth);
+      StayOnBodies(separation, &contact);
+      return contact;
+    }
     state_.feature_A = state_.feature_B = Feature();
     return ContactGrazing(pair_, separation, state_.n);
   }
@@ -76,9 +81,35 @@ class Query {
                               : ContactStatus::kPenetrating);
   }
 
+  // Where the bodies just touch, facets that only their planes share the touch
+  // with are as good as others; the closest points are on the bodies.
+  void StayOnBodies(const Separation& separation, PairContact* contact) {
+    const double touch = kLayerShare * pair_.scale();
+    if (std::abs(contact->distance) > touch ||
+        LateralOffset(pair_, contact->feature_A, contact->feature_B,
+                      {contact->p_a, contact->p_b}) <= touch) {
+      return;
+    }
+    contact->p_a = separation.p_a;
+    contact->p_b = separation.p_a - contact->distance * contact->n;
+  }
+
+  Depth FindDepth() {
+    const Depth local = FindLocalDepth();
+    if (global_ == nullptr || local.status == DepthStatus::kNoFacet) {
+      return local;
+    }
+    const GlobalDepth least = FindGlobalDepth(pair_, local, global_);
+    if (least.status == GlobalDepthStatus::kFlat) return local;
+    return {least.status == GlobalDepthStatus::kExact
+                ? DepthStatus::kLocalMinimum
+                : DepthStatus::kBounded,
+            least.facet, least.facet.h, least.hub};
+  }
+
   // On coherent motion the last facet mostly still is the answer, and one
   // comparison proves it.
-  Depth FindDepth() {
+  Depth FindLocalDepth() {
     if (state_.feature_A.is_none()) {
       return ColdDepth(pair_, SurfaceRule::kWholeBoundary, state_.n, state_.hub,
                        kNoPromotion, &workspace_.depth);
@@ -113,13 +144,15 @@ class Query {
   const PosedPair& pair_;
   PairState& state_;
   PairWorkspace& workspace_;
+  GlobalDepthState* const global_;  // null where the depth is tracked
 };
 
 }  // namespace
 
 PairContact QueryConvexPair(const PosedPair& pair, PairState* state,
-                            PairWorkspace* workspace) {
-  return Query(pair, state, workspace).Run();
+                            PairWorkspace* workspace,
+                            GlobalDepthState* global) {
+  return Query(pair, state, workspace, global).Run();
 }
 
 }  // namespace drake_haptics

@@ -13,17 +13,6 @@ constexpr double kNone = -std::numeric_limits<double>::infinity();
 // Bound on a whole walk, far above what any start needs.
 constexpr int kMaxHubs = 1024;
 
-int FirstVertex(const Polytope& P, Feature feature) {
-  switch (feature.kind()) {
-    case FeatureKind::kVertex:
-      return feature.index();
-    case FeatureKind::kEdge:
-      return P.edges[feature.index()].v0;
-    default:
-      return P.loop_of(feature.index())[0];
-  }
-}
-
 class Walk {
  public:
   Walk(const PosedPair& pair, SurfaceRule rule, int max_promotion_hubs,
@@ -69,8 +58,8 @@ class Walk {
     if (result.status == DepthStatus::kNoFacet) {
       result.status = DepthStatus::kLocalMinimum;
     }
-    result.hub = {FirstVertex(pair_.A, result.best.feature_A),
-                  FirstVertex(pair_.B, result.best.feature_B)};
+    result.hub = {pair_.A.first_vertex_of(result.best.feature_A),
+                  pair_.B.first_vertex_of(result.best.feature_B)};
     return result;
   }
 

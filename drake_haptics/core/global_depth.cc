@@ -17,7 +17,7 @@ constexpr double kEqualShare = 1e-13;
 constexpr double kCoplanarShare = 1e-11;
 // The last facet gives the normal while it is within this share of the size of
 // the shallowest one.
-constexpr double kKeepShare = 1e-6;
+constexpr double kKeepShare = 1e-9;
 // Raises of a surface just grown. One that was kept may need a share of its
 // triangles raised; more, and growing it anew is cheaper.
 constexpr int kMaxRaises = 4096;

@@ -67,7 +67,7 @@ struct GlobalDepthState {
 /// van den Bergen, 2001, on a surface that need not stay convex). S is grown
 /// anew where that fails, for which the number of raises is bounded.
 ///
-/// A facet within a millionth of the size of the shallowest one stays the
+/// A facet within a billionth of the size of the shallowest one stays the
 /// answer while it is one, so that ties do not chatter; h is the true one.
 /// @param local a local minimum, an upper bound of the depth (WalkDepth).
 GlobalDepth FindGlobalDepth(const PosedPair& pair, const Depth& local,

@@ -24,7 +24,18 @@ bool IsBetter(const Depth& second, const Depth& first) {
   return second.best.h > first.best.h;
 }
 
+Depth WalkAlong(const PosedPair& pair, SurfaceRule rule, const Vec3& direction,
+                Hub hub, int max_promotion_hubs, DepthWorkspace* workspace) {
+  SupportGap(pair, direction, &hub);
+  return WalkDepth(pair, hub, rule, nullptr, max_promotion_hubs, workspace);
+}
+
 }  // namespace
+
+bool AreBothWanted(const PosedPair& pair, const Separation& separation) {
+  const double share = separation.is_proven ? 1e-9 : 1e-6;
+  return separation.distance < share * pair.scale();
+}
 
 PairContact ContactApart(const PosedPair& pair, const Separation& separation) {
   const Vec3& n = separation.n;
@@ -70,16 +81,19 @@ Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
                 DepthWorkspace* workspace) {
   Vec3 between = pair.A.centroid - pair.X_AB * pair.B.centroid;
   if (!(between.norm() > 1e-12 * pair.scale())) between = Vec3::UnitX();
-  Hub hub = hub_last;
-  SupportGap(pair, between, &hub);
-  const Depth first =
-      WalkDepth(pair, hub, rule, nullptr, max_promotion_hubs, workspace);
-  if (!(n_last.squaredNorm() > 0)) return first;
-  hub = hub_last;
-  SupportGap(pair, n_last, &hub);
-  const Depth second =
-      WalkDepth(pair, hub, rule, nullptr, max_promotion_hubs, workspace);
-  return IsBetter(second, first) ? second : first;
+  Depth best =
+      WalkAlong(pair, rule, between, hub_last, max_promotion_hubs, workspace);
+  if (n_last.squaredNorm() > 0) {
+    const Depth other =
+        WalkAlong(pair, rule, n_last, hub_last, max_promotion_hubs, workspace);
+    if (IsBetter(other, best)) best = other;
+  }
+  // Round-off can hide every facet from a hub.
+  for (int i = 0; i < 6 && best.status == DepthStatus::kNoFacet; ++i) {
+    const Vec3 axis = (i < 3 ? 1.0 : -1.0) * Vec3::Unit(i % 3);
+    best = WalkAlong(pair, rule, axis, hub_last, max_promotion_hubs, workspace);
+  }
+  return best;
 }
 
 }  // namespace drake_haptics

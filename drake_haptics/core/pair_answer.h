@@ -7,9 +7,11 @@
 
 namespace drake_haptics {
 
-/// Closer than this share of the size, distance and depth are both computed;
-/// the larger of the two support gaps is the answer.
-inline constexpr double kJoinShare = 1e-9;
+/// Whether a pair is apart by so little that distance and depth are both
+/// wanted, the larger of their support gaps being the answer: closer than a
+/// billionth of the size, or than a millionth where round-off leaves the
+/// distance unproven.
+bool AreBothWanted(const PosedPair& pair, const Separation& separation);
 
 /// The contact at the closest points of a pair that is apart.
 PairContact ContactApart(const PosedPair& pair, const Separation& separation);

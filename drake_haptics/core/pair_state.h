@@ -18,6 +18,9 @@ struct PairState {
   bool in_contact = false;
   double distance = 0;      ///< last contact's, m
   Vec3 p_b = Vec3::Zero();  ///< its witness point of B, in B's frame, m
+  /// The last contact was a depth, within its features' sides.
+  bool is_settled = false;
+  int press = -1;  ///< its place among the tick's pressed contacts, if any
 };
 
 /// Buffers of a query, kept between ticks so that a warm one allocates nothing.

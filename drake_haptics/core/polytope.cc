@@ -135,11 +135,16 @@ void AddFansAndRings(Polytope* P) {
   }
 }
 
-void AddBall(Polytope* P) {
+void AddBallAndBox(Polytope* P) {
   // Divided first, so that the sum of huge coordinates cannot overflow.
   for (const Vec3& v : P->vertices) P->centroid += v / P->num_vertices();
   for (const Vec3& v : P->vertices) {
     P->radius = std::max(P->radius, (v - P->centroid).norm());
+  }
+  P->low = P->high = P->vertices[0];
+  for (const Vec3& v : P->vertices) {
+    P->low = P->low.cwiseMin(v);
+    P->high = P->high.cwiseMax(v);
   }
 }
 
@@ -153,7 +158,7 @@ Polytope MakePolytope(std::span<const Vec3> points, const HullShape& shape) {
   AddEdges(&P);
   AddWings(&P);
   AddFansAndRings(&P);
-  AddBall(&P);
+  AddBallAndBox(&P);
   FillGaussTurns(&P);
   return P;
 }

@@ -77,9 +77,20 @@ struct Polytope {
 
   Vec3 centroid = Vec3::Zero();  ///< mean of the vertices
   double radius = 0;             ///< of the ball about the centroid, m
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< corners of its box, m
 
   int num_vertices() const { return static_cast<int>(vertices.size()); }
 
+  int first_vertex_of(Feature feature) const {
+    switch (feature.kind()) {
+      case FeatureKind::kVertex:
+        return feature.index();
+      case FeatureKind::kEdge:
+        return edges[feature.index()].v0;
+      default:
+        return loop_of(feature.index())[0];
+    }
+  }
   std::span<const Spoke> fan_of(int v) const {
     return {fan.data() + fan_start[v], fan.data() + fan_start[v + 1]};
   }

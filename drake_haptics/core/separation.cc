@@ -12,7 +12,7 @@ constexpr int kMaxRounds = 128;
 // The gap that ends the search, relative to the size of the pair.
 constexpr double kRelativeGap = 4e-16;
 // The gap, relative to the same size, up to which an answer counts as proven.
-constexpr double kProvenShare = 1e-12;
+constexpr double kProvenShare = 1e-10;
 // Below this share of the size the difference of the closest points carries
 // no direction any more.
 constexpr double kTouchingShare = 1e-13;
@@ -29,9 +29,40 @@ void Start(const PosedPair& pair, const SimplexHubs& start, Simplex* simplex) {
 }
 
 // The direction of the closest point: the normal of the features where three
-// vertices define it, which is exact to round-off however small the distance.
+// vertices define it, which is exact to round-off however small the distance,
+// and perpendicular to the segment of two.
 Vec3 Direction(const Simplex& simplex, const Vec3& closest, double length) {
-  return simplex.size == 3 ? simplex.normal.normalized() : closest / length;
+  if (simplex.size == 3) return simplex.normal.normalized();
+  if (simplex.size == 1) return closest / length;
+  const Vec3 along = simplex.points[1] - simplex.points[0];
+  const Vec3 n = closest / length;
+  return (n - along * (along.dot(n) / along.squaredNorm())).normalized();
+}
+
+// Where round-off tilts the direction, a facet beside the closest features may
+// carry a better one: nearly parallel faces leave a sliver between them.
+void Straighten(const PosedPair& pair, double scale, Separation* result) {
+  constexpr double kNearby = 0.999;  // cosine
+  const Vec3 v = result->simplex.Closest();
+  const Vec3 tilted = result->n;
+  Hub hub = result->simplex.hubs[0];
+  double best = SupportGap(pair, tilted, &hub);
+  const auto consider = [&](const Vec3& n) {
+    if (n.dot(tilted) < kNearby) return;
+    const double gap = SupportGap(pair, n, &hub);
+    if (!(gap > best)) return;
+    best = gap;
+    result->n = n;
+    result->distance = n.dot(v);
+    result->is_proven = result->distance - gap <= kProvenShare * scale;
+  };
+  for (int i = 0; i < result->simplex.size; ++i) {
+    const Hub corner = result->simplex.hubs[i];
+    for (const auto& spoke : pair.A.fan_of(corner.a)) consider(-spoke.normal);
+    for (const auto& spoke : pair.B.fan_of(corner.b)) {
+      consider(pair.X_AB.R * spoke.normal);
+    }
+  }
 }
 
 void SetClosestPoints(const PosedPair& pair, Separation* result) {
@@ -77,6 +108,9 @@ Separation Search(const PosedPair& pair, const SimplexHubs& start,
       break;
     }
     simplex = next;
+  }
+  if (result.status == SeparationStatus::kApart && !result.is_proven) {
+    Straighten(pair, scale, &result);
   }
   SetClosestPoints(pair, &result);
   return result;

@@ -25,6 +25,9 @@ constexpr double kComingFrom = -0.2;
 // How much deeper than the shallowest facet a new contact may be, as a share of
 // the tolerance.
 constexpr double kEntryShare = 0.25;
+// Cosine of the largest turn from the direction of the closest points to the
+// facet that takes their place.
+constexpr double kLargestPromotion = 0.5;
 // Cosine of the angle within which two normals count as one.
 constexpr double kSameNormal = 0.996;
 // Thickness of the layer between flush faces, as a share of the tolerance: thin
@@ -33,17 +36,6 @@ constexpr double kSpreadShare = 0.1;
 // How far beyond its features' sides a contact in depth may lie, as a share of
 // the size.
 constexpr double kSlideShare = 1e-2;
-
-int FirstVertex(const Polytope& polytope, Feature feature) {
-  switch (feature.kind()) {
-    case FeatureKind::kVertex:
-      return feature.index();
-    case FeatureKind::kEdge:
-      return polytope.edges[feature.index()].v0;
-    default:
-      return polytope.loop_of(feature.index())[0];
-  }
-}
 
 class Query {
  public:
@@ -56,6 +48,7 @@ class Query {
         workspace_(*workspace) {}
 
   std::optional<PairContact> Run() {
+    state_.is_settled = false;
     std::optional<PairContact> contact;
     if (!state_.in_contact && IsBeyondLastNormal()) {
       contact = TakenOver();
@@ -64,13 +57,14 @@ class Query {
       contact = Answer();
     }
     Remember(contact);
-    if (contact) {
-      const auto center =
-          Center(contact->n, contact->distance, state_.hub, contact->p_a);
-      if (center) {
-        contact->p_a = *center;
-        contact->p_b = *center - contact->distance * contact->n;
-      }
+    if (!contact) return contact;
+    const auto center =
+        Center(contact->n, contact->distance, state_.hub, contact->p_a);
+    state_.is_settled = contact->distance < 0 && facet_hub_ &&
+                        (center || IsWithinSides(*contact));
+    if (center) {
+      contact->p_a = *center;
+      contact->p_b = *center - contact->distance * contact->n;
     }
     return contact;
   }
@@ -96,13 +90,49 @@ class Query {
   }
 
   std::optional<PairContact> Near() {
-    if (!separation_.is_proven ||
-        separation_.distance < kJoinShare * pair_.scale()) {
-      return Overlapping();
-    }
+    if (AreBothWanted(pair_, separation_)) return Overlapping();
     const PairContact contact = ContactApart(pair_, separation_);
-    if (!IsSupported(contact)) return Behind();
-    return contact;
+    if (IsSupported(contact)) return contact;
+    const auto promoted = Promoted();
+    return promoted ? promoted : Behind();
+  }
+
+  // The closest points of the hulls are not closest points of the surfaces, as
+  // at a hollow corner: the nearest facet beside them that faces a vertex of
+  // the other body, if that vertex is over it (paper, 5.3.2).
+  std::optional<PairContact> Promoted() {
+    DepthCandidate best;
+    Hub best_hub;
+    const auto consider = [&](const Vec3& n, int facet, bool is_of_A) {
+      if (n.dot(separation_.n) < kLargestPromotion) return;
+      Hub hub = separation_.simplex.hubs[0];
+      const double h = SupportGap(pair_, n, &hub);
+      if (!(h > best.h) || h > request_.tolerance) return;
+      const Feature face(FeatureKind::kFacet, facet);
+      const Feature a = is_of_A ? face : Feature(FeatureKind::kVertex, hub.a);
+      const Feature b = is_of_A ? Feature(FeatureKind::kVertex, hub.b) : face;
+      const Witness witness = WitnessOfFeatures(pair_, a, b, n, h);
+      const SurfaceSupport support = ClassifySupport(
+          pair_.A, a, n, pair_.B, b, pair_.X_AB.R.transpose() * n);
+      if (support != SurfaceSupport::kSupported ||
+          LateralOffset(pair_, a, b, witness) > 0) {
+        return;
+      }
+      best = {h, n, a, b, support};
+      best_hub = hub;
+    };
+    for (int i = 0; i < separation_.simplex.size; ++i) {
+      const Hub& corner = separation_.simplex.hubs[i];
+      for (const Polytope::Spoke& spoke : pair_.A.fan_of(corner.a)) {
+        consider(-spoke.normal, spoke.facet, true);
+      }
+      for (const Polytope::Spoke& spoke : pair_.B.fan_of(corner.b)) {
+        consider(pair_.X_AB.R * spoke.normal, spoke.facet, false);
+      }
+    }
+    if (best.support != SurfaceSupport::kSupported) return std::nullopt;
+    facet_hub_ = best_hub;
+    return ContactAtFacet(pair_, best, ContactStatus::kNear);
   }
 
   // No contact of its own: the tool is out of reach, or behind the surface.
@@ -130,6 +160,7 @@ class Query {
       const PairContact contact = ContactApart(pair_, separation_);
       if (IsSupported(contact)) return contact;
     }
+    // Bodies in one line or point have no facet between them.
     if (depth.status == DepthStatus::kNoFacet) {
       return ContactGrazing(pair_, separation_, state_.n);
     }
@@ -164,7 +195,7 @@ class Query {
     if (passage_.GoesOn(depth.best)) return true;
     if (depth.best.support != SurfaceSupport::kSupported) return false;
     if (!IsWithinFeatures(depth)) return false;
-    return passage_.IsHandedOver(depth.best) ||
+    return request_.is_first || passage_.IsHandedOver(depth.best) ||
            (depth.best.n.dot(state_.n) >= kComingFrom &&
             depth.best.h >=
                 depth.shallowest - kEntryShare * request_.tolerance);
@@ -181,8 +212,8 @@ class Query {
       }
     }
     if (best == nullptr) return std::nullopt;
-    const Hub hub{FirstVertex(pair_.A, best->feature_A),
-                  FirstVertex(pair_.B, best->feature_B)};
+    const Hub hub{pair_.A.first_vertex_of(best->feature_A),
+                  pair_.B.first_vertex_of(best->feature_B)};
     return AtFacet({DepthStatus::kLocalMinimum, *best, best->h, hub},
                    ContactStatus::kPenetrating);
   }
@@ -193,7 +224,7 @@ class Query {
     // Contacts along one normal lead to the same facet: one of them will do.
     const Vec3* tried = nullptr;
     for (const PressedContact& last : request_.pressed) {
-      if (!passage_.IsNear(last)) continue;
+      if (last.is_kept || !last.IsNear(pair_.A, pair_.B)) continue;
       if (tried != nullptr && tried->dot(last.n) > kSameNormal) continue;
       tried = &last.n;
       const auto contact = Held(pair_.X_AB.R * last.n);
@@ -205,12 +236,16 @@ class Query {
   // Whether the bodies press on the facet's own features: beside them its plane
   // means nothing.
   bool IsWithinFeatures(const Depth& depth) {
-    const DepthCandidate& facet = depth.best;
-    const Witness witness = WitnessOfFeatures(
-        pair_, facet.feature_A, facet.feature_B, facet.n, facet.h);
-    return LateralOffset(pair_, facet.feature_A, facet.feature_B, witness) <=
-               kSlideShare * pair_.scale() ||
-           Center(facet.n, facet.h, depth.hub, witness.p_a).has_value();
+    const PairContact contact =
+        ContactAtFacet(pair_, depth.best, ContactStatus::kPenetrating);
+    return IsWithinSides(contact) ||
+           Center(contact.n, contact.distance, depth.hub, contact.p_a);
+  }
+
+  bool IsWithinSides(const PairContact& contact) const {
+    return LateralOffset(pair_, contact.feature_A, contact.feature_B,
+                         {contact.p_a, contact.p_b}) <=
+           kSlideShare * pair_.scale();
   }
 
   // From the last answer. On coherent motion its facet mostly still is the

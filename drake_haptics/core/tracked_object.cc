@@ -150,10 +150,6 @@ bool TrackedObject::Tend(const Tick& tick, const PairFront::Tick& front_tick,
 
 void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
                         WatchedPair* pair, std::vector<Contact>* out) {
-  SurfaceRequest request;
-  request.tolerance = tick.tolerance;
-  request.last_X_AB = tick.last_X_AB;
-  request.pressed = pressed_;
   PairState& state = states_[pair->state];
   const int last_press = state.press;
   const auto answer =
