@@ -113,7 +113,9 @@ void BindOneContact(nb::module_& m) {
               "Which piece of the tool A is; 0 from a pair.")
       .def_ro("piece_B", &Contact::piece_B,
               "Which piece of the object B is; 0 from a pair.")
-      .def("__repr__", [](const Contact& self) { return Text(self); });
+      .def(
+          "__repr__", [](const Contact& self) { return Text(self); },
+          nb::sig("def __repr__(self) -> str"));
   DefFrozenCopy(&contact);
 }
 
@@ -131,7 +133,7 @@ void BindContactSet(nb::module_& m) {
         return s.contacts[PlaceOf(i, s.contacts.size())];
       },
       nb::arg("i"));
-  set.def("__repr__", [](const ContactSet& s) -> nb::object {
+  const auto text = [](const ContactSet& s) -> nb::object {
     const auto& contacts = s.contacts;
     if (contacts.empty()) return nb::str("ContactSet(no contacts)");
     const auto nearest =
@@ -141,7 +143,8 @@ void BindContactSet(nb::module_& m) {
                          });
     return nb::str("ContactSet({} contacts, least distance {:.6g} m)")
         .format(contacts.size(), nearest->distance);
-  });
+  };
+  set.def("__repr__", text, nb::sig("def __repr__(self) -> str"));
   set.def_ro("query_seconds", &ContactSet::query_seconds,
              "Time that the query took inside the core, s.");
   constexpr auto kItems = &ContactSet::contacts;

@@ -6,6 +6,7 @@
 
 #include "enclosing_hull.h"
 #include "facet_revisit.h"
+#include "witness.h"
 
 namespace drake_haptics {
 namespace {
@@ -248,10 +249,19 @@ class Search {
     }
   }
 
+  // Whether the bodies meet on the facet's own features.
+  bool IsOverFacet(const GlobalDepth& answer, double slack) const {
+    const DepthCandidate& f = answer.facet;
+    return LateralOffset(pair_, f.feature_A, f.feature_B,
+                         WitnessOfFeatures(pair_, f.feature_A, f.feature_B, f.n,
+                                           f.h)) <= slack;
+  }
+
   GlobalDepth Answer() const {
     GlobalDepth answer = best_;
+    const double band = kKeepShare * pair_.scale();
     if (!last_.facet.feature_A.is_none() &&
-        last_.facet.h >= best_.facet.h - kKeepShare * pair_.scale()) {
+        last_.facet.h >= best_.facet.h - band && IsOverFacet(last_, band)) {
       answer.facet = last_.facet;
       answer.facet.h = best_.facet.h;
       answer.hub = last_.hub;

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -18,6 +19,7 @@ DOCS = Path(__file__).parents[2] / "docs" / "hard-cases.md"
 START, END = "<!-- table -->\n", "<!-- end of table -->\n"
 LIBRARIES = {
     "tracked": Library(ours, is_tracked=True, is_warm=True),
+    "global": Library(partial(ours, depth="global"), is_warm=True),
     "coal": Library(with_coal),
     "Drake": Library(with_drake),
 }
@@ -63,8 +65,9 @@ def main() -> None:
         scores = score_case(passages(), LIBRARIES)
         table += row(name, scores)
         print(row(name, scores), end="", flush=True)
-        for complaint in scores["tracked"].complaints:
-            print(f"  {complaint}", file=sys.stderr)
+        for depth in ("tracked", "global"):
+            for complaint in scores[depth].complaints:
+                print(f"  {depth}: {complaint}", file=sys.stderr)
     if args.write:
         before, rest = DOCS.read_text().split(START)
         DOCS.write_text(before + START + table + END + rest.split(END)[1])

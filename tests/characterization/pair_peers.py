@@ -7,6 +7,7 @@ may raise; a library that cannot hold a body raises when given it.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal
 
 import coal
 import numpy as np
@@ -25,6 +26,7 @@ from scipy.spatial import ConvexHull
 from drake_haptics import ConvexPair, ConvexPolytope
 
 Query = Callable[[np.ndarray, np.ndarray], Answer]
+Depth = Literal["tracked", "global"]
 
 # coal's own tolerances, for its separation and for its depth, and its bounds.
 _COAL_TOLERANCE = 1e-12
@@ -33,9 +35,9 @@ _COAL_ITERATIONS = 1000
 _DRAKE_LARGEST = 1e5
 
 
-def ours(A: np.ndarray, B: np.ndarray) -> Query:
+def ours(A: np.ndarray, B: np.ndarray, depth: Depth = "tracked") -> Query:
     """A pair of this package, which remembers its last answer."""
-    pair = ConvexPair(ConvexPolytope(A), ConvexPolytope(B))
+    pair = ConvexPair(ConvexPolytope(A), ConvexPolytope(B), depth)
 
     def query(X_WA: np.ndarray, X_WB: np.ndarray) -> Answer:
         c = pair.query(X_WA, X_WB)

@@ -7,22 +7,10 @@ from hard_cases import HARD_CASES
 from hard_cases_table import DOCS, LIBRARIES, cases_in
 from pair_score import score_case
 
-OURS = {name: LIBRARIES[name] for name in ("tracked",)}
-# Faces that face each other in a strip of 1e-9 m, and a tilt of 1e-9 rad: the normal
-# of a pair apart is then off by some 1e-9 rad, and the gap along it by twice too much.
-KNOWN = ("grazing", "precessing disc")
+OURS = {name: LIBRARIES[name] for name in ("tracked", "global")}
 
 
-@pytest.mark.parametrize(
-    "case",
-    [
-        pytest.param(
-            name,
-            marks=pytest.mark.xfail(name in KNOWN, strict=True, reason="see KNOWN"),
-        )
-        for name in HARD_CASES
-    ],
-)
+@pytest.mark.parametrize("case", list(HARD_CASES))
 def test_every_answer_is_right(case: str) -> None:
     for name, score in score_case(HARD_CASES[case](), OURS).items():
         assert score.asked > 50

@@ -45,7 +45,7 @@ void TestAgainstOverlay() {
     return Vec3(normal(random), normal(random), normal(random));
   };
   int spared = 0, kept = 0;
-  for (int trial = 0; trial < 3000; ++trial) {
+  for (int trial = 0; trial < 400; ++trial) {
     const Polytope A = RandomBall(8 + trial % 60, &random);
     const Polytope B = RandomBall(8 + trial % 37, &random);
     Pose X_AB;
@@ -64,7 +64,7 @@ void TestAgainstOverlay() {
     (may_exceed ? kept : spared) += largest > floor ? 0 : 1;
   }
   // It would be of no use if it kept what it could spare.
-  CHECK(spared > 500);
+  CHECK(spared > 60);
   CHECK(spared > 20 * kept);
 }
 

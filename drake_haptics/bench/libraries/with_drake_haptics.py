@@ -13,7 +13,7 @@ from drake_haptics.bench.pair_library import PairAnswers, PairLibrary
 from drake_haptics.bench.pair_shapes import PairShape
 from drake_haptics.bench.timing import clock_interval
 
-Depth = Literal["tracked"]
+Depth = Literal["tracked", "global"]
 
 
 class DrakeHapticsQuery:
