@@ -18,6 +18,10 @@ namespace {
 // overlap and on later ones.
 constexpr int kColdPromotionHubs = 64;
 constexpr int kWarmPromotionHubs = 6;
+// The same for an overlap that was refused, and for how many ticks.
+constexpr int kRefusedPromotionHubs = 2;
+constexpr int kRestAfterRefusal = 64;
+constexpr int kRefusalSpread = 32;
 // Cosine of the largest angle between the normal of a new contact and the
 // direction from which the pair came together: beyond it the tool came from
 // behind the surface, through a virtual side of the piece.
@@ -57,6 +61,7 @@ class Query {
       contact = Answer();
     }
     Remember(contact);
+    if (!is_refused_) state_.refusals = 0;
     if (!contact) return contact;
     const auto center =
         Center(contact->n, contact->distance, state_.hub, contact->p_a);
@@ -148,11 +153,7 @@ class Query {
   }
 
   std::optional<PairContact> Overlapping() {
-    const Depth depth =
-        state_.in_contact
-            ? WarmDepth()
-            : ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
-                        kColdPromotionHubs, &workspace_.depth);
+    const Depth depth = state_.in_contact ? WarmDepth() : EntryDepth();
     const bool apart = separation_.status == SeparationStatus::kApart;
     Hub hub = separation_.simplex.hubs[0];
     if (apart && (depth.status == DepthStatus::kNoFacet ||
@@ -165,6 +166,7 @@ class Query {
       return ContactGrazing(pair_, separation_, state_.n);
     }
     if (!IsPlausible(depth)) {
+      Refuse(depth);
       const auto contact = GoneOn();
       return contact ? contact : TakenOver();
     }
@@ -175,6 +177,28 @@ class Query {
       status = ContactStatus::kBounded;
     }
     return AtFacet(depth, status);
+  }
+
+  // Of a pair that was not in contact. One that was refused at the last tick
+  // mostly is again: the thorough search is made anew only now and then.
+  Depth EntryDepth() {
+    if (state_.refusals > 0 && state_.refusals < kRestAfterRefusal) {
+      Hub hub = state_.refused_hub;
+      SupportGap(pair_, state_.refused_n, &hub);
+      return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
+                       kRefusedPromotionHubs, &workspace_.depth);
+    }
+    // Pairs refused at one tick shall not all be searched at one later tick.
+    state_.refusals = (state_.hub.a * 31 + state_.hub.b * 17) % kRefusalSpread;
+    return ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
+                     kColdPromotionHubs, &workspace_.depth);
+  }
+
+  void Refuse(const Depth& depth) {
+    is_refused_ = true;
+    ++state_.refusals;
+    state_.refused_n = depth.best.n;
+    state_.refused_hub = depth.hub;
   }
 
   // The contact at a facet of A ⊖ B, which is also the next tick's start.
@@ -323,6 +347,7 @@ class Query {
   const ContactPassage passage_;
   PairWorkspace& workspace_;
   Separation separation_;
+  bool is_refused_ = false;       // an overlap had no plausible facet
   std::optional<Hub> facet_hub_;  // of the facet that is the answer, if one is
 };
 
