@@ -16,7 +16,7 @@ bool IsFlush(const Polytope& P, int facet, const Vec3& outward) {
   }
   const auto loop = P.loop_of(facet);
   const Vec3& corner = P.vertices[loop[0]];
-  const double slack = kRegionSlack * P.radius;
+  const double slack = kFlushSlack * P.radius;
   return std::all_of(loop.begin(), loop.end(), [&](int v) {
     return std::abs(outward.dot(P.vertices[v] - corner)) <= slack;
   });
@@ -25,7 +25,7 @@ bool IsFlush(const Polytope& P, int facet, const Vec3& outward) {
 Feature WidestAtVertex(const Polytope& P, Feature feature,
                        const Vec3& outward) {
   const auto fan = P.fan_of(feature.index());
-  const double slack = kRegionSlack * P.radius;
+  const double slack = kFlushSlack * P.radius;
   const Polytope::Spoke* flush = nullptr;
   for (const Polytope::Spoke& spoke : fan) {
     if (outward.dot(spoke.along) < -slack) continue;

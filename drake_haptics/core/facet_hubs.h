@@ -11,6 +11,11 @@ namespace drake_haptics {
 /// corners that lie on an arc belong to both sides of it.
 inline constexpr double kRegionSlack = 1e-11;
 
+/// A feature lies flush in a plane if it leaves it by less than this share of
+/// the polytope's radius. Far above the length within which facets are ties
+/// (gauss_overlay.h), so that a walk can cross what is not flush.
+inline constexpr double kFlushSlack = 1e-9;
+
 /// The widest feature of P that faces the direction `outward` (unit, in P's
 /// frame) and holds `feature`: where a face or an edge lies flush in the
 /// supporting plane, that face or edge, else the feature itself.

@@ -68,7 +68,7 @@ FacetVisit Visit(const Polytope& P, int facet, const Polytope& Q, int v,
   const double depth = -result.h;
   const double clearance = Clearance(P, facet, point_P);
   // Where Q lies flush, facets around its other vertices touch this one too.
-  const bool is_flush = reach >= -slack;
+  const bool is_flush = reach >= -kFlushSlack * Q.radius;
   result.is_minimum =
       clearance > 0 &&
       (clearance > depth * plane.turn ||
