@@ -24,7 +24,7 @@ class ConvexPolytope:
         Builds the hull of (n, 3) points, m. Coplanar triangles become one facet; points that are not extreme are dropped; sets that are flat, straight or a single point are valid.
 
         Raises:
-            ValueError: no points, not finite, or 1e100 m and beyond.
+            ValueError: no points, not finite, or 1e50 m and beyond.
         """
 
     @property

@@ -98,7 +98,7 @@ void BindPolytope(nb::module_& m) {
           "Builds the hull of (n, 3) points, m. Coplanar triangles become one "
           "facet; points that are not extreme are dropped; sets that are flat, "
           "straight or a single point are valid.\n\n"
-          "Raises:\n    ValueError: no points, not finite, or 1e100 m and "
+          "Raises:\n    ValueError: no points, not finite, or 1e50 m and "
           "beyond.")
       .def_ro("dimension", &Polytope::dimension,
               "0 point, 1 segment, 2 flat polygon, 3 solid.")

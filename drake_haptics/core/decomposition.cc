@@ -83,7 +83,7 @@ void CheckMesh(std::span<const Vec3> vertices,
   }
   if (!AreUsable(vertices)) {
     throw std::invalid_argument(
-        "a mesh's coordinates must be finite and below 1e100 m");
+        "a mesh's coordinates must be finite and below 1e50 m");
   }
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (const int v : triangles[t]) {

@@ -101,7 +101,8 @@ std::vector<int> ExtremePoints(const Spanning& spanning,
 }  // namespace
 
 bool AreUsable(std::span<const Vec3> points) {
-  static constexpr double kLargest = 1e100;
+  // Beyond, squares of areas overflow.
+  static constexpr double kLargest = 1e50;
   return std::all_of(points.begin(), points.end(), [](const Vec3& p) {
     return (p.array().abs() < kLargest).all();  // False for NaN.
   });

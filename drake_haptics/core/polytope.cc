@@ -169,7 +169,7 @@ Polytope MakePolytope(std::span<const Vec3> points, double flatness) {
   }
   if (!AreUsable(points)) {
     throw std::invalid_argument(
-        "a polytope's coordinates must be finite and below 1e100 m");
+        "a polytope's coordinates must be finite and below 1e50 m");
   }
   Eigen::AlignedBox3d box;
   for (const Vec3& p : points) box.extend(p);

@@ -147,7 +147,7 @@ void SegmentsAndPoints() {
 
 // Any scale, down to where products of coordinates would underflow.
 void ExtremeScales() {
-  for (const double scale : {1e-90, 1e-6, 1e6, 1e90}) {
+  for (const double scale : {1e-90, 1e-6, 1e6, 1e40}) {
     std::vector<Vec3> points = Cube(3);
     for (Vec3& p : points) p *= scale;
     const Polytope P = MakePolytope(points);
@@ -161,7 +161,7 @@ void BadInput() {
   CHECK_THROWS(MakePolytope({}), std::invalid_argument);
   CHECK_THROWS(MakePolytope(std::vector<Vec3>{Vec3(0, nan, 0)}),
                std::invalid_argument);
-  CHECK_THROWS(MakePolytope(std::vector<Vec3>{Vec3(1e200, 0, 0)}),
+  CHECK_THROWS(MakePolytope(std::vector<Vec3>{Vec3(1e60, 0, 0)}),
                std::invalid_argument);
 }
 
