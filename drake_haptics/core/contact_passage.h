@@ -24,6 +24,7 @@ class ContactPassage {
 
  private:
   bool Follows(const DepthCandidate& facet, const PressedContact& last) const;
+
   const PosedPair& pair_;
   const SurfaceRequest& request_;
   const PairState& state_;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <span>
 
+#include "facet_hubs.h"
 #include "gauss_overlay.h"
 
 namespace drake_haptics {

@@ -7,10 +7,6 @@
 
 namespace drake_haptics {
 
-/// A direction may miss a Gauss region by this share of the polytope's radius:
-/// corners that lie on an arc belong to both sides of it.
-inline constexpr double kRegionSlack = 1e-11;
-
 /// A feature lies flush in a plane if it leaves it by less than this share of
 /// the polytope's radius. Far above the length within which facets are ties
 /// (gauss_overlay.h), so that a walk can cross what is not flush.

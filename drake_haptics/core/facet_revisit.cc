@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "facet_hubs.h"
 #include "gauss_overlay.h"
 #include "gauss_turn.h"
 

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "depth_walk.h"
-#include "facet_hubs.h"
 
 namespace drake_haptics {
+
+/// A direction may miss a Gauss region by this share of the polytope's radius:
+/// corners that lie on an arc belong to both sides of it.
+inline constexpr double kRegionSlack = 1e-11;
 
 /// Edges at a smaller angle than this have no usable cross product; the facets
 /// beside them cover its direction.
