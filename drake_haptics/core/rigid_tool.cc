@@ -30,27 +30,31 @@ void RequirePhysical(const ToolInertia& inertia) {
   }
 }
 
-ToolState StepTool(const ToolInertia& inertia, const ToolState& state,
-                   const WrenchModel& wrench, double h) {
-  const Eigen::Quaterniond R_WT = QuaternionOf(state.q_WT);
-  const Mat3 R = R_WT.toRotationMatrix();
+ToolMotionTerms ComputeMotionTerms(const ToolInertia& inertia,
+                                   const ToolState& state) {
+  const Mat3 R = QuaternionOf(state.q_WT).toRotationMatrix();
   const Vec3 c = R * inertia.p_TTcm;
   const Mat3 C = Cross(c);
   const double m = inertia.mass;
   const Mat3 I_To = R * inertia.I_TTcm_T * R.transpose() - m * C * C;
   const Vec3 w = state.V_WT.head<3>();
 
-  Mat6 M;
-  M << I_To, m * C, -m * C, m * Mat3::Identity();
-  Vec6 bias;
-  bias << w.cross(I_To * w), m * w.cross(w.cross(c));
+  ToolMotionTerms terms;
+  terms.M << I_To, m * C, -m * C, m * Mat3::Identity();
+  terms.b << w.cross(I_To * w), m * w.cross(w.cross(c));
+  return terms;
+}
 
+ToolState StepTool(const ToolInertia& inertia, const ToolState& state,
+                   const WrenchModel& wrench, double h) {
+  const auto [M, b] = ComputeMotionTerms(inertia, state);
   const Mat6 left = M + h * wrench.B + h * h * wrench.K;
-  const Vec6 right = h * (wrench.F - bias - h * (wrench.K * state.V_WT));
+  const Vec6 right = h * (wrench.F - b - h * (wrench.K * state.V_WT));
   ToolState next;
   next.V_WT = state.V_WT + left.partialPivLu().solve(right);
   const Vec3 turn = h * next.V_WT.head<3>();
-  const Eigen::Quaterniond R_next = (RotationExp(turn) * R_WT).normalized();
+  const Eigen::Quaterniond R_next =
+      (RotationExp(turn) * QuaternionOf(state.q_WT)).normalized();
   next.q_WT << R_next.w(), R_next.vec(),
       state.q_WT.tail<3>() + h * next.V_WT.tail<3>();
   return next;

@@ -24,9 +24,19 @@ struct ToolState {
 ///         is symmetric and positive definite.
 void RequirePhysical(const ToolInertia& inertia);
 
+/// Spatial inertia M about To in W and the velocity terms b of
+/// M dV/dt + b = F.
+struct ToolMotionTerms {
+  Mat6 M;
+  Vec6 b;
+};
+
+ToolMotionTerms ComputeMotionTerms(const ToolInertia& inertia,
+                                   const ToolState& state);
+
 /// Advances the free rigid tool by one step of linearized backward Euler:
 ///   (M + h B + h² K) ΔV = h (F − b − h K V),  V ← V + ΔV,  δ = h V,
-/// where F, K, B are those of `wrench` and b are the velocity terms of M.
+/// where F, K, B are those of `wrench`.
 /// Stable for stiff contacts at any step, where explicit steps are bounded by
 /// 4 m / h² (stability-and-device notes, section 5).
 /// @param h step, s.

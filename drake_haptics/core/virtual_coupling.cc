@@ -4,19 +4,21 @@
 
 namespace drake_haptics {
 
+CouplingStretch ComputeStretch(const PoseVector& q_WH, const PoseVector& q_HT,
+                               const PoseVector& q_WT) {
+  const Eigen::Quaterniond R_WH = QuaternionOf(q_WH);
+  const Eigen::Quaterniond R_held = R_WH * QuaternionOf(q_HT);
+  const Vec3 p_HT_W = R_WH * q_HT.tail<3>();
+  return {p_HT_W, RotationLog(R_held * QuaternionOf(q_WT).conjugate()),
+          q_WH.tail<3>() + p_HT_W - q_WT.tail<3>()};
+}
+
 CouplingWrench ComputeCoupling(const PoseVector& q_WH, const Vec6& V_WH,
                                const PoseVector& q_HT, const PoseVector& q_WT,
                                const Vec6& V_WT, const CouplingGains& gains) {
-  const Eigen::Quaterniond R_WH = QuaternionOf(q_WH);
-  const Vec3 p_HT_W = R_WH * q_HT.tail<3>();
+  const auto [p_HT_W, twist, stretch] = ComputeStretch(q_WH, q_HT, q_WT);
   const Vec3 w_WH = V_WH.head<3>();
-  // The pose and velocity at which the handle holds the tool.
-  const Eigen::Quaterniond R_held = R_WH * QuaternionOf(q_HT);
-  const Vec3 p_held = q_WH.tail<3>() + p_HT_W;
   const Vec3 v_held = V_WH.tail<3>() + w_WH.cross(p_HT_W);
-
-  const Vec3 stretch = p_held - q_WT.tail<3>();
-  const Vec3 twist = RotationLog(R_held * QuaternionOf(q_WT).conjugate());
   const Vec3 force =
       gains.stiffness * stretch + gains.damping * (v_held - V_WT.tail<3>());
   const Vec3 torque = gains.rotational_stiffness * twist +
