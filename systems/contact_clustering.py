@@ -1,18 +1,31 @@
-"""Makes few contacts of many."""
+"""Decides what each contact pushes with, given the others."""
 
 from __future__ import annotations
+
+import math
+from typing import Literal, get_args
 
 from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import Context, InputPort, LeafSystem, OutputPort
 
-from drake_haptics._core import cluster_contacts
+from drake_haptics._core import cluster_contacts, share_stiffness
+
+ClusteringMethod = Literal["shared", "octree"]
 
 
 class ContactClustering(LeafSystem):
-    """Groups contacts nearer than δ and replaces each group by one contact.
+    """Keeps many contacts from being stiffer than one.
 
-    Groups are found with an octree of cell size δ; the representative is the mean
-    weighted by the depth below the tolerance (paper, 4.3, Eq. 1-5).
+    There are two methods, by name:
+
+    * `shared`: each contact stays, and contacts along one direction share stiffness
+      as if they pressed into a common elastic skin. The force is a continuous
+      function of the contacts, and does not depend on how finely a face is cut
+      into pieces.
+    * `octree`: contacts nearer than δ are grouped with an octree of cell size δ, and
+      each group is replaced by one contact, the mean weighted by the depth below
+      the tolerance (paper, 4.2, Eq. 1-5). The force jumps where a contact crosses a
+      cell.
 
     .. pydrake_system::
 
@@ -26,21 +39,35 @@ class ContactClustering(LeafSystem):
     `drake_haptics._core.ClusterSet`; both are immutable and in the world frame.
     """
 
-    def __init__(self, delta_m: float, tolerance_m: float):
+    def __init__(
+        self,
+        method: ClusteringMethod,
+        tolerance_m: float,
+        delta_m: float | None = None,
+    ):
         """Constructs the system.
 
         Args:
-            delta_m: Cluster size δ, m.
-            tolerance_m: The tolerance t of the query, m.
+            method: "shared" or "octree".
+            tolerance_m: The distance t below which contacts push, m.
+            delta_m: Cluster size δ of the octree, m.
 
         Raises:
-            ValueError: δ is not positive or the tolerance is negative.
+            ValueError: There is no such method, the tolerance is negative, or δ is
+                not positive, missing, or given where there is no octree.
         """
         super().__init__()
-        if not delta_m > 0.0:
-            raise ValueError(f"delta_m must be positive, is {delta_m}")
-        if not tolerance_m >= 0.0:
-            raise ValueError(f"tolerance_m must not be negative, is {tolerance_m}")
+        if method not in get_args(ClusteringMethod):
+            raise ValueError(f"method must be 'shared' or 'octree', is {method!r}")
+        if not (tolerance_m >= 0.0 and math.isfinite(tolerance_m)):
+            raise ValueError(
+                f"tolerance_m must be finite and not negative, is {tolerance_m}"
+            )
+        if method == "octree":
+            if delta_m is None or not (delta_m > 0.0 and math.isfinite(delta_m)):
+                raise ValueError(f"delta_m must be finite and positive, is {delta_m}")
+        elif delta_m is not None:
+            raise ValueError(f"delta_m is of the octree; the method is {method!r}")
         self._delta_m = delta_m
         self._tolerance_m = tolerance_m
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
@@ -50,6 +77,11 @@ class ContactClustering(LeafSystem):
             self._calc_clusters,
             {self._contacts.ticket()},
         )
+
+    @property
+    def tolerance_m(self) -> float:
+        """The distance t below which contacts push, m."""
+        return self._tolerance_m
 
     def get_contacts_input_port(self) -> InputPort:
         """Returns the input `contacts`."""
@@ -61,4 +93,8 @@ class ContactClustering(LeafSystem):
 
     def _calc_clusters(self, context: Context, clusters: AbstractValue) -> None:
         contacts = self._contacts.Eval(context)
-        clusters.set_value(cluster_contacts(contacts, self._delta_m, self._tolerance_m))
+        clusters.set_value(
+            share_stiffness(contacts, self._tolerance_m)
+            if self._delta_m is None
+            else cluster_contacts(contacts, self._delta_m, self._tolerance_m)
+        )

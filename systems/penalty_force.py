@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -21,8 +22,10 @@ from drake_haptics.systems.contact_query import ContactObject
 class PenaltyForce(LeafSystem):
     """Elastic force below the tolerance, with damping that never pulls.
 
-    Each cluster pushes with (k (t - d) - k_v v) n at its point, v the speed of
-    separation along n (paper, Eq. 6-10), where damping acts on approach only.
+    Each cluster pushes with k times its compression along n at its point, and with
+    k_v times the speed of approach and its damping share more where the surfaces
+    approach. With the octree's clusters that is (k (t - d) - k_v v) n of the paper
+    (Eq. 6-10).
 
     .. pydrake_system::
 
@@ -53,30 +56,23 @@ class PenaltyForce(LeafSystem):
     def __init__(
         self,
         objects: Sequence[ContactObject],
-        stiffness_N_per_m: float,
-        damping_Ns_per_m: float,
-        tolerance_m: float,
+        stiffness_N_per_m: Sequence[float],
+        damping_Ns_per_m: Sequence[float],
     ):
         """Constructs the system.
 
         Args:
             objects: Those of the `ContactQuery`, in the same order.
-            stiffness_N_per_m: k, N/m.
-            damping_Ns_per_m: k_v, N·s/m.
-            tolerance_m: t, the tolerance of the query, m.
+            stiffness_N_per_m: k of each object, N/m.
+            damping_Ns_per_m: k_v of each object, N·s/m.
 
         Raises:
-            ValueError: A gain or the tolerance is negative.
+            ValueError: A gain is negative or not finite, or there is not one for
+                each object.
         """
         super().__init__()
-        for name, value in {
-            "stiffness_N_per_m": stiffness_N_per_m,
-            "damping_Ns_per_m": damping_Ns_per_m,
-            "tolerance_m": tolerance_m,
-        }.items():
-            if not value >= 0.0:
-                raise ValueError(f"{name} must not be negative, is {value}")
-        self._gains = (stiffness_N_per_m, damping_Ns_per_m, tolerance_m)
+        self._stiffness = _check_gains("stiffness_N_per_m", stiffness_N_per_m, objects)
+        self._damping = _check_gains("damping_Ns_per_m", damping_Ns_per_m, objects)
         self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
@@ -110,6 +106,11 @@ class PenaltyForce(LeafSystem):
             self._calc_contact_wrench,
             from_inputs,
         )
+
+    @property
+    def stiffness_N_per_m(self) -> list[float]:
+        """k of each object, N/m."""
+        return self._stiffness.tolist()
 
     def get_clusters_input_port(self) -> InputPort:
         """Returns the input `clusters`."""
@@ -156,7 +157,8 @@ class PenaltyForce(LeafSystem):
             self._V_WTool.Eval(context),
             p_WO,
             V_WO,
-            *self._gains,
+            self._stiffness,
+            self._damping,
         )
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
@@ -167,3 +169,18 @@ class PenaltyForce(LeafSystem):
 
     def _calc_contact_wrench(self, context: Context, output: AbstractValue) -> None:
         output.set_value(self._calc_wrench(context))
+
+
+def _check_gains(
+    name: str, gains: Sequence[float], objects: Sequence[ContactObject]
+) -> np.ndarray:
+    """Returns one gain for each object as an array."""
+    if len(gains) != len(objects):
+        raise ValueError(
+            f"{name} must have one value for each of the {len(objects)} objects, has"
+            f" {len(gains)}"
+        )
+    for gain in gains:
+        if not (gain >= 0.0 and math.isfinite(gain)):
+            raise ValueError(f"{name} must be finite and not negative, has {gain}")
+    return np.array(gains, dtype=float)

@@ -97,6 +97,10 @@ void BindOneContact(nb::module_& m) {
   DefVector<&Contact::p_WC>(&contact, "p_WC",
                             "(3,) mean of both (paper, Eq. 1), m.");
   contact
+      .def_ro("extent", &Contact::extent,
+              "Measure of the overlap, m²; see `ContactSet.extent`.")
+      .def_ro("flushness", &Contact::flushness,
+              "Share of the contact, 0 to 1, in flush faces or edges.")
       .def_prop_ro(
           "feature_A", [](const Contact& c) { return ToFeature(c.feature_A); },
           "`Feature` of A in contact.")

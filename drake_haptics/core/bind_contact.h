@@ -30,6 +30,14 @@ void DefContactColumns(Binding* set) {
       set, "p_WCb", "(n, 3) witness point on B, in the world, m.");
   DefColumn<items, &Contact::p_WC>(
       set, "p_WC", "(n, 3) mean of both (paper, Eq. 1), in the world, m.");
+  DefColumn<items, &Contact::extent>(
+      set, "extent",
+      "(n,) measure of the overlap, m²: the area of flush faces under the "
+      "pressure of a thin layer, of a flush edge its length times the layer, "
+      "the layer squared at a point. Parts of a face that is cut add up.");
+  DefColumn<items, &Contact::flushness>(
+      set, "flushness",
+      "(n,) share of the contact, 0 to 1, that lies in flush faces or edges.");
   DefColumn<items, &Contact::feature_A>(
       set, "feature_A",
       "(n, 2) int32, feature of A in contact: [FeatureKind, index].");

@@ -8,6 +8,7 @@
 #include "clustering.h"
 #include "penalty_force.h"
 #include "rigid_tool.h"
+#include "shared_stiffness.h"
 #include "virtual_coupling.h"
 #include "wrench_model.h"
 
@@ -41,19 +42,29 @@ void BindClustering(nb::module_& m) {
       &set, "nhat_BA_W", "(k, 3) weighted mean directions (Eq. 3), unit.");
   DefColumn<kItems, &Cluster::p_WC>(
       &set, "p_WC", "(k, 3) weighted mean positions (Eq. 4), m.");
+  DefColumn<kItems, &Cluster::compression>(
+      &set, "compression",
+      "(k,) m; the elastic force of a cluster is the stiffness times this.");
+  DefColumn<kItems, &Cluster::damping_share>(
+      &set, "damping_share",
+      "(k,) the damping force is the damping times the speed of approach times "
+      "this.");
   DefColumn<kItems, &Cluster::object>(&set, "object_index",
                                       "(k,) object of each cluster.");
   DefColumn<kItems, &Cluster::num_contacts>(&set, "num_contacts",
                                             "(k,) members.");
+  DefNumbers<&ClusterSet::label>(
+      &set, "label", "(n,) cluster of each contact; -1 beyond the tolerance.");
   set.def_prop_ro(
-      "label",
-      [](nb::handle self) {
-        const auto& label = nb::cast<const ClusterSet&>(self).label;
-        const std::size_t shape[1] = {label.size()};
-        return nb::ndarray<nb::numpy, const std::int32_t, nb::shape<-1>>(
-            label.data(), 1, shape, self);
+      "coupling",
+      [](const ClusterSet& s) -> Eigen::MatrixXd {
+        const auto count = static_cast<Eigen::Index>(s.clusters.size());
+        if (s.coupling.empty()) return Eigen::MatrixXd::Identity(count, count);
+        return Eigen::Map<const Eigen::MatrixXd>(s.coupling.data(), count,
+                                                 count);
       },
-      "(n,) cluster of each contact.");
+      "(k, k) derivative of `compression` by the depths tolerance − distance; "
+      "symmetric, positive semidefinite.");
   DefFrozenCopy(&set);
   m.def(
       "cluster_contacts",
@@ -63,10 +74,23 @@ void BindClustering(nb::module_& m) {
         return clusters;
       },
       nb::arg("contacts"), nb::arg("delta"), nb::arg("tolerance"),
-      "Groups contacts with an octree of leaf size `delta` (m) and represents "
-      "each group by one contact (paper, 4.2, Eq. 1 to 5). Members weigh "
-      "`tolerance` (m) − distance.\n\n"
+      "Groups contacts nearer than `tolerance` (m) with an octree of leaf size "
+      "`delta` (m) and represents each group by one contact (paper, 4.2, Eq. 1 "
+      "to 5). Members weigh `tolerance` − distance.\n\n"
       "Raises:\n    ValueError: delta <= 0 or tolerance < 0.");
+  m.def(
+      "share_stiffness",
+      [](const ContactSet& contacts, double tolerance) {
+        ClusterSet clusters;
+        ShareStiffness(contacts.contacts, tolerance, &clusters);
+        return clusters;
+      },
+      nb::arg("contacts"), nb::arg("tolerance"),
+      "Makes each contact nearer than `tolerance` (m) a cluster of its own, "
+      "and lets those along one direction share stiffness, as if they pressed "
+      "into a common elastic skin: the force is a continuous function of the "
+      "contacts (shared_stiffness.h).\n\n"
+      "Raises:\n    ValueError: tolerance < 0.");
 }
 
 void BindPenaltyForce(nb::module_& m) {
@@ -92,32 +116,36 @@ void BindPenaltyForce(nb::module_& m) {
   m.def(
       "penalty_force",
       [](const ClusterSet& clusters, const Vec3& p_WTo, const Vec6& V_WTool,
-         const Rows3& p_WO, const Rows6& V_WO, double stiffness, double damping,
-         double tolerance) {
-        if (p_WO.rows() != V_WO.rows()) {
+         const Rows3& p_WO, const Rows6& V_WO, const Eigen::VectorXd& stiffness,
+         const Eigen::VectorXd& damping) {
+        if (p_WO.rows() != V_WO.rows() || p_WO.rows() != stiffness.size() ||
+            p_WO.rows() != damping.size()) {
           throw std::invalid_argument(
-              "p_WO and V_WO must have one row for each object");
+              "p_WO, V_WO, stiffness and damping must have one row for each "
+              "object");
         }
         std::vector<MovingFrame> objects;
+        std::vector<ContactMaterial> materials;
         for (Eigen::Index i = 0; i < p_WO.rows(); ++i) {
           objects.push_back({p_WO.row(i), V_WO.row(i)});
+          materials.push_back({stiffness[i], damping[i]});
         }
-        return ComputePenaltyWrench(clusters.clusters, {p_WTo, V_WTool},
-                                    objects, {stiffness, damping, tolerance});
+        return ComputePenaltyWrench(clusters, {p_WTo, V_WTool}, objects,
+                                    materials);
       },
       nb::arg("clusters"), nb::arg("p_WTo"), nb::arg("V_WTool"),
       nb::arg("p_WO"), nb::arg("V_WO"), nb::arg("stiffness"),
-      nb::arg("damping"), nb::arg("tolerance"),
-      "Penalty wrenches of the clusters (paper, Eq. 6 to 10): k (t − d) along "
-      "the normal, plus damping while approaching; never a pull.\n\n"
+      nb::arg("damping"),
+      "Penalty wrenches of the clusters (paper, Eq. 6 to 10): k times the "
+      "compression along the normal, plus damping while approaching; never a "
+      "pull.\n\n"
       "Args:\n"
       "    p_WTo: (3,) tool's origin, m.\n"
       "    V_WTool: (6,) its spatial velocity [rad/s; m/s].\n"
       "    p_WO: (m, 3) objects' origins, m.\n"
       "    V_WO: (m, 6) their spatial velocities.\n"
-      "    stiffness: k, N/m.\n"
-      "    damping: k_v, N·s/m.\n"
-      "    tolerance: t, m.\n\n"
+      "    stiffness: (m,) k of each object, N/m.\n"
+      "    damping: (m,) k_v of each object, N·s/m.\n\n"
       "Raises:\n"
       "    ValueError: a gain is negative or not finite, or rows do not "
       "match.\n"
@@ -185,6 +213,10 @@ void BindRigidTool(nb::module_& m) {
           "Tool of `mass_kg`, centre of mass (3,) m and rotational inertia "
           "about it (3, 3) kg·m², both in the tool's frame.\n\n"
           "Raises:\n    ValueError: not a physical inertia.")
+      .def_ro("mass_kg", &ToolInertia::mass, "Mass, kg.")
+      .def_prop_ro(
+          "p_TTcm", [](const ToolInertia& self) { return self.p_TTcm; },
+          "Centre of mass (3,) in the tool's frame, m.")
       .def(
           "step",
           [](const ToolInertia& self, const Eigen::Matrix<double, 13, 1>& state,

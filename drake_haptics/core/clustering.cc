@@ -37,8 +37,8 @@ int Root(std::vector<int>* parent, int i) {
 
 // Joins the contacts of each leaf and of each pair of adjacent leaves. The
 // root of a group is its first contact.
-std::vector<int> Join(const std::vector<Placed>& placed) {
-  std::vector<int> parent(placed.size());
+std::vector<int> Join(const std::vector<Placed>& placed, std::size_t count) {
+  std::vector<int> parent(count);
   std::iota(parent.begin(), parent.end(), 0);
   const auto join = [&parent](int i, int j) {
     const int p = Root(&parent, i), q = Root(&parent, j);
@@ -69,19 +69,20 @@ std::vector<int> Join(const std::vector<Placed>& placed) {
 
 // Running sums of a cluster.
 struct Sums {
-  Vec3 n = Vec3::Zero(), p = Vec3::Zero(), plain_p = Vec3::Zero();
+  Vec3 n = Vec3::Zero(), p = Vec3::Zero();
   double weight = 0;
   const Contact* deepest = nullptr;
 };
 
-Cluster Represent(const Sums& sums, int count) {
+Cluster Represent(const Sums& sums, int count, double tolerance) {
   Cluster cluster;
   cluster.distance = sums.deepest->distance;
+  cluster.compression = tolerance - cluster.distance;
+  cluster.damping_share = 1;
   cluster.object = sums.deepest->object;
   cluster.num_contacts = count;
-  // Members all at the tolerance weigh nothing; opposed normals cancel.
-  cluster.p_WC =
-      sums.weight > 0 ? Vec3(sums.p / sums.weight) : Vec3(sums.plain_p / count);
+  cluster.p_WC = sums.p / sums.weight;
+  // Opposed normals cancel.
   const double length = sums.n.norm();
   cluster.nhat_BA_W = length > 1e-9 * sums.weight ? Vec3(sums.n / length)
                                                   : sums.deepest->nhat_BA_W;
@@ -90,28 +91,36 @@ Cluster Represent(const Sums& sums, int count) {
 
 }  // namespace
 
+void RequireTolerance(double tolerance) {
+  if (!std::isfinite(tolerance) || tolerance < 0) {
+    throw std::invalid_argument("tolerance must be finite and at least 0 m");
+  }
+}
+
 void ClusterContacts(const std::vector<Contact>& contacts, double delta,
                      double tolerance, ClusterSet* out) {
   if (!std::isfinite(delta) || !(delta > 0)) {
     throw std::invalid_argument("delta must be finite and above 0 m");
   }
-  if (!std::isfinite(tolerance) || tolerance < 0) {
-    throw std::invalid_argument("tolerance must be finite and at least 0 m");
-  }
+  RequireTolerance(tolerance);
   out->clusters.clear();
+  out->coupling.clear();
   out->label.assign(contacts.size(), -1);
   std::vector<Placed> placed;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    placed.push_back({LeafOf(contacts[i], delta), static_cast<int>(i)});
+    if (contacts[i].distance < tolerance) {
+      placed.push_back({LeafOf(contacts[i], delta), static_cast<int>(i)});
+    }
   }
   std::sort(placed.begin(), placed.end(), [](const Placed& p, const Placed& q) {
     return p.leaf != q.leaf ? p.leaf < q.leaf : p.contact < q.contact;
   });
-  std::vector<int> parent = Join(placed);
+  std::vector<int> parent = Join(placed, contacts.size());
 
   std::vector<Sums> sums;
   std::vector<int> counts;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (!(contacts[i].distance < tolerance)) continue;
     const int root = Root(&parent, static_cast<int>(i));
     if (root == static_cast<int>(i)) {
       out->label[i] = static_cast<std::int32_t>(sums.size());
@@ -122,10 +131,9 @@ void ClusterContacts(const std::vector<Contact>& contacts, double delta,
     }
     const Contact& contact = contacts[i];
     Sums& sum = sums[out->label[i]];
-    const double weight = std::max(0.0, tolerance - contact.distance);
+    const double weight = tolerance - contact.distance;
     sum.n += weight * contact.nhat_BA_W;
     sum.p += weight * contact.p_WC;
-    sum.plain_p += contact.p_WC;
     sum.weight += weight;
     if (sum.deepest == nullptr || contact.distance < sum.deepest->distance) {
       sum.deepest = &contact;
@@ -133,7 +141,7 @@ void ClusterContacts(const std::vector<Contact>& contacts, double delta,
     ++counts[out->label[i]];
   }
   for (std::size_t k = 0; k < sums.size(); ++k) {
-    out->clusters.push_back(Represent(sums[k], counts[k]));
+    out->clusters.push_back(Represent(sums[k], counts[k], tolerance));
   }
 }
 

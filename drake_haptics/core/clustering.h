@@ -8,29 +8,43 @@
 
 namespace drake_haptics {
 
-/// The representative contact of a cluster (paper, Eq. 3 to 5), in the world.
+/// A contact that carries force, in the world. It stands for one contact or
+/// for a cluster of them (paper, Eq. 3 to 5).
 struct Cluster {
   double distance = 0;  ///< smallest distance of the members (Eq. 5), m
   Vec3 nhat_BA_W;       ///< weighted mean direction (Eq. 3), unit
   Vec3 p_WC;            ///< weighted mean position (Eq. 4), m
+  /// The elastic force is the stiffness times this, m.
+  double compression = 0;
+  /// The damping force is the damping times the speed times this.
+  double damping_share = 0;
   std::int32_t object = 0;
   std::int32_t num_contacts = 0;
 };
 
-/// Clusters ordered by their first contact, and the cluster of each contact.
+/// Clusters ordered by their first contact.
 struct ClusterSet {
   std::vector<Cluster> clusters;
-  std::vector<std::int32_t> label;
+  std::vector<std::int32_t> label;  ///< cluster of each contact; -1 for none
+  /// How the compression of each cluster (row) changes with the depth of each
+  /// (column), n x n by rows; symmetric and positive semidefinite. Empty where
+  /// each has its own: the identity.
+  std::vector<double> coupling;
 };
+
+/// @throws std::invalid_argument unless tolerance >= 0 and finite.
+void RequireTolerance(double tolerance);
 
 /// Groups contacts of the same object with an octree whose leaves have the
 /// size `delta`: contacts in one leaf are together, and adjacent occupied
 /// leaves (26 neighbours) are merged (paper, 4.2). Contacts closer than delta
 /// are always together, contacts of different clusters are at least delta
 /// apart; between delta and 2·√3·delta the leaves decide. Each member weighs
-/// `tolerance` − distance.
+/// `tolerance` − distance. The force jumps where a contact crosses a cell or
+/// clusters merge: see ShareStiffness.
 /// @param delta leaf size, m.
-/// @param tolerance the distance t up to which contacts were looked for, m.
+/// @param tolerance the distance t below which contacts push, m; others are in
+///     no cluster.
 /// @throws std::invalid_argument unless delta > 0 and tolerance >= 0, finite.
 void ClusterContacts(const std::vector<Contact>& contacts, double delta,
                      double tolerance, ClusterSet* out);

@@ -16,6 +16,8 @@ Contact InWorld(const PairContact& pair, const Pose& X_WA) {
   contact.p_WCa = X_WA * pair.p_a;
   contact.p_WCb = X_WA * pair.p_b;
   contact.p_WC = (contact.p_WCa + contact.p_WCb) / 2;
+  contact.extent = pair.extent;
+  contact.flushness = pair.flushness;
   contact.feature_A = KindAndIndex(pair.feature_A);
   contact.feature_B = KindAndIndex(pair.feature_B);
   contact.status = static_cast<std::int32_t>(pair.status);

@@ -13,11 +13,13 @@ namespace drake_haptics {
 /// in the world frame. Words and signs are those of Drake's
 /// SignedDistancePair.
 struct Contact {
-  double distance = 0;  ///< m; > 0 apart, < 0 penetrating
-  Vec3 nhat_BA_W;       ///< unit, out of B into A
-  Vec3 p_WCa;           ///< witness point on A, m
-  Vec3 p_WCb;           ///< witness point on B, m
-  Vec3 p_WC;            ///< their mean (Eq. 1), m
+  double distance = 0;   ///< m; > 0 apart, < 0 penetrating
+  Vec3 nhat_BA_W;        ///< unit, out of B into A
+  Vec3 p_WCa;            ///< witness point on A, m
+  Vec3 p_WCb;            ///< witness point on B, m
+  Vec3 p_WC;             ///< their mean (Eq. 1), m
+  double extent = 0;     ///< measure of the overlap, m² (contact_patch.h)
+  double flushness = 0;  ///< share of it in flush faces and edges
   std::int32_t object = 0;
   std::int32_t piece_A = 0;
   std::int32_t piece_B = 0;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -24,25 +25,32 @@ double EdgeShare(double sine) {
   return std::max(0.0, 1 - sine * sine / (kFlush * kFlush));
 }
 
-// The facet at a vertex that lies most flush with the contact's plane.
+// A facet that is nearly flush with the contact's plane.
 struct FlushFacet {
   int index = -1;
   double share = 0;
 };
 
-FlushFacet FindFlushFacet(const Polytope& P, int vertex, const Vec3& outward) {
-  FlushFacet found;
-  double least = kTilted;
-  for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
-    if (!(spoke.normal.dot(outward) > kCosTilted)) continue;
-    const double sine = spoke.normal.cross(outward).norm();
-    if (sine < least) {
-      least = sine;
-      found = {spoke.facet, FacetShare(sine)};
+// The flush facets at a vertex, and what they leave of the contact to edges.
+struct FlushFacets {
+  // No more are needed to be smooth: the least flush ones come and go last.
+  static constexpr int kMost = 8;
+  std::array<FlushFacet, kMost> facets;
+  int count = 0;
+  double rest = 1;
+
+  FlushFacets(const Polytope& P, int vertex, const Vec3& outward) {
+    for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
+      if (!(spoke.normal.dot(outward) > kCosTilted) || count == kMost) continue;
+      const double share = FacetShare(spoke.normal.cross(outward).norm());
+      if (!(share > 0)) continue;
+      facets[count++] = {spoke.facet, share};
+      rest *= 1 - share;
     }
   }
-  return found;
-}
+  const FlushFacet* begin() const { return facets.data(); }
+  const FlushFacet* end() const { return facets.data() + count; }
+};
 
 // Calls visit(edge, share) for each edge at a vertex that lies flush.
 template <typename Visitor>
@@ -104,58 +112,115 @@ void Clip(const Value& value, PatchWorkspace* workspace) {
   workspace->polygon.swap(clipped);
 }
 
-// Centre of the linear pressure (z of the corners) over a polygon or segment.
-std::optional<Vec3> Center(const std::vector<Vec3>& corners) {
+// What presses on a feature: the centre of the pressure and its integral.
+struct Load {
+  Vec3 center;
+  double integral = 0;  // over the area, m³, or over the length, m²
+};
+
+// Of the linear pressure (z of the corners) over a polygon or segment.
+std::optional<Load> LoadOf(const std::vector<Vec3>& corners) {
   double total = 0;
   Vec3 moment = Vec3::Zero();
   if (corners.size() == 2) {
     const Vec3 &p = corners[0], &q = corners[1];
-    total = p.z() + q.z();
-    moment = (p * (2 * p.z() + q.z()) + q * (p.z() + 2 * q.z())) / 3;
+    const double length = (q - p).head<2>().norm();
+    total = length / 2 * (p.z() + q.z());
+    moment = length / 6 * (p * (2 * p.z() + q.z()) + q * (p.z() + 2 * q.z()));
   }
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
     const Vec3 &p = corners[0], &q = corners[i], &r = corners[i + 1];
     const double area =
-        std::abs((q - p).x() * (r - p).y() - (q - p).y() * (r - p).x());
+        std::abs((q - p).x() * (r - p).y() - (q - p).y() * (r - p).x()) / 2;
     const double sum = p.z() + q.z() + r.z();
     total += area * sum / 3;
     moment +=
         area / 12 * (p * (sum + p.z()) + q * (sum + q.z()) + r * (sum + r.z()));
   }
   if (!(total > 0)) return std::nullopt;
-  return Vec3(moment / total);
+  return Load{moment / total, total};
 }
+
+// The part of a contact that one pair of flush features carries.
+struct Part {
+  std::optional<Vec3> center;
+  double extent = 0;
+};
 
 class Patch {
  public:
   Patch(const PosedPair& pair, const Vec3& n, double h, double spread,
-        PatchWorkspace* workspace)
+        double layer, PatchWorkspace* workspace)
       : pair_(pair),
         plane_(n),
         h_(h),
         spread_(spread),
+        layer_(layer),
         workspace_(*workspace) {}
 
-  std::optional<Vec3> OfFacets(int facet_A, int facet_B) {
+  Part OfFacets(int facet_A, int facet_B) {
     workspace_.polygon.clear();
     for (const int v : pair_.A.loop_of(facet_A)) {
       workspace_.polygon.push_back(plane_.To(pair_.a(v)));
     }
     const Height of_A(plane_.To(pair_.A.facets[facet_A].normal),
                       workspace_.polygon[0]);
-    return Finish(of_A, CutByFacetOfB(facet_B));
+    return Finish(of_A, CutByFacetOfB(facet_B), 1 / spread_);
   }
 
-  std::optional<Vec3> OfEdgeOfA(int edge_A, int facet_B) {
+  Part OfEdgeOfA(int edge_A, int facet_B) {
     const Polytope::Edge& edge = pair_.A.edges[edge_A];
     const Height of_A = StartFromSegment(pair_.a(edge.v0), pair_.a(edge.v1));
-    return Finish(of_A, CutByFacetOfB(facet_B));
+    return Finish(of_A, CutByFacetOfB(facet_B), layer_ / spread_);
   }
 
-  std::optional<Vec3> OfEdgeOfB(int facet_A, int edge_B) {
+  // Edges fall away to their sides: where they cross under an angle they are
+  // the farther apart the farther from the crossing.
+  Part OfEdges(int edge_A, int edge_B) {
+    const Polytope::Edge& a = pair_.A.edges[edge_A];
+    const Polytope::Edge& b = pair_.B.edges[edge_B];
+    const Vec3 p = plane_.To(pair_.b(b.v0)), q = plane_.To(pair_.b(b.v1));
+    const Vec3 along = q - p;
+    const double length = along.head<2>().norm();
+    const auto place = [&](const Vec3& x) {
+      return (x - p).head<2>().dot(along.head<2>()) / (length * length);
+    };
+    const auto beside = [&](const Vec3& x) {
+      return (along.x() * (x.y() - p.y()) - along.y() * (x.x() - p.x())) /
+             length;
+    };
+    StartFromSegment(pair_.a(a.v0), pair_.a(a.v1));
+    Clip([&](const Vec3& x) { return place(x); }, &workspace_);
+    Clip([&](const Vec3& x) { return 1 - place(x); }, &workspace_);
+    const auto pressure = [&](const Vec3& x, double side) {
+      const double gap = x.z() - (p.z() + place(x) * along.z());
+      return spread_ + h_ - gap - side * beside(x);
+    };
+    // The pressure is the smaller of two linear functions: past the crossing
+    // the other side counts.
+    const std::vector<Vec3> overlap = workspace_.polygon;
+    Part whole;
+    Vec3 moment = Vec3::Zero();
+    for (const double side : {1.0, -1.0}) {
+      workspace_.polygon = overlap;
+      Clip([&](const Vec3& x) { return side * beside(x); }, &workspace_);
+      for (Vec3& x : workspace_.polygon) x.z() = pressure(x, side);
+      Clip([](const Vec3& x) { return x.z(); }, &workspace_);
+      const auto load = LoadOf(workspace_.polygon);
+      if (!load) continue;
+      whole.extent += layer_ / spread_ * load->integral;
+      moment += load->integral * load->center;
+    }
+    if (!(whole.extent > 0)) return {};
+    moment *= layer_ / spread_ / whole.extent;
+    whole.center = Vec3(plane_.u * moment.x() + plane_.v * moment.y());
+    return whole;
+  }
+
+  Part OfEdgeOfB(int facet_A, int edge_B) {
     const Polytope::Edge& edge = pair_.B.edges[edge_B];
     const Height of_B = StartFromSegment(pair_.b(edge.v0), pair_.b(edge.v1));
-    return Finish(CutByFacetOfA(facet_A), of_B);
+    return Finish(CutByFacetOfA(facet_A), of_B, layer_ / spread_);
   }
 
  private:
@@ -171,14 +236,16 @@ class Patch {
         pair_.X_AB.R * pair_.B.facets[facet].normal);
   }
 
-  std::optional<Vec3> Finish(const Height& of_A, const Height& of_B) {
+  // @param scale makes the integral of the pressure an extent.
+  Part Finish(const Height& of_A, const Height& of_B, double scale) {
     for (Vec3& corner : workspace_.polygon) {
       corner.z() = spread_ + h_ - (of_A(corner) - of_B(corner));
     }
     Clip([](const Vec3& p) { return p.z(); }, &workspace_);
-    const auto center = Center(workspace_.polygon);
-    if (!center) return std::nullopt;
-    return Vec3(plane_.u * center->x() + plane_.v * center->y());
+    const auto load = LoadOf(workspace_.polygon);
+    if (!load) return {};
+    return {Vec3(plane_.u * load->center.x() + plane_.v * load->center.y()),
+            scale * load->integral};
   }
 
   // The height of a segment is taken constant across it.
@@ -215,20 +282,22 @@ class Patch {
 
   const PosedPair& pair_;
   const Plane plane_;
-  const double h_, spread_;
+  const double h_, spread_, layer_;
   PatchWorkspace& workspace_;
 };
 
-// Weighted mean of the centres of all features that share the contact.
+// Weighted mean over all features that share the contact. What has no overlap
+// leaves its share to the others.
 struct Blend {
-  double total = 0, rest = 1;
+  double total = 0, rest = 1, extent = 0;
   Vec3 sum = Vec3::Zero();
 
-  void Add(const std::optional<Vec3>& center, double share) {
-    if (!center) return;
-    total += share;
+  void Add(const Part& part, double share) {
     rest *= 1 - share;
-    sum += share * *center;
+    if (!part.center) return;
+    total += share;
+    sum += share * *part.center;
+    extent += share * part.extent;
   }
 };
 
@@ -252,36 +321,56 @@ bool MayHaveExtent(const PosedPair& pair, const Vec3& n, const Hub& hub,
   return of_B > 0 && of_A + of_B > 2;
 }
 
-std::optional<Vec3> PressureCenter(const PosedPair& pair, const Vec3& n,
-                                   double h, const Hub& hub,
-                                   const Vec3& witness, double spread,
-                                   PatchWorkspace* workspace) {
+PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
+                                const Hub& hub, const Vec3& witness,
+                                double spread, double layer,
+                                PatchWorkspace* workspace) {
+  const double point = layer * layer;
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
-  const FlushFacet a = FindFlushFacet(pair.A, hub.a, -n);
-  const FlushFacet b = FindFlushFacet(pair.B, hub.b, n_B);
-  if (a.index < 0 && b.index < 0) return std::nullopt;
-  Patch patch(pair, n, h, spread, workspace);
+  if (!(spread > 0)) return {std::nullopt, 0, point};
+  const FlushFacets of_A(pair.A, hub.a, -n), of_B(pair.B, hub.b, n_B);
+  Patch patch(pair, n, h, spread, layer, workspace);
   Blend blend;
-  if (a.index >= 0 && b.index >= 0) {
-    blend.Add(patch.OfFacets(a.index, b.index), a.share * b.share);
+  for (const FlushFacet& a : of_A) {
+    for (const FlushFacet& b : of_B) {
+      blend.Add(patch.OfFacets(a.index, b.index), a.share * b.share);
+    }
   }
-  if (b.index >= 0 && a.share < 1) {
-    VisitFlushEdges(pair.A, hub.a, n, [&](int edge, double share) {
-      blend.Add(patch.OfEdgeOfA(edge, b.index),
-                share * b.share * (1 - a.share));
+  if (of_A.rest > 0) {
+    VisitFlushEdges(pair.A, hub.a, n, [&](int edge_A, double share_A) {
+      const double left = share_A * of_A.rest;
+      for (const FlushFacet& b : of_B) {
+        blend.Add(patch.OfEdgeOfA(edge_A, b.index), left * b.share);
+      }
+      if (!(of_B.rest > 0)) return;
+      const Vec3 along_A =
+          pair.a(pair.A.edges[edge_A].v1) - pair.a(pair.A.edges[edge_A].v0);
+      VisitFlushEdges(pair.B, hub.b, n_B, [&](int edge_B, double share_B) {
+        const Vec3 along_B =
+            pair.b(pair.B.edges[edge_B].v1) - pair.b(pair.B.edges[edge_B].v0);
+        const double sine =
+            along_A.cross(along_B).norm() / (along_A.norm() * along_B.norm());
+        const double share = left * share_B * of_B.rest * EdgeShare(sine);
+        if (share > 0) blend.Add(patch.OfEdges(edge_A, edge_B), share);
+      });
     });
   }
-  if (a.index >= 0 && b.share < 1) {
+  if (of_B.rest > 0) {
     VisitFlushEdges(pair.B, hub.b, n_B, [&](int edge, double share) {
-      blend.Add(patch.OfEdgeOfB(a.index, edge),
-                share * a.share * (1 - b.share));
+      for (const FlushFacet& a : of_A) {
+        blend.Add(patch.OfEdgeOfB(a.index, edge), share * a.share * of_B.rest);
+      }
     });
   }
-  if (!(blend.total > 0)) return std::nullopt;
-  const Vec3 flat = witness - n * n.dot(witness);
-  const Vec3 center =
-      (blend.sum + blend.rest * flat) / (blend.total + blend.rest);
-  return Vec3(center + n * n.dot(witness));
+  PressurePatch found{std::nullopt, 1 - blend.rest,
+                      blend.extent + blend.rest * point};
+  if (blend.total > 0) {
+    const Vec3 flat = witness - n * n.dot(witness);
+    const Vec3 center =
+        (blend.sum + blend.rest * flat) / (blend.total + blend.rest);
+    found.center = center + n * n.dot(witness);
+  }
+  return found;
 }
 
 }  // namespace drake_haptics

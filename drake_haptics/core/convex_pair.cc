@@ -132,13 +132,16 @@ class Query {
 
   void Center(PairContact* contact) {
     const double layer = kLayerShare * pair_.scale();
+    contact->extent = layer * layer;
     if (!MayHaveExtent(pair_, contact->n, state_.hub, layer)) return;
-    const auto center =
-        PressureCenter(pair_, contact->n, contact->distance, state_.hub,
-                       contact->p_a, layer, &workspace_.patch);
-    if (!center) return;
-    contact->p_a = *center;
-    contact->p_b = *center - contact->distance * contact->n;
+    const PressurePatch patch =
+        FindPressurePatch(pair_, contact->n, contact->distance, state_.hub,
+                          contact->p_a, layer, layer, &workspace_.patch);
+    contact->extent = patch.extent;
+    contact->flushness = patch.flushness;
+    if (!patch.center) return;
+    contact->p_a = *patch.center;
+    contact->p_b = *patch.center - contact->distance * contact->n;
   }
 
   const PosedPair& pair_;

@@ -24,6 +24,8 @@ struct PairContact {
   Feature feature_A;
   Feature feature_B;
   ContactStatus status = ContactStatus::kNear;
+  double extent = 0;     ///< measure of the overlap, m² (contact_patch.h)
+  double flushness = 0;  ///< share of it in flush faces and edges
 };
 
 }  // namespace drake_haptics

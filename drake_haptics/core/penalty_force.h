@@ -8,11 +8,10 @@
 
 namespace drake_haptics {
 
-/// Stiffness and damping of the contacts (paper, Eq. 6).
-struct PenaltyGains {
+/// How an object answers contacts (paper, Eq. 6).
+struct ContactMaterial {
   double stiffness = 0;  ///< k, N/m
   double damping = 0;    ///< k_v, N·s/m
-  double tolerance = 0;  ///< t, m
 };
 
 /// A moving frame in the world: origin (m) and spatial velocity
@@ -30,16 +29,20 @@ struct PenaltyWrench {
 };
 
 /// Sums the penalty wrenches of the clusters (paper, Eq. 6 to 10): at each an
-/// elastic force k (t − d) along n, and k_v |v| more while the surfaces
-/// approach. The force never pulls. Normals and positions are frozen in the
-/// stiffness K = Σ k G Gᵀ with G = [r × n; n]: the terms that turn with the
-/// normal are left out, which keeps K positive semidefinite.
+/// elastic force, k times its compression, along n, and k_v |v| times its
+/// damping share more while the surfaces approach. The force never pulls.
+/// Normals, positions and shares are frozen in the stiffness
+/// K = Σ k H_ij G_i G_jᵀ with G = [r × n; n] and H the set's coupling: the
+/// terms that turn with the normal are left out, which keeps K positive
+/// semidefinite.
 /// @param objects one frame for each object that the clusters name.
-/// @throws std::invalid_argument for gains below zero or not finite,
-///         std::out_of_range for a cluster on an object that is not given.
-PenaltyWrench ComputePenaltyWrench(const std::vector<Cluster>& clusters,
-                                   const MovingFrame& tool,
-                                   const std::vector<MovingFrame>& objects,
-                                   const PenaltyGains& gains);
+/// @param materials one for each object.
+/// @throws std::invalid_argument for a gain below zero or not finite, or where
+///         there are not as many materials as objects; std::out_of_range for a
+///         cluster on an object that is not given.
+PenaltyWrench ComputePenaltyWrench(
+    const ClusterSet& clusters, const MovingFrame& tool,
+    const std::vector<MovingFrame>& objects,
+    const std::vector<ContactMaterial>& materials);
 
 }  // namespace drake_haptics

@@ -63,14 +63,23 @@ class Query {
     Remember(contact);
     if (!is_refused_) state_.refusals = 0;
     if (!contact) return contact;
-    const auto center =
-        Center(contact->n, contact->distance, state_.hub, contact->p_a);
-    state_.is_settled = contact->distance < 0 && facet_hub_ &&
-                        (center || IsWithinSides(*contact));
-    if (center) {
-      contact->p_a = *center;
-      contact->p_b = *center - contact->distance * contact->n;
+    const bool is_pressed = contact->distance < 0 && facet_hub_;
+    const bool is_within = is_pressed && IsWithinSides(*contact);
+    if (facet_hub_ && contact->feature_A.kind() == FeatureKind::kEdge &&
+        contact->feature_B.kind() == FeatureKind::kEdge) {
+      contact->p_a = OnCrossedEdges(pair_, contact->feature_A,
+                                    contact->feature_B, contact->p_a);
+      contact->p_b = contact->p_a - contact->distance * contact->n;
     }
+    const PressurePatch patch =
+        FindPatch(contact->n, contact->distance, state_.hub, contact->p_a);
+    state_.is_settled = is_within || (is_pressed && patch.center);
+    if (patch.center) {
+      contact->p_a = *patch.center;
+      contact->p_b = *patch.center - contact->distance * contact->n;
+    }
+    contact->extent = patch.extent;
+    contact->flushness = patch.flushness;
     return contact;
   }
 
@@ -263,7 +272,8 @@ class Query {
     const PairContact contact =
         ContactAtFacet(pair_, depth.best, ContactStatus::kPenetrating);
     return IsWithinSides(contact) ||
-           Center(contact.n, contact.distance, depth.hub, contact.p_a);
+           FindPatch(contact.n, contact.distance, depth.hub, contact.p_a)
+               .center;
   }
 
   bool IsWithinSides(const PairContact& contact) const {
@@ -313,13 +323,13 @@ class Query {
     return AtFacet(depth, ContactStatus::kHeld);
   }
 
-  // The centre of pressure of nearly flush faces.
-  std::optional<Vec3> Center(const Vec3& n, double h, const Hub& hub,
-                             const Vec3& p_a) {
+  PressurePatch FindPatch(const Vec3& n, double h, const Hub& hub,
+                          const Vec3& p_a) {
     const double tolerance = request_.tolerance;
-    const double spread =
-        std::clamp(tolerance - h, 0.0, kSpreadShare * tolerance);
-    return PressureCenter(pair_, n, h, hub, p_a, spread, &workspace_.patch);
+    const double layer = kSpreadShare * tolerance;
+    return FindPressurePatch(pair_, n, h, hub, p_a,
+                             std::clamp(tolerance - h, 0.0, layer), layer,
+                             &workspace_.patch);
   }
 
   void Remember(const std::optional<PairContact>& contact) {

@@ -30,6 +30,11 @@ Vec3 Nearest(const Segment& s, const Segment& other) {
   return s.p + t * d;
 }
 
+Vec3 NearestOn(const Segment& s, const Vec3& point) {
+  const Vec3 d = s.q - s.p;
+  return s.p + std::clamp((point - s.p).dot(d) / d.squaredNorm(), 0.0, 1.0) * d;
+}
+
 double OutsideSegment(const Segment& s, const Vec3& point) {
   const Vec3 d = s.q - s.p;
   const double length = d.norm();
@@ -65,6 +70,12 @@ Witness WitnessOfFeatures(const PosedPair& pair, Feature feature_A,
   }
   const Vec3 p_a = Nearest(EdgeOfA(pair, feature_A), EdgeOfB(pair, feature_B));
   return {p_a, p_a - h * n};
+}
+
+Vec3 OnCrossedEdges(const PosedPair& pair, Feature edge_A, Feature edge_B,
+                    const Vec3& crossing) {
+  const Vec3 p_b = NearestOn(EdgeOfB(pair, edge_B), crossing);
+  return NearestOn(EdgeOfA(pair, edge_A), p_b);
 }
 
 double LateralOffset(const PosedPair& pair, Feature feature_A,

@@ -17,6 +17,11 @@ struct Witness {
 Witness WitnessOfFeatures(const PosedPair& pair, Feature feature_A,
                           Feature feature_B, const Vec3& n, double h);
 
+/// The point of A's edge nearest to B's, near the point of A where their lines
+/// pass each other: of edges that are nearly parallel that is far beyond both.
+Vec3 OnCrossedEdges(const PosedPair& pair, Feature edge_A, Feature edge_B,
+                    const Vec3& crossing);
+
 /// How far (m) the witness lies outside its features, measured along the
 /// contact's plane; zero where the contact is within both.
 double LateralOffset(const PosedPair& pair, Feature feature_A,

@@ -1,0 +1,127 @@
+#include "shared_stiffness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "skin_forces.h"
+
+namespace drake_haptics {
+namespace {
+
+// ρ, the share of the compliance that is a contact's own.
+constexpr double kOwnShare = 0.5;
+// 1 − cos(3°): contacts within that angle can be one constraint.
+constexpr double kSameDirection = 1.37e-3;
+// Contacts at depths below the tolerance that differ by less than this share
+// can be one constraint. A share, not a length: how fast contacts part must not
+// depend on how deep they are.
+constexpr double kSameDepth = 0.25;
+// Damping sets in over this share of the tolerance, the thickness of the
+// pressure layer.
+constexpr double kLayerShare = 0.1;
+// Added to extents (m²), so that those of no extent are shared equally.
+constexpr double kLeastExtent = 1e-24;
+
+double Fade(double distance, double width) {
+  if (distance == 0) return 1;
+  return width > 0 ? std::max(0.0, 1 - distance / width) : 0.0;
+}
+
+// In how far two contacts are parts of one constraint, 0 to 1.
+double Sameness(const Contact& a, const Contact& b, double tolerance) {
+  const double same_direction =
+      Fade(std::max(0.0, 1 - a.nhat_BA_W.dot(b.nhat_BA_W)), kSameDirection);
+  if (same_direction == 0) return 0;
+  const double deeper = tolerance - std::min(a.distance, b.distance);
+  const double same_depth =
+      Fade(std::abs(a.distance - b.distance), kSameDepth * deeper);
+  if (same_depth == 0) return 0;
+  const double same_place = Fade((a.p_WC - b.p_WC).norm(), tolerance);
+  return same_direction * same_depth *
+         std::max(same_place, a.flushness * b.flushness);
+}
+
+// m of each contact of an object.
+Eigen::VectorXd Shares(std::span<const Contact* const> contacts,
+                       double tolerance) {
+  const auto n = static_cast<Eigen::Index>(contacts.size());
+  Eigen::VectorXd extent(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    extent[i] = contacts[i]->extent + kLeastExtent;
+  }
+  Eigen::VectorXd total = extent;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = i + 1; j < n; ++j) {
+      const double same = Sameness(*contacts[i], *contacts[j], tolerance);
+      total[i] += same * extent[j];
+      total[j] += same * extent[i];
+    }
+  }
+  return extent.cwiseQuotient(total);
+}
+
+Eigen::MatrixXd Compliance(std::span<const Contact* const> contacts,
+                           const Eigen::VectorXd& shares) {
+  const auto n = static_cast<Eigen::Index>(contacts.size());
+  Eigen::MatrixXd C(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    C(i, i) = (1 - kOwnShare) + kOwnShare / shares[i];
+    for (Eigen::Index j = i + 1; j < n; ++j) {
+      const double along =
+          std::max(0.0, contacts[i]->nhat_BA_W.dot(contacts[j]->nhat_BA_W));
+      C(i, j) = C(j, i) = (1 - kOwnShare) * along * along;
+    }
+  }
+  return C;
+}
+
+// Forces of the clusters from `first` on, which are those of one object.
+void Press(std::span<const Contact* const> contacts, double tolerance,
+           std::size_t first, ClusterSet* out) {
+  const std::size_t all = out->clusters.size();
+  Eigen::VectorXd depth(contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    depth[i] = tolerance - contacts[i]->distance;
+  }
+  const SkinForces forces =
+      SolveSkin(Compliance(contacts, Shares(contacts, tolerance)), depth);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    Cluster& cluster = out->clusters[first + i];
+    cluster.compression = forces.compression[i];
+    cluster.damping_share =
+        cluster.compression / std::max(depth[i], kLayerShare * tolerance);
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+      out->coupling[(first + i) * all + first + j] = forces.coupling(i, j);
+    }
+  }
+}
+
+}  // namespace
+
+void ShareStiffness(const std::vector<Contact>& contacts, double tolerance,
+                    ClusterSet* out) {
+  RequireTolerance(tolerance);
+  out->clusters.clear();
+  out->label.assign(contacts.size(), -1);
+  std::vector<const Contact*> pushing;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Contact& contact = contacts[i];
+    if (!(contact.distance < tolerance)) continue;
+    out->label[i] = static_cast<std::int32_t>(out->clusters.size());
+    out->clusters.push_back({contact.distance, contact.nhat_BA_W, contact.p_WC,
+                             0, 0, contact.object, 1});
+    pushing.push_back(&contact);
+  }
+  out->coupling.assign(pushing.size() * pushing.size(), 0.0);
+  for (std::size_t first = 0, end; first < pushing.size(); first = end) {
+    end = first;
+    while (end < pushing.size() &&
+           pushing[end]->object == pushing[first]->object) {
+      ++end;
+    }
+    Press({pushing.data() + first, end - first}, tolerance, first, out);
+  }
+}
+
+}  // namespace drake_haptics
