@@ -68,7 +68,7 @@ def make_scene_for_meshes(
                 scale=environment_scale,
             )
         ],
-        contact=Contact(tolerance_m=tolerance, cluster_size_m=2.5 * tolerance),
+        contact=Contact(tolerance_m=tolerance),
         hand=Hand(grip="nominal", path=_make_path(tool, environment, tip)),
     )
 

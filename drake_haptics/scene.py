@@ -13,17 +13,33 @@ from pydrake.math import RigidTransform, RollPitchYaw
 
 import drake_haptics
 from drake_haptics.scene_check import SceneError, check_keys, check_values
+from drake_haptics.scene_effects import (
+    Braking,
+    Effects,
+    Friction,
+    Gravity,
+    Material,
+    Passivity,
+    Shading,
+)
 
 __all__ = [
+    "Braking",
     "Contact",
     "Coupling",
     "Device",
+    "Effects",
     "EnvironmentObject",
+    "Friction",
+    "Gravity",
     "Hand",
     "HandPath",
+    "Material",
+    "Passivity",
     "Pose",
     "Scene",
     "SceneError",
+    "Shading",
     "Tool",
     "Waypoint",
     "load_scene",
@@ -83,6 +99,7 @@ class EnvironmentObject:
         scale: Metres per unit of the mesh file.
         decomposition: As for the tool.
         pose: X_WO, the pose of the object's frame in the world.
+        material: What it is made of.
     """
 
     name: str = ""
@@ -90,6 +107,7 @@ class EnvironmentObject:
     scale: float = 1.0
     decomposition: str = "surface"
     pose: Pose = field(default_factory=Pose)
+    material: Material = field(default_factory=Material)
 
 
 @dataclass
@@ -99,15 +117,19 @@ class Contact:
     Attributes:
         tolerance_m: Pieces nearer than this push each other apart, m (the
             paper's t).
-        cluster_size_m: Contacts nearer than this count as one, m (the paper's δ).
         stiffness_N_per_m: Force per metre below the tolerance, N/m (k of Eq. 6).
         damping_Ns_per_m: Force per speed of approach, N·s/m (k_v of Eq. 6).
+        clustering: How few contacts are made of many: `shared`, which is
+            continuous, or `octree`, the paper's.
+        cluster_size_m: For `octree`, and only there: contacts nearer than this
+            count as one, m (the paper's δ).
     """
 
     tolerance_m: float = 2e-3
-    cluster_size_m: float = 5e-3
     stiffness_N_per_m: float = 2e4
     damping_Ns_per_m: float = 5.0
+    clustering: str = "shared"
+    cluster_size_m: float | None = None
 
 
 @dataclass
@@ -205,6 +227,7 @@ class Scene:
         coupling: Between the handle and the tool.
         device: What is held.
         hand: Who holds it.
+        effects: What is felt besides contact.
     """
 
     description: str = ""
@@ -214,6 +237,7 @@ class Scene:
     coupling: Coupling = field(default_factory=Coupling)
     device: Device = field(default_factory=Device)
     hand: Hand = field(default_factory=Hand)
+    effects: Effects = field(default_factory=Effects)
 
     @classmethod
     def for_meshes(

@@ -6,16 +6,24 @@ import dataclasses
 import difflib
 import math
 import typing
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from drake_haptics.errors import UserError
 
 if TYPE_CHECKING:
-    from drake_haptics.scene import HandPath, Scene
+    from drake_haptics.scene import Contact, HandPath, Scene
+    from drake_haptics.scene_effects import Effects, Material
+
+_CLUSTERINGS = ("shared", "octree")
 
 
 class SceneError(UserError):
     """A scene that cannot be used. The message names the key."""
+
+
+class SceneWarning(UserWarning):
+    """A scene that can be used, but may not do what is wanted. Names the bound."""
 
 
 def check_keys(schema: Any, data: Any, where: str = "") -> None:
@@ -34,6 +42,8 @@ def check_keys(schema: Any, data: Any, where: str = "") -> None:
     if type(None) in arguments:
         if data is not None:
             check_keys(arguments[0], data, where)
+        elif dataclasses.is_dataclass(arguments[0]):
+            raise SceneError(f"{where}: is empty; write {{}} for the defaults")
     elif typing.get_origin(schema) is list:
         if not isinstance(data, list):
             raise SceneError(f"{where}: expected a list, found {data!r}")
@@ -53,12 +63,14 @@ def _check_mapping(schema: Any, data: Any, where: str) -> None:
     for key, item in data.items():
         place = f"{where}.{key}" if where else str(key)
         if key not in types:
-            near = difflib.get_close_matches(str(key), types, n=1)
-            hint = (
-                f"did you mean '{near[0]}'?" if near else f"known: {', '.join(types)}"
-            )
-            raise SceneError(f"{place}: unknown key; {hint}")
+            raise SceneError(f"{place}: unknown key; {_make_hint(str(key), types)}")
         check_keys(types[key], item, place)
+
+
+def _make_hint(word: str, known: Iterable[str]) -> str:
+    """Returns the known word that was probably meant, or all of them."""
+    near = difflib.get_close_matches(word, known, n=1)
+    return f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
 
 
 def _check_scalar(schema: Any, data: Any, where: str) -> None:
@@ -95,25 +107,73 @@ def check_values(scene: Scene) -> None:
         _require(bool(item.mesh), f"{where}.mesh", "is missing")
         _require_all_positive(item, where, ["scale"])
         _check_pose(item.pose, f"{where}.pose")
-    _require_all_positive(
-        scene.contact, "contact", ["cluster_size_m", "stiffness_N_per_m"]
-    )
-    _require_none_negative(
-        scene.contact, "contact", ["tolerance_m", "damping_Ns_per_m"]
-    )
+        _check_material(item.material, f"{where}.material", scene.effects)
+    _check_contact(scene.contact)
+    _check_effects(scene.effects)
     _require_none_negative(
         scene.coupling, "coupling", [f.name for f in dataclasses.fields(scene.coupling)]
     )
     _require_all_positive(scene.device, "device", ["rate_hz"])
-    limits = [
-        k
-        for k in ("max_force_N", "max_torque_Nm")
-        if getattr(scene.device, k) is not None
-    ]
-    _require_none_negative(scene.device, "device", limits)
+    _require_none_negative(scene.device, "device", ["max_force_N", "max_torque_Nm"])
     if scene.device.base is not None:
         _check_pose(scene.device.base, "device.base")
     _check_path(scene.hand.path)
+
+
+def _check_contact(contact: Contact) -> None:
+    """Checks how contact is found and answered."""
+    _require_all_positive(contact, "contact", ["stiffness_N_per_m", "cluster_size_m"])
+    _require_none_negative(contact, "contact", ["tolerance_m", "damping_Ns_per_m"])
+    _require(
+        contact.clustering in _CLUSTERINGS,
+        "contact.clustering",
+        f"is '{contact.clustering}'; {_make_hint(contact.clustering, _CLUSTERINGS)}",
+    )
+    octree = contact.clustering == "octree"
+    _require(
+        octree == (contact.cluster_size_m is not None),
+        "contact.cluster_size_m",
+        "is missing" if octree else "is only for clustering: octree",
+    )
+
+
+def _check_material(material: Material, where: str, effects: Effects) -> None:
+    """Checks a material, and that the scene names the effects it speaks of."""
+    _require_all_positive(material, where, ["stiffness_N_per_m"])
+    _require_none_negative(
+        material, where, ["damping_Ns_per_m", "friction_coefficient"]
+    )
+    for key, effect in [("friction_coefficient", "friction"), ("shading", "shading")]:
+        _require(
+            getattr(material, key) is None or getattr(effects, effect) is not None,
+            f"{where}.{key}",
+            f"means nothing without effects.{effect}",
+        )
+
+
+def _check_effects(effects: Effects) -> None:
+    """Checks the values of the effects that there are."""
+    if (shading := effects.shading) is not None:
+        _require(
+            0.0 <= shading.crease_angle_deg <= 180.0,
+            "effects.shading.crease_angle_deg",
+            f"must be between 0 and 180, is {shading.crease_angle_deg}",
+        )
+    if (friction := effects.friction) is not None:
+        _require_none_negative(friction, "effects.friction", ["coefficient"])
+        _require_all_positive(friction, "effects.friction", ["break_away_m"])
+    if (braking := effects.braking) is not None:
+        _require_none_negative(braking, "effects.braking", ["damping_Ns_per_m"])
+        _require_all_positive(braking, "effects.braking", ["distance_m"])
+    if (gravity := effects.gravity) is not None:
+        _require(
+            len(gravity.acceleration_m_per_s2) == 3,
+            "effects.gravity.acceleration_m_per_s2",
+            "needs three numbers",
+        )
+    if (passivity := effects.passivity) is not None:
+        keys = [f.name for f in dataclasses.fields(passivity)]
+        _require_none_negative(passivity, "effects.passivity", keys)
 
 
 def _check_path(path: HandPath) -> None:
@@ -138,15 +198,25 @@ def _check_pose(pose: Any, where: str) -> None:
 
 
 def _require_all_positive(part: Any, where: str, keys: list[str]) -> None:
+    """Checks those of the values that are given."""
     for key in keys:
         value = getattr(part, key)
-        _require(value > 0.0, f"{where}.{key}", f"must be positive, is {value}")
+        _require(
+            value is None or value > 0.0,
+            f"{where}.{key}",
+            f"must be positive, is {value}",
+        )
 
 
 def _require_none_negative(part: Any, where: str, keys: list[str]) -> None:
+    """Checks those of the values that are given."""
     for key in keys:
         value = getattr(part, key)
-        _require(value >= 0.0, f"{where}.{key}", f"must not be negative, is {value}")
+        _require(
+            value is None or value >= 0.0,
+            f"{where}.{key}",
+            f"must not be negative, is {value}",
+        )
 
 
 def _require(condition: bool, where: str, complaint: str) -> None:

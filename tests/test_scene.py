@@ -4,12 +4,19 @@ import numpy as np
 import pytest
 
 from drake_haptics.scene import (
+    Braking,
     Contact,
     Coupling,
     Device,
+    Effects,
+    Friction,
+    Gravity,
     HandPath,
+    Material,
+    Passivity,
     Pose,
     SceneError,
+    Shading,
     Waypoint,
     load_scene,
 )
@@ -50,6 +57,29 @@ def test_a_scene_is_read_with_defaults_for_the_rest(tmp_path):
     assert scene.hand.path.waypoints[1].rpy_deg == [0, 10, 0]
     assert (scene.contact, scene.coupling) == (Contact(), Coupling())
     assert scene.device == Device()
+    assert scene.environment[0].material == Material()
+    assert scene.effects == Effects(None, None, None, None, None)
+
+
+def test_an_effect_is_there_once_it_is_named(tmp_path):
+    every = (
+        "effects: {shading: {}, friction: {coefficient: 0.5}, braking: {},"
+        " gravity: {acceleration_m_per_s2: [0, 0, -1.62]}, passivity: {}}\nhand:"
+    )
+    scene = load(tmp_path, GOOD.replace("hand:", every))
+    assert scene.effects == Effects(
+        Shading(), Friction(coefficient=0.5), Braking(), Gravity([0, 0, -1.62]),
+        Passivity(),
+    )  # fmt: skip
+
+
+def test_a_material_takes_the_place_of_the_scenes(tmp_path):
+    given = (
+        "  material: {stiffness_N_per_m: 900, friction_coefficient: 0, shading: no}\n"
+        "effects: {friction: {}, shading: {}}\nhand:"
+    )
+    scene = load(tmp_path, GOOD.replace("hand:", given))
+    assert scene.environment[0].material == Material(900.0, None, 0.0, False)
 
 
 def test_mesh_paths_no_longer_depend_on_the_folder(tmp_path):
@@ -87,6 +117,16 @@ def test_a_pose_is_drakes():
         ("hand:", "contact: {stiffness_N_per_m: -1}\nhand:", r"contact\.stiffness"),
         ("hand:", "contact: {tolerance_m: -1}\nhand:", r"contact\.tolerance_m must"),
         ("hand:", "contact: {cluster_size_m: 0}\nhand:", r"contact\.cluster_size_m"),
+        (
+            "hand:",
+            "contact: {cluster_size_m: 5e-3}\nhand:",
+            r"only for clustering: oct",
+        ),
+        ("hand:", "contact: {clustering: octree}\nhand:", r"cluster_size_m is missing"),
+        ("hand:", "contact: {clustering: ocree}\nhand:", r"'ocree'; did you mean 'oct"),
+        ("hand:", "effects: {gravty: {}}\nhand:", r"gravty: .* did you mean 'gravity'"),
+        ("hand:", "effects: {gravity:}\nhand:", r"gravity: is empty; write {} for"),
+        ("hand:", "effects: {gravity: 9.81}\nhand:", r"gravity: expected keys"),
         ("hand:", "coupling: {damping_Ns_per_m: -1}\nhand:", r"coupling\.damping"),
         ("hand:", "device: {rate_hz: 0}\nhand:", r"device\.rate_hz must be pos"),
         ("hand:", "device: {max_force_N: -1}\nhand:", r"device\.max_force_N must not"),
@@ -97,6 +137,50 @@ def test_what_is_wrong_is_named_with_file_and_key(tmp_path, old, new, complaint)
     assert old in GOOD
     with pytest.raises(SceneError, match=r"scene\.yaml: .*" + complaint):
         load(tmp_path, GOOD.replace(old, new, 1))
+
+
+@pytest.mark.parametrize(
+    ("effect", "complaint"),
+    [
+        ("shading: {crease_angle_deg: 181}", "must be between 0 and 180, is 181"),
+        ("shading: {crease_angle_deg: -1}", "must be between 0 and 180, is -1"),
+        ("friction: {coefficient: -0.1}", "must not be negative, is -0.1"),
+        ("friction: {break_away_m: 0}", "must be positive, is 0"),
+        ("braking: {damping_Ns_per_m: -1}", "must not be negative"),
+        ("braking: {distance_m: 0}", "must be positive, is 0"),
+        ("gravity: {acceleration_m_per_s2: [9.81]}", "needs three numbers"),
+        ("passivity: {reserve_J: -1}", "must not be negative, is -1"),
+        ("passivity: {max_damping_Ns_per_m: -1}", "must not be negative, is -1"),
+    ],
+)
+def test_a_bad_effect_is_named_with_its_bound(tmp_path, effect, complaint):
+    key = effect.replace(": {", ".", 1).split(":")[0]
+    with pytest.raises(SceneError, match=rf"effects\.{key}.* {complaint}"):
+        load(tmp_path, GOOD.replace("hand:", f"effects: {{{effect}}}\nhand:"))
+
+
+@pytest.mark.parametrize(
+    ("material", "complaint"),
+    [
+        ("stiffness_N_per_m: -5", "must be positive, is -5"),
+        ("damping_Ns_per_m: -5", "must not be negative, is -5"),
+        ("friction_coefficient: 0.2", r"means nothing without effects\.friction"),
+        ("shading: true", r"means nothing without effects\.shading"),
+        ("stifness_N_per_m: 5", "unknown key; did you mean 'stiffness_N_per_m'"),
+    ],
+)
+def test_a_bad_material_is_named_with_its_bound(tmp_path, material, complaint):
+    key = material.split(":")[0]
+    with pytest.raises(
+        SceneError, match=rf"environment\[0\].material.{key}.* {complaint}"
+    ):
+        load(tmp_path, GOOD.replace("hand:", f"  material: {{{material}}}\nhand:"))
+
+
+def test_friction_below_zero_is_refused_of_a_material_too(tmp_path):
+    given = "  material: {friction_coefficient: -1}\neffects: {friction: {}}\nhand:"
+    with pytest.raises(SceneError, match="friction_coefficient must not be negative"):
+        load(tmp_path, GOOD.replace("hand:", given))
 
 
 def test_a_name_used_twice_is_refused(tmp_path):
