@@ -28,10 +28,10 @@ if TYPE_CHECKING:
         AddHapticLoop,
         BuildHapticDiagram,
         HapticDiagram,
-        HapticLoop,
     )
     from drake_haptics.decomposition import Decomposition, decompose
     from drake_haptics.errors import UserError
+    from drake_haptics.haptic_loop import ConnectMovingObject, HapticLoop
     from drake_haptics.mesh import Mesh, load_mesh
     from drake_haptics.scene import Scene, load_scene
     from drake_haptics.scene_library import find_scene, list_scenes
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AddHapticLoop",
     "BuildHapticDiagram",
+    "ConnectMovingObject",
     "Contact",
     "ContactSet",
     "ContactStatus",
@@ -70,6 +71,7 @@ __all__ = [
 _MODULE_OF = {
     "AddHapticLoop": "builder",
     "BuildHapticDiagram": "builder",
+    "ConnectMovingObject": "haptic_loop",
     "Contact": "_core",
     "ContactSet": "_core",
     "ContactStatus": "_core",
@@ -81,7 +83,7 @@ _MODULE_OF = {
     "Feature": "_core",
     "FeatureKind": "_core",
     "HapticDiagram": "builder",
-    "HapticLoop": "builder",
+    "HapticLoop": "haptic_loop",
     "Mesh": "mesh",
     "PairTrajectory": "_core",
     "RunError": "simulation",

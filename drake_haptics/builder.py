@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -12,12 +13,27 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from drake_haptics import _core
+from drake_haptics.builder_effects import EffectSite, add_effects
 from drake_haptics.decomposition import Decomposition, Method, decompose
+from drake_haptics.haptic_loop import BaseSystems, HapticLoop
+from drake_haptics.held_handle import check_scene_coupling
 from drake_haptics.mass_properties import calc_mass_properties
 from drake_haptics.mesh import load_mesh
-from drake_haptics.scene import Contact, Coupling, EnvironmentObject, Scene, Tool
+from drake_haptics.scene import (
+    Contact,
+    Coupling,
+    Effects,
+    EnvironmentObject,
+    Material,
+    Scene,
+    Tool,
+)
+from drake_haptics.scene_check import SceneWarning
 from drake_haptics.simulated_device import make_hand_path, make_simulated_device
-from drake_haptics.systems.contact_clustering import ContactClustering
+from drake_haptics.systems.contact_clustering import (
+    ClusteringMethod,
+    ContactClustering,
+)
 from drake_haptics.systems.contact_query import ContactObject, ContactQuery
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.haptic_tool import HapticTool
@@ -25,26 +41,8 @@ from drake_haptics.systems.haptic_visualizer import HapticVisualizer
 from drake_haptics.systems.penalty_force import PenaltyForce
 from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
-
-@dataclass(frozen=True)
-class HapticLoop:
-    """The systems of one haptic loop, wired.
-
-    Attributes:
-        device: The device port.
-        virtual_coupling: Between the device's handle and the tool.
-        haptic_tool: The tool's body.
-        contact_query: Finds the contacts.
-        contact_clustering: Makes few of many.
-        penalty_force: Answers them.
-    """
-
-    device: HapticDevice
-    virtual_coupling: VirtualCoupling
-    haptic_tool: HapticTool
-    contact_query: ContactQuery
-    contact_clustering: ContactClustering
-    penalty_force: PenaltyForce
+# Effects that push the tool, each through the input of its name.
+_FORCES = ("friction", "braking", "gravity")
 
 
 @dataclass(frozen=True)
@@ -82,11 +80,13 @@ def AddHapticLoop(
     X_HT: RigidTransform,
     X_WT: RigidTransform,
     period_s: float,
+    effects: Effects | None = None,
+    materials: Sequence[Material] | None = None,
 ) -> HapticLoop:
     """Adds the systems of a haptic loop around a device and connects them.
 
-    The ports `X_WO_<name>` and `V_WO_<name>` of objects that move are left to the
-    caller.
+    An effect that is not asked for has no system, no port and no cost. Objects that
+    move are left to the caller: see `ConnectMovingObject`.
 
     Args:
         builder: Gets the systems, the device among them.
@@ -94,61 +94,107 @@ def AddHapticLoop(
         tool: Pieces of the tool, in its frame T.
         tool_dynamics: Mass and inertia of the tool.
         objects: What the tool meets.
-        contact: Tolerance, cluster size and gains.
+        contact: Tolerance, clustering and gains.
         coupling: Gains between handle and tool.
         X_HT: Pose of the tool in the handle at rest.
         X_WT: Where the tool starts.
         period_s: The tick, s; also the device's.
+        effects: What is felt besides contact; nothing where not given.
+        materials: Of each object, in their order; what one does not give is that of
+            `contact` and `effects`.
 
     Returns:
         The systems.
 
     Raises:
-        ValueError: A gain or size is out of range, or two objects share a name.
+        ValueError: A gain or size is out of range, two objects share a name, or
+            there is not a material for each object.
     """
-    loop = HapticLoop(
+    effects = effects or Effects()
+    if materials is None:
+        materials = [Material()] * len(objects)
+    if len(materials) != len(objects):
+        raise ValueError(
+            f"materials must be one for each of the {len(objects)} objects, are"
+            f" {len(materials)}"
+        )
+    gains = _core.CouplingGains(
+        coupling.stiffness_N_per_m,
+        coupling.damping_Ns_per_m,
+        coupling.rotational_stiffness_Nm_per_rad,
+        coupling.rotational_damping_Nms_per_rad,
+    )
+    forces = [name for name in _FORCES if getattr(effects, name) is not None]
+    base = BaseSystems(
         device=builder.AddNamedSystem("device", device),
         virtual_coupling=builder.AddNamedSystem(
-            "virtual_coupling",
-            VirtualCoupling(
-                _core.CouplingGains(
-                    coupling.stiffness_N_per_m,
-                    coupling.damping_Ns_per_m,
-                    coupling.rotational_stiffness_Nm_per_rad,
-                    coupling.rotational_damping_Nms_per_rad,
-                ),
-                X_HT,
-            ),
+            "virtual_coupling", VirtualCoupling(gains, X_HT)
         ),
         haptic_tool=builder.AddNamedSystem(
             "haptic_tool",
-            HapticTool(tool_dynamics, period_s, ["coupling", "contact"], X_WT),
+            HapticTool(tool_dynamics, period_s, ["coupling", "contact", *forces], X_WT),
         ),
         contact_query=builder.AddNamedSystem(
-            "contact_query", ContactQuery(tool, objects, contact.tolerance_m)
+            "contact_query",
+            ContactQuery(tool, objects, _find_tolerance(contact, effects)),
         ),
         contact_clustering=builder.AddNamedSystem(
             "contact_clustering",
-            ContactClustering(contact.cluster_size_m, contact.tolerance_m),
-        ),
-        penalty_force=builder.AddNamedSystem(
-            "penalty_force",
-            PenaltyForce(
-                objects,
-                contact.stiffness_N_per_m,
-                contact.damping_Ns_per_m,
+            ContactClustering(
+                cast(ClusteringMethod, contact.clustering),
                 contact.tolerance_m,
+                contact.cluster_size_m,
             ),
         ),
+        penalty_force=builder.AddNamedSystem(
+            "penalty_force", _make_penalty_force(objects, contact, materials)
+        ),
     )
-    _connect(builder, loop)
+    _connect_base(builder, base)
+    site = EffectSite(
+        effects, builder, base, tool, tool_dynamics, objects, materials, period_s
+    )
+    systems = add_effects(site)
+    sources = {
+        "coupling": base.virtual_coupling.get_wrench_model_output_port(),
+        "contact": base.penalty_force.get_wrench_model_output_port(),
+        **{
+            name: getattr(systems, name).get_wrench_model_output_port()
+            for name in forces
+        },
+    }
+    for name, source in sources.items():
+        builder.Connect(source, base.haptic_tool.get_wrench_input_port(name))
+    loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
+    builder.Connect(loop.contacts, loop.contact_clustering.get_contacts_input_port())
+    builder.Connect(loop.display_wrench, device.get_display_wrench_input_port())
     return loop
 
 
-def _connect(builder: DiagramBuilder, loop: HapticLoop) -> None:
-    """Connects the systems of a loop with each other."""
-    device, tool = loop.device, loop.haptic_tool
-    coupling, force = loop.virtual_coupling, loop.penalty_force
+def _find_tolerance(contact: Contact, effects: Effects) -> float:
+    """Returns how far contacts must be looked for, m."""
+    if effects.braking is None:
+        return contact.tolerance_m
+    return max(contact.tolerance_m, effects.braking.distance_m)
+
+
+def _make_penalty_force(
+    objects: Sequence[ContactObject], contact: Contact, materials: Sequence[Material]
+) -> PenaltyForce:
+    """Returns the penalty force with the gains of each object."""
+    stiffness = [material.stiffness_N_per_m for material in materials]
+    damping = [material.damping_Ns_per_m for material in materials]
+    return PenaltyForce(
+        objects,
+        [contact.stiffness_N_per_m if k is None else k for k in stiffness],
+        [contact.damping_Ns_per_m if b is None else b for b in damping],
+    )
+
+
+def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
+    """Connects the systems of every loop where no effect can come between."""
+    device, tool = base.device, base.haptic_tool
+    coupling, force = base.virtual_coupling, base.penalty_force
     X_WTool, V_WTool = tool.get_pose_output_port(), tool.get_velocity_output_port()
     for output, input in [
         (device.get_handle_pose_output_port(), coupling.get_handle_pose_input_port()),
@@ -158,26 +204,13 @@ def _connect(builder: DiagramBuilder, loop: HapticLoop) -> None:
         ),
         (X_WTool, coupling.get_tool_pose_input_port()),
         (V_WTool, coupling.get_tool_velocity_input_port()),
+        (X_WTool, base.contact_query.get_tool_pose_input_port()),
         (
-            coupling.get_display_wrench_output_port(),
-            device.get_display_wrench_input_port(),
-        ),
-        (
-            coupling.get_wrench_model_output_port(),
-            tool.get_wrench_input_port("coupling"),
-        ),
-        (X_WTool, loop.contact_query.get_tool_pose_input_port()),
-        (
-            loop.contact_query.get_contacts_output_port(),
-            loop.contact_clustering.get_contacts_input_port(),
-        ),
-        (
-            loop.contact_clustering.get_clusters_output_port(),
+            base.contact_clustering.get_clusters_output_port(),
             force.get_clusters_input_port(),
         ),
         (X_WTool, force.get_tool_pose_input_port()),
         (V_WTool, force.get_tool_velocity_input_port()),
-        (force.get_wrench_model_output_port(), tool.get_wrench_input_port("contact")),
     ]:
         builder.Connect(output, input)
 
@@ -200,6 +233,9 @@ def BuildHapticDiagram(
     Returns:
         The diagram and its parts. All systems have snake_case names.
 
+    Warns:
+        SceneWarning: The coupling breaks a bound of stability or passivity.
+
     Raises:
         SceneError: A value is impossible or the hand's path cannot be reached.
         MeshError: A mesh cannot be treated.
@@ -208,6 +244,8 @@ def BuildHapticDiagram(
     period_s = 1.0 / scene.device.rate_hz
     path = make_hand_path(scene.hand.path)
     device = make_simulated_device(scene, path)
+    for sentence in check_scene_coupling(scene, device):
+        warnings.warn(f"coupling.{sentence}", SceneWarning, stacklevel=2)
     tool = _decompose("tool", scene.tool, progress)
     environment = tuple(
         _decompose(item.name, item, progress) for item in scene.environment
@@ -230,6 +268,8 @@ def BuildHapticDiagram(
         X_HT=X_HT,
         X_WT=path.start,
         period_s=period_s,
+        effects=scene.effects,
+        materials=[item.material for item in scene.environment],
     )
     visualizer = None
     if meshcat is not None:
@@ -276,10 +316,7 @@ def _connect_visualizer(
             loop.haptic_tool.get_pose_output_port(),
             visualizer.get_tool_pose_input_port(),
         ),
-        (
-            loop.contact_query.get_contacts_output_port(),
-            visualizer.get_contacts_input_port(),
-        ),
+        (loop.contacts, visualizer.get_contacts_input_port()),
         (
             loop.contact_clustering.get_clusters_output_port(),
             visualizer.get_clusters_input_port(),
@@ -288,9 +325,6 @@ def _connect_visualizer(
             loop.penalty_force.get_contact_wrench_output_port(),
             visualizer.get_contact_wrench_input_port(),
         ),
-        (
-            loop.virtual_coupling.get_display_wrench_output_port(),
-            visualizer.get_display_wrench_input_port(),
-        ),
+        (loop.display_wrench, visualizer.get_display_wrench_input_port()),
     ]:
         builder.Connect(output, input)

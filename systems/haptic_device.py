@@ -57,6 +57,8 @@ class HapticDevice(Diagram):
             ValueError: The period or a limit is out of range.
         """
         super().__init__()
+        self._max_force_N = max_force_N
+        self._max_torque_Nm = max_torque_Nm
         builder = DiagramBuilder()
         hold = builder.AddNamedSystem(
             "display_force_hold",
@@ -72,6 +74,16 @@ class HapticDevice(Diagram):
         builder.ExportOutput(hold.get_applied_wrench_output_port(), "F_applied")
         builder.ExportOutput(hold.get_status_output_port(), "status")
         builder.BuildInto(self)
+
+    @property
+    def max_force_N(self) -> float:
+        """Largest force shown, N."""
+        return self._max_force_N
+
+    @property
+    def max_torque_Nm(self) -> float:
+        """Largest torque shown, N·m."""
+        return self._max_torque_Nm
 
     def get_display_wrench_input_port(self) -> InputPort:
         """Returns the input `F_display`."""

@@ -3,34 +3,31 @@
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+from diagram_parts import EVERY, SYSTEMS, names, sources
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import ConstantVectorSource
 
 from drake_haptics._core import RigidToolDynamics
 from drake_haptics.builder import AddHapticLoop, BuildHapticDiagram
 from drake_haptics.device_preset import load_device_preset
 from drake_haptics.errors import MeshError
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import Contact, Coupling, Pose, SceneError
+from drake_haptics.haptic_loop import ConnectMovingObject
+from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.scene import (
+    Contact,
+    Coupling,
+    Effects,
+    Pose,
+    SceneError,
+)
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.simulated_arm import SimulatedArm
 
 START = (0.0, 0.0, 0.0, 0.05)
-SYSTEMS = {
-    "device",
-    "virtual_coupling",
-    "haptic_tool",
-    "contact_query",
-    "contact_clustering",
-    "penalty_force",
-}
-
-
-def names(diagram):
-    return {system.get_name() for system in diagram.GetSystems()}
 
 
 def test_a_scene_gets_the_systems_it_needs_and_no_more(tmp_path):
@@ -39,6 +36,11 @@ def test_a_scene_gets_the_systems_it_needs_and_no_more(tmp_path):
     assert haptic.visualizer is None
     assert haptic.period_s == 1e-3
     assert names(haptic.loop.device) == {"display_force_hold", "simulated_arm"}
+
+
+def test_there_is_a_material_for_each_object(tmp_path):
+    with pytest.raises(ValueError, match="materials must be one for each of the 1"):
+        add_loop_around_a_cart(tmp_path, materials=[])
 
 
 def test_a_meshcat_adds_the_visualizer(tmp_path):
@@ -71,7 +73,10 @@ def test_tool_and_handle_start_where_the_path_does(tmp_path):
 def test_contact_reaches_the_tool_as_the_scene_says(tmp_path):
     scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 1e-3)])
     scene.contact = Contact(
-        tolerance_m=2e-3, cluster_size_m=0.1, stiffness_N_per_m=500.0
+        tolerance_m=2e-3,
+        stiffness_N_per_m=500.0,
+        clustering="octree",
+        cluster_size_m=0.1,
     )
     haptic = BuildHapticDiagram(scene)
     root = haptic.diagram.CreateDefaultContext()
@@ -104,7 +109,8 @@ def test_an_unknown_preset_is_refused_before_any_mesh_is_read(tmp_path):
         BuildHapticDiagram(scene)
 
 
-def test_the_loop_can_be_put_into_a_diagram_of_ones_own(tmp_path):
+def add_loop_around_a_cart(tmp_path, **options):
+    """Returns a builder with a loop whose only object moves, and the loop."""
     core = BuildHapticDiagram(over_a_plate(tmp_path, [START])).tool.core
     preset = load_device_preset("phantom_premium_1_5_6dof")
     arm = SimulatedArm(
@@ -128,12 +134,35 @@ def test_the_loop_can_be_put_into_a_diagram_of_ones_own(tmp_path):
         X_HT=RigidTransform(),
         X_WT=RigidTransform(preset.workspace_center_m),
         period_s=1e-3,
+        **options,
     )
-    # An object that moves is the caller's to connect.
-    builder.ExportInput(loop.contact_query.get_object_pose_input_port("cart"), "X_WO")
-    builder.ExportInput(
-        loop.penalty_force.get_object_velocity_input_port("cart"), "V_WO"
+    return builder, loop
+
+
+@pytest.mark.parametrize("effects", [Effects(), Effects(**EVERY)])
+def test_the_loop_can_be_put_into_a_diagram_of_ones_own(tmp_path, effects):
+    builder, loop = add_loop_around_a_cart(tmp_path, effects=effects)
+    pose = builder.AddNamedSystem(
+        "pose", ConstantVectorSource(pose_to_vector(RigidTransform()))
+    )
+    rest = builder.AddNamedSystem("rest", ConstantVectorSource(np.zeros(6)))
+    ConnectMovingObject(
+        builder, loop, "cart", pose.get_output_port(), rest.get_output_port()
     )
     diagram = builder.Build()
-    assert names(diagram) == SYSTEMS
-    assert diagram.num_input_ports() == 2
+    fed = sources(diagram)
+    for system in diagram.GetSystems():
+        for i in range(system.num_input_ports()):
+            assert f"{system.get_name()}.{system.get_input_port(i).get_name()}" in fed
+    assert {key for key, source in fed.items() if source == "pose.y0"} == {
+        key for key in fed if key.endswith(".X_WO_cart")
+    }
+
+
+def test_an_object_that_does_not_move_cannot_be_moved(tmp_path):
+    builder, loop = add_loop_around_a_cart(tmp_path)
+    rest = builder.AddSystem(ConstantVectorSource(np.zeros(6)))
+    with pytest.raises(ValueError, match="no object that moves is called 'plate'"):
+        ConnectMovingObject(
+            builder, loop, "plate", rest.get_output_port(), rest.get_output_port()
+        )

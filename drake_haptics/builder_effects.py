@@ -1,0 +1,182 @@
+"""Adds the systems of the effects that a scene names, and wires them.
+
+Each system is imported where it is added: what a scene does not name is not even
+loaded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from pydrake.systems.framework import DiagramBuilder, System
+
+from drake_haptics import _core
+from drake_haptics.haptic_loop import BaseSystems, EffectSystems
+from drake_haptics.passivity_bounds import calc_returnable_energy
+from drake_haptics.scene_effects import (
+    Braking,
+    Effects,
+    Friction,
+    Gravity,
+    Material,
+    Passivity,
+    Shading,
+)
+from drake_haptics.systems.contact_query import ContactObject
+
+# Hands on a desk reach no higher.
+_HIGHEST_LIFT_M = 0.5
+
+
+@dataclass(frozen=True)
+class EffectSite:
+    """Which effects go where, and what they are made from.
+
+    Attributes:
+        effects: Those to add are not None.
+        builder: Gets the systems.
+        base: What is in it already.
+        tool: Pieces of the tool, in its frame T.
+        tool_dynamics: Its mass.
+        objects: What it meets.
+        materials: Of each object.
+        period_s: The tick, s.
+    """
+
+    effects: Effects
+    builder: DiagramBuilder
+    base: BaseSystems
+    tool: _core.Decomposition
+    tool_dynamics: _core.RigidToolDynamics
+    objects: Sequence[ContactObject]
+    materials: Sequence[Material]
+    period_s: float
+
+
+def add_effects(site: EffectSite) -> EffectSystems:
+    """Adds the systems of a site's effects and connects their inputs.
+
+    Their outputs are left to the caller.
+    """
+    add: dict[str, Callable[[Any, EffectSite], System]] = {
+        "shading": _add_shading,
+        "friction": _add_friction,
+        "braking": _add_braking,
+        "gravity": _add_gravity,
+        "passivity": _add_passivity,
+    }
+    systems: dict[str, Any] = {
+        name: add_one(getattr(site.effects, name), site)
+        for name, add_one in add.items()
+        if getattr(site.effects, name) is not None
+    }
+    return EffectSystems(**systems)
+
+
+def _add_shading(effect: Shading, site: EffectSite) -> System:
+    from drake_haptics.systems.force_shading import ForceShading
+
+    system = ForceShading(
+        site.tool,
+        site.objects,
+        crease_angle_deg=effect.crease_angle_deg,
+        shaded=[material.shading is not False for material in site.materials],
+    )
+    return _add(site, "force_shading", system)
+
+
+def _add_friction(effect: Friction, site: EffectSite) -> System:
+    from drake_haptics.systems.stick_slip_friction import StickSlipFriction
+
+    own = [material.friction_coefficient for material in site.materials]
+    system = StickSlipFriction(
+        site.objects,
+        period_s=site.period_s,
+        coefficient=[effect.coefficient if x is None else x for x in own],
+        break_away_m=effect.break_away_m,
+    )
+    return _add(site, "stick_slip_friction", system)
+
+
+def _add_braking(effect: Braking, site: EffectSite) -> System:
+    from drake_haptics.systems.pre_contact_braking import PreContactBraking
+
+    system = PreContactBraking(
+        site.objects,
+        damping_Ns_per_m=effect.damping_Ns_per_m,
+        distance_m=effect.distance_m,
+    )
+    return _add(site, "pre_contact_braking", system)
+
+
+def _add_gravity(effect: Gravity, site: EffectSite) -> System:
+    from drake_haptics.systems.tool_gravity import ToolGravity
+
+    system = ToolGravity(
+        mass_kg=site.tool_dynamics.mass_kg,
+        p_TTcm=site.tool_dynamics.p_TTcm.tolist(),
+        gravity_m_per_s2=effect.acceleration_m_per_s2,
+    )
+    return _add(site, "tool_gravity", system)
+
+
+def _add_passivity(effect: Passivity, site: EffectSite) -> System:
+    from drake_haptics.systems.passivity_control import PassivityControl
+
+    reserve_J = effect.reserve_J
+    system = PassivityControl(
+        period_s=site.period_s,
+        max_damping_Ns_per_m=effect.max_damping_Ns_per_m,
+        max_rotational_damping_Nms_per_rad=effect.max_rotational_damping_Nms_per_rad,
+        reserve_J=_calc_reserve(site) if reserve_J is None else reserve_J,
+    )
+    return _add(site, "passivity_control", system)
+
+
+def _calc_reserve(site: EffectSite) -> float:
+    """Returns the energy that springs and tool can give back to the device, J."""
+    base = site.base
+    force_N, torque_Nm = base.device.max_force_N, base.device.max_torque_Nm
+    gains = base.virtual_coupling.gains
+    mass_kg = site.tool_dynamics.mass_kg
+    weight_N = 0.0
+    if site.effects.gravity is not None:
+        gravity = site.effects.gravity.acceleration_m_per_s2
+        weight_N = mass_kg * float(np.linalg.norm(gravity))
+    return calc_returnable_energy(
+        [
+            (force_N, gains.stiffness_N_per_m),
+            (torque_Nm, gains.rotational_stiffness_Nm_per_rad),
+            (force_N, min(base.penalty_force.stiffness_N_per_m)),
+        ],
+        mass_kg,
+        _HIGHEST_LIFT_M * weight_N,
+    )
+
+
+def _add(site: EffectSite, name: str, system: System) -> System:
+    """Adds a system and connects its inputs, which say by their names what they want.
+
+    Poses and velocities of objects that move are left out.
+    """
+    base = site.base
+    sources = {
+        "X_WH": base.device.get_handle_pose_output_port(),
+        "V_WH": base.device.get_handle_velocity_output_port(),
+        "X_WTool": base.haptic_tool.get_pose_output_port(),
+        "V_WTool": base.haptic_tool.get_velocity_output_port(),
+        "F_applied": base.device.get_applied_wrench_output_port(),
+        "F_asked": base.virtual_coupling.get_display_wrench_output_port(),
+        "contacts": base.contact_query.get_contacts_output_port(),
+        "clusters": base.contact_clustering.get_clusters_output_port(),
+        "contact_wrench": base.penalty_force.get_contact_wrench_output_port(),
+    }
+    site.builder.AddNamedSystem(name, system)
+    for i in range(system.num_input_ports()):
+        port = system.get_input_port(i)
+        if port.get_name() in sources:
+            site.builder.Connect(sources[port.get_name()], port)
+    return system

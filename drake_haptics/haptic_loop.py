@@ -1,0 +1,125 @@
+"""The systems of a haptic loop, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from pydrake.systems.framework import DiagramBuilder, OutputPort, System
+
+from drake_haptics.systems.contact_clustering import ContactClustering
+from drake_haptics.systems.contact_query import ContactQuery
+from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.systems.haptic_tool import HapticTool
+from drake_haptics.systems.penalty_force import PenaltyForce
+from drake_haptics.systems.virtual_coupling import VirtualCoupling
+
+if TYPE_CHECKING:
+    from drake_haptics.systems.force_shading import ForceShading
+    from drake_haptics.systems.passivity_control import PassivityControl
+    from drake_haptics.systems.pre_contact_braking import PreContactBraking
+    from drake_haptics.systems.stick_slip_friction import StickSlipFriction
+    from drake_haptics.systems.tool_gravity import ToolGravity
+
+
+@dataclass(frozen=True)
+class BaseSystems:
+    """The systems that every loop has.
+
+    Attributes:
+        device: The device port.
+        virtual_coupling: Between the device's handle and the tool.
+        haptic_tool: The tool's body.
+        contact_query: Finds the contacts.
+        contact_clustering: Keeps many contacts from being stiffer than one.
+        penalty_force: Answers them.
+    """
+
+    device: HapticDevice
+    virtual_coupling: VirtualCoupling
+    haptic_tool: HapticTool
+    contact_query: ContactQuery
+    contact_clustering: ContactClustering
+    penalty_force: PenaltyForce
+
+
+@dataclass(frozen=True)
+class EffectSystems:
+    """The system of each effect; None where the scene does not name it.
+
+    Attributes:
+        shading: Smooths the contacts' normals.
+        friction: Stick-slip friction.
+        braking: Brakes before contact.
+        gravity: The tool's weight.
+        passivity: Takes surplus energy out of the device's wrench.
+    """
+
+    shading: ForceShading | None = None
+    friction: StickSlipFriction | None = None
+    braking: PreContactBraking | None = None
+    gravity: ToolGravity | None = None
+    passivity: PassivityControl | None = None
+
+
+@dataclass(frozen=True)
+class HapticLoop(BaseSystems):
+    """The systems of one haptic loop, wired.
+
+    Attributes:
+        effects: Those of the effects.
+        wrench_sources: The wrench model that feeds each input of `haptic_tool`, by
+            the name of the input.
+    """
+
+    effects: EffectSystems
+    wrench_sources: Mapping[str, OutputPort]
+
+    @property
+    def contacts(self) -> OutputPort:
+        """What is clustered: the contacts, shaded if the scene asks for it."""
+        if self.effects.shading is not None:
+            return self.effects.shading.get_contacts_output_port()
+        return self.contact_query.get_contacts_output_port()
+
+    @property
+    def display_wrench(self) -> OutputPort:
+        """What the device is asked to show: the wrench (6) [τ; f] on its handle."""
+        if self.effects.passivity is not None:
+            return self.effects.passivity.get_display_wrench_output_port()
+        return self.virtual_coupling.get_display_wrench_output_port()
+
+
+def ConnectMovingObject(
+    builder: DiagramBuilder,
+    loop: HapticLoop,
+    name: str,
+    X_WO: OutputPort,
+    V_WO: OutputPort,
+) -> None:
+    """Connects the motion of an object to every system of a loop that needs it.
+
+    Args:
+        builder: Of the diagram with the loop.
+        loop: What `AddHapticLoop` returned.
+        name: Of an object without a pose of its own.
+        X_WO: Its pose (7) [qw qx qy qz x y z] in the world, m.
+        V_WO: Its spatial velocity (6) [ω; v] in the world, rad/s and m/s.
+
+    Raises:
+        ValueError: There is no such object, or it does not move.
+    """
+    systems: list[System] = [loop.contact_query, loop.penalty_force]
+    systems += [system for system in vars(loop.effects).values() if system is not None]
+    sources = {f"X_WO_{name}": X_WO, f"V_WO_{name}": V_WO}
+    inputs = [
+        (sources[port.get_name()], port)
+        for system in systems
+        for port in map(system.get_input_port, range(system.num_input_ports()))
+        if port.get_name() in sources
+    ]
+    if not inputs:
+        raise ValueError(f"name: no object that moves is called {name!r}")
+    for output, input in inputs:
+        builder.Connect(output, input)
