@@ -1,0 +1,137 @@
+"""Brakes the tool before it touches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pydrake.common.value import Value
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+)
+
+from drake_haptics._core import BrakingGains, pre_contact_braking
+from drake_haptics.systems.contact_query import ContactObject
+
+
+class PreContactBraking(LeafSystem):
+    """Viscous force against the approach of surfaces that do not touch yet.
+
+    At each contact with 0 < d < D, D the braking's distance, the tool is pushed with
+    b s w v along the normal, v the speed of approach at the contact; never pulled,
+    never held back when it leaves (McNeely, Puterbaugh and Troy 1999). The profile
+    w = 4 (d/D) (1 - d/D) fades at both ends, so that the wrench is continuous in pose
+    and velocity. On a straight way to a surface a mass m loses 2 b D / (3 m) of its
+    speed, at any speed.
+
+    The share s of a contact keeps those with like normals from adding up, however
+    finely a surface is cut, and leaves others alone (core/braking.h). The damping is
+    at most 1.1 b where all normals are alike, and 4.4 b along any direction.
+
+    .. pydrake_system::
+
+        name: PreContactBraking
+        input_ports:
+        - contacts
+        - X_WTool
+        - V_WTool
+        - X_WO_<name of each object that moves>
+        - V_WO_<name of each object that moves>
+        output_ports:
+        - wrench_model
+
+    `contacts` is a `drake_haptics.ContactSet`; contacts must have been looked for up
+    to D at least. Poses are [qw qx qy qz x y z], m. `V_WTool` and `V_WO_<name>` are
+    spatial velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
+
+    `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
+    documents it. K is zero: the braking changes with the pose only as the speed does.
+    """
+
+    def __init__(
+        self,
+        objects: Sequence[ContactObject],
+        *,
+        damping_Ns_per_m: float,
+        distance_m: float,
+    ):
+        """Constructs the system.
+
+        Args:
+            objects: Those of the `ContactQuery`, in the same order.
+            damping_Ns_per_m: b, the damping half-way to the surface, N·s/m.
+            distance_m: D, where braking begins, m.
+
+        Raises:
+            ValueError: The damping is negative, the distance not positive, or one of
+                them not finite.
+        """
+        super().__init__()
+        self._gains = BrakingGains(damping_Ns_per_m, distance_m)
+        self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
+        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
+        self._moving = [
+            (
+                i,
+                self.DeclareVectorInputPort(f"X_WO_{item.name}", 7),
+                self.DeclareVectorInputPort(f"V_WO_{item.name}", 6),
+            )
+            for i, item in enumerate(objects)
+            if item.X_WO is None
+        ]
+        # An object at rest has no velocity, wherever it is.
+        self._p_WO = np.zeros((len(objects), 3))
+        self._V_WO = np.zeros((len(objects), 6))
+        self._wrench_model = self.DeclareVectorOutputPort(
+            "wrench_model",
+            78,
+            self._calc_wrench_model,
+            {self.all_input_ports_ticket()},
+        )
+
+    def get_contacts_input_port(self) -> InputPort:
+        """Returns the input `contacts`."""
+        return self._contacts
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self._X_WTool
+
+    def get_tool_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_WTool`."""
+        return self._V_WTool
+
+    def get_object_pose_input_port(self, name: str) -> InputPort:
+        """Returns the input `X_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"X_WO_{name}")
+
+    def get_object_velocity_input_port(self, name: str) -> InputPort:
+        """Returns the input `V_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"V_WO_{name}")
+
+    def get_wrench_model_output_port(self) -> OutputPort:
+        """Returns the output `wrench_model`."""
+        return self._wrench_model
+
+    def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
+        p_WO, V_WO = self._p_WO, self._V_WO
+        if self._moving:
+            p_WO, V_WO = p_WO.copy(), V_WO.copy()
+            for i, X_WO, V_WOi in self._moving:
+                p_WO[i] = X_WO.Eval(context)[4:]
+                V_WO[i] = V_WOi.Eval(context)
+        output.SetFromVector(
+            pre_contact_braking(
+                self._contacts.Eval(context),
+                self._X_WTool.Eval(context)[4:],
+                self._V_WTool.Eval(context),
+                p_WO,
+                V_WO,
+                self._gains,
+            )
+        )

@@ -1,0 +1,146 @@
+"""The braking as a Drake system; its law has its own tests in the core."""
+
+import numpy as np
+import pytest
+from pydrake.common.value import Value
+from pydrake.math import RigidTransform
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+from test_contact_query import at_height, box_core, query_at
+
+from drake_haptics._core import RigidToolDynamics
+from drake_haptics.systems.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.haptic_tool import HapticTool
+from drake_haptics.systems.pre_contact_braking import PreContactBraking
+
+B, D = 8.0, 4e-3
+TOUCH = 0.02
+DOWN = np.array([0, 0, 0, 0, 0, -1.0])
+
+
+@pytest.fixture(scope="module")
+def cube():
+    return box_core(0.02, 0.02, 0.02)
+
+
+@pytest.fixture(scope="module")
+def plate():
+    return box_core(0.2, 0.2, 0.02)
+
+
+def make_braking(objects):
+    return PreContactBraking(objects, damping_Ns_per_m=B, distance_m=D)
+
+
+def test_topology(plate):
+    braking = make_braking([ContactObject("cart", plate)])
+    count = braking.num_input_ports()
+    names = [braking.get_input_port(i).get_name() for i in range(count)]
+    assert names == ["contacts", "X_WTool", "V_WTool", "X_WO_cart", "V_WO_cart"]
+    assert braking.num_output_ports() == 1
+    assert braking.GetOutputPort("wrench_model").size() == 78
+    assert braking.CreateDefaultContext().num_total_states() == 0
+
+
+def fixed(braking, contacts, height, V_WTool):
+    context = braking.CreateDefaultContext()
+    braking.get_contacts_input_port().FixValue(context, Value[object](contacts))
+    braking.get_tool_pose_input_port().FixValue(context, at_height(height))
+    braking.get_tool_velocity_input_port().FixValue(context, V_WTool)
+    return context
+
+
+def test_a_box_that_comes_down_on_a_plate_is_pushed_up(cube, plate):
+    objects = [ContactObject("plate", plate, RigidTransform())]
+    query, braking = ContactQuery(cube, objects, D), make_braking(objects)
+    height = TOUCH + 0.25 * D
+    contacts = query_at(query, query.CreateDefaultContext(), height)
+    context = fixed(braking, contacts, height, 0.2 * DOWN)
+    model = braking.get_wrench_model_output_port().Eval(context)
+    np.testing.assert_allclose(model[3:6], [0, 0, 0.75 * B * 0.2], atol=1e-9)
+    assert not model[6:42].any()
+    assert model[42:].reshape(6, 6)[5, 5] == pytest.approx(0.75 * B)
+
+
+def test_only_the_motion_between_the_two_counts(cube, plate):
+    cart = [ContactObject("cart", plate)]
+    query, braking = ContactQuery(cube, cart, D), make_braking(cart)
+    height = TOUCH + 0.5 * D
+    query_context = query.CreateDefaultContext()
+    query.get_object_pose_input_port("cart").FixValue(query_context, at_height(0.0))
+    contacts = query_at(query, query_context, height)
+    context = fixed(braking, contacts, height, 0.2 * DOWN)
+    braking.get_object_pose_input_port("cart").FixValue(context, at_height(0.0))
+    velocity = braking.get_object_velocity_input_port("cart")
+    for speed, force in [(0.2, 0.0), (0.0, 0.2 * B), (-0.1, 0.3 * B)]:
+        velocity.FixValue(context, speed * DOWN)
+        model = braking.get_wrench_model_output_port().Eval(context)
+        assert model[5] == pytest.approx(force, abs=1e-12)
+
+
+def approach(cube, plate, speed, mass, period, ticks):
+    """Returns height over touch and velocity of a free tool that comes down."""
+    objects = [ContactObject("plate", plate, RigidTransform())]
+    builder = DiagramBuilder()
+    tool = builder.AddSystem(
+        HapticTool(
+            RigidToolDynamics(mass, np.zeros(3), 1e-5 * np.eye(3)),
+            period,
+            ["braking"],
+            RigidTransform([0, 0, TOUCH + 1.2 * D]),
+        )
+    )
+    query = builder.AddSystem(ContactQuery(cube, objects, D))
+    braking = builder.AddSystem(make_braking(objects))
+    X_WTool, V_WTool = tool.get_pose_output_port(), tool.get_velocity_output_port()
+    builder.Connect(X_WTool, query.get_tool_pose_input_port())
+    builder.Connect(query.get_contacts_output_port(), braking.get_contacts_input_port())
+    builder.Connect(X_WTool, braking.get_tool_pose_input_port())
+    builder.Connect(V_WTool, braking.get_tool_velocity_input_port())
+    builder.Connect(
+        braking.get_wrench_model_output_port(), tool.get_wrench_input_port("braking")
+    )
+    simulator = Simulator(builder.Build())
+    context = tool.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    state = context.get_discrete_state_vector().CopyToVector()
+    context.SetDiscreteState(np.concatenate([state[:7], speed * DOWN]))
+    seen = []
+
+    def monitor(root):
+        state = context.get_discrete_state_vector().value()
+        seen.append((state[6] - TOUCH, state[12]))
+
+    simulator.set_monitor(monitor)
+    simulator.AdvanceTo(ticks * period)
+    return np.array(seen).T
+
+
+def test_a_falling_tool_slows_as_the_differential_equation_says(cube, plate):
+    """From m dv/dd = b w(d): v = v0 - (b D/m) (2 - 6 s² + 4 s³)/3, s = d/D."""
+    mass, speed, period = 0.1, 0.5, 2e-5
+    assert speed > 2 * B * D / (3 * mass)
+    d, v = approach(cube, plate, speed, mass, period, 900)
+    s = np.clip(d / D, 0, 1)
+    expected = -speed + B * D / mass * (2 - 6 * s**2 + 4 * s**3) / 3
+    assert d[0] > D
+    assert d[-1] < 0
+    # The tool's step is of first order.
+    np.testing.assert_allclose(v, expected, atol=2e-3 * speed)
+    assert v[-1] == pytest.approx(-(speed - 2 * B * D / (3 * mass)), rel=5e-3)
+
+
+def test_a_slow_tool_stops_before_it_touches(cube, plate):
+    mass, period = 0.1, 1e-3
+    speed = 0.9 * 2 * B * D / (3 * mass)
+    d, v = approach(cube, plate, speed, mass, period, 500)
+    assert d.min() > 0
+    assert abs(v[-1]) < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("damping", "distance", "named"),
+    [(-1.0, D, "damping_Ns_per_m"), (B, 0.0, "distance_m"), (B, np.nan, "distance_m")],
+)
+def test_bad_values_are_refused(damping, distance, named):
+    with pytest.raises(ValueError, match=named):
+        PreContactBraking([], damping_Ns_per_m=damping, distance_m=distance)
