@@ -1,0 +1,16 @@
+#pragma once
+
+#include "rotation.h"
+#include "types.h"
+
+namespace drake_haptics {
+
+/// The weight of the tool, a force at its centre of mass, as the wrench
+/// [torque; force] on the tool at To in W: [R_WT p_TTcm × m g; m g].
+/// @param q_WT pose of the tool.
+/// @param p_TTcm centre of mass in the tool's frame, m.
+/// @param weight_W m g, N.
+Vec6 ToolWeight(const PoseVector& q_WT, const Vec3& p_TTcm,
+                const Vec3& weight_W);
+
+}  // namespace drake_haptics

@@ -1,0 +1,103 @@
+"""The weight of the tool."""
+
+import numpy as np
+import pytest
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+
+from drake_haptics._core import RigidToolDynamics
+from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.haptic_tool import HapticTool
+from drake_haptics.systems.tool_gravity import ToolGravity
+
+MASS, P_TTCM = 0.1, np.array([0.01, -0.02, 0.05])
+G = 9.81
+
+
+def wrench_model(gravity, X_WT):
+    context = gravity.CreateDefaultContext()
+    gravity.get_tool_pose_input_port().FixValue(context, pose_to_vector(X_WT))
+    return gravity.get_wrench_model_output_port().Eval(context)
+
+
+def random_pose(seed):
+    rng = np.random.default_rng(seed)
+    return RigidTransform(RollPitchYaw(rng.uniform(-3, 3, 3)), rng.normal(size=3))
+
+
+def test_topology():
+    gravity = ToolGravity(mass_kg=MASS, p_TTcm=P_TTCM)
+    assert gravity.num_input_ports() == 1
+    assert gravity.GetInputPort("X_WTool").size() == 7
+    assert gravity.num_output_ports() == 1
+    assert gravity.GetOutputPort("wrench_model").size() == 78
+    assert gravity.CreateDefaultContext().num_total_states() == 0
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_it_is_a_force_at_the_centre_of_mass(seed):
+    X_WT = random_pose(seed)
+    acceleration = np.random.default_rng(seed).normal(size=3)
+    gravity = ToolGravity(mass_kg=MASS, p_TTcm=P_TTCM, gravity_m_per_s2=acceleration)
+    model = wrench_model(gravity, X_WT)
+    arm = X_WT.rotation().matrix() @ P_TTCM
+    np.testing.assert_allclose(model[:3], np.cross(arm, MASS * acceleration))
+    np.testing.assert_allclose(model[3:6], MASS * acceleration)
+    assert not model[6:].any()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_it_is_the_slope_of_the_potential(seed):
+    X_WT = random_pose(seed)
+    F = wrench_model(ToolGravity(mass_kg=MASS, p_TTcm=P_TTCM), X_WT)[:6]
+    step = 1e-6
+
+    def height(turn, shift):
+        R = RotationMatrix(RollPitchYaw(turn)) @ X_WT.rotation()
+        return (R @ P_TTCM + X_WT.translation() + shift)[2]
+
+    for i, axis in enumerate(np.eye(3) * step):
+        turned = height(axis, 0 * axis) - height(-axis, 0 * axis)
+        moved = height(0 * axis, axis) - height(0 * axis, -axis)
+        assert F[i] == pytest.approx(-MASS * G * turned / (2 * step), abs=1e-8)
+        assert F[3 + i] == pytest.approx(-MASS * G * moved / (2 * step), abs=1e-8)
+
+
+def test_a_free_tool_falls_without_turning():
+    """Its centre of mass falls with g, wherever its origin is; it keeps its turn."""
+    X_WT = random_pose(7)
+    builder = DiagramBuilder()
+    tool = builder.AddSystem(
+        HapticTool(
+            RigidToolDynamics(MASS, P_TTCM, 2e-5 * np.eye(3)), 1e-3, ["gravity"], X_WT
+        )
+    )
+    gravity = builder.AddSystem(ToolGravity(mass_kg=MASS, p_TTcm=P_TTCM))
+    builder.Connect(tool.get_pose_output_port(), gravity.get_tool_pose_input_port())
+    builder.Connect(
+        gravity.get_wrench_model_output_port(), tool.get_wrench_input_port("gravity")
+    )
+    simulator = Simulator(builder.Build())
+    simulator.AdvanceTo(0.0995)
+    V = tool.get_velocity_output_port().Eval(
+        tool.GetMyContextFromRoot(simulator.get_context())
+    )
+    np.testing.assert_allclose(V, [0, 0, 0, 0, 0, -0.1 * G], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("bad", "named"),
+    [
+        ({"mass_kg": 0.0}, "mass_kg must be finite and positive, is 0"),
+        ({"mass_kg": np.nan}, "mass_kg"),
+        ({"mass_kg": np.inf}, "mass_kg"),
+        ({"p_TTcm": [0, 0]}, "p_TTcm must be three finite numbers"),
+        ({"p_TTcm": [0, 0, np.nan]}, "p_TTcm"),
+        ({"gravity_m_per_s2": [0, 0, np.inf]}, "gravity_m_per_s2"),
+        ({"gravity_m_per_s2": 9.81}, "gravity_m_per_s2"),
+    ],
+)
+def test_bad_values_are_refused(bad, named):
+    with pytest.raises(ValueError, match=named):
+        ToolGravity(**{"mass_kg": MASS, "p_TTcm": P_TTCM} | bad)
