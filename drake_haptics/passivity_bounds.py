@@ -1,0 +1,98 @@
+"""How stiff and how damped a sampled spring may be on a device: the known bounds.
+
+A spring K and damper B, calculated once per period T from sampled positions, held in
+between, and delayed by t_d, act on a handle of mass m whose device and hand damp it by
+b. Each bound holds for translation (N/m, N·s/m, kg) as for rotation (N·m/rad,
+N·m·s/rad, kg·m²). The velocity is the backward difference of the positions, as from
+an encoder.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+# Hands that feel for something are slower.
+_FASTEST_HAND_M_PER_S = 1.0
+
+
+def calc_passive_damping(stiffness: float, damping: float, period_s: float) -> float:
+    """Returns the physical damping b that makes a sampled K and B passive.
+
+    b > K T/2 + |B| (Colgate and Schenkel 1997): then no passive hand, however it
+    holds, can be driven into motion.
+    """
+    return stiffness * period_s / 2.0 + abs(damping)
+
+
+def calc_stable_stiffness(
+    held_damping: float, damping: float, period_s: float, delay_s: float = 0.0
+) -> float:
+    """Returns the stiffness K below which the sampled loop is stable.
+
+    K < (b + B) / (T/2 + t_d) (Gil et al. 2004; Hulin et al. 2009), to first order in
+    b T/m and B T/m: for dampings that are small against m/T.
+    """
+    return (held_damping + damping) / (period_s / 2.0 + delay_s)
+
+
+def calc_quantized_stiffness(
+    held_damping: float, friction: float, period_s: float, resolution: float
+) -> float:
+    """Returns the stiffness up to which a spring on an encoder is passive.
+
+    K <= min(2 b/T, 2 f_c/Δ) (Abbott and Okamura 2005): damping pays for sampling,
+    Coulomb friction for rounding.
+
+    Args:
+        held_damping: b.
+        friction: f_c, Coulomb friction at the handle, N or N·m.
+        period_s: T, s.
+        resolution: Δ, the step of the position, m or rad.
+    """
+    return min(2.0 * held_damping / period_s, 2.0 * friction / resolution)
+
+
+def calc_sampled_stiffness(mass: float, damping: float, period_s: float) -> float:
+    """Returns the stiffness K below which K and B are stable on a free mass.
+
+    Exact, without delay and physical damping: K T²/m < 2 β (2 - β) / (2 + β) with
+    β = B T/m < 2; Jury's criterion on 2 z³ + (α + β - 4) z² + (2 + α) z - β. Zero
+    where no stiffness is stable.
+    """
+    beta = damping * period_s / mass
+    alpha = 2.0 * beta * (2.0 - beta) / (2.0 + beta)
+    return max(0.0, alpha) * mass / period_s**2
+
+
+def calc_sampled_damping(mass: float, stiffness: float, period_s: float) -> float:
+    """Returns the largest B that is stable with a stiffness K on a free mass.
+
+    The upper root of Jury's boundary, 2 β² + (α - 4) β + 2 α = 0 with α = K T²/m and
+    β = B T/m: 2 m/T for K = 0, and less for a spring. Zero where the spring is too
+    stiff for any damping, α > 12 - 8 √2.
+    """
+    alpha = stiffness * period_s**2 / mass
+    square = (4.0 - alpha) ** 2 - 16.0 * alpha
+    if alpha >= 4.0 or square < 0.0:
+        return 0.0
+    return (4.0 - alpha + math.sqrt(square)) / 4.0 * mass / period_s
+
+
+def calc_returnable_energy(
+    springs: Iterable[tuple[float, float]], tool_mass_kg: float, lift_J: float = 0.0
+) -> float:
+    """Returns the energy that a virtual world can honestly give back to a device, J.
+
+    That of its springs, F²/(2 K) each, of the tool's motion, and of its weight. It is
+    the `reserve_J` of a `PassivityControl`: a larger balance comes of dissipation.
+
+    Args:
+        springs: The largest load and the stiffness of each, in N and N/m or N·m and
+            N·m/rad: the coupling's two at the device's limits, and the softest
+            contact's. One without stiffness holds nothing.
+        tool_mass_kg: Mass of the tool, kg; a hand moves it with 1 m/s at most.
+        lift_J: Its weight times how high it can be lifted, J; 0 without gravity.
+    """
+    elastic = sum(load**2 / (2.0 * k) for load, k in springs if k > 0.0)
+    return elastic + 0.5 * tool_mass_kg * _FASTEST_HAND_M_PER_S**2 + lift_J
