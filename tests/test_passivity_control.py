@@ -1,0 +1,168 @@
+"""The passivity control as a Drake system; its law has its own tests in the core."""
+
+import numpy as np
+import pytest
+from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.systems.framework import DiagramBuilder
+
+from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.display_force_hold import DisplayForceHold
+from drake_haptics.systems.passivity_control import PassivityControl
+
+PERIOD, MAX_B, MAX_BR, RESERVE = 1e-3, 20.0, 0.01, 0.1
+GOOD = {
+    "period_s": PERIOD,
+    "max_damping_Ns_per_m": MAX_B,
+    "max_rotational_damping_Nms_per_rad": MAX_BR,
+    "reserve_J": RESERVE,
+}
+
+
+@pytest.fixture
+def control():
+    return PassivityControl(**GOOD)
+
+
+class Port:
+    """A control whose inputs are fixed, tick by tick."""
+
+    def __init__(self, control):
+        self.control = control
+        self.context = control.CreateDefaultContext()
+
+    def fix(self, *, asked=(0,) * 6, applied=(0,) * 6, X_WH=None, V_WH=(0,) * 6):
+        """Fixes all inputs."""
+        for port, value in [
+            (self.control.get_asked_wrench_input_port(), asked),
+            (self.control.get_applied_wrench_input_port(), applied),
+            (
+                self.control.get_handle_pose_input_port(),
+                pose_to_vector(X_WH or RigidTransform()),
+            ),
+            (self.control.get_handle_velocity_input_port(), V_WH),
+        ]:
+            port.FixValue(self.context, np.asarray(value, float))
+
+    def read(self):
+        """Returns F_display and the balance."""
+        return (
+            self.control.get_display_wrench_output_port().Eval(self.context),
+            self.control.get_energy_output_port().Eval(self.context)[0],
+        )
+
+    def update(self):
+        """Ends a tick."""
+        new = self.control.EvalUniquePeriodicDiscreteUpdate(self.context)
+        self.context.SetDiscreteState(new.get_vector().CopyToVector())
+
+
+def test_topology(control):
+    names = [control.get_input_port(i).get_name() for i in range(4)]
+    assert names == ["F_asked", "F_applied", "X_WH", "V_WH"]
+    assert control.num_input_ports() == 4
+    assert control.GetOutputPort("F_display").size() == 6
+    assert control.GetOutputPort("energy_J").size() == 1
+
+
+def test_what_is_asked_goes_straight_through(control):
+    """No sample of delay: a hold on F_display closes the loop, nothing else does."""
+    display = control.get_display_wrench_output_port().get_index()
+    for i in range(control.num_input_ports()):
+        assert control.HasDirectFeedthrough(i, display)
+
+
+def test_its_state_is_what_linearization_accepts(control):
+    # One discrete group, one period, no offset.
+    assert control.IsDifferenceEquationSystem() == (True, PERIOD)
+    assert control.CreateDefaultContext().get_discrete_state_vector().size() == 8
+
+
+def test_it_starts_with_an_empty_balance_wherever_the_handle_is(control):
+    port = Port(control)
+    asked = [0.1, 0.2, 0.3, 1, 2, 3]
+    port.fix(asked=asked, X_WH=RigidTransform([5, 6, 7]), V_WH=np.ones(6))
+    shown, energy = port.read()
+    np.testing.assert_array_equal(shown, asked)
+    assert energy == 0.0
+
+
+def test_the_balance_follows_the_work_of_what_was_applied(control):
+    port = Port(control)
+    at = [
+        RigidTransform(RotationMatrix.MakeZRotation(0.01 * k), [1e-3 * k**2, 0, 2.0])
+        for k in range(4)
+    ]
+    applied = np.array([0, 0, 0.05, -0.5, 3.0, 4.0])
+    port.fix(X_WH=at[0])
+    port.update()
+    for k in (1, 2, 3):
+        port.fix(applied=applied, X_WH=at[k])
+        port.update()
+        # Torque times angle and force times way, received with the other sign.
+        expected = -(0.05 * 0.01 * k - 0.5 * 1e-3 * k**2)
+        assert port.read()[1] == pytest.approx(expected, rel=1e-12)
+
+
+def test_between_ticks_the_balance_is_up_to_date_and_counted_once(control):
+    port = Port(control)
+    port.fix()
+    port.update()
+    moved = {"applied": [0, 0, 0, 2.0, 0, 0], "X_WH": RigidTransform([1e-3, 0, 0])}
+    V = np.array([0, 0, 0, 1.0, 0, 0])
+    port.fix(**moved, V_WH=V)
+    shown, energy = port.read()
+    assert energy == pytest.approx(-2e-3)
+    assert shown[3] == pytest.approx(-2e-3 / PERIOD)
+    port.update()
+    after, energy = port.read()
+    assert energy == pytest.approx(-2e-3)
+    np.testing.assert_array_equal(after, shown)
+
+
+def test_what_the_device_did_not_show_is_not_counted(control):
+    """The hold limits the wrench; the observer sees what it holds."""
+    builder = DiagramBuilder()
+    builder.AddSystem(control)
+    hold = builder.AddSystem(DisplayForceHold(PERIOD, 5.0, 0.1))
+    builder.Connect(
+        control.get_display_wrench_output_port(), hold.get_display_wrench_input_port()
+    )
+    builder.Connect(
+        hold.get_applied_wrench_output_port(), control.get_applied_wrench_input_port()
+    )
+    for port, name in [
+        (control.get_asked_wrench_input_port(), "F_asked"),
+        (control.get_handle_pose_input_port(), "X_WH"),
+        (control.get_handle_velocity_input_port(), "V_WH"),
+    ]:
+        builder.ExportInput(port, name)
+    builder.ExportOutput(control.get_energy_output_port(), "energy_J")
+    loop = builder.Build()
+    context = loop.CreateDefaultContext()
+    loop.GetInputPort("F_asked").FixValue(context, [0, 0, 0, -50.0, 0, 0])
+    loop.GetInputPort("V_WH").FixValue(context, np.zeros(6))
+    for k in range(3):
+        X_WH = RigidTransform([1e-3 * k, 0, 0])
+        loop.GetInputPort("X_WH").FixValue(context, pose_to_vector(X_WH))
+        new = loop.EvalUniquePeriodicDiscreteUpdate(context)
+        context.get_mutable_discrete_state().SetFrom(new)
+    energy = loop.GetOutputPort("energy_J").Eval(context)[0]
+    assert energy == pytest.approx(5.0 * 2e-3)
+
+
+def test_two_contexts_know_nothing_of_each_other(control):
+    first, second = Port(control), Port(control)
+    for port in (first, second):
+        port.fix()
+        port.update()
+    first.fix(applied=[0, 0, 0, 1, 0, 0], X_WH=RigidTransform([1e-3, 0, 0]))
+    first.update()
+    assert first.read()[1] == pytest.approx(-1e-3)
+    assert second.read()[1] == 0.0
+
+
+@pytest.mark.parametrize("name", GOOD)
+@pytest.mark.parametrize("bad", [-1.0, np.nan, np.inf])
+def test_bad_values_are_refused(name, bad):
+    with pytest.raises(ValueError, match=f"{name} must be finite and .*, is {bad:g}"):
+        PassivityControl(**GOOD | {name: bad})
