@@ -231,6 +231,14 @@ class Contact:
         """(3,) mean of both (paper, Eq. 1), m."""
 
     @property
+    def extent(self) -> float:
+        """Measure of the overlap, m²; see `ContactSet.extent`."""
+
+    @property
+    def flushness(self) -> float:
+        """Share of the contact, 0 to 1, in flush faces or edges."""
+
+    @property
     def feature_A(self) -> Feature:
         """`Feature` of A in contact."""
 
@@ -298,6 +306,16 @@ class ContactSet:
         """(n, 3) mean of both (paper, Eq. 1), in the world, m."""
 
     @property
+    def extent(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """
+        (n,) measure of the overlap, m²: the area of flush faces under the pressure of a thin layer, of a flush edge its length times the layer, the layer squared at a point. Parts of a face that is cut add up.
+        """
+
+    @property
+    def flushness(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """(n,) share of the contact, 0 to 1, that lies in flush faces or edges."""
+
+    @property
     def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
         """(n, 2) int32, feature of A in contact: [FeatureKind, index]."""
 
@@ -357,6 +375,16 @@ class PairTrajectory:
     @property
     def p_WC(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
         """(n, 3) mean of both (paper, Eq. 1), in the world, m."""
+
+    @property
+    def extent(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """
+        (n,) measure of the overlap, m²: the area of flush faces under the pressure of a thin layer, of a flush edge its length times the layer, the layer squared at a point. Parts of a face that is cut add up.
+        """
+
+    @property
+    def flushness(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """(n,) share of the contact, 0 to 1, that lies in flush faces or edges."""
 
     @property
     def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
@@ -467,6 +495,16 @@ class ContactTrajectory:
     @property
     def p_WC(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
         """(n, 3) mean of both (paper, Eq. 1), in the world, m."""
+
+    @property
+    def extent(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """
+        (n,) measure of the overlap, m²: the area of flush faces under the pressure of a thin layer, of a flush edge its length times the layer, the layer squared at a point. Parts of a face that is cut add up.
+        """
+
+    @property
+    def flushness(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """(n,) share of the contact, 0 to 1, that lies in flush faces or edges."""
 
     @property
     def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
@@ -631,6 +669,16 @@ class ClusterSet:
         """(k, 3) weighted mean positions (Eq. 4), m."""
 
     @property
+    def compression(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """(k,) m; the elastic force of a cluster is the stiffness times this."""
+
+    @property
+    def damping_share(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """
+        (k,) the damping force is the damping times the speed of approach times this.
+        """
+
+    @property
     def object_index(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
         """(k,) object of each cluster."""
 
@@ -640,7 +688,13 @@ class ClusterSet:
 
     @property
     def label(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
-        """(n,) cluster of each contact."""
+        """(n,) cluster of each contact; -1 beyond the tolerance."""
+
+    @property
+    def coupling(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='F')]:
+        """
+        (k, k) derivative of `compression` by the depths tolerance − distance; symmetric, positive semidefinite.
+        """
 
     def __deepcopy__(self, arg: object, /) -> object: ...
 
@@ -648,10 +702,18 @@ class ClusterSet:
 
 def cluster_contacts(contacts: ContactSet, delta: float, tolerance: float) -> ClusterSet:
     """
-    Groups contacts with an octree of leaf size `delta` (m) and represents each group by one contact (paper, 4.2, Eq. 1 to 5). Members weigh `tolerance` (m) − distance.
+    Groups contacts nearer than `tolerance` (m) with an octree of leaf size `delta` (m) and represents each group by one contact (paper, 4.2, Eq. 1 to 5). Members weigh `tolerance` − distance.
 
     Raises:
         ValueError: delta <= 0 or tolerance < 0.
+    """
+
+def share_stiffness(contacts: ContactSet, tolerance: float) -> ClusterSet:
+    """
+    Makes each contact nearer than `tolerance` (m) a cluster of its own, and lets those along one direction share stiffness, as if they pressed into a common elastic skin: the force is a continuous function of the contacts (shared_stiffness.h).
+
+    Raises:
+        ValueError: tolerance < 0.
     """
 
 class PenaltyWrench:
@@ -679,18 +741,17 @@ class PenaltyWrench:
 
     def __copy__(self) -> object: ...
 
-def penalty_force(clusters: ClusterSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: float, damping: float, tolerance: float) -> PenaltyWrench:
+def penalty_force(clusters: ClusterSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> PenaltyWrench:
     """
-    Penalty wrenches of the clusters (paper, Eq. 6 to 10): k (t − d) along the normal, plus damping while approaching; never a pull.
+    Penalty wrenches of the clusters (paper, Eq. 6 to 10): k times the compression along the normal, plus damping while approaching; never a pull.
 
     Args:
         p_WTo: (3,) tool's origin, m.
         V_WTool: (6,) its spatial velocity [rad/s; m/s].
         p_WO: (m, 3) objects' origins, m.
         V_WO: (m, 6) their spatial velocities.
-        stiffness: k, N/m.
-        damping: k_v, N·s/m.
-        tolerance: t, m.
+        stiffness: (m,) k of each object, N/m.
+        damping: (m,) k_v of each object, N·s/m.
 
     Raises:
         ValueError: a gain is negative or not finite, or rows do not match.
@@ -737,10 +798,198 @@ class RigidToolDynamics:
             ValueError: not a physical inertia.
         """
 
+    @property
+    def mass_kg(self) -> float:
+        """Mass, kg."""
+
+    @property
+    def p_TTcm(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
+        """Centre of mass (3,) in the tool's frame, m."""
+
     def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], wrench_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], h: float) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
         """
         Advances the state (13,) = [pose (7); spatial velocity (6)] by one linearized backward Euler step of h seconds under a wrench model (78,).
         """
+
+class SurfaceShading:
+    """
+    The surface of a decomposed mesh with normals to interpolate over its triangles (Gouraud): at each corner of a triangle the mean normal of the triangles around the vertex that are reached across edges which turn by less than the crease angle, weighted with their angles. Immutable.
+
+    Pieces that were not made from triangles (methods "hull" and "coacd") keep the normals of their facets.
+    """
+
+    def __init__(self, decomposition: Decomposition, crease_angle: float) -> None:
+        """
+        Finds the normals once; `crease_angle` in rad, 0 for facets as they are.
+
+        Raises:
+            ValueError: crease_angle is not in [0, π].
+        """
+
+class ContactShading:
+    """
+    Force shading of the contacts of a tool with objects (paper, 4.4.1; Morgenbesser and Srinivasan 1996): turns each normal to that of the smooth surfaces that the meshes stand for, by 45° at most. Immutable.
+    """
+
+    def __init__(self, tool: SurfaceShading, objects: Sequence[SurfaceShading]) -> None:
+        """
+        Shades contacts of `tool` with `objects`, in the order of the query's objects.
+
+        Raises:
+            ValueError: an object is None.
+        """
+
+    def shade(self, contacts: ContactSet, q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')]) -> ContactSet:
+        """
+        The contacts with shaded normals; all else is as it was.
+
+        Args:
+            contacts: `ContactSet` of a query at these poses.
+            q_WTool: (7,) pose of the tool [qw qx qy qz x y z].
+            q_WO: (m, 7) poses of the objects.
+
+        Raises:
+            ValueError: not a pose, or not one for each object.
+            IndexError: a contact names an object, piece or feature that does not exist.
+        """
+
+class FrictionStep:
+    """
+    Friction of all clusters at one tick. Immutable; copies are the object itself.
+    """
+
+    @property
+    def wrench_model(self) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
+        """
+        (78,) wrench on the tool at To in W with its linear model: [F (6); K (36, by rows); B (36, by rows)], rotational first; B is zero.
+        """
+
+    @property
+    def f_cluster_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]:
+        """(k, 3) force of each cluster on the tool, at its point, N."""
+
+    @property
+    def sliding(self) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C')]:
+        """(k,) whether each cluster slides."""
+
+    @property
+    def next_state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """(n,) what the next tick's step starts from."""
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
+class StickSlipModel:
+    """
+    Stick-slip friction after Hayward and Armstrong (2000) of a tool on objects, at the representative contacts of clusters. Immutable: its state, (n,), goes in and comes out. It is [X_WTool (7); X_WO (7) of each object that moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z (3), load, grip], the poses and the contacts of the last tick. A slot without a load is empty.
+    """
+
+    def __init__(self, coefficient: Sequence[float], moves: Sequence[bool], static_ratio: float, break_away_m: float, reach_m: float) -> None:
+        """
+        Args:
+            coefficient: (m,) coefficient of sliding friction of each object; one at 0 has none.
+            moves: (m,) whether each object moves.
+            static_ratio: static over sliding coefficient.
+            break_away_m: displacement after which a contact breaks away.
+            reach_m: distance over which contacts hand on their adhesion.
+
+        Raises:
+            ValueError: a coefficient is negative, the ratio below 1, or a length not above 0.
+        """
+
+    @property
+    def state_size(self) -> int:
+        """n."""
+
+    def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], clusters: ClusterSet, contact_wrench: PenaltyWrench, q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> FrictionStep:
+        """
+        Friction now, and the state for the next tick.
+
+        Args:
+            state: (n,) from the last tick; zeros before the first.
+            clusters: of now.
+            contact_wrench: their normal forces are the norms of its `f_cluster_W`.
+            q_WTool: (7,) pose of the tool.
+            q_WO: (7 j,) poses of the j objects that move, one after the other.
+
+        Raises:
+            ValueError: a size does not match, or a cluster names an object that has no coefficient.
+        """
+
+class BrakingGains:
+    """Viscous braking before surfaces touch."""
+
+    def __init__(self, damping_Ns_per_m: float, distance_m: float) -> None:
+        """
+        Args:
+            damping_Ns_per_m: b, half-way to the surface, N·s/m.
+            distance_m: D, where braking begins, m.
+
+        Raises:
+            ValueError: b < 0, D <= 0, or one of them is not finite.
+        """
+
+def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], gains: BrakingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
+    """
+    Braking of the approach of surfaces that do not touch yet (McNeely, Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s w v along its normal, v the speed of approach, w = 4 (d/D)(1 − d/D), s its share among contacts with like normals (braking.h). Never a pull.
+
+    Args:
+        p_WTo: (3,) tool's origin, m.
+        V_WTool: (6,) its spatial velocity [rad/s; m/s].
+        p_WO: (m, 3) objects' origins, m.
+        V_WO: (m, 6) their spatial velocities.
+
+    Returns:
+        (78,) wrench model on the tool at To in W: [F (6); K (36), zero; B (36, by rows)], rotational first.
+
+    Raises:
+        ValueError: rows do not match.
+        IndexError: a contact names an object that has no row.
+    """
+
+def tool_weight(q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+    """
+    Weight of the tool, a force at its centre of mass.
+
+    Args:
+        q_WT: (7,) pose [qw qx qy qz x y z].
+        p_TTcm: (3,) centre of mass in the tool's frame, m.
+        weight_W: (3,) mass times gravity, N.
+
+    Returns:
+        (6,) wrench on the tool at To in W, [N·m; N].
+    """
+
+class PassivityBounds:
+    """Bounds of the passivity controller."""
+
+    def __init__(self, period_s: float, max_damping_Ns_per_m: float, max_rotational_damping_Nms_per_rad: float, reserve_J: float) -> None:
+        """
+        Args:
+            period_s: the tick, s.
+            max_damping_Ns_per_m: largest damping, N·s/m.
+            max_rotational_damping_Nms_per_rad: N·m·s/rad.
+            reserve_J: largest balance that is kept, J.
+
+        Raises:
+            ValueError: the period is not above 0, another one below 0, or one of them not finite.
+        """
+
+def passivity_control(state: Annotated[NDArray[numpy.float64], dict(shape=(8), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], F_asked: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], bounds: PassivityBounds) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
+    """
+    Passivity observer and controller (Hannaford and Ryu 2002) of one tick.
+
+    Args:
+        state: (8,) balance of the last tick, J, and the handle's pose then.
+        F_applied: (6,) wrench on the handle at Ho in W that was held since, [N·m; N].
+        F_asked: (6,) wrench asked for now.
+        q_WH: (7,) pose now, [qw qx qy qz x y z].
+        V_WH: (6,) spatial velocity now, [rad/s; m/s].
+
+    Returns:
+        (7,) wrench to show (6), F_asked itself where the balance is not below 0; balance now, J.
+    """
 
 class PosePath:
     """A pose over time, a cubic per segment. Immutable."""
@@ -785,6 +1034,110 @@ class HeldArm:
         """
         Joint torques (6,), N·m, of the hand and of a wrench (6,) on the handle at its origin in the world, [N·m; N].
         """
+
+class EnergyAccount:
+    """
+    The books of one part of a haptic loop, J. What went in and neither came out nor is stored is lost; a part that makes no energy never gets back what it lost.
+    """
+
+    @property
+    def in_J(self) -> float:
+        """What went into the part, through all its ports."""
+
+    @property
+    def out_J(self) -> float:
+        """What came out."""
+
+    @property
+    def stored_J(self) -> float:
+        """What it holds."""
+
+    @property
+    def lost_J(self) -> float:
+        """in − out − (stored − stored at the start)."""
+
+    @property
+    def damped_J(self) -> float:
+        """Part of it: what dampers took."""
+
+    @property
+    def created_J(self) -> float:
+        """What it made: the largest fall of `lost_J` from any earlier value."""
+
+    @property
+    def bound_J(self) -> float:
+        """
+        What the sampling of its force explains of that, over the same stretch of time.
+        """
+
+    @property
+    def beyond_J(self) -> float:
+        """
+        The most it made over any stretch of time beyond what sampling explains there.
+        """
+
+class EnergyLedger:
+    """
+    Books, tick by tick, the energy that goes through each part of a haptic loop: hand, display, coupling, tool and each source of wrench on the tool (energy_ledger.h). Mutable.
+    """
+
+    def __init__(self, dynamics: RigidToolDynamics, gains: CouplingGains, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], period_s: float, sources: Sequence[str]) -> None:
+        """
+        Args:
+            dynamics: of the tool.
+            gains: of the coupling.
+            q_HT: (7,) pose of the tool in the handle at which its spring rests.
+            period_s: the tick, s.
+            sources: names of the other sources of wrench on the tool.
+
+        Raises:
+            ValueError: the tick is not above 0 s, or a name is there twice or that of another account.
+        """
+
+    def add(self, tool_state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], coupling: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], wrench_models: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]], stored_J: Sequence[float]) -> None:
+        """
+        Books the tick between the call before and this one; the first call only says what is stored. All is read at one instant, after one step of the tool and before the next. A tick with an energy that is not finite is left out.
+
+        Args:
+            tool_state: (13,) = [pose (7), m; spatial velocity (6), rad/s and m/s].
+            q_WH: (7,) pose of the handle.
+            F_applied: (6,) wrench that was held on the handle up to now, at Ho in W, N·m and N.
+            coupling: (78,) wrench model of the coupling on the tool.
+            wrench_models: (78,) of each source.
+            stored_J: elastic or potential energy of each source.
+
+        Raises:
+            ValueError: a source has no reading.
+        """
+
+    @property
+    def accounts(self) -> dict[str, EnergyAccount]:
+        """
+        `EnergyAccount` of each part by its name, as it stands now: the loop as a whole as the hand has it at its port, `device`; `display`, `coupling`, `tool`, and each source.
+        """
+
+def contact_energy(clusters: ClusterSet, stiffness: Sequence[float], tolerance: float) -> float:
+    """
+    Energy that contacts store, J: half of each elastic force times its depth below the tolerance.
+
+    Args:
+        clusters: `ClusterSet`.
+        stiffness: of each object, N/m.
+        tolerance: t, m.
+
+    Raises:
+        IndexError: a cluster names an object that has none.
+    """
+
+def weight_energy(q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+    """
+    Potential energy of the tool's weight, J, zero with its centre of mass at the world's origin.
+
+    Args:
+        q_WTool: (7,) its pose.
+        p_TTcm: (3,) centre of mass in its frame, m.
+        weight_W: (3,) mass times gravity, N.
+    """
 
 def clock_interval() -> float:
     """
