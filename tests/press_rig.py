@@ -158,16 +158,15 @@ def run_press(
         V_WH = np.concatenate([np.zeros(3), (next_q_WH[4:] - q_WH[4:]) / PERIOD_S])
         q_WH = next_q_WH
         contacts = tracker.query(state[:7])
-        clusters = _core.cluster_contacts(contacts, gains.delta_m, gains.tolerance_m)
+        clusters = _core.share_stiffness(contacts, gains.tolerance_m)
         contact = _core.penalty_force(
             clusters,
             state[4:7],
             state[7:],
             zeros3,
             zeros6,
-            gains.stiffness_N_per_m,
-            gains.damping_Ns_per_m,
-            gains.tolerance_m,
+            np.array([gains.stiffness_N_per_m]),
+            np.array([gains.damping_Ns_per_m]),
         ).wrench_model
         coupling = _core.coupling_wrench(
             q_WH, V_WH, _REST, state[:7], state[7:], COUPLING

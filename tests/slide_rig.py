@@ -9,6 +9,7 @@ import numpy as np
 from contact_samples import hull
 from press_rig import PERIOD_S, Gains
 from scipy.spatial.transform import Rotation
+from wrench_chain import cluster
 
 from drake_haptics import _core
 from drake_haptics.mesh import Mesh
@@ -91,20 +92,21 @@ class Felt:
     clusters: int
 
 
-def feel(contacts: _core.ContactSet, gains: Gains, v_WT: np.ndarray) -> Felt:
+def feel(
+    contacts: _core.ContactSet, method: str, gains: Gains, v_WT: np.ndarray
+) -> Felt:
     """What the project's chain makes of contacts, for a tool that moves at v_WT."""
-    clusters = _core.cluster_contacts(contacts, gains.delta_m, gains.tolerance_m)
-    model = _core.penalty_force(
+    clusters = cluster(contacts, method, gains.tolerance_m, gains.delta_m)
+    F_Tool_W = _core.penalty_force(
         clusters,
         np.zeros(3),
         np.concatenate([np.zeros(3), v_WT]),
         np.zeros((1, 3)),
         np.zeros((1, 6)),
-        gains.stiffness_N_per_m,
-        gains.damping_Ns_per_m,
-        gains.tolerance_m,
-    ).wrench_model
-    return Felt(np.array(model[3:6]), len(clusters))
+        np.array([gains.stiffness_N_per_m]),
+        np.array([gains.damping_Ns_per_m]),
+    ).F_Tool_W
+    return Felt(np.array(F_Tool_W[3:]), len(clusters))
 
 
 def velocity(path_W: np.ndarray) -> np.ndarray:

@@ -8,12 +8,13 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from press_rig import GAINS, Gains
+from press_rig import GAINS
 from scipy.spatial.transform import Rotation
 from slide_rig import feel, make_slide_tools, slide, velocity
 from slide_scenes import (
@@ -42,12 +43,13 @@ distance, and the force should stay as it is. This page is written by
 - **distance** and **normal**: largest error of the nearest contact's distance, and of
   any component of any contact's normal, on all ticks: the contact query alone.
 - **lost**: ticks without a contact.
-- **δ**: ripple of the normal force, largest less smallest over the mean, through
-  clusters of that size: what the chain makes of the contacts. Contacts that are not in
-  adjacent cells of the octree are clusters of their own, and each pushes with its whole
-  depth: a tool that is larger than δ and than the pieces is pushed by as many clusters
-  as it happens to cover.
-- **sideways**: largest tangential force over the mean normal force, for any δ.
+- **shared**: ripple of the normal force, largest less smallest over the mean, where
+  contacts share stiffness: what the chain makes of them.
+- **δ**: the same through the octree with clusters of that size. Contacts that are not
+  in adjacent cells are clusters of their own, and each pushes with its whole depth: a
+  tool that is larger than δ and than the pieces is pushed by as many clusters as it
+  happens to cover.
+- **sideways**: largest tangential force over the mean normal force, for any of them.
 
 {rows}
 
@@ -66,8 +68,10 @@ def row(
     path = path_at(height_m)
     turned = Rotation.from_rotvec([0, 0, 0.7 * (name == "50 pieces")]).as_matrix()
     gains = GAINS["default"]
+    chains = [("shared", gains)]
+    chains += [("octree", replace(gains, delta_m=delta)) for delta in DELTAS_M]
     lost, distance, normal = 0, 0.0, 0.0
-    forces: dict[float, list[np.ndarray]] = {delta: [] for delta in DELTAS_M}
+    forces = []
     body = make_slide_tools()[tool]
     for contacts in slide(body, solid, path, UP, turned, gains.tolerance_m):
         if len(contacts) == 0:
@@ -75,18 +79,11 @@ def row(
         else:
             distance = max(distance, abs(contacts.distance.min() - height_m))
             normal = max(normal, float(np.abs(contacts.nhat_BA_W - UP).max()))
-        for delta in DELTAS_M:
-            chain = Gains(
-                gains.tolerance_m,
-                delta,
-                gains.stiffness_N_per_m,
-                gains.damping_Ns_per_m,
-            )
-            forces[delta].append(feel(contacts, chain, velocity(path)).force_W)
-    felt = np.array([forces[delta] for delta in DELTAS_M])
-    mean = felt[:, :, 2].mean(axis=1)
-    ripple = np.ptp(felt[:, :, 2], axis=1) / mean
-    sideways = (np.linalg.norm(felt[:, :, :2], axis=2).max(axis=1) / mean).max()
+        forces.append([feel(contacts, *c, velocity(path)).force_W for c in chains])
+    felt = np.array(forces)
+    mean = felt[:, :, 2].mean(axis=0)
+    ripple = np.ptp(felt[:, :, 2], axis=0) / mean
+    sideways = (np.linalg.norm(felt[:, :, :2], axis=2).max(axis=0) / mean).max()
     return [
         name,
         tool,
@@ -99,7 +96,7 @@ def row(
     ]
 
 
-TITLES = ["face", "tool", "height", "lost", "distance", "normal"]
+TITLES = ["face", "tool", "height", "lost", "distance", "normal", "shared"]
 TITLES += [*(f"δ {1e3 * d:g} mm" for d in DELTAS_M), "sideways"]
 
 
