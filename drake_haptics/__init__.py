@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         HapticDiagram,
     )
     from drake_haptics.decomposition import Decomposition, decompose
+    from drake_haptics.energy_ledger import EnergyLedger
     from drake_haptics.errors import UserError
     from drake_haptics.haptic_loop import ConnectMovingObject, HapticLoop
     from drake_haptics.mesh import Mesh, load_mesh
@@ -49,6 +50,7 @@ __all__ = [
     "ConvexPair",
     "ConvexPolytope",
     "Decomposition",
+    "EnergyLedger",
     "Feature",
     "FeatureKind",
     "HapticDiagram",
@@ -80,6 +82,7 @@ _MODULE_OF = {
     "ConvexPair": "_core",
     "ConvexPolytope": "_core",
     "Decomposition": "decomposition",
+    "EnergyLedger": "energy_ledger",
     "Feature": "_core",
     "FeatureKind": "_core",
     "HapticDiagram": "builder",

@@ -811,6 +811,45 @@ class RigidToolDynamics:
         Advances the state (13,) = [pose (7); spatial velocity (6)] by one linearized backward Euler step of h seconds under a wrench model (78,).
         """
 
+class WrenchJacobian:
+    """
+    Derivatives of the contact wrench on the tool at To, [N·m; N], by displacements [rotation vector (rad); translation (m)] and velocities [rad/s; m/s] of the bodies about their origins, all in the world. Immutable.
+    """
+
+    @property
+    def by_X_WTool(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
+        """(6, 6)."""
+
+    @property
+    def by_V_WTool(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
+        """(6, 6)."""
+
+    @property
+    def by_X_WO(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
+        """(6 m, 6): (6, 6) for each object, one below the other."""
+
+    @property
+    def by_V_WO(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
+        """(6 m, 6): (6, 6) for each object, one below the other."""
+
+def wrench_jacobian(contacts: ContactSet, clusters: ClusterSet, tolerance: float, tool: Decomposition, X_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: Sequence[Decomposition], X_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> WrenchJacobian:
+    """
+    Exact derivatives of `penalty_force` through the whole chain from the poses on: contacts, clusters, forces. Features stay as they are, and which contacts are together or push (wrench_jacobian.h).
+
+    Args:
+        contacts: as the query gave them at these poses.
+        clusters: of them, by `cluster_contacts` or `share_stiffness`.
+        tolerance: what the clusters were made with, m.
+        tool, objects: the bodies of the query.
+        X_WTool, X_WO: (7,) and (m, 7) poses [qw qx qy qz x y z].
+        V_WTool, V_WO: (6,) and (m, 6) spatial velocities [rad/s; m/s].
+        stiffness, damping: (m,) k and k_v of each object, N/m and N·s/m.
+
+    Raises:
+        ValueError: a pose is not one, or rows do not match.
+        IndexError: a contact names an object or a piece that is not given.
+    """
+
 class SurfaceShading:
     """
     The surface of a decomposed mesh with normals to interpolate over its triangles (Gouraud): at each corner of a triangle the mean normal of the triangles around the vertex that are reached across edges which turn by less than the crease angle, weighted with their angles. Immutable.
@@ -871,6 +910,10 @@ class FrictionStep:
     @property
     def sliding(self) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C')]:
         """(k,) whether each cluster slides."""
+
+    @property
+    def stored_J(self) -> float:
+        """Elastic energy of the contacts, ½ k z² of each, J."""
 
     @property
     def next_state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from drake_haptics.energy_ledger import EnergyLedger
 from drake_haptics.systems.display_force_hold import LIMITED, NOT_FINITE
 
 # Distributions are those of the latest ticks, so that a demo left running
@@ -17,14 +18,16 @@ _BLOCK = 1 << 8
 
 
 class RunStatistics:
-    """Times, contacts and loads of a run."""
+    """Times, contacts, loads and energies of a run."""
 
-    def __init__(self, period_s: float):
+    def __init__(self, period_s: float, ledger: EnergyLedger | None = None):
         """Starts with no tick.
 
         Args:
             period_s: Simulated time of a tick, s.
+            ledger: Where the run books its energy.
         """
+        self._ledger = ledger
         self._period_s = period_s
         self._pending: list[tuple[float, ...]] = []
         self._records = np.zeros((_FIRST_RECORDS, 4))
@@ -89,7 +92,8 @@ class RunStatistics:
         Keys: `ticks`, `duration_s` (simulated), `tick_us` and `contact_query_us`
         (each with `median`, `p99`, `p99_9`, `max`), `contacts` and `clusters` (each
         with `median`, `max`), `max_force_N`, `max_torque_Nm`, `max_penetration_m`,
-        `limit_hits` and `non_finite_events` (numbers of ticks).
+        `limit_hits` and `non_finite_events` (numbers of ticks), `energy_J` (by the
+        name of the part, as `EnergyLedger.to_dict` tells; empty without a ledger).
         """
         self._digest()
         tick_s, query_s, contacts, clusters = self._records[: self._ticks].T
@@ -105,6 +109,7 @@ class RunStatistics:
             "max_penetration_m": self._max_penetration_m,
             "limit_hits": self._limit_hits,
             "non_finite_events": self._non_finite_events,
+            "energy_J": self._ledger.to_dict() if self._ledger is not None else {},
         }
 
 

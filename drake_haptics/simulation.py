@@ -11,6 +11,7 @@ from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import Context, EventStatus
 
 from drake_haptics.builder import HapticDiagram
+from drake_haptics.energy_ledger import EnergyLedger
 from drake_haptics.run_statistics import RunStatistics
 
 
@@ -62,8 +63,9 @@ def run(
         RunError: The tool or the arm has a pose or velocity that is not finite.
     """
     simulator = make_simulator(haptic)
-    statistics = RunStatistics(haptic.period_s)
-    measure = _make_measure(haptic, simulator.get_context(), statistics)
+    ledger = EnergyLedger(haptic.loop, simulator.get_context())
+    statistics = RunStatistics(haptic.period_s, ledger)
+    measure = _make_measure(haptic, simulator.get_context(), statistics, ledger)
     pace_s = haptic.period_s if realtime else 0.0
     # Collecting garbage over all of pydrake's objects takes many ticks; frozen, they
     # are left alone.
@@ -71,6 +73,7 @@ def run(
     gc.freeze()
     try:
         simulator.Initialize()
+        ledger.add()
         simulator.set_monitor(_make_monitor(measure, on_tick, pace_s))
         simulator.AdvanceTo(math.inf if duration_s is None else duration_s)
     except KeyboardInterrupt:
@@ -111,9 +114,12 @@ def _make_monitor(
 
 
 def _make_measure(
-    haptic: HapticDiagram, root: Context, statistics: RunStatistics
+    haptic: HapticDiagram,
+    root: Context,
+    statistics: RunStatistics,
+    ledger: EnergyLedger,
 ) -> Callable[[Context, float], None]:
-    """Returns what reads a tick's values from the context into the statistics."""
+    """Returns what reads a tick's values from the context into both books."""
     loop = haptic.loop
     tool_context = loop.haptic_tool.GetMyContextFromRoot(root)
     hold = loop.device.GetSubsystemByName("display_force_hold")
@@ -145,5 +151,6 @@ def _make_measure(
             min(contacts.distance.tolist(), default=0.0),
             shown,
         )
+        ledger.add()
 
     return measure

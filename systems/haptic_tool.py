@@ -69,6 +69,8 @@ class HapticTool(Diagram):
         super().__init__()
         if not period_s > 0.0:
             raise ValueError(f"period_s must be positive, is {period_s}")
+        self._dynamics = dynamics
+        self._period_s = period_s
         builder = DiagramBuilder()
         step = builder.AddNamedSystem(
             "step", _ImplicitStep(dynamics, period_s, wrench_names, X_WT)
@@ -77,6 +79,16 @@ class HapticTool(Diagram):
             builder.ExportInput(step.GetInputPort(name), name)
         export_parts(builder, step.get_output_port(), {"X_WTool": 7, "V_WTool": 6})
         builder.BuildInto(self)
+
+    @property
+    def dynamics(self) -> RigidToolDynamics:
+        """Mass and inertia."""
+        return self._dynamics
+
+    @property
+    def period_s(self) -> float:
+        """The tick, s."""
+        return self._period_s
 
     def get_wrench_input_port(self, name: str) -> InputPort:
         """Returns the input of a wrench."""

@@ -65,6 +65,16 @@ class ToolGravity(LeafSystem):
             "wrench_model", 78, self._calc_wrench_model, {self._X_WTool.ticket()}
         )
 
+    @property
+    def weight_W_N(self) -> np.ndarray:
+        """(3,) the weight in the world, N."""
+        return self._weight_W
+
+    @property
+    def p_TTcm(self) -> np.ndarray:
+        """(3,) the centre of mass in the tool's frame, m."""
+        return self._p_TTcm
+
     def get_tool_pose_input_port(self) -> InputPort:
         """Returns the input `X_WTool`."""
         return self._X_WTool

@@ -55,6 +55,8 @@ class VirtualCoupling(Diagram):
             X_HT: Pose of the tool in the handle at which the spring rests.
         """
         super().__init__()
+        self._gains = gains
+        self._X_HT = X_HT
         builder = DiagramBuilder()
         spring = builder.AddNamedSystem("spring", _SpringAndDamper(gains, X_HT))
         for i in range(spring.num_input_ports()):
@@ -65,6 +67,16 @@ class VirtualCoupling(Diagram):
             builder, spring.get_output_port(), {"wrench_model": 78, "F_display": 6}
         )
         builder.BuildInto(self)
+
+    @property
+    def gains(self) -> CouplingGains:
+        """Of the spring and the damper."""
+        return self._gains
+
+    @property
+    def X_HT(self) -> RigidTransform:
+        """Pose of the tool in the handle at which the spring rests."""
+        return self._X_HT
 
     def get_handle_pose_input_port(self) -> InputPort:
         """Returns the input `X_WH`."""

@@ -16,6 +16,9 @@ from rich.table import Table
 from drake_haptics.builder import HapticDiagram
 
 _PERIOD_S = 0.2
+# Energies below are rounding: a nanojoule lifts a milligram by a tenth of a
+# millimetre.
+_ROUNDING_J = 1e-9
 
 
 class StatusLine:
@@ -119,4 +122,20 @@ def make_summary(figures: dict[str, Any]) -> Table:
         f" penetration {1e3 * figures['max_penetration_m']:.3f} mm",
     )
     table.add_row("device limit", f"{figures['limit_hits']} ticks at it")
+    if figures["energy_J"]:
+        table.add_row("energy", _describe_energy(figures["energy_J"]))
     return table
+
+
+def _describe_energy(energy_J: dict[str, dict[str, float]]) -> str:
+    """Returns what the hand spent, and whether a part made energy."""
+    hand = energy_J["device"]
+    flow = f"hand put in {1e3 * hand['in']:.1f} mJ, got back {1e3 * hand['out']:.1f} mJ"
+    makers = [
+        f"{name} {1e3 * part['beyond']:.2g} mJ"
+        for name, part in energy_J.items()
+        if name != "device" and part["beyond"] > _ROUNDING_J
+    ]
+    if makers:
+        return f"{flow}; created beyond what sampling explains: {', '.join(makers)}"
+    return f"{flow}; none created beyond what sampling explains"

@@ -17,6 +17,7 @@ void BindBraking(nanobind::module_& m);
 void BindGravity(nanobind::module_& m);
 void BindPassivity(nanobind::module_& m);
 void BindHand(nanobind::module_& m);
+void BindEnergy(nanobind::module_& m);
 void BindClock(nanobind::module_& m);
 
 }  // namespace drake_haptics

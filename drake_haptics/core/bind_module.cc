@@ -18,5 +18,6 @@ NB_MODULE(_core, m) {
   drake_haptics::BindGravity(m);
   drake_haptics::BindPassivity(m);
   drake_haptics::BindHand(m);
+  drake_haptics::BindEnergy(m);
   drake_haptics::BindClock(m);
 }

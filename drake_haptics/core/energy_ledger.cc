@@ -62,13 +62,12 @@ void EnergyLedger::Add(LoopReading reading) {
   if (has_begun_) {
     BookTick(next);
   } else {
-    Begin(next);
+    has_begun_ = Begin(next);
   }
-  has_begun_ = true;
   last_ = std::move(next);
 }
 
-void EnergyLedger::Begin(const Instant& first) {
+bool EnergyLedger::Begin(const Instant& first) {
   double total = 0;
   const auto start = [&total](EnergyAccount* account, double stored) {
     account->Start(stored);
@@ -80,6 +79,7 @@ void EnergyLedger::Begin(const Instant& first) {
     start(&accounts_.sources[i], first.reading.sources[i].stored);
   }
   accounts_.device.Start(total);
+  return accounts_.device.IsFinite();
 }
 
 void EnergyLedger::BookTick(const Instant& next) {

@@ -61,8 +61,8 @@ class EnergyLedger {
                const PoseVector& q_HT, double h, std::size_t num_sources);
 
   /// Books the tick between the reading before and this one; the first reading
-  /// only says what is stored. A tick with an energy that is not finite is left
-  /// out.
+  /// only says what is stored. A reading or a tick with an energy that is not
+  /// finite is left out.
   /// @throws std::invalid_argument unless there is a reading of each source.
   void Add(LoopReading reading);
 
@@ -78,7 +78,7 @@ class EnergyLedger {
     double KineticEnergy() const;
   };
 
-  void Begin(const Instant& first);
+  bool Begin(const Instant& first);
   void BookTick(const Instant& next);
 
   ToolInertia inertia_;
