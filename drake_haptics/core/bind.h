@@ -13,6 +13,7 @@ void BindContact(nanobind::module_& m);
 void BindConvexPair(nanobind::module_& m);
 void BindTracker(nanobind::module_& m);
 void BindForce(nanobind::module_& m);
+void BindFriction(nanobind::module_& m);
 void BindBraking(nanobind::module_& m);
 void BindGravity(nanobind::module_& m);
 void BindPassivity(nanobind::module_& m);

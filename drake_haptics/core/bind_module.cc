@@ -14,6 +14,7 @@ NB_MODULE(_core, m) {
   drake_haptics::BindConvexPair(m);
   drake_haptics::BindTracker(m);
   drake_haptics::BindForce(m);
+  drake_haptics::BindFriction(m);
   drake_haptics::BindBraking(m);
   drake_haptics::BindGravity(m);
   drake_haptics::BindPassivity(m);

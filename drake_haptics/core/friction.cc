@@ -1,0 +1,166 @@
+#include "friction.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "friction_tracking.h"
+#include "require.h"
+
+namespace drake_haptics {
+namespace {
+
+constexpr int kCapacity = AdhesiveContacts::kCapacity;
+
+// The clusters that rub, in their order, and the normal forces that they bear.
+struct Rubbing {
+  std::array<int, kCapacity> cluster;
+  std::array<double, kCapacity> normal_force;
+  int size = 0;
+};
+
+// The strongest, if they are too many; they bear what the others of the same
+// object leave, so that friction on the whole stays what it is.
+Rubbing FindRubbing(const std::vector<Cluster>& clusters,
+                    const std::vector<double>& normal_forces,
+                    const std::vector<double>& coefficients) {
+  const auto rubs = [&](int c) {
+    return normal_forces[c] > 0 && std::isfinite(normal_forces[c]) &&
+           coefficients[clusters[c].object] > 0;
+  };
+  const int num_clusters = static_cast<int>(clusters.size());
+  Rubbing rubbing;
+  bool all = true;
+  for (int c = 0; c < num_clusters; ++c) {
+    if (!rubs(c)) continue;
+    if (rubbing.size < kCapacity) {
+      rubbing.cluster[rubbing.size++] = c;
+      continue;
+    }
+    all = false;
+    int* const weakest = std::min_element(
+        rubbing.cluster.begin(), rubbing.cluster.end(),
+        [&](int a, int b) { return normal_forces[a] < normal_forces[b]; });
+    if (normal_forces[*weakest] < normal_forces[c]) *weakest = c;
+  }
+  const auto sum = [&](int object, const auto& items, int size) {
+    double total = 0;
+    for (int i = 0; i < size; ++i) {
+      const int c = items(i);
+      if (clusters[c].object == object && rubs(c)) total += normal_forces[c];
+    }
+    return total;
+  };
+  for (int k = 0; k < rubbing.size; ++k) {
+    const int c = rubbing.cluster[k];
+    rubbing.normal_force[k] = normal_forces[c];
+    if (all) continue;
+    const int object = clusters[c].object;
+    rubbing.normal_force[k] *=
+        sum(
+            object, [](int i) { return i; }, num_clusters) /
+        sum(object, [&](int i) { return rubbing.cluster[i]; }, rubbing.size);
+  }
+  return rubbing;
+}
+
+// Adds a force at the point r from the tool's origin to its wrench.
+void AddAt(const Vec3& r, const FrictionForce& force, WrenchModel* wrench) {
+  wrench->F.head<3>() += r.cross(force.f_W);
+  wrench->F.tail<3>() += force.f_W;
+  // Displacement of the point by that of the tool, with the point frozen.
+  Eigen::Matrix<double, 3, 6> J;
+  J << 0, r.z(), -r.y(), 1, 0, 0,  //
+      -r.z(), 0, r.x(), 0, 1, 0,   //
+      r.y(), -r.x(), 0, 0, 0, 1;
+  const Eigen::Matrix<double, 3, 6> KJ = force.K_W * J;
+  wrench->K.noalias() += J.transpose() * KJ;
+}
+
+}  // namespace
+
+StickSlipModel::StickSlipModel(std::vector<double> coefficients,
+                               const std::vector<bool>& moves,
+                               const FrictionParameters& parameters)
+    : coefficients_(std::move(coefficients)), parameters_(parameters) {
+  if (coefficients_.size() != moves.size()) {
+    throw std::invalid_argument(
+        "coefficient and moves must have one item for each object");
+  }
+  for (std::size_t i = 0; i < coefficients_.size(); ++i) {
+    const std::string name = "coefficient[" + std::to_string(i) + "]";
+    RequireNotNegative(coefficients_[i], name.c_str());
+    moving_index_.push_back(moves[i] ? num_moving_++ : -1);
+  }
+  if (!(parameters.static_ratio >= 1 &&
+        std::isfinite(parameters.static_ratio))) {
+    throw std::invalid_argument(
+        "static_ratio must be finite and at least 1, is " +
+        std::to_string(parameters.static_ratio));
+  }
+  RequirePositive(parameters.break_away, "break_away_m");
+  RequirePositive(parameters.reach, "reach_m");
+}
+
+FrictionStep StickSlipModel::Step(const double* state,
+                                  const std::vector<Cluster>& clusters,
+                                  const std::vector<double>& normal_forces,
+                                  const PoseVector& q_WTool,
+                                  const double* q_WO) const {
+  const int poses_size = 7 * (1 + num_moving_);
+  const RigidMove tool_move(Eigen::Map<const PoseVector>(state), q_WTool);
+
+  const auto object_move = [&](int object) {
+    const int m = moving_index_[object];
+    return m < 0 ? RigidMove()
+                 : RigidMove(Eigen::Map<const PoseVector>(state + 7 * (1 + m)),
+                             Eigen::Map<const PoseVector>(q_WO + 7 * m));
+  };
+
+  CarriedContacts last;
+  for (const AdhesiveContact& contact :
+       AdhesiveContacts::Read(state + poses_size)) {
+    if (contact.object < 0 || contact.object >= num_objects()) continue;
+    CarriedContact& carried = last.items[last.size];
+    carried = Carry(contact, tool_move, object_move(contact.object));
+    // A pose that was not a number must not stay in the state.
+    if (carried.on_object.z_W.allFinite()) ++last.size;
+  }
+
+  const Rubbing rubbing = FindRubbing(clusters, normal_forces, coefficients_);
+  AdhesiveContacts now;
+  for (int k = 0; k < rubbing.size; ++k) {
+    const Cluster& cluster = clusters[rubbing.cluster[k]];
+    now.push_back({cluster.object, cluster.p_WC, cluster.nhat_BA_W,
+                   Vec3::Zero(), rubbing.normal_force[k], 1});
+  }
+  HandOnAdhesion(last, parameters_.reach, &now);
+
+  FrictionStep step;
+  step.f_cluster_W.assign(clusters.size(), Vec3::Zero());
+  step.sliding.assign(clusters.size(), 0);
+  for (int k = 0; k < rubbing.size; ++k) {
+    const int c = rubbing.cluster[k];
+    const Vec3& p_WC = now[k].p_WC;
+    const Vec3 motion = tool_move.Displacement(p_WC) -
+                        object_move(now[k].object).Displacement(p_WC);
+    const FrictionForce force =
+        ApplyStickSlip(rubbing.normal_force[k], coefficients_[now[k].object],
+                       parameters_, motion, &now[k]);
+    AddAt(now[k].p_WC - q_WTool.tail<3>(), force, &step.tool);
+    step.f_cluster_W[c] = force.f_W;
+    step.sliding[c] = force.sliding;
+    step.stored -= 0.5 * force.f_W.dot(now[k].z_W);
+  }
+
+  step.next_state.resize(state_size());
+  std::copy_n(q_WTool.data(), 7, step.next_state.begin());
+  std::copy_n(q_WO, 7 * num_moving_, step.next_state.begin() + 7);
+  now.Write(step.next_state.data() + poses_size);
+  return step;
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,109 @@
+"""A free tool on objects with friction, through the core's chain, without Drake."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from contact_samples import IDENTITY
+
+from drake_haptics import _core
+
+PERIOD_S = 1e-3
+TOLERANCE_M = 1e-3
+STIFFNESS_N_PER_M = 2e4
+DAMPING_NS_PER_M = 20.0
+
+
+@dataclass(frozen=True)
+class Tick:
+    """What one tick saw: SI units, world frame."""
+
+    state: np.ndarray  # (13,) tool's pose and velocity
+    clusters: _core.ClusterSet
+    wrench: _core.PenaltyWrench
+    friction: _core.FrictionStep
+
+    @property
+    def normal_force(self) -> float:
+        """Sum over the clusters, N."""
+        return float(np.linalg.norm(self.wrench.f_cluster_W, axis=1).sum())
+
+    @property
+    def friction_force(self) -> np.ndarray:
+        """(3,) on the tool, N."""
+        return self.friction.f_cluster_W.sum(axis=0)
+
+
+class FrictionRig:
+    """The tool, what it touches, and what friction remembers.
+
+    Attributes:
+        state: (13,) the tool's pose and velocity; set it to move the tool.
+        q_WO: (m, 7) poses of the objects; set them to move an object that `moves`.
+    """
+
+    def __init__(
+        self,
+        tool: _core.Decomposition,
+        objects: Sequence[_core.Decomposition],
+        model: _core.StickSlipModel,
+        *,
+        moves: Sequence[bool] = (False,),
+        dynamics: _core.RigidToolDynamics | None = None,
+    ):
+        """Places the tool and all objects at the world's origin."""
+        self._tracker = _core.SceneTracker(tool, list(objects), TOLERANCE_M)
+        self._model = model
+        self._moves = list(moves)
+        self._dynamics = dynamics
+        self._memory = np.zeros(model.state_size)
+        self.state = np.concatenate([IDENTITY, np.zeros(6)])
+        self.q_WO = np.tile(IDENTITY, (len(objects), 1))
+        self.V_WO = np.zeros((len(objects), 6))
+
+    def look(self) -> Tick:
+        """Forces now; changes nothing."""
+        for i, q in enumerate(self.q_WO):
+            self._tracker.set_object_pose(i, q)
+        contacts = self._tracker.query(self.state[:7])
+        clusters = _core.share_stiffness(contacts, TOLERANCE_M)
+        m = len(self.q_WO)
+        wrench = _core.penalty_force(
+            clusters,
+            self.state[4:7],
+            self.state[7:],
+            self.q_WO[:, 4:].copy(),
+            self.V_WO,
+            np.full(m, STIFFNESS_N_PER_M),
+            np.full(m, DAMPING_NS_PER_M),
+        )
+        friction = self._model.step(
+            self._memory,
+            clusters,
+            wrench,
+            self.state[:7].copy(),
+            self.q_WO[self._moves].ravel(),
+        )
+        return Tick(self.state.copy(), clusters, wrench, friction)
+
+    def remember(self, tick: Tick) -> None:
+        """Takes a look for the last tick."""
+        self._memory = tick.friction.next_state
+
+    def forget(self) -> None:
+        """Lets friction begin anew."""
+        self._memory = np.zeros(self._model.state_size)
+
+    def advance(self, F_Tool_W: object = (0,) * 6, K: object = None) -> Tick:
+        """Lets the tool move for one period under a wrench on it and its stiffness."""
+        tick = self.look()
+        self.remember(tick)
+        other = np.zeros(78)
+        other[:6] = F_Tool_W
+        if K is not None:
+            other[6:42] = np.ravel(K)
+        model = tick.wrench.wrench_model + tick.friction.wrench_model + other
+        self.state = self._dynamics.step(self.state, model, PERIOD_S)
+        return tick
