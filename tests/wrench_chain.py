@@ -73,11 +73,13 @@ class Wrenches:
         tool: (6,) on the tool at its origin.
         objects: (m, 6) on each object at its origin.
         clusters: What was answered, in the world.
+        answer: As the core gives it, in the world.
     """
 
     tool: np.ndarray
     objects: np.ndarray
     clusters: _core.ClusterSet
+    answer: _core.PenaltyWrench
 
 
 def run_chain(
@@ -101,15 +103,18 @@ def run_chain(
     found = _core.penalty_force(
         clusters,
         X_WT[:3, 3],
-        _turned(X_WS[:3, :3], tool.V_SB),
+        turned(X_WS[:3, :3], tool.V_SB),
         np.array([X[:3, 3] for X in X_WO]),
-        np.array([_turned(X_WS[:3, :3], o.V_SB) for o in objects]),
+        np.array([turned(X_WS[:3, :3], o.V_SB) for o in objects]),
         np.array([o.stiffness_N_per_m for o in objects]),
         np.array([o.damping_Ns_per_m for o in objects]),
     )
     R_SW = X_WS[:3, :3].T
     return Wrenches(
-        _turned(R_SW, found.F_Tool_W), _turned(R_SW, found.F_objects_W), clusters
+        turned(R_SW, found.F_Tool_W),
+        turned(R_SW, found.F_objects_W),
+        clusters,
+        found,
     )
 
 
@@ -122,7 +127,7 @@ def cluster(
     return _core.share_stiffness(contacts, tolerance_m)
 
 
-def _turned(R: np.ndarray, wrench: np.ndarray) -> np.ndarray:
+def turned(R: np.ndarray, wrench: np.ndarray) -> np.ndarray:
     """Both halves of (..., 6) in another frame."""
     halves = np.asarray(wrench).reshape(*np.shape(wrench)[:-1], 2, 3)
     return (halves @ R.T).reshape(np.shape(wrench))

@@ -23,6 +23,7 @@ from wrench_chain import (
     TOLERANCE_M,
     Case,
 )
+from wrench_friction import B_M, MU, R, friction_cone, stick_to_slip
 from wrench_laws import (
     action_and_reaction,
     damping,
@@ -55,6 +56,8 @@ SCENARIOS: dict[str, Callable[[str], Iterator[Case]]] = {
         action_and_reaction,
         materials,
         damping,
+        stick_to_slip,
+        friction_cone,
     )
 } | {f"face in {n}": partial(cut_face, pieces=n) for n in (1, 4, 50)}
 
@@ -95,13 +98,14 @@ cut into pieces, contact query, clusters, penalty force. This page is written by
     python tests/characterization/wrench_table.py --write
 
 Tolerance t = {tolerance:g} mm, k = {stiffness:g} N/m, k_v = {damping:g} N·s/m, f in N,
-τ in N·mm. Every scene stands askew in the world, and torques are about a point of no
-symmetry. The error is the larger of |Δf| / |f| and |Δτ| / (|f| a), a being the length
-that the tool has there; of scenarios with several poses, near and penetrating, it is
-the largest, and the first is printed. Tests hold every error at {round_off:g}, but that
-of the smooth sphere at the bound of its tessellation, and do not hold the octree to
-faces that are cut: it weighs the contacts of all pieces alike, however little of the
-tool is over one.
+τ in N·mm; friction has μ = {mu:g}, r = {r:g} (static over sliding) and b = {b:g} mm (how far
+a contact gives way). Every scene stands askew in the world, and torques are about a
+point of no symmetry. The error is the larger of |Δf| / |f| and |Δτ| / (|f| a), a being
+the length that the tool has there; of scenarios with several poses, near and
+penetrating, it is the largest, and the last is printed. Tests hold every error at
+{round_off:g}, but that of the smooth sphere at the bound of its tessellation, and do not
+hold the octree to faces that are cut: it weighs the contacts of all pieces alike,
+however little of the tool is over one.
 
 {rows}
 
@@ -127,15 +131,15 @@ def row(cases: dict[str, Case]) -> list[str]:
     ]
 
 
-TITLES = ("scenario", "closed form", "Eq.", "expected", "measured")
+TITLES = ("scenario", "closed form", "Eq. or section", "expected", "measured")
 TITLES += tuple(f"error, {method}" for method in METHODS)
 
 
 def _text(wrench: np.ndarray) -> str:
-    """The first of (..., 6), in N and N·mm."""
-    first = np.reshape(wrench, (-1, 6))[0]
-    first = np.where(np.abs(first) < 1e-12, 0.0, first)
-    f, tau = (", ".join(f"{x:.5g}" for x in v) for v in (first[3:], 1e3 * first[:3]))
+    """The last of (..., 6), in N and N·mm."""
+    last = np.reshape(wrench, (-1, 6))[-1]
+    last = np.where(np.abs(last) < 1e-12, 0.0, last)
+    f, tau = (", ".join(f"{x:.5g}" for x in v) for v in (last[3:], 1e3 * last[:3]))
     return f"f ({f}), τ ({tau})"
 
 
@@ -167,6 +171,9 @@ def main() -> None:
                 damping=DAMPING_NS_PER_M,
                 delta=1e3 * DELTA_M,
                 round_off=ROUND_OFF,
+                mu=MU,
+                r=R,
+                b=1e3 * B_M,
                 rows="\n".join(lines),
                 equations="\n".join(
                     f"- **{name}**: " + ", ".join(f"`tests/{test}`" for test in tests)
