@@ -98,13 +98,13 @@ cut into pieces, contact query, clusters, penalty force. This page is written by
     python tests/characterization/wrench_table.py --write
 
 Tolerance t = {tolerance:g} mm, k = {stiffness:g} N/m, k_v = {damping:g} N·s/m, f in N,
-τ in N·mm; friction has μ = {mu:g}, r = {r:g} (static over sliding) and b = {b:g} mm (how far
-a contact gives way). Every scene stands askew in the world, and torques are about a
-point of no symmetry. The error is the larger of |Δf| / |f| and |Δτ| / (|f| a), a being
-the length that the tool has there; of scenarios with several poses, near and
+τ in N·mm; friction has μ = {mu:g}, r = {r:g} (static over sliding) and b = {b:g} mm
+(how far a contact gives way). Every scene stands askew in the world, and torques are
+about a point of no symmetry. The error is the larger of |Δf| / |f| and |Δτ| / (|f| a),
+a being the length that the tool has there; of scenarios with several poses, near and
 penetrating, it is the largest, and the last is printed. Tests hold every error at
-{round_off:g}, but that of the smooth sphere at the bound of its tessellation, and do not
-hold the octree to faces that are cut: it weighs the contacts of all pieces alike,
+{round_off:g}, but that of the smooth sphere at the bound of its tessellation, and do
+not hold the octree to faces that are cut: it weighs the contacts of all pieces alike,
 however little of the tool is over one.
 
 {rows}
