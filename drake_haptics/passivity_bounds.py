@@ -73,8 +73,10 @@ def calc_sampled_damping(mass: float, stiffness: float, period_s: float) -> floa
     stiff for any damping, α > 12 - 8 √2.
     """
     alpha = stiffness * period_s**2 / mass
+    if alpha >= 4.0:
+        return 0.0
     square = (4.0 - alpha) ** 2 - 16.0 * alpha
-    if alpha >= 4.0 or square < 0.0:
+    if square < 0.0:
         return 0.0
     return (4.0 - alpha + math.sqrt(square)) / 4.0 * mass / period_s
 
