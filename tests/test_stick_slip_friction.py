@@ -1,0 +1,235 @@
+"""Friction as a Drake system; its law has its own tests in the core."""
+
+import numpy as np
+import pytest
+from contact_samples import box
+from pydrake.common.value import Value
+from pydrake.math import RigidTransform
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import LogVectorOutput
+
+from drake_haptics._core import (
+    RigidToolDynamics,
+    SceneTracker,
+    StickSlipModel,
+    penalty_force,
+    share_stiffness,
+)
+from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.contact_clustering import ContactClustering
+from drake_haptics.systems.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.haptic_tool import HapticTool
+from drake_haptics.systems.penalty_force import PenaltyForce
+from drake_haptics.systems.stick_slip_friction import StickSlipFriction
+from drake_haptics.systems.tool_gravity import ToolGravity
+
+PERIOD, TOLERANCE, STIFFNESS = 1e-3, 1e-3, 2e4
+MU, RATIO, BREAK_AWAY = 0.5, 1.2, 1e-4
+SIZE, MASS, G = 0.02, 0.1, 9.81
+FLOOR = box([1, 1, 0.1], [0, 0, -0.05])
+# Its origin and centre of mass in the middle of its base.
+TOOL = box([SIZE] * 3, [0, 0, SIZE / 2])
+RESTING_Z = TOLERANCE - MASS * G / STIFFNESS
+
+
+def fixed(name="floor"):
+    return ContactObject(name, FLOOR, RigidTransform())
+
+
+def make(objects, coefficient=None, **options):
+    return StickSlipFriction(
+        objects,
+        period_s=PERIOD,
+        coefficient=[MU] * len(objects) if coefficient is None else coefficient,
+        break_away_m=BREAK_AWAY,
+        **options,
+    )
+
+
+def tool_at(x):
+    return pose_to_vector(RigidTransform([x, 0, RESTING_Z]))
+
+
+def look(x):
+    """What the tool meets at x: clusters and contact wrench."""
+    tracker = SceneTracker(TOOL, [FLOOR], TOLERANCE)
+    clusters = share_stiffness(tracker.query(tool_at(x)), TOLERANCE)
+    still = np.zeros((1, 3)), np.zeros((1, 6))
+    gains = np.array([STIFFNESS]), np.zeros(1)
+    wrench = penalty_force(clusters, tool_at(x)[4:], np.zeros(6), *still, *gains)
+    return clusters, wrench
+
+
+def fix(friction, context, x):
+    clusters, wrench = look(x)
+    friction.get_clusters_input_port().FixValue(context, Value[object](clusters))
+    friction.get_contact_wrench_input_port().FixValue(context, Value[object](wrench))
+    friction.get_tool_pose_input_port().FixValue(context, tool_at(x))
+
+
+def advance(friction, context):
+    context.SetDiscreteState(friction.EvalUniquePeriodicDiscreteUpdate(context))
+
+
+def force(friction, context):
+    return friction.get_wrench_model_output_port().Eval(context)[3]
+
+
+def test_topology():
+    cart = ContactObject("cart", FLOOR)
+    friction = make([fixed(), cart])
+    names = [friction.get_input_port(i).get_name() for i in range(4)]
+    assert friction.num_input_ports() == 4
+    assert names == ["clusters", "contact_wrench", "X_WTool", "X_WO_cart"]
+    assert friction.GetOutputPort("wrench_model").size() == 78
+    assert friction.GetOutputPort("friction_force").get_name() == "friction_force"
+    assert friction.get_object_pose_input_port("cart").size() == 7
+
+
+def test_its_state_is_what_linearization_accepts():
+    friction = make([fixed()])
+    assert friction.IsDifferenceEquationSystem() == (True, PERIOD)
+    context = friction.CreateDefaultContext()
+    assert context.num_discrete_state_groups() == 1
+    assert context.num_abstract_states() == 0
+    assert context.get_discrete_state_vector().size() == 7 + 32 * 12
+
+
+def test_the_force_answers_a_pose_in_the_same_tick():
+    friction = make([fixed()])
+    context = friction.CreateDefaultContext()
+    fix(friction, context, 0.0)
+    assert force(friction, context) == 0.0
+    advance(friction, context)
+    stiffness = RATIO * MU * MASS * G / BREAK_AWAY
+    for x in (2e-5, 6e-5, 2e-5):  # without an update between them
+        fix(friction, context, x)
+        assert force(friction, context) == pytest.approx(-stiffness * x)
+    advance(friction, context)
+    assert force(friction, context) == pytest.approx(-stiffness * 2e-5)
+
+
+def test_outputs_and_state_are_those_of_the_core():
+    friction = make([fixed()], static_ratio=1.5, reach_m=1e-3)
+    context = friction.CreateDefaultContext()
+    model = StickSlipModel([MU], [False], 1.5, BREAK_AWAY, 1e-3)
+    state, none = np.zeros(model.state_size), np.zeros(0)
+    for x in (0.0, 3e-5, 3e-4):
+        fix(friction, context, x)
+        step = model.step(state, *look(x), tool_at(x), none)
+        state = step.next_state
+        np.testing.assert_array_equal(
+            friction.get_wrench_model_output_port().Eval(context), step.wrench_model
+        )
+        np.testing.assert_array_equal(
+            friction.get_friction_force_output_port().Eval(context).f_cluster_W,
+            step.f_cluster_W,
+        )
+        advance(friction, context)
+        np.testing.assert_array_equal(
+            context.get_discrete_state_vector().value(), state
+        )
+
+
+def test_a_copied_context_goes_its_own_way():
+    friction = make([fixed()])
+    context = friction.CreateDefaultContext()
+    fix(friction, context, 0.0)
+    advance(friction, context)
+    other = context.Clone()
+    fix(friction, other, 5e-5)
+    advance(friction, other)
+    fix(friction, context, 0.0)
+    assert force(friction, context) == 0.0
+    assert force(friction, other) < -0.2
+
+
+def test_what_moves_with_its_object_feels_no_friction():
+    friction = make([ContactObject("cart", FLOOR)])
+    context = friction.CreateDefaultContext()
+    cart = friction.get_object_pose_input_port("cart")
+    for x in (0.0, 0.3):
+        fix(friction, context, x)
+        cart.FixValue(context, pose_to_vector(RigidTransform([x, 0, 0])))
+        assert force(friction, context) == pytest.approx(0.0, abs=1e-12)
+        advance(friction, context)
+    cart.FixValue(context, pose_to_vector(RigidTransform([0.3 + 5e-5, 0, 0])))
+    assert force(friction, context) == pytest.approx(RATIO * MU * MASS * G / 2)
+
+
+@pytest.mark.parametrize("tangent", [0.25, 0.8])
+def test_a_block_on_a_slope_rests_or_slides(tangent):
+    """The whole chain under Drake's simulator; gravity makes the slope, at once."""
+    builder = DiagramBuilder()
+    slope = np.arctan(tangent)
+    dynamics = RigidToolDynamics(MASS, np.zeros(3), MASS * SIZE**2 * np.eye(3))
+    tool = builder.AddSystem(
+        HapticTool(
+            dynamics,
+            PERIOD,
+            ["contact", "friction", "gravity"],
+            RigidTransform([0, 0, RESTING_Z]),
+        )
+    )
+    query = builder.AddSystem(ContactQuery(TOOL, [fixed()], TOLERANCE))
+    clustering = builder.AddSystem(ContactClustering("shared", TOLERANCE))
+    contact = builder.AddSystem(PenaltyForce([fixed()], [STIFFNESS], [20.0]))
+    friction = builder.AddSystem(make([fixed()]))
+    gravity = builder.AddSystem(
+        ToolGravity(
+            mass_kg=MASS,
+            p_TTcm=np.zeros(3),
+            gravity_m_per_s2=G * np.array([np.sin(slope), 0, -np.cos(slope)]),
+        )
+    )
+    for port in (query, contact, friction, gravity):
+        builder.Connect(tool.get_pose_output_port(), port.get_tool_pose_input_port())
+    builder.Connect(
+        tool.get_velocity_output_port(), contact.get_tool_velocity_input_port()
+    )
+    builder.Connect(
+        query.get_contacts_output_port(), clustering.get_contacts_input_port()
+    )
+    for port in (contact, friction):
+        builder.Connect(
+            clustering.get_clusters_output_port(), port.get_clusters_input_port()
+        )
+    builder.Connect(
+        contact.get_contact_wrench_output_port(),
+        friction.get_contact_wrench_input_port(),
+    )
+    for name, system in (
+        ("contact", contact),
+        ("friction", friction),
+        ("gravity", gravity),
+    ):
+        builder.Connect(
+            system.get_wrench_model_output_port(), tool.get_wrench_input_port(name)
+        )
+    log = LogVectorOutput(tool.get_velocity_output_port(), builder, PERIOD)
+    simulator = Simulator(builder.Build())
+    simulator.AdvanceTo(0.3)
+    speed = log.FindLog(simulator.get_context()).data()[3]
+    if tangent < MU * RATIO:
+        assert abs(speed[-1]) < 1e-4
+    else:
+        expected = G * (np.sin(slope) - MU * np.cos(slope))
+        assert (speed[-1] - speed[-101]) / 0.1 == pytest.approx(expected, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"period_s": 0.0}, "period_s must be positive, is 0.0"),
+        ({"coefficient": [-0.1]}, r"coefficient\[0\].*at least 0, is -0.1"),
+        ({"coefficient": [0.1, 0.1]}, "one item for each object"),
+        ({"break_away_m": 0.0}, "break_away_m.*above 0, is 0"),
+        ({"static_ratio": 0.5}, "static_ratio.*at least 1, is 0.5"),
+        ({"reach_m": 0.0}, "reach_m.*above 0, is 0"),
+    ],
+)
+def test_arguments_out_of_bounds_are_refused(change, message):
+    good = {"period_s": PERIOD, "coefficient": [MU], "break_away_m": BREAK_AWAY}
+    with pytest.raises(ValueError, match=message):
+        StickSlipFriction([fixed()], **(good | change))
