@@ -1,7 +1,5 @@
 #include "friction_state.h"
 
-#include <algorithm>
-
 namespace drake_haptics {
 
 AdhesiveContacts AdhesiveContacts::Read(const double* slots) {
@@ -17,7 +15,6 @@ AdhesiveContacts AdhesiveContacts::Read(const double* slots) {
 }
 
 void AdhesiveContacts::Write(double* slots) const {
-  std::fill_n(slots, kCapacity * kSlotSize, 0.0);
   for (const AdhesiveContact& contact : *this) {
     slots[0] = contact.object;
     Eigen::Map<Vec3>(slots + 1) = contact.p_WC;

@@ -7,13 +7,14 @@
 namespace drake_haptics {
 
 /// A contact as friction remembers it from one tick to the next, in the world.
+/// Nothing is preset: a list of them costs what is in it.
 struct AdhesiveContact {
-  int object = 0;
-  Vec3 p_WC = Vec3::Zero();       ///< position, m
-  Vec3 nhat_BA_W = Vec3::Zero();  ///< unit normal, out of the object
-  Vec3 z_W = Vec3::Zero();        ///< displacement from the adhesion point, m
-  double load = 0;  ///< normal force that the adhesion was formed under, N
-  double grip = 1;  ///< 1 holds up to the static limit, 0 to the sliding one
+  int object;
+  Vec3 p_WC;       ///< position, m
+  Vec3 nhat_BA_W;  ///< unit normal, out of the object
+  Vec3 z_W;        ///< displacement from the adhesion point, m
+  double load;     ///< normal force that the adhesion was formed under, N
+  double grip;     ///< 1 holds up to the static limit, 0 to the sliding one
 };
 
 /// The contacts of one tick: a list of fixed capacity, which allocates nothing.
@@ -25,7 +26,7 @@ class AdhesiveContacts {
 
   /// Reads kCapacity slots; one without a load is empty, and so is all behind.
   static AdhesiveContacts Read(const double* slots);
-  /// Writes kCapacity slots; empty ones are zero.
+  /// Writes the slots, of which all are zero.
   void Write(double* slots) const;
 
   void push_back(const AdhesiveContact& contact) { items_[size_++] = contact; }

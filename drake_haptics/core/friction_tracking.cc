@@ -11,9 +11,9 @@ constexpr double kSamePlace = 1e-24;
 
 // Load with what it carries; all three add up.
 struct Adhesion {
-  double load = 0;
-  Vec3 load_z = Vec3::Zero();
-  double load_grip = 0;
+  double load;
+  Vec3 load_z;
+  double load_grip;
 
   void Add(const Adhesion& other, double share) {
     load += share * other.load;
@@ -61,13 +61,21 @@ void Distribute(const CarriedContacts& last, const AdhesiveContacts& now,
 
 // Step 2. Nobody gives more than the surplus or takes more than the lack.
 void Balance(const AdhesiveContacts& now, double reach, Adhesions* adhesions) {
-  const auto excess = [&](int j) { return (*adhesions)[j].load - now[j].load; };
-  std::array<double, kCapacity> given{}, wanted{}, excesses;
-  for (int j = 0; j < now.size(); ++j) excesses[j] = excess(j);
+  const int size = now.size();
+  std::array<double, kCapacity> given, wanted, excesses;
+  bool anyone_gives = false, anyone_takes = false;
+  for (int j = 0; j < size; ++j) {
+    excesses[j] = (*adhesions)[j].load - now[j].load;
+    anyone_gives |= excesses[j] > 0;
+    anyone_takes |= excesses[j] < 0;
+  }
+  if (!anyone_gives || !anyone_takes) return;
+  std::fill_n(given.begin(), size, 0.0);
+  std::fill_n(wanted.begin(), size, 0.0);
   const auto for_each_pair = [&](const auto& visit) {
-    for (int from = 0; from < now.size(); ++from) {
+    for (int from = 0; from < size; ++from) {
       if (!(excesses[from] > 0)) continue;
-      for (int to = 0; to < now.size(); ++to) {
+      for (int to = 0; to < size; ++to) {
         if (!(excesses[to] < 0) || now[from].object != now[to].object) continue;
         const double d2 =
             SquaredDistance(now[from].p_WC, now[from].nhat_BA_W, now[to].p_WC,
@@ -80,7 +88,8 @@ void Balance(const AdhesiveContacts& now, double reach, Adhesions* adhesions) {
     wanted[from] -= part * excesses[to];
     given[to] += part * excesses[from];
   });
-  const Adhesions before = *adhesions;
+  Adhesions before;
+  std::copy_n(adhesions->begin(), size, before.begin());
   for_each_pair([&](int from, int to, double part) {
     const double surplus = excesses[from];
     const double lack = -excesses[to];
@@ -119,6 +128,7 @@ CarriedContact Carry(const AdhesiveContact& last, const RigidMove& tool,
 void HandOnAdhesion(const CarriedContacts& last, double reach,
                     AdhesiveContacts* now) {
   Adhesions adhesions;
+  std::fill_n(adhesions.begin(), now->size(), Adhesion{0, Vec3::Zero(), 0});
   Distribute(last, *now, reach, &adhesions);
   Balance(*now, reach, &adhesions);
   for (int j = 0; j < now->size(); ++j) {

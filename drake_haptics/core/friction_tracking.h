@@ -32,8 +32,8 @@ class RigidMove {
 /// A contact of the last tick, where either body has taken it since.
 struct CarriedContact {
   AdhesiveContact on_object;  ///< with z_W grown by the relative displacement
-  Vec3 p_on_tool_W = Vec3::Zero();
-  Vec3 nhat_on_tool_W = Vec3::Zero();
+  Vec3 p_on_tool_W;
+  Vec3 nhat_on_tool_W;
 };
 
 /// Moves a contact of the last tick with the tool and with its object.
