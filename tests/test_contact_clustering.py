@@ -27,38 +27,63 @@ def contacts():
     return query_at(query, query.CreateDefaultContext(), 0.0205)
 
 
-def cluster(contacts, delta):
-    clustering = ContactClustering(delta, TOLERANCE)
+def evaluate(clustering, contacts):
     context = clustering.CreateDefaultContext()
     clustering.get_contacts_input_port().FixValue(context, Value[object](contacts))
     return clustering.get_clusters_output_port().Eval(context)
 
 
+def make(method):
+    return ContactClustering(method, TOLERANCE, 5e-3 if method == "octree" else None)
+
+
 def test_topology():
-    clustering = ContactClustering(5e-3, TOLERANCE)
+    clustering = make("shared")
     assert clustering.GetInputPort("contacts").get_name() == "contacts"
     assert clustering.GetOutputPort("clusters").get_name() == "clusters"
     assert clustering.CreateDefaultContext().num_total_states() == 0
 
 
-def test_ends_far_apart_stay_apart(contacts):
-    clusters = cluster(contacts, 5e-3)
+def test_the_octree_keeps_ends_apart_that_are_far_apart(contacts):
+    clusters = evaluate(make("octree"), contacts)
     assert sorted(set(clusters.object_index.tolist())) == [0, 1]
     np.testing.assert_allclose(clusters.distance, 5e-4, atol=1e-12)
     assert sum(clusters.num_contacts) == len(contacts)
+    np.testing.assert_allclose(clusters.compression, TOLERANCE - 5e-4)
+
+
+def test_shared_keeps_each_contact_and_each_object_by_itself(contacts):
+    clusters = evaluate(make("shared"), contacts)
+    assert len(clusters) == len(contacts)
+    for name in ("distance", "nhat_BA_W", "p_WC", "object_index"):
+        np.testing.assert_array_equal(getattr(clusters, name), getattr(contacts, name))
+    for o in (0, 1):
+        pressed = clusters.compression[clusters.object_index == o].sum()
+        assert pressed == pytest.approx(TOLERANCE - 5e-4)
 
 
 def test_nothing_gives_nothing(contacts):
     tool = box_core(0.02, 0.02, 0.02)
     query = ContactQuery(tool, [ContactObject("a", tool, RigidTransform())], TOLERANCE)
     nothing = query_at(query, query.CreateDefaultContext(), 1.0)
-    assert len(cluster(nothing, 5e-3)) == 0
+    for method in ("octree", "shared"):
+        assert len(evaluate(make(method), nothing)) == 0
 
 
 @pytest.mark.parametrize(
-    ("delta", "tolerance", "complaint"),
-    [(0.0, 1e-3, "delta_m"), (-1.0, 1e-3, "delta_m"), (1e-3, -1.0, "tolerance_m")],
+    ("arguments", "complaint"),
+    [
+        (("octree", 1e-3, 0.0), "delta_m"),
+        (("octree", 1e-3, -1.0), "delta_m"),
+        (("octree", 1e-3, np.inf), "delta_m"),
+        (("octree", 1e-3), "delta_m"),
+        (("octree", -1.0, 1e-3), "tolerance_m"),
+        (("shared", -1.0), "tolerance_m"),
+        (("shared", np.nan), "tolerance_m"),
+        (("shared", 1e-3, 1e-3), "delta_m"),
+        (("quadtree", 1e-3), "'shared' or 'octree', is 'quadtree'"),
+    ],
 )
-def test_impossible_sizes_are_refused(delta, tolerance, complaint):
+def test_what_makes_no_sense_is_refused(arguments, complaint):
     with pytest.raises(ValueError, match=complaint):
-        ContactClustering(delta, tolerance)
+        ContactClustering(*arguments)

@@ -63,6 +63,17 @@ def test_the_representative_follows_equations_3_to_5() -> None:
         np.testing.assert_allclose(clusters.nhat_BA_W[k], n / np.linalg.norm(n))
         np.testing.assert_allclose(clusters.p_WC[k], p, atol=1e-15)
         assert clusters.distance[k] == contacts.distance[member].min()
+    # What Eq. 6 makes of them.
+    np.testing.assert_array_equal(clusters.compression, TOLERANCE - clusters.distance)
+    np.testing.assert_array_equal(clusters.damping_share, [1, 1])
+    np.testing.assert_array_equal(clusters.coupling, np.eye(2))
+
+
+def test_contacts_beyond_the_tolerance_are_in_no_cluster() -> None:
+    contacts = contacts_at([[0, 0], [1e-3, 0]], [0, -1.5e-3], TOLERANCE)
+    clusters = _core.cluster_contacts(contacts, 1e-2, 1e-3)
+    np.testing.assert_array_equal(clusters.label, [0, -1])
+    np.testing.assert_array_equal(clusters.num_contacts, [1])
 
 
 def test_adjacent_leaves_merge_and_separated_ones_do_not() -> None:

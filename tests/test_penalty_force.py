@@ -33,7 +33,7 @@ def clusters(plate):
 
 
 def make_force(objects):
-    force = PenaltyForce(objects, K, B, TOLERANCE)
+    force = PenaltyForce(objects, [K] * len(objects), [B] * len(objects))
     return force, force.CreateDefaultContext()
 
 
@@ -91,7 +91,26 @@ def test_only_the_motion_between_the_two_counts(plate, clusters):
     assert approaching - together == pytest.approx(0.1 * B)
 
 
-@pytest.mark.parametrize("gains", [(-1.0, B, 0.0), (K, -1.0, 0.0), (K, B, -1.0)])
-def test_negative_gains_are_refused(gains):
-    with pytest.raises(ValueError, match="must not be negative"):
-        PenaltyForce([], *gains)
+def test_each_object_has_its_own_gains(plate):
+    """Two plates in one place answer as one with the sum of their gains."""
+    tool = box_core(0.02, 0.02, 0.02)
+    objects = [ContactObject(name, plate, RigidTransform()) for name in "ab"]
+    query = ContactQuery(tool, objects, TOLERANCE)
+    contacts = query_at(query, query.CreateDefaultContext(), HEIGHT)
+    force = PenaltyForce(objects, [K, 2 * K], [B, 3 * B])
+    context = force.CreateDefaultContext()
+    down = [0, 0, 0, 0, 0, -0.1]
+    fix(force, context, cluster_contacts(contacts, 0.1, TOLERANCE), down)
+    wrench = force.get_contact_wrench_output_port().Eval(context)
+    one = K * (TOLERANCE + 5e-4) + 0.1 * B
+    two = 2 * K * (TOLERANCE + 5e-4) + 0.3 * B
+    np.testing.assert_allclose(wrench.F_objects_W[:, 5], [-one, -two], atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["stiffness_N_per_m", "damping_Ns_per_m"])
+@pytest.mark.parametrize("gains", [[-1.0], [np.nan], [np.inf], [], [1.0, 1.0]])
+def test_bad_gains_are_refused_by_name(plate, name, gains):
+    objects = [ContactObject("plate", plate, RigidTransform())]
+    good = {"stiffness_N_per_m": [K], "damping_Ns_per_m": [B]}
+    with pytest.raises(ValueError, match=name):
+        PenaltyForce(objects, **(good | {name: gains}))
