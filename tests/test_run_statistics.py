@@ -1,6 +1,7 @@
 """What a run measured."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -31,6 +32,7 @@ def test_a_run_without_ticks_is_all_zero():
     assert figures["ticks"] == 0
     assert figures["tick_us"] == {"median": 0, "p99": 0, "p99_9": 0, "max": 0}
     assert figures["contacts"] == {"median": 0, "max": 0}
+    assert figures["energy_J"] == {}
 
 
 def test_times_are_described_in_microseconds():
@@ -89,6 +91,14 @@ def test_memory_is_bounded_and_keeps_the_latest(monkeypatch):
     # The largest values are of the whole run, distributions of the latest ticks.
     assert figures["max_force_N"] == 9.0
     assert figures["tick_us"]["max"] == pytest.approx(100.0)
+
+
+def test_the_energies_are_those_of_the_ledger_as_it_stands():
+    books = {"device": {"in": 1.0}}
+    statistics = RunStatistics(1e-3, SimpleNamespace(to_dict=lambda: dict(books)))
+    assert statistics.to_dict()["energy_J"] == books
+    books["tool"] = {"in": 2.0}
+    assert statistics.to_dict()["energy_J"] == books
 
 
 def test_a_report_is_json():

@@ -1,6 +1,7 @@
 """Runs: what they measure, how they end."""
 
 import gc
+import json
 import time
 
 import numpy as np
@@ -39,8 +40,23 @@ def test_a_run_measures_every_tick(haptic):
 
 def test_a_run_starts_anew_each_time(haptic):
     first, second = (run(haptic, 0.3).to_dict() for _ in range(2))
-    for key in ("max_force_N", "max_torque_Nm", "max_penetration_m", "contacts"):
+    for key in (
+        "max_force_N",
+        "max_torque_Nm",
+        "max_penetration_m",
+        "contacts",
+        "energy_J",
+    ):
         assert first[key] == second[key]
+
+
+def test_the_energy_of_every_tick_is_booked(haptic):
+    # The books begin with the first tick: what the tool has at the end came in.
+    books = run(haptic, 0.3).to_dict()["energy_J"]
+    tool = books["tool"]
+    assert tool["stored"] > 0.0
+    assert tool["net"] == pytest.approx(tool["stored"] + tool["lost"], rel=1e-12)
+    assert books["device"]["in"] > books["contact"]["in"] > 0.0
 
 
 def test_garbage_is_thawed_after_a_run(haptic):
@@ -90,8 +106,10 @@ def test_a_value_that_is_not_finite_stops_the_run(haptic, monkeypatch):
         run(haptic, 1.0)
     figures = caught.value.statistics.to_dict()
     assert figures["non_finite_events"] == 1
-    # The device was shown nothing.
+    # The device was shown nothing, and nothing was booked.
     assert figures["max_force_N"] == 0.0
+    assert all(part["in"] == 0.0 for part in figures["energy_J"].values())
+    json.dumps(figures, allow_nan=False)
 
 
 def test_an_arm_that_is_lost_stops_the_run(haptic, monkeypatch):
@@ -112,6 +130,7 @@ def test_no_coupling_is_too_stiff_for_the_limits_of_the_device(tmp_path):
     figures = run(BuildHapticDiagram(scene), 0.5).to_dict()
     assert figures["limit_hits"] > 0
     assert figures["max_force_N"] <= 8.5 * (1 + 1e-12)
+    json.dumps(figures, allow_nan=False)
 
 
 def test_the_step_is_fine_enough_for_the_arm(haptic):

@@ -8,6 +8,7 @@ from rich.console import Console
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cli.status_line import StatusLine, make_summary
+from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import run
@@ -47,3 +48,37 @@ def test_the_summary_has_the_figures(haptic):
     Console(file=text, width=160).print(make_summary(figures))
     assert f"force {figures['max_force_N']:.2f} N" in text.getvalue()
     assert "1500 ticks" in text.getvalue()
+
+
+def energy_line(haptic, **changes):
+    """The summary of a run in which a part has other books."""
+    _, figures = run_with_status(haptic, terminal=False)
+    for name, books in changes.items():
+        figures["energy_J"][name] |= books
+    text = io.StringIO()
+    Console(file=text, width=160).print(make_summary(figures))
+    return next(x for x in text.getvalue().splitlines() if x.startswith("energy"))
+
+
+def test_the_summary_says_where_the_energy_went(haptic):
+    none = {name: {"beyond": 1e-12} for name in ("coupling", "contact", "tool")}
+    line = energy_line(haptic, device={"in": 0.0123, "out": 0.0045}, **none)
+    assert "hand put in 12.3 mJ, got back 4.5 mJ" in line
+    assert line.endswith("none created beyond what sampling explains")
+
+
+def test_the_summary_names_what_makes_energy(haptic):
+    others = {name: {"beyond": 0.0} for name in ("device", "tool")}
+    line = energy_line(
+        haptic, contact={"beyond": 2.5e-4}, coupling={"beyond": 1e-3}, **others
+    )
+    assert line.endswith(
+        "created beyond what sampling explains: coupling 1 mJ, contact 0.25 mJ"
+    )
+
+
+def test_a_run_that_booked_nothing_has_no_line_of_energy():
+    text = io.StringIO()
+    figures = RunStatistics(1e-3).to_dict()
+    Console(file=text, width=160).print(make_summary(figures))
+    assert "energy" not in text.getvalue()

@@ -68,18 +68,21 @@ void EnergyLedger::Add(LoopReading reading) {
 }
 
 bool EnergyLedger::Begin(const Instant& first) {
+  Accounts begun = accounts_;
   double total = 0;
   const auto start = [&total](EnergyAccount* account, double stored) {
     account->Start(stored);
     total += stored;
   };
-  start(&accounts_.coupling, first.spring.Energy(gains_));
-  start(&accounts_.tool, first.KineticEnergy());
-  for (std::size_t i = 0; i < accounts_.sources.size(); ++i) {
-    start(&accounts_.sources[i], first.reading.sources[i].stored);
+  start(&begun.coupling, first.spring.Energy(gains_));
+  start(&begun.tool, first.KineticEnergy());
+  for (std::size_t i = 0; i < begun.sources.size(); ++i) {
+    start(&begun.sources[i], first.reading.sources[i].stored);
   }
-  accounts_.device.Start(total);
-  return accounts_.device.IsFinite();
+  begun.device.Start(total);
+  if (!IsFinite(begun)) return false;
+  accounts_ = std::move(begun);
+  return true;
 }
 
 void EnergyLedger::BookTick(const Instant& next) {

@@ -78,6 +78,7 @@ class EnergyLedger {
     double KineticEnergy() const;
   };
 
+  // False if there is no finite number to begin with.
   bool Begin(const Instant& first);
   void BookTick(const Instant& next);
 

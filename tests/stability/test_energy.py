@@ -1,0 +1,93 @@
+"""A haptic loop makes no energy but what the sampling of its forces explains."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.scene import Effects, load_scene
+from drake_haptics.scene_effects import Braking, Friction, Gravity
+from drake_haptics.scene_library import find_scene
+from drake_haptics.simulation import run
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+
+# Far below what can be felt, far above rounding.
+ROUNDING_J = 1e-9
+HIGH, LOW = TOOL_HALF_HEIGHT + 0.01, TOOL_HALF_HEIGHT - 0.006
+PATHS = {
+    "press": [(0.0, 0, 0, HIGH), (0.3, 0, 0, LOW), (0.7, 0, 0, LOW), (1.0, 0, 0, HIGH)],
+    "slide": [(0.0, 0, 0, HIGH), (0.3, 0, 0, LOW), (1.0, 0.05, 0.02, LOW)],
+    "tap": [(0.1 * i, 0, 0, HIGH if i % 2 == 0 else LOW) for i in range(9)],
+}
+
+
+def energies(scene, duration_s=1.2):
+    """Returns the books of a run."""
+    return run(BuildHapticDiagram(scene), duration_s).to_dict()["energy_J"]
+
+
+def assert_nothing_is_created(books):
+    for name, part in books.items():
+        assert part["beyond"] < ROUNDING_J, name
+        assert part["created"] <= part["bound"] + ROUNDING_J, name
+
+
+@pytest.mark.parametrize("grip", ["nominal", "firm"])
+@pytest.mark.parametrize("path", PATHS)
+def test_a_ball_on_a_plate(tmp_path, path, grip):
+    books = energies(over_a_plate(tmp_path, PATHS[path], tool="ball", grip=grip))
+    assert books["contact"]["in"] > 1e-5
+    assert_nothing_is_created(books)
+
+
+@pytest.mark.parametrize("path", ["press", "tap"])
+def test_a_cube_flat_on_a_plate(tmp_path, path):
+    books = energies(over_a_plate(tmp_path, PATHS[path], tool="cube"))
+    assert books["contact"]["in"] > 1e-4
+    assert_nothing_is_created(books)
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_effects_that_only_take_or_store(tmp_path, path):
+    scene = over_a_plate(tmp_path, PATHS[path], tool="ball")
+    scene.effects = Effects(friction=Friction(), braking=Braking(), gravity=Gravity())
+    books = energies(scene)
+    assert books["braking"]["damped"] > 0.0
+    assert_nothing_is_created(books)
+
+
+def test_a_tap_reaches_a_good_share_of_its_bound(tmp_path):
+    """The plate is met within a tick, and has stored energy before it was felt."""
+    contact = energies(over_a_plate(tmp_path, PATHS["tap"], tool="ball"))["contact"]
+    assert 0.3 * contact["bound"] < contact["created"] < contact["bound"]
+
+
+def test_spoon_and_cup_at_rest_make_and_take_nothing():
+    scene = load_scene(find_scene("cup_spoon"))
+    scene.hand.path.periodic = False
+    scene.hand.path.waypoints = [
+        x for x in scene.hand.path.waypoints if x.time_s <= 1.2
+    ]
+    haptic = BuildHapticDiagram(scene)
+    settled, end = (run(haptic, t).to_dict()["energy_J"] for t in (3.0, 8.0))
+    assert settled["contact"]["stored"] > 1e-4
+    for name, part in end.items():
+        for what in ("in", "out", "stored", "lost"):
+            assert part[what] == pytest.approx(settled[name][what], abs=1e-12)
+
+
+@pytest.mark.parametrize("scene", ["cup_spoon", "sphere_pen", "torus_peg"])
+def test_what_a_shipped_scene_creates_is_the_contact_s(scene):
+    """A known gap: depth and centre of a flush contact are of different points.
+
+    Its wrench is then not quite the gradient of what it stores. All else balances.
+    """
+    books = energies(load_scene(find_scene(scene)), 5.0)
+    contact = books.pop("contact")
+    device = books.pop("device")
+    assert_nothing_is_created(books)
+    assert contact["beyond"] < 0.1 * contact["in"]
+    assert device["beyond"] < 0.03 * device["in"]
