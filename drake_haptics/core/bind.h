@@ -17,6 +17,7 @@ void BindFriction(nanobind::module_& m);
 void BindBraking(nanobind::module_& m);
 void BindGravity(nanobind::module_& m);
 void BindPassivity(nanobind::module_& m);
+void BindShading(nanobind::module_& m);
 void BindHand(nanobind::module_& m);
 void BindEnergy(nanobind::module_& m);
 void BindClock(nanobind::module_& m);

@@ -18,6 +18,7 @@ NB_MODULE(_core, m) {
   drake_haptics::BindBraking(m);
   drake_haptics::BindGravity(m);
   drake_haptics::BindPassivity(m);
+  drake_haptics::BindShading(m);
   drake_haptics::BindHand(m);
   drake_haptics::BindEnergy(m);
   drake_haptics::BindClock(m);

@@ -1,0 +1,219 @@
+#include "surface_shading.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "facet_triangles.h"
+
+namespace drake_haptics {
+namespace {
+
+// Beside a crease the normal passes from that of the face to that of the
+// contact within this angle, rad: the tilt at which a face gives way to its
+// edges (contact_patch.h).
+constexpr double kFlushAngle = 4 * std::numbers::pi / 180;
+// Normals within this angle (rad) of the facet's are the facet's.
+constexpr double kFlat = 1e-6;
+
+std::vector<std::vector<int>> TrianglesOfPieces(const Decomposition& mesh) {
+  std::vector<std::vector<int>> triangles(mesh.pieces.size());
+  for (int t = 0; t < std::ssize(mesh.piece_of_triangle); ++t) {
+    const int piece = mesh.piece_of_triangle[t];
+    if (piece >= 0) triangles[piece].push_back(t);
+  }
+  return triangles;
+}
+
+double Angle(const Vec3& u, const Vec3& v) {
+  return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+// The facet of a piece whose normal is nearest to a direction.
+class NearestFacet {
+ public:
+  NearestFacet(const Polytope& piece, const Vec3& n) : piece_(piece), n_(n) {}
+
+  int facet() const { return facet_; }
+
+  void Offer(int facet) {
+    if (facet < 0 || !piece_.facets[facet].original) return;
+    const double along = piece_.facets[facet].normal.dot(n_);
+    if (along <= along_) return;
+    along_ = along;
+    facet_ = facet;
+  }
+
+ private:
+  const Polytope& piece_;
+  const Vec3& n_;
+  int facet_ = -1;
+  double along_ = -std::numeric_limits<double>::infinity();
+};
+
+// Of the facets at a feature, or -1 if none is on the mesh.
+int FacetAt(const Polytope& piece, Feature feature, const Vec3& n) {
+  NearestFacet nearest(piece, n);
+  switch (feature.kind()) {
+    case FeatureKind::kVertex:
+      for (const auto& spoke : piece.fan_of(feature.index())) {
+        nearest.Offer(spoke.facet);
+      }
+      break;
+    case FeatureKind::kEdge:
+      nearest.Offer(piece.edges[feature.index()].left);
+      nearest.Offer(piece.edges[feature.index()].right);
+      break;
+    case FeatureKind::kFacet:
+      nearest.Offer(feature.index());
+  }
+  return nearest.facet();
+}
+
+// Whether shading adds nothing to a facet: all corners have its normal.
+bool IsFlat(const Polytope::Facet& facet, double size,
+            std::span<const int> triangles, const VertexNormals& normals) {
+  return std::all_of(triangles.begin(), triangles.end(), [&](int t) {
+    const auto& corners = normals.corners[t];
+    return std::all_of(corners.begin(), corners.end(), [&](const auto& corner) {
+      return (corner.normal - facet.normal).norm() <= kFlat &&
+             corner.curvature.norm() * size <= kFlat;
+    });
+  });
+}
+
+void RequireFeature(const Polytope& piece, Feature feature) {
+  const std::size_t sizes[] = {piece.vertices.size(), piece.edges.size(),
+                               piece.facets.size()};
+  const int kind = static_cast<int>(feature.kind());
+  if (feature.is_none() || kind > 2 ||
+      static_cast<std::size_t>(feature.index()) >= sizes[kind]) {
+    throw std::out_of_range("a contact names a feature that its piece lacks");
+  }
+}
+
+}  // namespace
+
+SurfaceShading::SurfaceShading(
+    std::shared_ptr<const Decomposition> decomposition, double crease_angle)
+    : decomposition_(std::move(decomposition)) {
+  if (!(crease_angle >= 0 && crease_angle <= std::numbers::pi)) {
+    throw std::invalid_argument("crease_angle must be in [0, π] rad, is " +
+                                std::to_string(crease_angle));
+  }
+  cos_crease_ = std::cos(crease_angle);
+  // Creases turn by more: so the normals of both faces end before they meet.
+  flush_angle_ = std::min(kFlushAngle, crease_angle / 2);
+  const VertexNormals normals = ComputeVertexNormals(
+      decomposition_->vertices, decomposition_->triangles, crease_angle);
+  const auto triangles = TrianglesOfPieces(*decomposition_);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    surfaces_.push_back(
+        MakeSurface(decomposition_->pieces[i], triangles[i], normals));
+  }
+}
+
+SheetNormal SurfaceShading::Find(int piece, Feature feature, const Vec3& p,
+                                 const Vec3& n) const {
+  const PieceSurface& surface = surfaces_.at(piece);
+  const Polytope& polytope = decomposition_->pieces[piece];
+  RequireFeature(polytope, feature);
+  const int facet = FacetAt(polytope, feature, n);
+  const bool is_face = feature.kind() == FeatureKind::kFacet;
+  if (facet < 0) return {Vec3::Zero(), Mat3::Zero(), is_face ? 0.0 : 1.0};
+  const Vec3& facet_normal = polytope.facets[facet].normal;
+  const auto& is_smooth = feature.kind() == FeatureKind::kVertex
+                              ? surface.smooth_vertex
+                              : surface.smooth_edge;
+  // The face beside a crease keeps what shading adds to its own normal, less as
+  // the contact's normal leaves it: over a sharp edge the geometry has the say.
+  double sharpness = 0;
+  if (!is_face && !is_smooth[feature.index()]) {
+    const double angle = Angle(facet_normal, n);
+    if (angle >= flush_angle_) return {Vec3::Zero(), Mat3::Zero(), 1};
+    sharpness = angle / flush_angle_;
+  }
+  const ShadedCorner shaded = Interpolate(surface, facet, facet_normal, p);
+  const bool is_between_faces = !is_face && is_smooth[feature.index()];
+  const Vec3& geometric = is_between_faces ? n : facet_normal;
+  return {(1 - sharpness) * (shaded.normal - geometric), shaded.curvature,
+          sharpness};
+}
+
+ShadedCorner SurfaceShading::Interpolate(const PieceSurface& surface, int facet,
+                                         const Vec3& facet_normal,
+                                         const Vec3& p) const {
+  if (surface.flat[facet]) return {facet_normal, Mat3::Zero()};
+  const ShadedTriangle* best = nullptr;
+  NearestInTriangle nearest;
+  nearest.squared_distance = std::numeric_limits<double>::infinity();
+  for (int i = surface.start[facet]; i < surface.start[facet + 1]; ++i) {
+    const ShadedTriangle& triangle = surface.triangles[i];
+    const auto found = FindNearestInTriangle(triangle.points, p);
+    if (best && found.squared_distance >= nearest.squared_distance) continue;
+    best = &triangle;
+    nearest = found;
+    if (found.squared_distance == 0) break;
+  }
+  ShadedCorner sum;
+  for (int k = 0; k < 3; ++k) {
+    sum.normal += nearest.weights[k] * best->corners[k].normal;
+    sum.curvature += nearest.weights[k] * best->corners[k].curvature;
+  }
+  return sum;
+}
+
+SurfaceShading::PieceSurface SurfaceShading::MakeSurface(
+    const Polytope& piece, std::span<const int> triangles,
+    const VertexNormals& normals) const {
+  PieceSurface surface;
+  surface.size = piece.radius > 0 ? piece.radius : 1;
+  const std::vector<int> facets =
+      FacetsOfTriangles(*decomposition_, piece, triangles);
+  std::vector<std::vector<int>> triangles_of(piece.facets.size());
+  surface.smooth_vertex.assign(piece.vertices.size(), 0);
+  const PieceVertices vertices(piece);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (facets[i] >= 0) triangles_of[facets[i]].push_back(triangles[i]);
+    for (const int v : decomposition_->triangles[triangles[i]]) {
+      const int own = vertices.Find(decomposition_->vertices[v]);
+      if (own >= 0) surface.smooth_vertex[own] = normals.smooth[v];
+    }
+  }
+  for (std::size_t f = 0; f < piece.facets.size(); ++f) {
+    surface.start.push_back(static_cast<int>(surface.triangles.size()));
+    for (const int t : triangles_of[f]) {
+      surface.triangles.push_back(MakeTriangle(t, normals.corners[t]));
+    }
+    surface.flat.push_back(
+        IsFlat(piece.facets[f], piece.radius, triangles_of[f], normals));
+  }
+  surface.start.push_back(static_cast<int>(surface.triangles.size()));
+  for (const Polytope::Edge& edge : piece.edges) {
+    surface.smooth_edge.push_back(IsSmooth(edge));
+  }
+  return surface;
+}
+
+SurfaceShading::ShadedTriangle SurfaceShading::MakeTriangle(
+    int triangle, const std::array<ShadedCorner, 3>& corners) const {
+  ShadedTriangle result{{}, corners};
+  for (int k = 0; k < 3; ++k) {
+    result.points[k] =
+        decomposition_->vertices[decomposition_->triangles[triangle][k]];
+  }
+  return result;
+}
+
+// Wings of a flat edge point away from each other. Where one is missing the
+// surface ends.
+bool SurfaceShading::IsSmooth(const Polytope::Edge& edge) const {
+  const auto& [left, right] = edge.wings;
+  return !left.isZero(0) && !right.isZero(0) && -left.dot(right) > cos_crease_;
+}
+
+}  // namespace drake_haptics

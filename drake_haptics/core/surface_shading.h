@@ -1,0 +1,76 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "decomposition.h"
+#include "types.h"
+#include "vertex_normals.h"
+
+namespace drake_haptics {
+
+/// What the shaded surface of one body says about the normal of a contact.
+struct SheetNormal {
+  /// What to add to the contact's unit normal out of this body to get the
+  /// normal interpolated over the triangle under the witness point. The sum is
+  /// not unit: over the chords of a sphere, interpolated normals are as much
+  /// too short as the chord is inside it.
+  Vec3 turn = Vec3::Zero();
+  Mat3 curvature = Mat3::Zero();  ///< see ShadedCorner
+  /// 1 at a crease, where the body has no normal of its own, falling to 0 where
+  /// a face beside the crease lies flush with the contact.
+  double sharpness = 0;
+};
+
+/// The surface of a decomposed mesh with the normals that force shading
+/// interpolates over its triangles. Immutable.
+class SurfaceShading {
+ public:
+  /// @param crease_angle rad; edges that turn by less are smooth. At 0 nothing
+  ///        is, and all normals are those of the facets.
+  /// @throws std::invalid_argument unless it is in [0, π].
+  SurfaceShading(std::shared_ptr<const Decomposition> decomposition,
+                 double crease_angle);
+
+  /// @param p witness point on the piece, m; where it is not on a triangle of
+  ///        the feature, the nearest point of one counts.
+  /// @param n unit normal of the contact, out of this body.
+  /// @throws std::out_of_range if there is no such piece or feature.
+  SheetNormal Find(int piece, Feature feature, const Vec3& p,
+                   const Vec3& n) const;
+
+  /// A length of the size of a piece, m, above zero.
+  double SizeOf(int piece) const { return surfaces_.at(piece).size; }
+
+ private:
+  // The triangle of a facet, with all that interpolation reads.
+  struct ShadedTriangle {
+    std::array<Vec3, 3> points;
+    std::array<ShadedCorner, 3> corners;
+  };
+
+  struct PieceSurface {
+    std::vector<int> start;  // of each facet in `triangles`, and the end
+    std::vector<ShadedTriangle> triangles;
+    std::vector<std::uint8_t> flat;           // facet: nothing to interpolate
+    std::vector<std::uint8_t> smooth_vertex;  // no crease there
+    std::vector<std::uint8_t> smooth_edge;
+    double size = 0;
+  };
+
+  PieceSurface MakeSurface(const Polytope& piece,
+                           std::span<const int> triangles,
+                           const VertexNormals& normals) const;
+  ShadedTriangle MakeTriangle(int triangle,
+                              const std::array<ShadedCorner, 3>& corners) const;
+  bool IsSmooth(const Polytope::Edge& edge) const;
+  ShadedCorner Interpolate(const PieceSurface& surface, int facet,
+                           const Vec3& facet_normal, const Vec3& p) const;
+
+  std::shared_ptr<const Decomposition> decomposition_;
+  double cos_crease_;
+  double flush_angle_;
+  std::vector<PieceSurface> surfaces_;
+};
+
+}  // namespace drake_haptics
