@@ -1,0 +1,108 @@
+"""Force shading as a Drake system; its normals have their own tests in the core."""
+
+import numpy as np
+import pytest
+import trimesh
+from pydrake.common.value import Value
+from pydrake.math import RigidTransform
+from test_contact_query import TOLERANCE, box_core
+
+from drake_haptics._core import SceneTracker
+from drake_haptics.decomposition import decompose
+from drake_haptics.mesh import Mesh
+from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.force_shading import ForceShading
+
+RADIUS = 0.02
+OUT = np.array([0.36, 0.48, 0.8])  # where the tool touches: far from any vertex
+
+
+@pytest.fixture(scope="module")
+def tool():
+    return box_core(1e-4, 1e-4, 1e-4)
+
+
+@pytest.fixture(scope="module")
+def ball():
+    sphere = trimesh.creation.icosphere(2, RADIUS)
+    return decompose(Mesh.from_arrays(sphere.vertices, sphere.faces), cache=False).core
+
+
+def make_shading(tool, objects, shaded, crease_angle_deg=40.0):
+    shading = ForceShading(
+        tool, objects, crease_angle_deg=crease_angle_deg, shaded=shaded
+    )
+    return shading, shading.CreateDefaultContext()
+
+
+def shade(shading, context, contacts, X_WTool):
+    shading.get_contacts_input_port().FixValue(context, Value[object](contacts))
+    shading.get_tool_pose_input_port().FixValue(context, pose_to_vector(X_WTool))
+    return shading.get_contacts_output_port().Eval(context)
+
+
+def contacts_at(tool, ball, X_WTool, X_WO):
+    tracker = SceneTracker(tool, [ball], TOLERANCE)
+    tracker.set_object_pose(0, X_WO)
+    return tracker.query(X_WTool)
+
+
+def degrees_between(u, v):
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(u, v)), np.dot(u, v)))
+
+
+def test_topology(tool, ball):
+    shading, context = make_shading(
+        tool,
+        [ContactObject("still", ball, RigidTransform()), ContactObject("cart", ball)],
+        [True, True],
+    )
+    inputs = range(shading.num_input_ports())
+    names = [shading.get_input_port(i).get_name() for i in inputs]
+    assert names == ["contacts", "X_WTool", "X_WO_cart"]
+    assert shading.num_output_ports() == 1
+    assert shading.GetOutputPort("contacts").get_name() == "contacts"
+    assert context.num_total_states() == 0
+
+
+@pytest.mark.parametrize("moves", [False, True])
+def test_the_normal_of_a_tessellated_ball_is_that_of_the_sphere(tool, ball, moves):
+    X_WO = RigidTransform([0.3, -0.1, 0.5])
+    X_WTool = RigidTransform(X_WO.translation() + (RADIUS - 1e-4) * OUT)
+    contacts = contacts_at(tool, ball, X_WTool, X_WO)
+    item = ContactObject("ball", ball, None if moves else X_WO)
+    shading, context = make_shading(tool, [item], [True])
+    if moves:
+        pose = pose_to_vector(X_WO)
+        shading.get_object_pose_input_port("ball").FixValue(context, pose)
+    shaded = shade(shading, context, contacts, X_WTool)
+    assert len(shaded) == len(contacts) == 1
+    # The corner of the tool that is deepest is not quite at its origin.
+    out = contacts.p_WCa[0] - X_WO.translation()
+    assert degrees_between(shaded.nhat_BA_W[0], out) < 0.6
+    assert degrees_between(contacts.nhat_BA_W[0], out) > 2.0
+    np.testing.assert_array_equal(shaded.distance, contacts.distance)
+
+
+def test_an_object_that_is_not_shaded_keeps_its_facets(tool, ball):
+    X_WO = RigidTransform()
+    X_WTool = RigidTransform((RADIUS - 1e-4) * OUT)
+    contacts = contacts_at(tool, ball, X_WTool, X_WO)
+    other = ContactObject("other", ball, RigidTransform([1.0, 0, 0]))
+    shading, context = make_shading(
+        tool, [ContactObject("ball", ball, X_WO), other], [False, True]
+    )
+    shaded = shade(shading, context, contacts, X_WTool)
+    np.testing.assert_array_equal(shaded.nhat_BA_W, contacts.nhat_BA_W)
+
+
+@pytest.mark.parametrize("angle", [-1.0, 180.5, float("nan")])
+def test_an_angle_out_of_range_is_refused(tool, ball, angle):
+    with pytest.raises(ValueError, match=r"crease_angle_deg must be in \[0, 180\]"):
+        make_shading(tool, [ContactObject("ball", ball)], [True], angle)
+
+
+def test_each_object_must_be_told_of(tool, ball):
+    with pytest.raises(ValueError, match="one entry for each of the 1 objects, has 2"):
+        make_shading(tool, [ContactObject("ball", ball)], [True, False])
