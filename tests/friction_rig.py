@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from contact_samples import IDENTITY
+from friction_bodies import floor, sled
+from friction_oracle import Law
 
 from drake_haptics import _core
 
@@ -14,6 +16,7 @@ PERIOD_S = 1e-3
 TOLERANCE_M = 1e-3
 STIFFNESS_N_PER_M = 2e4
 DAMPING_NS_PER_M = 20.0
+LAW = Law((0.5,), 1.2, 1e-4, 5e-3)
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,8 @@ class FrictionRig:
     Attributes:
         state: (13,) the tool's pose and velocity; set it to move the tool.
         q_WO: (m, 7) poses of the objects; set them to move an object that `moves`.
+        V_WO: (m, 6) their spatial velocities, for the damping.
+        memory: What friction remembers of the last tick.
     """
 
     def __init__(
@@ -58,7 +63,7 @@ class FrictionRig:
         self._model = model
         self._moves = list(moves)
         self._dynamics = dynamics
-        self._memory = np.zeros(model.state_size)
+        self.memory = np.zeros(model.state_size)
         self.state = np.concatenate([IDENTITY, np.zeros(6)])
         self.q_WO = np.tile(IDENTITY, (len(objects), 1))
         self.V_WO = np.zeros((len(objects), 6))
@@ -80,7 +85,7 @@ class FrictionRig:
             np.full(m, DAMPING_NS_PER_M),
         )
         friction = self._model.step(
-            self._memory,
+            self.memory,
             clusters,
             wrench,
             self.state[:7].copy(),
@@ -90,11 +95,11 @@ class FrictionRig:
 
     def remember(self, tick: Tick) -> None:
         """Takes a look for the last tick."""
-        self._memory = tick.friction.next_state
+        self.memory = tick.friction.next_state
 
     def forget(self) -> None:
         """Lets friction begin anew."""
-        self._memory = np.zeros(self._model.state_size)
+        self.memory = np.zeros(self._model.state_size)
 
     def advance(self, F_Tool_W: object = (0,) * 6, K: object = None) -> Tick:
         """Lets the tool move for one period under a wrench on it and its stiffness."""
@@ -107,3 +112,25 @@ class FrictionRig:
         model = tick.wrench.wrench_model + tick.friction.wrench_model + other
         self.state = self._dynamics.step(self.state, model, PERIOD_S)
         return tick
+
+
+def make_model(
+    law: Law = LAW, moves: Sequence[bool] = (False,)
+) -> _core.StickSlipModel:
+    """The core's model of a law."""
+    return _core.StickSlipModel(
+        law.coefficient, moves, law.static_ratio, law.break_away_m, law.reach_m
+    )
+
+
+def one_foot(law: Law = LAW) -> FrictionRig:
+    """A foot whose tip is the tool's origin, on a floor."""
+    return FrictionRig(sled([0, 0, 0]), [floor()], make_model(law))
+
+
+def at(rig: FrictionRig, x: float, y: float, normal_force_N: float) -> Tick:
+    """Puts the foot's tip somewhere, under a force, and lets friction see it."""
+    rig.state[4:7] = [x, y, TOLERANCE_M - normal_force_N / STIFFNESS_N_PER_M]
+    tick = rig.look()
+    rig.remember(tick)
+    return tick
