@@ -19,8 +19,13 @@ from scipy.spatial.transform import Rotation
 from drake_haptics import _core
 
 
-def hand_moves(ledger, handles, gains, q_HT=IDENTITY, states=None, shown=1.0):
-    """Moves the handle, and the tool where states are given; shows the wrenches."""
+def hand_moves(
+    ledger, handles, gains, q_HT=IDENTITY, states=None, shown=1.0, explicit=False
+):
+    """Moves the handle, and the tool where states are given; shows the wrenches.
+
+    An explicit step knows no stiffness and no damping.
+    """
     F_held = np.zeros(6)
     for i, q_WH in enumerate(handles):
         state = tool_at(0.0) if states is None else states[i]
@@ -30,6 +35,8 @@ def hand_moves(ledger, handles, gains, q_HT=IDENTITY, states=None, shown=1.0):
             turn = (rotation_of(q_WH) * rotation_of(before).inv()).as_rotvec()
             V_WH = np.concatenate([turn, q_WH[4:] - before[4:]]) / H
         wrench, F_display = coupling_model(q_WH, V_WH, q_HT, state, gains)
+        if explicit:
+            wrench[6:] = 0.0
         add(ledger, state, q_WH=q_WH, F_applied=F_held, coupling=wrench)
         F_held = shown * F_display
 
@@ -94,8 +101,26 @@ def test_a_damped_wall_stays_within_the_bound_of_its_sampled_damper():
     )
 
 
+def test_what_the_implicit_step_takes_is_not_in_the_bound():
+    # The tool follows by a share c: k ((1 - c)²/2 - c²) dx² a tick, exactly.
+    k, step, ticks, c = 800.0, 2e-4, 30, 0.3
+    gains = _core.CouplingGains(k, 0, 0, 0)
+    x = step * np.arange(ticks + 1)
+    handles = [np.concatenate([IDENTITY[:4], [x, 0, 0]]) for x in x]
+    states = [tool_at(c * x, c * step / H) for x in x]
+    _, ledger = make_ledger(gains=gains)
+    hand_moves(ledger, handles, gains, states=states)
+    made = ticks * k * ((1 - c) ** 2 / 2 - c**2) * step**2
+    books = ledger.accounts["coupling"]
+    assert books.created_J == pytest.approx(made)
+    assert books.bound_J == pytest.approx(made)
+
+
+@pytest.mark.parametrize("explicit", [False, True])
 @pytest.mark.parametrize("seed", range(6))
-def test_no_motion_of_handle_and_tool_gets_more_out_than_sampling_explains(seed):
+def test_no_motion_of_handle_and_tool_gets_more_out_than_sampling_explains(
+    seed, explicit
+):
     """Large steps in all axes: also the terms of higher order must be in the bound."""
     rng = np.random.default_rng(seed)
     gains = _core.CouplingGains(800, rng.choice([0, 3]), 2.0, rng.choice([0, 0.02]))
@@ -116,7 +141,7 @@ def test_no_motion_of_handle_and_tool_gets_more_out_than_sampling_explains(seed)
             p_WT = p_WT + H * V[3:]
         handles.append(pose(R_WH, p_WH))
         states.append(np.concatenate([pose(R_WT, p_WT), V]))
-    hand_moves(ledger, handles, gains, q_HT, states)
+    hand_moves(ledger, handles, gains, q_HT, states, explicit=explicit)
     books = ledger.accounts["coupling"]
     assert books.created_J > 0.0
     assert books.beyond_J < 1e-12 * (books.in_J + books.out_J)

@@ -28,16 +28,13 @@ def test_a_spring_gives_back_what_it_got_less_what_the_step_takes():
     assert left == pytest.approx(0.5 * k * 0.01**2, rel=1e-12)
 
 
-def drag(ledger, positions, force_at, energy_at):
-    """Moves the tool along x against a source without a linear model."""
+def drag(ledger, positions, force_at, energy_at, K=0.0, b=0.0):
+    """Moves the tool along x against a spring with a linear model and a damper."""
     before = positions[0]
     for x in positions:
-        add(
-            ledger,
-            tool_at(x, (x - before) / H),
-            [model(force_at(x) * X)],
-            [energy_at(x)],
-        )
+        v = (x - before) / H
+        source = model((force_at(x) - b * v) * X, K * np.outer(X, X), b * np.eye(6))
+        add(ledger, tool_at(x, v), [source], [energy_at(x)])
         before = x
     return ledger.accounts["source"]
 
@@ -60,18 +57,33 @@ def test_a_wall_met_within_a_tick_has_got_half_a_square_for_nothing(gap):
     assert gap > 0 or books.created_J == pytest.approx(0.5 * books.bound_J)
 
 
-def test_without_a_linear_model_a_cycle_of_a_spring_makes_half_k_dx_squared_a_tick():
-    # Sampled and held on the way in, where it pushes too little, and on the way out.
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.4])
+def test_a_spring_that_the_step_knows_in_part_makes_the_rest(share):
+    # Pushed in and out again. In closed form a tick makes (1/2 - share) k dx².
     k, step, ticks = 1000.0, 1e-4, 20
     _, ledger = make_ledger(["source"])
     way_in = step * np.arange(ticks + 1)
     positions = np.concatenate([way_in, way_in[-2::-1]])
-    books = drag(ledger, positions, lambda x: -k * x, lambda x: 0.5 * k * x * x)
-    assert books.out_J - books.in_J == pytest.approx(2 * ticks * 0.5 * k * step**2)
-    assert books.created_J == pytest.approx(2 * ticks * 0.5 * k * step**2)
-    assert books.bound_J == pytest.approx(2 * books.created_J)
+    books = drag(
+        ledger, positions, lambda x: -k * x, lambda x: 0.5 * k * x * x, share * k
+    )
+    ticks_dx2 = 2 * ticks * k * step**2
+    assert books.out_J - books.in_J == pytest.approx((0.5 - share) * ticks_dx2)
+    assert books.created_J == pytest.approx((0.5 - share) * ticks_dx2)
+    assert books.bound_J == pytest.approx((1.0 - share) * ticks_dx2)
     assert books.beyond_J == 0
     assert books.stored_J == 0
+
+
+def test_what_a_damper_takes_widens_no_bound():
+    k, b, step, ticks = 1000.0, 0.2, 1e-4, 20
+    _, ledger = make_ledger(["source"])
+    positions = step * np.arange(ticks + 1)
+    books = drag(ledger, positions, lambda x: -k * x, lambda x: 0.5 * k * x * x, b=b)
+    taken = ticks * b * step**2 / H
+    assert books.damped_J == pytest.approx(taken)
+    assert books.created_J == pytest.approx(ticks * 0.5 * k * step**2 - taken)
+    assert books.bound_J == pytest.approx(ticks * k * step**2)
 
 
 def test_energy_that_a_force_jumps_to_is_beyond_the_bound():
