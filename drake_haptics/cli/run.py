@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 
 import click
-from pydrake.geometry import Meshcat
+from pydrake.systems.framework import Context
 from rich.console import Console
-from rich.progress import Progress, TaskID
 
-from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.callback_timer import CallbackTimer
+from drake_haptics.cli.build_scene import build_scene
 from drake_haptics.cli.mesh_options import write_json
+from drake_haptics.cli.parts_table import make_parts_table
 from drake_haptics.cli.status_line import StatusLine, make_summary
 from drake_haptics.errors import UserError
+from drake_haptics.explain import explain_tick
 from drake_haptics.recording import write_recording
 from drake_haptics.scene import Scene, load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import RunError
 from drake_haptics.simulation import run as run_haptic
 from drake_haptics.stage import open_meshcat, set_stage
+
+_EXPLAINED_S = 2.0
 
 
 @click.command()
@@ -43,6 +48,13 @@ from drake_haptics.stage import open_meshcat, set_stage
 )
 @click.option(
     "--headless", is_flag=True, help="No page, and as fast as the computer can."
+)
+@click.option(
+    "--explain",
+    is_flag=True,
+    help="Print the parts of a tick, why each is there and its share of the time,"
+    f" measured in this run. Runs --headless, for {_EXPLAINED_S:g} s where --duration"
+    " is not given.",
 )
 @click.option(
     "--record",
@@ -71,6 +83,7 @@ def run(
     environment_scale: float | None,
     duration: float | None,
     headless: bool,
+    explain: bool,
     record: Path | None,
     json_file: str | None,
     pieces: bool,
@@ -84,14 +97,20 @@ def run(
     Exits with 0 at the end or at Ctrl-C, with 1 if something given cannot be used,
     with 3 if the simulation became unstable.
     """
-    if headless and (pieces or port) and not record:
-        raise click.UsageError("--headless has no page for --pieces and --port")
+    if (headless or explain) and (pieces or port) and not record:
+        option = "--headless" if headless else "--explain"
+        raise click.UsageError(f"{option} has no page for --pieces and --port")
+    if explain:
+        headless = True
+        duration = duration or _EXPLAINED_S
     chosen = _choose_scene(scene, tool, environment, tool_scale, environment_scale)
     if record is not None and not record.absolute().parent.is_dir():
         raise UserError(f"--record: there is no folder {record.parent}")
     console = Console(highlight=False, stderr=json_file == "-")
     meshcat = None if headless and record is None else open_meshcat(port)
-    haptic = _build(console, chosen, meshcat)
+    timer = CallbackTimer() if explain else None
+    with timer or nullcontext():
+        haptic = build_scene(console, chosen, meshcat)
     visualizer = haptic.visualizer
     if meshcat is not None and visualizer is not None:
         set_stage(meshcat, haptic)
@@ -105,15 +124,26 @@ def run(
             )
             console.print("Ctrl-C ends the run.", style="dim")
     with StatusLine(console, haptic) as status:
+
+        def end_tick(context: Context) -> None:
+            status.update(context)
+            if timer is not None:
+                timer.end_tick(context)
+
         try:
             statistics = run_haptic(
-                haptic, duration, realtime=not headless, on_tick=status.update
+                haptic, duration, realtime=not headless, on_tick=end_tick
             )
             unstable = None
         except RunError as error:
             statistics, unstable = error.statistics, error
     figures = statistics.to_dict()
     console.print(make_summary(figures))
+    if timer is not None:
+        parts = explain_tick(haptic, timer)
+        figures["parts"] = [part.to_dict() for part in parts]
+        console.print()
+        console.print(make_parts_table(parts))
     if record is not None and meshcat is not None and visualizer is not None:
         visualizer.StopRecording()
         visualizer.PublishRecording()
@@ -157,19 +187,3 @@ def _choose_scene(
         tool_scale=tool_scale or 1.0,
         environment_scale=environment_scale or 1.0,
     )
-
-
-def _build(console: Console, scene: Scene, meshcat: Meshcat | None) -> HapticDiagram:
-    """Builds the diagram, with a bar while meshes are cut into pieces."""
-    quiet = not console.is_terminal
-    with Progress(console=console, transient=True, disable=quiet) as bars:
-        tasks: dict[str, TaskID] = {}
-
-        def report(name: str, share: float) -> None:
-            if name not in tasks:
-                tasks[name] = bars.add_task(
-                    f"Cutting {name} into convex pieces", total=1
-                )
-            bars.update(tasks[name], completed=share)
-
-        return BuildHapticDiagram(scene, meshcat=meshcat, progress=report)

@@ -21,12 +21,20 @@ from drake_haptics.simulation import RunError
 
 # The installed command, beside the interpreter.
 COMMAND = Path(sys.executable).with_name("drake-haptics")
-SCENES = ["cup_spoon", "hammer_block", "sphere_pen", "torus_peg"]
+SCENES = ["cup_spoon", "hammer_block", "rubbed_sphere", "sphere_pen", "torus_peg"]
 
 
 def invoke(*arguments):
     """Runs the command line in this process."""
     return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+def run_json(folder, *arguments):
+    """Runs the command line in this process and returns what it wrote as JSON."""
+    file = folder / "figures.json"
+    result = invoke(*arguments, "--json", file)
+    assert result.exit_code == 0, result.output
+    return file.read_text()
 
 
 @pytest.fixture(scope="module", params=SCENES)
@@ -104,6 +112,58 @@ def test_scale_is_applied(tmp_path):
     assert largest[1] == pytest.approx(largest[0], rel=1e-3)
 
 
+def test_explain_says_what_is_there_and_why_and_what_it_takes():
+    process = subprocess.run(
+        [COMMAND, "run", "rubbed_sphere", "--explain", "--json", "-"],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert process.returncode == 0, process.stderr
+    figures = json.loads(process.stdout)
+    # Without a duration it is over by itself, and it needs no page.
+    assert figures["ticks"] == 2000
+    assert "http" not in process.stderr
+    parts = {part["name"]: part for part in figures["parts"]}
+    assert {name for name, part in parts.items() if "effects." in part["why"]} == {
+        "force_shading",
+        "stick_slip_friction",
+        "pre_contact_braking",
+        "tool_gravity",
+        "passivity_control",
+    }
+    assert sum(part["share"] for part in parts.values()) == pytest.approx(1.0)
+    assert all(part["mean_us"] > 0.0 for part in parts.values())
+    tick_us = sum(part["mean_us"] for part in parts.values())
+    assert 0.7 < tick_us / figures["tick_us"]["median"] < 1.4
+    for word in [*parts, "effects.friction", "whole tick", "100.0 %"]:
+        assert word in process.stderr
+
+
+def test_a_scene_without_effects_has_none_of_them(tmp_path):
+    file = tmp_path / "s.json"
+    result = invoke("run", "sphere_pen", "--explain", "--duration", 0.2, "--json", file)
+    assert result.exit_code == 0, result.output
+    figures = json.loads(file.read_text())
+    assert figures["ticks"] == 200
+    assert len(figures["parts"]) == 8
+    assert "effects" not in result.output
+    assert "parts" not in json.loads(
+        run_json(tmp_path, "run", "sphere_pen", "--headless", "--duration", 0.2)
+    )
+
+
+def test_a_coupling_that_breaks_a_bound_is_warned_of_in_a_line(tmp_path):
+    file = tmp_path / "light.yaml"
+    text = list_scenes()["sphere_pen"].read_text()
+    meshes = list_scenes()["sphere_pen"].parents[1] / "meshes"
+    text = text.replace("../meshes", str(meshes)).replace("grip: firm", "grip: light")
+    file.write_text(text)
+    result = invoke("run", file, "--headless", "--duration", 0.05)
+    assert result.exit_code == 0, result.output
+    (line,) = [x for x in result.stderr.splitlines() if x.startswith("Warning: ")]
+    assert "coupling.damping_Ns_per_m is 2: not passive" in line
+    assert "Colgate" in line and "SceneWarning" not in result.output
+
+
 def test_json_to_stdout_is_alone():
     process = subprocess.run(
         [COMMAND, "run", "sphere_pen", "--headless",
@@ -171,6 +231,7 @@ def test_pieces_are_coloured_in_a_recording(tmp_path):
         (["run", "--tool", "no.obj", "--environment", "no.obj"], 1, ["no.obj"]),
         (["run", "cup_spoon", "--duration", "-1"], 2, ["duration"]),
         (["run", "cup_spoon", "--headless", "--port", "7001"], 2, ["--port"]),
+        (["run", "cup_spoon", "--explain", "--pieces"], 2, ["--explain", "--pieces"]),
         (["run", "cup_spoon", "--headless", "--record", "no/x.html"], 1, ["folder no"]),
     ],
 )  # fmt: skip

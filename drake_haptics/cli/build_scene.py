@@ -1,0 +1,50 @@
+"""Builds a scene under the eyes of whoever waits for it."""
+
+from __future__ import annotations
+
+import warnings
+
+import click
+from pydrake.geometry import Meshcat
+from rich.console import Console
+from rich.progress import Progress, TaskID
+
+from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.scene import Scene
+from drake_haptics.scene_check import SceneWarning
+
+
+def build_scene(
+    console: Console, scene: Scene, meshcat: Meshcat | None
+) -> HapticDiagram:
+    """Builds the diagram, with a bar while meshes are cut into pieces.
+
+    What the scene may do wrong is then written to stderr, a line each.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", SceneWarning)
+        haptic = _build(console, scene, meshcat)
+    for warning in caught:
+        if issubclass(warning.category, SceneWarning):
+            click.secho(f"Warning: {warning.message}", fg="yellow", err=True)
+        else:
+            warnings.warn_explicit(
+                warning.message, warning.category, warning.filename, warning.lineno
+            )
+    return haptic
+
+
+def _build(console: Console, scene: Scene, meshcat: Meshcat | None) -> HapticDiagram:
+    """Builds the diagram behind the bar."""
+    quiet = not console.is_terminal
+    with Progress(console=console, transient=True, disable=quiet) as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def report(name: str, share: float) -> None:
+            if name not in tasks:
+                tasks[name] = bars.add_task(
+                    f"Cutting {name} into convex pieces", total=1
+                )
+            bars.update(tasks[name], completed=share)
+
+        return BuildHapticDiagram(scene, meshcat=meshcat, progress=report)

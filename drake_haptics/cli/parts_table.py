@@ -1,0 +1,27 @@
+"""What `drake-haptics run --explain` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.table import Table
+
+from drake_haptics.explain import Part
+
+
+def make_parts_table(parts: Sequence[Part]) -> Table:
+    """Returns a table of the parts of a tick and their sum."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    table.add_column("part", no_wrap=True)
+    table.add_column("why it is there")
+    table.add_column("µs", justify="right", no_wrap=True)
+    table.add_column("share", justify="right", no_wrap=True)
+
+    def add_row(name: str, why: str, us: float, share: float) -> None:
+        table.add_row(name, why, f"{us:.1f}", f"{100 * share:.1f} %")
+
+    for part in parts:
+        add_row(part.name, part.why, part.mean_us, part.share)
+    total_us = sum(part.mean_us for part in parts)
+    add_row("[bold]whole tick[/]", "", total_us, sum(part.share for part in parts))
+    return table
