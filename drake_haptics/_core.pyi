@@ -1019,7 +1019,7 @@ class PassivityBounds:
             ValueError: the period is not above 0, another one below 0, or one of them not finite.
         """
 
-def passivity_control(state: Annotated[NDArray[numpy.float64], dict(shape=(8), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], F_asked: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], bounds: PassivityBounds) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
+def passivity_control(state: Annotated[NDArray[numpy.float64], dict(shape=(8), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], F_asked: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], bounds: PassivityBounds) -> Annotated[NDArray[numpy.float64], dict(shape=(14), order='C')]:
     """
     Passivity observer and controller (Hannaford and Ryu 2002) of one tick.
 
@@ -1031,7 +1031,7 @@ def passivity_control(state: Annotated[NDArray[numpy.float64], dict(shape=(8), o
         V_WH: (6,) spatial velocity now, [rad/s; m/s].
 
     Returns:
-        (7,) wrench to show (6), F_asked itself where the balance is not below 0; balance now, J.
+        (14,) wrench to show (6), F_asked itself where the balance is not below 0; the next state (8), balance now, J, and pose now.
     """
 
 class PosePath:

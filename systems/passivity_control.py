@@ -13,9 +13,9 @@ from pydrake.systems.framework import (
     LeafSystem,
     OutputPort,
 )
+from pydrake.systems.primitives import Demultiplexer
 
 from drake_haptics._core import PassivityBounds, passivity_control
-from drake_haptics.systems.vector_ports import export_parts
 
 _AT_ORIGIN = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 
@@ -99,7 +99,10 @@ class PassivityControl(Diagram):
             builder.ExportInput(
                 port.get_input_port(i), port.get_input_port(i).get_name()
             )
-        export_parts(builder, port.get_output_port(), {"F_display": 6, "energy_J": 1})
+        parts = builder.AddNamedSystem("parts", Demultiplexer([6, 1, 7]))
+        builder.Connect(port.get_output_port(), parts.get_input_port(0))
+        builder.ExportOutput(parts.get_output_port(0), "F_display")
+        builder.ExportOutput(parts.get_output_port(1), "energy_J")
         builder.BuildInto(self)
 
     def get_asked_wrench_input_port(self) -> InputPort:
@@ -139,16 +142,17 @@ class _ObservedPort(LeafSystem):
         self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
         # At the first tick no wrench has been held: any pose does.
         self.DeclareDiscreteState(np.array([0.0, *_AT_ORIGIN]))
-        self._shown = self.DeclareVectorOutputPort(
-            "shown",
-            7,
-            self._calc_shown,
+        # What is shown, and the state after it.
+        self._shown_and_state = self.DeclareVectorOutputPort(
+            "shown_and_state",
+            14,
+            self._calc_shown_and_state,
             {self.all_input_ports_ticket(), self.xd_ticket()},
         )
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
-    def _calc_shown(self, context: Context, shown: BasicVector) -> None:
-        shown.SetFromVector(
+    def _calc_shown_and_state(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(
             passivity_control(
                 context.get_discrete_state_vector().value(),
                 self._F_applied.Eval(context),
@@ -160,5 +164,4 @@ class _ObservedPort(LeafSystem):
         )
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
-        balance = self._shown.Eval(context)[6]
-        next_state.set_value(np.concatenate([[balance], self._X_WH.Eval(context)]))
+        next_state.set_value(self._shown_and_state.Eval(context)[6:])

@@ -119,6 +119,7 @@ def test_six_axes_agree_with_the_formulas(seed: int) -> None:
     shown, balance = plain(state, held, asked, end, V)
     np.testing.assert_allclose(out[:6], shown, rtol=1e-9, atol=1e-12)
     assert out[6] == pytest.approx(balance, rel=1e-9, abs=1e-15)
+    np.testing.assert_array_equal(out[7:], end)
 
 
 def test_what_is_asked_is_shown_bit_for_bit_while_nothing_lacks() -> None:

@@ -8,16 +8,16 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-using Vec7 = Eigen::Matrix<double, 7, 1>;
-using Vec8 = Eigen::Matrix<double, 8, 1>;
+using State = Eigen::Matrix<double, 8, 1>;
+using Shown = Eigen::Matrix<double, 14, 1>;
 
-Vec7 Control(const Vec8& state, const Vec6& F_applied, const Vec6& F_asked,
-             const PoseVector& q_WH, const Vec6& V_WH,
-             const PassivityBounds& bounds) {
+Shown Control(const State& state, const Vec6& F_applied, const Vec6& F_asked,
+              const PoseVector& q_WH, const Vec6& V_WH,
+              const PassivityBounds& bounds) {
   const double work = HeldWrenchWork(F_applied, state.tail<7>(), q_WH);
   const double balance = ObserveEnergy(state[0], work, bounds);
-  Vec7 out;
-  out << LimitEnergy(F_asked, balance, V_WH, bounds), balance;
+  Shown out;
+  out << LimitEnergy(F_asked, balance, V_WH, bounds), balance, q_WH;
   return out;
 }
 
@@ -58,8 +58,8 @@ void BindPassivity(nb::module_& m) {
         "    q_WH: (7,) pose now, [qw qx qy qz x y z].\n"
         "    V_WH: (6,) spatial velocity now, [rad/s; m/s].\n\n"
         "Returns:\n"
-        "    (7,) wrench to show (6), F_asked itself where the balance is not "
-        "below 0; balance now, J.");
+        "    (14,) wrench to show (6), F_asked itself where the balance is not "
+        "below 0; the next state (8), balance now, J, and pose now.");
 }
 
 }  // namespace drake_haptics
