@@ -178,6 +178,14 @@ def test_a_tick_that_is_not_finite_is_left_out():
     assert np.isfinite(account.lost_J)
 
 
+def test_a_wrench_that_is_no_number_is_left_out():
+    _, ledger = make_ledger(["source"])
+    add(ledger, tool_at(0.0), [model(np.nan * X)])
+    add(ledger, tool_at(0.0, 1.0), [NO_WRENCH])
+    assert np.isfinite(ledger.accounts["tool"].lost_J)
+    assert np.isfinite(ledger.accounts["source"].lost_J)
+
+
 def test_books_begin_with_the_first_finite_reading():
     _, ledger = make_ledger(["source"])
     add(ledger, tool_at(np.nan), [NO_WRENCH], [1.0])

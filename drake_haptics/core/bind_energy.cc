@@ -107,7 +107,7 @@ void BindLedger(nb::module_& m) {
               reading.sources.push_back(
                   {FromVector(wrench_models[i]), stored[i]});
             }
-            self.ledger.Add(std::move(reading));
+            self.ledger.Add(reading);
           },
           nb::arg("tool_state"), nb::arg("q_WH"), nb::arg("F_applied"),
           nb::arg("coupling"), nb::arg("wrench_models"), nb::arg("stored_J"),

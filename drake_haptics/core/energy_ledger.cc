@@ -31,8 +31,9 @@ void Close(EnergyAccount* part, double damped, double stored, double bound,
 }
 
 bool IsFinite(const EnergyLedger::Accounts& accounts) {
-  // What is not finite anywhere is not so in the sums either.
-  return accounts.device.IsFinite() && accounts.display.IsFinite();
+  // What goes to or from any part is in one of these, and all that is stored.
+  return accounts.device.IsFinite() && accounts.display.IsFinite() &&
+         accounts.tool.IsFinite();
 }
 
 }  // namespace
@@ -50,76 +51,74 @@ double EnergyLedger::Instant::KineticEnergy() const {
   return 0.5 * V.dot(motion.M * V);
 }
 
-void EnergyLedger::Add(LoopReading reading) {
+void EnergyLedger::Add(const LoopReading& reading) {
   if (reading.sources.size() != accounts_.sources.size()) {
     throw std::invalid_argument(
         "there must be a wrench model and a stored energy of each source");
   }
-  Instant next{std::move(reading), {}, {}};
-  next.motion = ComputeMotionTerms(inertia_, next.reading.tool);
-  next.spring =
-      ComputeStretch(next.reading.q_WH, q_HT_, next.reading.tool.q_WT);
+  next_.reading = reading;
+  next_.motion = ComputeMotionTerms(inertia_, reading.tool);
+  next_.spring = ComputeStretch(reading.q_WH, q_HT_, reading.tool.q_WT);
+  booked_ = accounts_;
   if (has_begun_) {
-    BookTick(next);
+    BookTick();
   } else {
-    has_begun_ = Begin(next);
+    has_begun_ = Begin();
   }
-  last_ = std::move(next);
+  std::swap(last_, next_);
 }
 
-bool EnergyLedger::Begin(const Instant& first) {
-  Accounts begun = accounts_;
+bool EnergyLedger::Begin() {
   double total = 0;
   const auto start = [&total](EnergyAccount* account, double stored) {
     account->Start(stored);
     total += stored;
   };
-  start(&begun.coupling, first.spring.Energy(gains_));
-  start(&begun.tool, first.KineticEnergy());
-  for (std::size_t i = 0; i < begun.sources.size(); ++i) {
-    start(&begun.sources[i], first.reading.sources[i].stored);
+  start(&booked_.coupling, next_.spring.Energy(gains_));
+  start(&booked_.tool, next_.KineticEnergy());
+  for (std::size_t i = 0; i < booked_.sources.size(); ++i) {
+    start(&booked_.sources[i], next_.reading.sources[i].stored);
   }
-  begun.device.Start(total);
-  if (!IsFinite(begun)) return false;
-  accounts_ = std::move(begun);
+  booked_.device.Start(total);
+  if (!IsFinite(booked_)) return false;
+  std::swap(accounts_, booked_);
   return true;
 }
 
-void EnergyLedger::BookTick(const Instant& next) {
+void EnergyLedger::BookTick() {
   const LoopReading& from = last_.reading;
-  const LoopReading& to = next.reading;
+  const LoopReading& to = next_.reading;
   const TickMotion motion{h_, from.tool.V_WT, to.tool.V_WT,
                           Displacement(from.q_WH, to.q_WH)};
-  Accounts booked = accounts_;
   Total total;
 
   const TickEnergy coupling =
-      CouplingEnergy(from.coupling, gains_, last_.spring, next.spring, motion);
+      CouplingEnergy(from.coupling, gains_, last_.spring, next_.spring, motion);
   const double from_hand = -to.F_applied.dot(motion.turn_dp);
-  booked.device.Flow(from_hand);
-  booked.display.Flow(from_hand);
-  booked.display.Flow(-coupling.from_handle);
-  booked.display.Close(0, 0);
-  booked.coupling.Flow(coupling.from_handle);
-  booked.coupling.Flow(coupling.from_tool);
-  booked.tool.Flow(-coupling.from_tool);
-  Close(&booked.coupling, coupling.damped, next.spring.Energy(gains_),
-        coupling.bound, &booked.device, &total);
+  booked_.device.Flow(from_hand);
+  booked_.display.Flow(from_hand);
+  booked_.display.Flow(-coupling.from_handle);
+  booked_.display.Close(0, 0);
+  booked_.coupling.Flow(coupling.from_handle);
+  booked_.coupling.Flow(coupling.from_tool);
+  booked_.tool.Flow(-coupling.from_tool);
+  Close(&booked_.coupling, coupling.damped, next_.spring.Energy(gains_),
+        coupling.bound, &booked_.device, &total);
 
-  for (std::size_t i = 0; i < booked.sources.size(); ++i) {
+  for (std::size_t i = 0; i < booked_.sources.size(); ++i) {
     const TickEnergy source =
         SourceEnergy(from.sources[i].wrench, to.sources[i].wrench, motion);
-    booked.sources[i].Flow(source.from_tool);
-    booked.tool.Flow(-source.from_tool);
-    Close(&booked.sources[i], source.damped, to.sources[i].stored, source.bound,
-          &booked.device, &total);
+    booked_.sources[i].Flow(source.from_tool);
+    booked_.tool.Flow(-source.from_tool);
+    Close(&booked_.sources[i], source.damped, to.sources[i].stored,
+          source.bound, &booked_.device, &total);
   }
 
-  const double g = GyroscopicEnergy(last_.motion, next.motion, motion);
-  Close(&booked.tool, 0, next.KineticEnergy(), std::max(0.0, g), &booked.device,
-        &total);
-  booked.device.Close(total.stored, total.bound);
-  if (IsFinite(booked)) accounts_ = std::move(booked);
+  const double g = GyroscopicEnergy(last_.motion, next_.motion, motion);
+  Close(&booked_.tool, 0, next_.KineticEnergy(), std::max(0.0, g),
+        &booked_.device, &total);
+  booked_.device.Close(total.stored, total.bound);
+  if (IsFinite(booked_)) std::swap(accounts_, booked_);
 }
 
 }  // namespace drake_haptics

@@ -64,7 +64,7 @@ class EnergyLedger {
   /// only says what is stored. A reading or a tick with an energy that is not
   /// finite is left out.
   /// @throws std::invalid_argument unless there is a reading of each source.
-  void Add(LoopReading reading);
+  void Add(const LoopReading& reading);
 
   const Accounts& accounts() const { return accounts_; }
 
@@ -79,8 +79,8 @@ class EnergyLedger {
   };
 
   // False if there is no finite number to begin with.
-  bool Begin(const Instant& first);
-  void BookTick(const Instant& next);
+  bool Begin();
+  void BookTick();
 
   ToolInertia inertia_;
   CouplingGains gains_;
@@ -88,7 +88,9 @@ class EnergyLedger {
   double h_;
   bool has_begun_ = false;
   Instant last_;
+  Instant next_;
   Accounts accounts_;
+  Accounts booked_;  // Becomes accounts_ if it is finite.
 };
 
 }  // namespace drake_haptics
