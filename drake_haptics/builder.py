@@ -275,7 +275,14 @@ def BuildHapticDiagram(
     if meshcat is not None:
         visualizer = builder.AddNamedSystem(
             "haptic_visualizer",
-            HapticVisualizer(meshcat, tool.core, objects, X_HT, period_s),
+            HapticVisualizer(
+                meshcat,
+                tool.core,
+                objects,
+                X_HT,
+                period_s,
+                has_friction=scene.effects.friction is not None,
+            ),
         )
         _connect_visualizer(builder, loop, visualizer)
     return HapticDiagram(
@@ -328,3 +335,8 @@ def _connect_visualizer(
         (loop.display_wrench, visualizer.get_display_wrench_input_port()),
     ]:
         builder.Connect(output, input)
+    if loop.effects.friction is not None:
+        builder.Connect(
+            loop.effects.friction.get_friction_force_output_port(),
+            visualizer.get_friction_force_input_port(),
+        )

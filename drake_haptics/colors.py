@@ -8,6 +8,8 @@ Color = tuple[float, float, float, float]
 
 NEAR_CONTACT: Color = (0.16, 0.70, 0.32, 1.0)
 PENETRATING_CONTACT: Color = (0.86, 0.16, 0.16, 1.0)
+STICKING_CONTACT: Color = (0.36, 0.24, 0.62, 1.0)
+SLIDING_CONTACT: Color = (0.72, 0.42, 0.86, 1.0)
 TOOL: Color = (0.93, 0.62, 0.22, 1.0)
 ENVIRONMENT: Color = (0.62, 0.68, 0.76, 1.0)
 HANDLE_GHOST: Color = (0.25, 0.47, 0.85, 0.35)

@@ -9,7 +9,7 @@ from pydrake.geometry import Cylinder, Meshcat, Rgba, Sphere
 from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_haptics import colors
-from drake_haptics._core import ClusterSet, ContactSet, Decomposition
+from drake_haptics._core import ClusterSet, ContactSet, Decomposition, FrictionStep
 from drake_haptics.piece_surfaces import piece_surfaces
 from drake_haptics.systems.arrow_pool import ArrowPool
 from drake_haptics.systems.contact_query import ContactObject
@@ -33,7 +33,7 @@ class HapticPicture:
     """The objects of the picture: made once, then moved, scaled, shown and hidden.
 
     All of them are below "/haptics" in the scene tree: `tool`, `handle`, `grip`,
-    `coupling`, `force`, `contacts`, `clusters` and `objects/<name>`.
+    `coupling`, `force`, `contacts`, `clusters`, `friction` and `objects/<name>`.
 
     What moves things works as it is iterated over, so that a frame can be drawn a
     little at a time.
@@ -45,6 +45,7 @@ class HapticPicture:
         tool: Decomposition,
         objects: Sequence[ContactObject],
         X_HT: RigidTransform,
+        has_friction: bool,
     ):
         """Sends the geometry.
 
@@ -53,6 +54,7 @@ class HapticPicture:
             tool: The tool, in its frame T.
             objects: What it meets; those that never move are placed.
             X_HT: Pose of the tool in the handle at rest.
+            has_friction: Whether there is friction to draw.
         """
         self._meshcat = meshcat
         self._meshes = {"tool": tool}
@@ -77,6 +79,9 @@ class HapticPicture:
         pair = [Rgba(*colors.NEAR_CONTACT), Rgba(*colors.PENETRATING_CONTACT)]
         self._contacts = ArrowPool(meshcat, f"{_ROOT}/contacts", _MAX_CONTACTS, pair)
         self._clusters = ArrowPool(meshcat, f"{_ROOT}/clusters", _MAX_CLUSTERS, pair)
+        pair = [Rgba(*colors.STICKING_CONTACT), Rgba(*colors.SLIDING_CONTACT)]
+        most = _MAX_CLUSTERS if has_friction else 0
+        self._friction = ArrowPool(meshcat, f"{_ROOT}/friction", most, pair)
 
     def color_pieces(self) -> None:
         """Colours tool and objects by their convex pieces, for good."""
@@ -160,9 +165,23 @@ class HapticPicture:
             self._clusters, keys, clusters.p_WC, f_cluster_W, penetrating, time_s
         )
 
+    def draw_friction(
+        self, clusters: ClusterSet, friction: FrictionStep, time_s: float
+    ) -> Iterator[None]:
+        """Draws the friction of each cluster; dark where it sticks, light if not."""
+        keys = list(range(len(clusters)))
+        yield from self._draw_forces(
+            self._friction,
+            keys,
+            clusters.p_WC,
+            friction.f_cluster_W,
+            friction.sliding,
+            time_s,
+        )
+
     def write_visibility(self, time_s: float) -> None:
         """Sends again what is visible, for the first frame of a recording."""
-        for pool in (self._force, self._contacts, self._clusters):
+        for pool in (self._force, self._contacts, self._clusters, self._friction):
             pool.write_visibility(time_s)
 
     def _draw_forces(

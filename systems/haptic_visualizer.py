@@ -12,7 +12,13 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context, InputPort, LeafSystem
 
-from drake_haptics._core import ClusterSet, ContactSet, Decomposition, PenaltyWrench
+from drake_haptics._core import (
+    ClusterSet,
+    ContactSet,
+    Decomposition,
+    FrictionStep,
+    PenaltyWrench,
+)
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.haptic_picture import HapticPicture
@@ -36,6 +42,8 @@ class HapticVisualizer(LeafSystem):
     * Each contact: a small arrow along the normal, from the object into the tool,
       its tip at the contact's point; green near, red penetrating.
     * Each cluster: a larger arrow, as long as its force is large.
+    * Its friction, if there is any: violet, dark where it sticks, light where it
+      slides.
 
     .. pydrake_system::
 
@@ -47,11 +55,13 @@ class HapticVisualizer(LeafSystem):
         - clusters
         - contact_wrench
         - F_display
+        - friction_force (with friction)
         - X_WO_<name of each object that moves>
 
     Poses are [qw qx qy qz x y z], m. `F_display` is the wrench [τ; f] on the handle
     at Ho in the world, N·m and N. `contacts`, `clusters` and `contact_wrench` are the
-    outputs of `ContactQuery`, `ContactClustering` and `PenaltyForce`.
+    outputs of `ContactQuery`, `ContactClustering` and `PenaltyForce`; `friction_force`
+    is that of `StickSlipFriction`.
 
     It draws about 32 times per simulated second, at ticks of the loop, while a browser
     is connected. So that drawing delays no tick, a frame is drawn in slices of 60 µs
@@ -67,6 +77,8 @@ class HapticVisualizer(LeafSystem):
         objects: Sequence[ContactObject],
         X_HT: RigidTransform,
         tick_s: float,
+        *,
+        has_friction: bool = False,
     ):
         """Constructs the system and sends the geometry.
 
@@ -76,6 +88,7 @@ class HapticVisualizer(LeafSystem):
             objects: Those of the `ContactQuery`.
             X_HT: Pose of the tool in the handle at rest.
             tick_s: Period of the loop, s.
+            has_friction: Whether there is friction to draw, and a port for it.
         """
         super().__init__()
         # A power of two of ticks is exact: a frame is never a round-off away from a
@@ -83,7 +96,7 @@ class HapticVisualizer(LeafSystem):
         ticks = 2.0 ** math.floor(math.log2(max(_LONGEST_PERIOD_S / tick_s, 1.0)))
         self._period_s = ticks * tick_s
         self._meshcat = meshcat
-        self._picture = HapticPicture(meshcat, tool, objects, X_HT)
+        self._picture = HapticPicture(meshcat, tool, objects, X_HT, has_friction)
         self._recording = False
         self._first_frame = False
         self._not_before_s = 0.0
@@ -99,6 +112,11 @@ class HapticVisualizer(LeafSystem):
             "contact_wrench", Value[object]()
         )
         self._F_display = self.DeclareVectorInputPort("F_display", 6)
+        self._friction_force = (
+            self.DeclareAbstractInputPort("friction_force", Value[object]())
+            if has_friction
+            else None
+        )
         self._X_WO = {
             item.name: self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
             for item in objects
@@ -132,6 +150,10 @@ class HapticVisualizer(LeafSystem):
     def get_display_wrench_input_port(self) -> InputPort:
         """Returns the input `F_display`."""
         return self._F_display
+
+    def get_friction_force_input_port(self) -> InputPort:
+        """Returns the input `friction_force`, with friction."""
+        return self.GetInputPort("friction_force")
 
     def get_object_pose_input_port(self, name: str) -> InputPort:
         """Returns the input `X_WO_<name>` of an object that moves."""
@@ -221,6 +243,9 @@ class HapticVisualizer(LeafSystem):
             self._contacts.Eval(context),
             self._clusters.Eval(context),
             self._contact_wrench.Eval(context),
+            None
+            if self._friction_force is None
+            else self._friction_force.Eval(context),
         )
 
     def _steps(
@@ -233,6 +258,7 @@ class HapticVisualizer(LeafSystem):
         contacts: ContactSet,
         clusters: ClusterSet,
         wrench: PenaltyWrench,
+        friction: FrictionStep | None,
     ) -> Iterator[None]:
         """Sends what is drawn, a little at each step."""
         picture = self._picture
@@ -243,4 +269,6 @@ class HapticVisualizer(LeafSystem):
         yield from picture.draw_display_force(X_WH.translation(), f_H_W, time_s)
         yield from picture.draw_contacts(contacts, time_s)
         yield from picture.draw_clusters(clusters, wrench.f_cluster_W, time_s)
+        if friction is not None:
+            yield from picture.draw_friction(clusters, friction, time_s)
         self._meshcat.SetSimulationTime(time_s)

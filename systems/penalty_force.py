@@ -109,7 +109,7 @@ class PenaltyForce(LeafSystem):
 
     @property
     def stiffness_N_per_m(self) -> list[float]:
-        """k of each object, N/m."""
+        """Stiffness k of each object, N/m."""
         return self._stiffness.tolist()
 
     def get_clusters_input_port(self) -> InputPort:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from diagram_parts import EVERY, SYSTEMS, names, sources
+from pydrake.geometry import Meshcat
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.scene import Braking, Contact, Effects, Material
@@ -64,6 +65,15 @@ def test_a_diagram_holds_exactly_the_systems_of_the_effects_named(tmp_path, effe
     assert fed["device.F_display"] == (
         "passivity_control.F_display" if passivity else "virtual_coupling.F_display"
     )
+
+
+@pytest.mark.parametrize("effects", [Effects(), Effects(friction=EVERY["friction"])])
+def test_friction_is_shown_where_there_is_some(tmp_path, effects):
+    scene = over_a_plate(tmp_path, [START])
+    scene.effects = effects
+    fed = sources(BuildHapticDiagram(scene, meshcat=Meshcat()).diagram)
+    expected = "stick_slip_friction.friction_force" if effects.friction else None
+    assert fed.get("haptic_visualizer.friction_force") == expected
 
 
 def test_what_a_scene_does_not_name_is_not_even_loaded(tmp_path):

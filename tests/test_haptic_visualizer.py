@@ -263,6 +263,30 @@ def test_the_force_on_the_hand_is_drawn_at_the_handle():
     )
 
 
+def test_friction_is_drawn_dark_where_it_sticks_and_light_where_it_slides():
+    meshcat = FakeMeshcat()
+    visualizer = HapticVisualizer(
+        meshcat, make_mesh(), [], X_HT, tick_s=1 / 1024, has_friction=True
+    )
+    context = make_context(visualizer, [-1e-3] * 3)
+    # The third cluster has none.
+    force = np.array([[0.3, 0, 0], [0, -0.3, 0], [0, 0, 0]])
+    friction = Frozen(f_cluster_W=force, sliding=np.array([False, True, False]))
+    visualizer.get_friction_force_input_port().FixValue(context, Value(friction))
+    visualizer.ForcedPublish(context)
+    folder = "/haptics/friction"
+    assert meshcat.visible(folder) == [f"{folder}/0/arrow/0", f"{folder}/1/arrow/1"]
+    arrow = meshcat.transforms[f"{folder}/1"]
+    np.testing.assert_allclose(arrow.rotation().matrix()[:, 2], [0, -1, 0], atol=1e-12)
+
+
+def test_without_friction_there_is_no_arrow_and_no_port_for_it():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    assert not visualizer.HasInputPort("friction_force")
+    assert not [path for path, _ in meshcat.properties if "friction" in path]
+
+
 def test_objects_that_move_follow_their_port_and_others_are_placed_once():
     meshcat = FakeMeshcat()
     X_WO = RigidTransform(np.array([1.0, 2, 3]))
