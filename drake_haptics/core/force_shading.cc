@@ -21,22 +21,30 @@ constexpr double kLeastCurvature = 1e-6;
 // at the center there is no direction.
 constexpr double kDeepest = 0.5;
 
+using PrincipalDirections = Eigen::SelfAdjointEigenSolver<Mat2>;
+
+PrincipalDirections FindDirections(const Mat2& matrix) {
+  PrincipalDirections directions;
+  directions.computeDirect(matrix);
+  return directions;
+}
+
+// The symmetric matrix with f of each eigenvalue in its place.
+template <typename Function>
+Mat2 Map(const PrincipalDirections& directions, const Function& f) {
+  const Vec2 values(f(directions.eigenvalues()[0]),
+                    f(directions.eigenvalues()[1]));
+  return directions.eigenvectors() * values.asDiagonal() *
+         directions.eigenvectors().transpose();
+}
+
 // What one body wants, in a frame whose z axis is the contact's normal.
 struct Side {
-  Vec3 turn;       // of the normal
-  Mat2 curvature;  // 1/m
+  Vec3 turn;                         // of the normal
+  Mat2 curvature;                    // 1/m
+  PrincipalDirections of_curvature;  // the least first
   double sharpness, size;
 };
-
-// Calls f for each eigenvalue of a symmetric matrix.
-template <typename Function>
-Mat2 Map(const Mat2& matrix, const Function& f) {
-  Eigen::SelfAdjointEigenSolver<Mat2> eigen;
-  eigen.computeDirect(matrix);
-  const Vec2 values(f(eigen.eigenvalues()[0]), f(eigen.eigenvalues()[1]));
-  return eigen.eigenvectors() * values.asDiagonal() *
-         eigen.eigenvectors().transpose();
-}
 
 // The frame of a contact in the world.
 Mat3 MakeFrame(const Vec3& n) {
@@ -58,6 +66,7 @@ Side FindSide(const SurfaceShading& shading, const Pose& X_WS, int piece,
   Side side;
   side.turn = outward * (R_SC.transpose() * sheet.turn);
   side.curvature = tangents.transpose() * sheet.curvature * tangents;
+  side.of_curvature = FindDirections(side.curvature);
   side.sharpness = sheet.sharpness;
   side.size = shading.SizeOf(piece);
   return side;
@@ -68,12 +77,6 @@ double WithCrease(const Side& side, double curvature) {
   const double flatness = 1 - side.sharpness;
   return flatness > 0 ? curvature + side.sharpness / (flatness * side.size)
                       : std::numeric_limits<double>::infinity();
-}
-
-double LeastCurvature(const Side& side) {
-  Eigen::SelfAdjointEigenSolver<Mat2> eigen;
-  eigen.computeDirect(side.curvature, Eigen::EigenvaluesOnly);
-  return WithCrease(side, std::max(eigen.eigenvalues()[0], 0.0));
 }
 
 // A hollow side has a negative radius. It tells where the other body touches as
@@ -87,8 +90,9 @@ double Eased(double curvature, double least_of_other) {
 // m; zero at a crease.
 Mat2 Radius(const Side& side, const Side& other) {
   const double least = kLeastCurvature / side.size;
-  const double least_of_other = LeastCurvature(other);
-  return Map(side.curvature, [&](double curvature) {
+  const double least_of_other =
+      WithCrease(other, std::max(other.of_curvature.eigenvalues()[0], 0.0));
+  return Map(side.of_curvature, [&](double curvature) {
     const double c = WithCrease(side, Eased(curvature, least_of_other));
     return 1 / (c < -least ? c : std::max(c, least));
   });
@@ -98,7 +102,7 @@ Mat2 Radius(const Side& side, const Side& other) {
 // their radii, less by the factor by which the foot of a contact off the
 // surface is off.
 Vec3 Turn(const Side& A, const Side& B, double distance) {
-  if (A.sharpness == 1 && B.sharpness == 1) return Vec3::Zero();
+  if (A.turn.isZero(0) && B.turn.isZero(0)) return Vec3::Zero();
   const Mat2 radius_A = Radius(A, B), radius_B = Radius(B, A);
   const Mat2 inverse = (radius_A + radius_B).inverse();
   const Mat2 share_A = inverse * radius_A, share_B = inverse * radius_B;
@@ -109,7 +113,7 @@ Vec3 Turn(const Side& A, const Side& B, double distance) {
     return 1 / std::max(1 + distance * c, kDeepest);
   };
   Vec3 turn;
-  turn.head<2>() = Map(curvature, scale) *
+  turn.head<2>() = Map(FindDirections(curvature), scale) *
                    (share_A * A.turn.head<2>() + share_B * B.turn.head<2>());
   // Along the normal, where there is no curvature, that of the mean.
   turn.z() = scale(curvature.trace() / 2) *

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "facet_triangles.h"
 
@@ -17,9 +18,6 @@ namespace {
 // contact within this angle, rad: the tilt at which a face gives way to its
 // edges (contact_patch.h).
 constexpr double kFlushAngle = 4 * std::numbers::pi / 180;
-// Normals within this angle (rad) of the facet's are the facet's.
-constexpr double kFlat = 1e-6;
-
 std::vector<std::vector<int>> TrianglesOfPieces(const Decomposition& mesh) {
   std::vector<std::vector<int>> triangles(mesh.pieces.size());
   for (int t = 0; t < std::ssize(mesh.piece_of_triangle); ++t) {
@@ -74,18 +72,6 @@ int FacetAt(const Polytope& piece, Feature feature, const Vec3& n) {
   return nearest.facet();
 }
 
-// Whether shading adds nothing to a facet: all corners have its normal.
-bool IsFlat(const Polytope::Facet& facet, double size,
-            std::span<const int> triangles, const VertexNormals& normals) {
-  return std::all_of(triangles.begin(), triangles.end(), [&](int t) {
-    const auto& corners = normals.corners[t];
-    return std::all_of(corners.begin(), corners.end(), [&](const auto& corner) {
-      return (corner.normal - facet.normal).norm() <= kFlat &&
-             corner.curvature.norm() * size <= kFlat;
-    });
-  });
-}
-
 void RequireFeature(const Polytope& piece, Feature feature) {
   const std::size_t sizes[] = {piece.vertices.size(), piece.edges.size(),
                                piece.facets.size()};
@@ -125,7 +111,7 @@ SheetNormal SurfaceShading::Find(int piece, Feature feature, const Vec3& p,
   const int facet = FacetAt(polytope, feature, n);
   const bool is_face = feature.kind() == FeatureKind::kFacet;
   if (facet < 0) return {Vec3::Zero(), Mat3::Zero(), is_face ? 0.0 : 1.0};
-  const Vec3& facet_normal = polytope.facets[facet].normal;
+  const Vec3& facet_normal = surface.facets[facet].normal();
   const auto& is_smooth = feature.kind() == FeatureKind::kVertex
                               ? surface.smooth_vertex
                               : surface.smooth_edge;
@@ -137,34 +123,11 @@ SheetNormal SurfaceShading::Find(int piece, Feature feature, const Vec3& p,
     if (angle >= flush_angle_) return {Vec3::Zero(), Mat3::Zero(), 1};
     sharpness = angle / flush_angle_;
   }
-  const ShadedCorner shaded = Interpolate(surface, facet, facet_normal, p);
+  const ShadedCorner shaded = surface.facets[facet].Interpolate(p);
   const bool is_between_faces = !is_face && is_smooth[feature.index()];
   const Vec3& geometric = is_between_faces ? n : facet_normal;
   return {(1 - sharpness) * (shaded.normal - geometric), shaded.curvature,
           sharpness};
-}
-
-ShadedCorner SurfaceShading::Interpolate(const PieceSurface& surface, int facet,
-                                         const Vec3& facet_normal,
-                                         const Vec3& p) const {
-  if (surface.flat[facet]) return {facet_normal, Mat3::Zero()};
-  const ShadedTriangle* best = nullptr;
-  NearestInTriangle nearest;
-  nearest.squared_distance = std::numeric_limits<double>::infinity();
-  for (int i = surface.start[facet]; i < surface.start[facet + 1]; ++i) {
-    const ShadedTriangle& triangle = surface.triangles[i];
-    const auto found = FindNearestInTriangle(triangle.points, p);
-    if (best && found.squared_distance >= nearest.squared_distance) continue;
-    best = &triangle;
-    nearest = found;
-    if (found.squared_distance == 0) break;
-  }
-  ShadedCorner sum;
-  for (int k = 0; k < 3; ++k) {
-    sum.normal += nearest.weights[k] * best->corners[k].normal;
-    sum.curvature += nearest.weights[k] * best->corners[k].curvature;
-  }
-  return sum;
 }
 
 SurfaceShading::PieceSurface SurfaceShading::MakeSurface(
@@ -172,41 +135,42 @@ SurfaceShading::PieceSurface SurfaceShading::MakeSurface(
     const VertexNormals& normals) const {
   PieceSurface surface;
   surface.size = piece.radius > 0 ? piece.radius : 1;
-  const std::vector<int> facets =
-      FacetsOfTriangles(*decomposition_, piece, triangles);
-  std::vector<std::vector<int>> triangles_of(piece.facets.size());
+  surface.facets = MakeFacets(piece, surface.size, triangles, normals);
   surface.smooth_vertex.assign(piece.vertices.size(), 0);
   const PieceVertices vertices(piece);
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (facets[i] >= 0) triangles_of[facets[i]].push_back(triangles[i]);
-    for (const int v : decomposition_->triangles[triangles[i]]) {
+  for (const int t : triangles) {
+    for (const int v : decomposition_->triangles[t]) {
       const int own = vertices.Find(decomposition_->vertices[v]);
       if (own >= 0) surface.smooth_vertex[own] = normals.smooth[v];
     }
   }
-  for (std::size_t f = 0; f < piece.facets.size(); ++f) {
-    surface.start.push_back(static_cast<int>(surface.triangles.size()));
-    for (const int t : triangles_of[f]) {
-      surface.triangles.push_back(MakeTriangle(t, normals.corners[t]));
-    }
-    surface.flat.push_back(
-        IsFlat(piece.facets[f], piece.radius, triangles_of[f], normals));
-  }
-  surface.start.push_back(static_cast<int>(surface.triangles.size()));
   for (const Polytope::Edge& edge : piece.edges) {
     surface.smooth_edge.push_back(IsSmooth(edge));
   }
   return surface;
 }
 
-SurfaceShading::ShadedTriangle SurfaceShading::MakeTriangle(
-    int triangle, const std::array<ShadedCorner, 3>& corners) const {
-  ShadedTriangle result{{}, corners};
-  for (int k = 0; k < 3; ++k) {
-    result.points[k] =
-        decomposition_->vertices[decomposition_->triangles[triangle][k]];
+std::vector<ShadedFacet> SurfaceShading::MakeFacets(
+    const Polytope& piece, double size, std::span<const int> triangles,
+    const VertexNormals& normals) const {
+  const std::vector<int> facet_of =
+      FacetsOfTriangles(*decomposition_, piece, triangles);
+  std::vector<std::vector<ShadedTriangle>> triangles_of(piece.facets.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (facet_of[i] < 0) continue;
+    ShadedTriangle triangle{{}, normals.corners[triangles[i]]};
+    for (int k = 0; k < 3; ++k) {
+      triangle.points[k] =
+          decomposition_->vertices[decomposition_->triangles[triangles[i]][k]];
+    }
+    triangles_of[facet_of[i]].push_back(triangle);
   }
-  return result;
+  std::vector<ShadedFacet> facets;
+  for (std::size_t f = 0; f < piece.facets.size(); ++f) {
+    facets.emplace_back(piece.facets[f].normal, std::move(triangles_of[f]),
+                        size);
+  }
+  return facets;
 }
 
 // Wings of a flat edge point away from each other. Where one is missing the

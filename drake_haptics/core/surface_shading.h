@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "decomposition.h"
+#include "shaded_facet.h"
 #include "types.h"
 #include "vertex_normals.h"
 
@@ -43,16 +44,8 @@ class SurfaceShading {
   double SizeOf(int piece) const { return surfaces_.at(piece).size; }
 
  private:
-  // The triangle of a facet, with all that interpolation reads.
-  struct ShadedTriangle {
-    std::array<Vec3, 3> points;
-    std::array<ShadedCorner, 3> corners;
-  };
-
   struct PieceSurface {
-    std::vector<int> start;  // of each facet in `triangles`, and the end
-    std::vector<ShadedTriangle> triangles;
-    std::vector<std::uint8_t> flat;           // facet: nothing to interpolate
+    std::vector<ShadedFacet> facets;
     std::vector<std::uint8_t> smooth_vertex;  // no crease there
     std::vector<std::uint8_t> smooth_edge;
     double size = 0;
@@ -61,11 +54,10 @@ class SurfaceShading {
   PieceSurface MakeSurface(const Polytope& piece,
                            std::span<const int> triangles,
                            const VertexNormals& normals) const;
-  ShadedTriangle MakeTriangle(int triangle,
-                              const std::array<ShadedCorner, 3>& corners) const;
+  std::vector<ShadedFacet> MakeFacets(const Polytope& piece, double size,
+                                      std::span<const int> triangles,
+                                      const VertexNormals& normals) const;
   bool IsSmooth(const Polytope::Edge& edge) const;
-  ShadedCorner Interpolate(const PieceSurface& surface, int facet,
-                           const Vec3& facet_normal, const Vec3& p) const;
 
   std::shared_ptr<const Decomposition> decomposition_;
   double cos_crease_;
