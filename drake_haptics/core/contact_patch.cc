@@ -2,68 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <optional>
+
+#include "flush_features.h"
 
 namespace drake_haptics {
 namespace {
-
-// Sines of the tilt up to which a facet is flush, and from which it is not any
-// more. Two edges of a right-angled corner at kFlush make a facet at kTilted,
-// so that a facet takes over before two edges share the contact.
-constexpr double kFlush = 0.05;
-constexpr double kTilted = 0.0707;
-// A little below the cosine of the latter.
-constexpr double kCosTilted = 0.9974;
-
-double FacetShare(double sine) {
-  return std::clamp((kTilted - sine) / (kTilted - kFlush), 0.0, 1.0);
-}
-
-double EdgeShare(double sine) {
-  return std::max(0.0, 1 - sine * sine / (kFlush * kFlush));
-}
-
-// A facet that is nearly flush with the contact's plane.
-struct FlushFacet {
-  int index = -1;
-  double share = 0;
-};
-
-// The flush facets at a vertex, and what they leave of the contact to edges.
-struct FlushFacets {
-  // No more are needed to be smooth: the least flush ones come and go last.
-  static constexpr int kMost = 8;
-  std::array<FlushFacet, kMost> facets;
-  int count = 0;
-  double rest = 1;
-
-  FlushFacets(const Polytope& P, int vertex, const Vec3& outward) {
-    for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
-      if (!(spoke.normal.dot(outward) > kCosTilted) || count == kMost) continue;
-      const double share = FacetShare(spoke.normal.cross(outward).norm());
-      if (!(share > 0)) continue;
-      facets[count++] = {spoke.facet, share};
-      rest *= 1 - share;
-    }
-  }
-  const FlushFacet* begin() const { return facets.data(); }
-  const FlushFacet* end() const { return facets.data() + count; }
-};
-
-// Calls visit(edge, share) for each edge at a vertex that lies flush.
-template <typename Visitor>
-void VisitFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
-                     const Visitor& visit) {
-  for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
-    const double rise = spoke.along.dot(outward);
-    const double length_squared = spoke.along.squaredNorm();
-    if (rise * rise < kFlush * kFlush * length_squared) {
-      visit(spoke.edge, EdgeShare(std::abs(rise) / std::sqrt(length_squared)));
-    }
-  }
-}
 
 // The contact's plane: coordinates along u and v, height along n.
 struct Plane {
@@ -89,57 +33,6 @@ struct Height {
     return x * p.x() + y * p.y() + constant;
   }
 };
-
-// Keeps the part of a convex polygon, or of a segment given as two corners,
-// where the linear function with the given corner values is not negative.
-template <typename Value>
-void Clip(const Value& value, PatchWorkspace* workspace) {
-  const std::vector<Vec3>& polygon = workspace->polygon;
-  std::vector<Vec3>& clipped = workspace->clipped;
-  clipped.clear();
-  const std::size_t count = polygon.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3& p = polygon[i];
-    const double at_p = value(p);
-    if (at_p >= 0) clipped.push_back(p);
-    if (count == 2 && i == 1) break;  // A segment does not close.
-    const Vec3& q = polygon[(i + 1) % count];
-    const double at_q = value(q);
-    if ((at_p < 0) != (at_q < 0) && at_p != at_q) {
-      clipped.push_back(p + (q - p) * (at_p / (at_p - at_q)));
-    }
-  }
-  workspace->polygon.swap(clipped);
-}
-
-// What presses on a feature: the centre of the pressure and its integral.
-struct Load {
-  Vec3 center;
-  double integral = 0;  // over the area, m³, or over the length, m²
-};
-
-// Of the linear pressure (z of the corners) over a polygon or segment.
-std::optional<Load> LoadOf(const std::vector<Vec3>& corners) {
-  double total = 0;
-  Vec3 moment = Vec3::Zero();
-  if (corners.size() == 2) {
-    const Vec3 &p = corners[0], &q = corners[1];
-    const double length = (q - p).head<2>().norm();
-    total = length / 2 * (p.z() + q.z());
-    moment = length / 6 * (p * (2 * p.z() + q.z()) + q * (p.z() + 2 * q.z()));
-  }
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-    const Vec3 &p = corners[0], &q = corners[i], &r = corners[i + 1];
-    const double area =
-        std::abs((q - p).x() * (r - p).y() - (q - p).y() * (r - p).x()) / 2;
-    const double sum = p.z() + q.z() + r.z();
-    total += area * sum / 3;
-    moment +=
-        area / 12 * (p * (sum + p.z()) + q * (sum + q.z()) + r * (sum + r.z()));
-  }
-  if (!(total > 0)) return std::nullopt;
-  return Load{moment / total, total};
-}
 
 // The part of a contact that one pair of flush features carries.
 struct Part {
@@ -190,23 +83,23 @@ class Patch {
              length;
     };
     StartFromSegment(pair_.a(a.v0), pair_.a(a.v1));
-    Clip([&](const Vec3& x) { return place(x); }, &workspace_);
-    Clip([&](const Vec3& x) { return 1 - place(x); }, &workspace_);
+    ClipPolygon([&](const Vec3& x) { return place(x); }, &workspace_);
+    ClipPolygon([&](const Vec3& x) { return 1 - place(x); }, &workspace_);
     const auto pressure = [&](const Vec3& x, double side) {
       const double gap = x.z() - (p.z() + place(x) * along.z());
       return spread_ + h_ - gap - side * beside(x);
     };
     // The pressure is the smaller of two linear functions: past the crossing
     // the other side counts.
-    const std::vector<Vec3> overlap = workspace_.polygon;
+    workspace_.overlap = workspace_.polygon;
     Part whole;
     Vec3 moment = Vec3::Zero();
     for (const double side : {1.0, -1.0}) {
-      workspace_.polygon = overlap;
-      Clip([&](const Vec3& x) { return side * beside(x); }, &workspace_);
+      workspace_.polygon = workspace_.overlap;
+      ClipPolygon([&](const Vec3& x) { return side * beside(x); }, &workspace_);
       for (Vec3& x : workspace_.polygon) x.z() = pressure(x, side);
-      Clip([](const Vec3& x) { return x.z(); }, &workspace_);
-      const auto load = LoadOf(workspace_.polygon);
+      ClipPolygon([](const Vec3& x) { return x.z(); }, &workspace_);
+      const auto load = PressureLoad(workspace_.polygon);
       if (!load) continue;
       whole.extent += layer_ / spread_ * load->integral;
       moment += load->integral * load->center;
@@ -241,8 +134,8 @@ class Patch {
     for (Vec3& corner : workspace_.polygon) {
       corner.z() = spread_ + h_ - (of_A(corner) - of_B(corner));
     }
-    Clip([](const Vec3& p) { return p.z(); }, &workspace_);
-    const auto load = LoadOf(workspace_.polygon);
+    ClipPolygon([](const Vec3& p) { return p.z(); }, &workspace_);
+    const auto load = PressureLoad(workspace_.polygon);
     if (!load) return {};
     return {Vec3(plane_.u * load->center.x() + plane_.v * load->center.y()),
             scale * load->integral};
@@ -269,7 +162,7 @@ class Patch {
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Vec3 p = plane_.To(position(loop[k]));
       const Vec3 along = plane_.To(position(loop[(k + 1) % loop.size()])) - p;
-      Clip(
+      ClipPolygon(
           [&](const Vec3& x) {
             return turn *
                    (along.x() * (x.y() - p.y()) - along.y() * (x.x() - p.x()));
@@ -331,15 +224,15 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
   const FlushFacets of_A(pair.A, hub.a, -n), of_B(pair.B, hub.b, n_B);
   Patch patch(pair, n, h, spread, layer, workspace);
   Blend blend;
-  for (const FlushFacet& a : of_A) {
-    for (const FlushFacet& b : of_B) {
+  for (const FlushFacets::Item& a : of_A) {
+    for (const FlushFacets::Item& b : of_B) {
       blend.Add(patch.OfFacets(a.index, b.index), a.share * b.share);
     }
   }
   if (of_A.rest > 0) {
     VisitFlushEdges(pair.A, hub.a, n, [&](int edge_A, double share_A) {
       const double left = share_A * of_A.rest;
-      for (const FlushFacet& b : of_B) {
+      for (const FlushFacets::Item& b : of_B) {
         blend.Add(patch.OfEdgeOfA(edge_A, b.index), left * b.share);
       }
       if (!(of_B.rest > 0)) return;
@@ -357,7 +250,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
   }
   if (of_B.rest > 0) {
     VisitFlushEdges(pair.B, hub.b, n_B, [&](int edge, double share) {
-      for (const FlushFacet& a : of_A) {
+      for (const FlushFacets::Item& a : of_A) {
         blend.Add(patch.OfEdgeOfB(a.index, edge), share * a.share * of_B.rest);
       }
     });

@@ -1,18 +1,17 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
+#include "pressure_polygon.h"
 #include "support.h"
 #include "types.h"
 
 namespace drake_haptics {
 
-/// Buffers, kept between ticks.
-struct PatchWorkspace {
-  /// Corners in the contact's plane (x, y, m) with the pressure there (z, m).
-  std::vector<Vec3> polygon, clipped;
-};
+/// Thickness of the layer between flush faces, as a share of the tolerance:
+/// thin enough that it ends on the face, thick enough to be soft against
+/// rocking.
+inline constexpr double kPressureLayerShare = 0.1;
 
 /// Whether edges of both bodies at the hub lie in the contact's plane to within
 /// `layer` (m), and more than one of either: a quick test that rules out most

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "skin_forces.h"
@@ -28,6 +29,13 @@ double Fade(double distance, double width) {
   return width > 0 ? std::max(0.0, 1 - distance / width) : 0.0;
 }
 
+// How far a flush face or edge reaches, m: as far as an edge of its extent.
+double Reach(const Contact& contact, double tolerance) {
+  return tolerance > 0
+             ? contact.flushness * contact.extent / (kLayerShare * tolerance)
+             : 0.0;
+}
+
 // In how far two contacts are parts of one constraint, 0 to 1.
 double Sameness(const Contact& a, const Contact& b, double tolerance) {
   const double same_direction =
@@ -37,44 +45,87 @@ double Sameness(const Contact& a, const Contact& b, double tolerance) {
   const double same_depth =
       Fade(std::abs(a.distance - b.distance), kSameDepth * deeper);
   if (same_depth == 0) return 0;
-  const double same_place = Fade((a.p_WC - b.p_WC).norm(), tolerance);
+  const double same_place =
+      Fade((a.p_WC - b.p_WC).norm(),
+           tolerance + Reach(a, tolerance) + Reach(b, tolerance));
   return same_direction * same_depth *
          std::max(same_place, a.flushness * b.flushness);
 }
 
-// m of each contact of an object.
+// m of a contact with the given sameness to all contacts: its share of the
+// extent of those that are more than θ the same, averaged over θ from 0 to 1.
+// Where each is wholly the same or not at all that is its share of the whole;
+// in between it changes with the sameness by no more than one to one, however
+// different the extents.
+double Share(Eigen::Index i, const Eigen::VectorXd& extent,
+             const Eigen::VectorXd& sameness,
+             std::vector<Eigen::Index>* order) {
+  order->clear();
+  for (Eigen::Index j = 0; j < extent.size(); ++j) {
+    if (j != i && sameness[j] > 0) order->push_back(j);
+  }
+  std::sort(order->begin(), order->end(), [&](Eigen::Index a, Eigen::Index b) {
+    return sameness[a] > sameness[b];
+  });
+  double share = 0, total = extent[i], above = 1;
+  for (const Eigen::Index j : *order) {
+    share += (above - sameness[j]) * extent[i] / total;
+    above = sameness[j];
+    total += extent[j];
+  }
+  return share + above * extent[i] / total;
+}
+
 Eigen::VectorXd Shares(std::span<const Contact* const> contacts,
                        double tolerance) {
   const auto n = static_cast<Eigen::Index>(contacts.size());
   Eigen::VectorXd extent(n);
+  Eigen::MatrixXd sameness(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     extent[i] = contacts[i]->extent + kLeastExtent;
-  }
-  Eigen::VectorXd total = extent;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = i + 1; j < n; ++j) {
-      const double same = Sameness(*contacts[i], *contacts[j], tolerance);
-      total[i] += same * extent[j];
-      total[j] += same * extent[i];
+    for (Eigen::Index j = 0; j < i; ++j) {
+      sameness(i, j) = sameness(j, i) =
+          Sameness(*contacts[i], *contacts[j], tolerance);
     }
   }
-  return extent.cwiseQuotient(total);
+  Eigen::VectorXd shares(n);
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    shares[i] = Share(i, extent, sameness.col(i), &order);
+  }
+  return shares;
 }
 
-Eigen::MatrixXd Compliance(std::span<const Contact* const> contacts,
-                           const Eigen::VectorXd& shares) {
+// What contacts under an angle have in common: 1 along one direction, nothing
+// from a right angle on. A Wendland function, which is positive definite on the
+// sphere (Gneiting 2013), so that C is, for any number of contacts.
+double InCommon(const Vec3& n, const Vec3& other) {
+  const double cosine = n.dot(other);
+  if (cosine <= 0) return 0;
+  const double angle =
+      std::atan2(n.cross(other).norm(), cosine) / std::numbers::pi * 2;
+  const double rest = 1 - angle;
+  return (1 + 4 * angle) * rest * rest * rest * rest;
+}
+
+}  // namespace
+
+Eigen::MatrixXd SkinCompliance(std::span<const Contact* const> contacts,
+                               double tolerance) {
+  const Eigen::VectorXd shares = Shares(contacts, tolerance);
   const auto n = static_cast<Eigen::Index>(contacts.size());
   Eigen::MatrixXd C(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     C(i, i) = (1 - kOwnShare) + kOwnShare / shares[i];
     for (Eigen::Index j = i + 1; j < n; ++j) {
-      const double along =
-          std::max(0.0, contacts[i]->nhat_BA_W.dot(contacts[j]->nhat_BA_W));
-      C(i, j) = C(j, i) = (1 - kOwnShare) * along * along;
+      C(i, j) = C(j, i) = (1 - kOwnShare) * InCommon(contacts[i]->nhat_BA_W,
+                                                     contacts[j]->nhat_BA_W);
     }
   }
   return C;
 }
+
+namespace {
 
 // Forces of the clusters from `first` on, which are those of one object.
 void Press(std::span<const Contact* const> contacts, double tolerance,
@@ -85,7 +136,7 @@ void Press(std::span<const Contact* const> contacts, double tolerance,
     depth[i] = tolerance - contacts[i]->distance;
   }
   const SkinForces forces =
-      SolveSkin(Compliance(contacts, Shares(contacts, tolerance)), depth);
+      SolveSkin(SkinCompliance(contacts, tolerance), depth);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     Cluster& cluster = out->clusters[first + i];
     cluster.compression = forces.compression[i];

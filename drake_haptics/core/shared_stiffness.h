@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "clustering.h"
@@ -14,12 +16,12 @@ namespace drake_haptics {
 /// The contacts of an object press into a common elastic skin. With depths
 /// w = tolerance − distance, forces λ >= 0 and a stiffness k the skin yields by
 ///   k w_i = Σ_j C_ij λ_j  where λ_i > 0,
-///   C_ij = (1 − ρ) max(0, n_i · n_j)² + (i = j) ρ / m_i.
-/// The first part is what all feel: contacts along one direction share it,
-/// contacts at right angles or opposed have nothing in common. The second is
-/// the contact's own, and m_i its share of the constraint that it is part of:
-/// its extent over that of all contacts with the same normal, at the same
-/// depth, in the same flush face or place. So
+///   C_ij = (1 − ρ) c(n_i, n_j) + (i = j) ρ / m_i.
+/// The first part is what all feel: contacts along one direction share it
+/// (c = 1), contacts at right angles or opposed have nothing in common (c = 0).
+/// The second is the contact's own, and m_i its share of the constraint that it
+/// is part of: its extent over that of all contacts with the same normal, at
+/// the same depth, in the same flush face or place. So
 /// - a single contact pushes with k w along n (paper, Eq. 6), and a face that
 ///   is cut into any number of pieces as the whole face does;
 /// - any number of contacts along one direction are together at most 1 / (1 −
@@ -32,5 +34,9 @@ namespace drake_haptics {
 /// @throws std::invalid_argument unless tolerance >= 0 and finite.
 void ShareStiffness(const std::vector<Contact>& contacts, double tolerance,
                     ClusterSet* out);
+
+/// C of contacts of one object, all nearer than `tolerance`.
+Eigen::MatrixXd SkinCompliance(std::span<const Contact* const> contacts,
+                               double tolerance);
 
 }  // namespace drake_haptics
