@@ -228,6 +228,24 @@ def test_the_rim_of_a_cup_stays_sharp_and_its_wall_is_round() -> None:
     assert min(seen.values()) > 20
 
 
+def test_a_shaded_wall_joins_its_sharp_rim() -> None:
+    """Round the edge in the air, from the wall to the top, 1.2° from a facet's end."""
+    cup = core_of(trimesh.creation.annulus(0.02, 0.03, 0.04, sections=32))
+    out = np.array([np.cos(np.deg2rad(1.2)), np.sin(np.deg2rad(1.2)), 0])
+    turn = np.linspace(-0.2, np.pi / 2 + 0.2, 1000)[:, None]
+    up = np.array([0, 0, 1.0])
+    around = np.cos(turn) * out + np.sin(turn) * up
+    poses = np.tile(np.concatenate([turned(out + up), np.zeros(3)]), (1000, 1))
+    # The edge is the chord of 11.25°, the facet's middle at 5.625°.
+    edge = 0.03 * np.cos(np.deg2rad(5.625)) / np.cos(np.deg2rad(5.625 - 1.2)) * out
+    poses[:, 4:] = edge + 0.02 * up + 5e-4 * around
+    facet, shaded = directions(spike([0, 0, 0]), cup, poses)
+    assert angles(shaded[0], facet[0]) > 4.0  # on the wall
+    np.testing.assert_allclose(shaded[500], facet[500], atol=1e-12)
+    step = angles(shaded[1:], shaded[:-1])
+    assert step.max() < 3 * np.degrees(turn[1, 0] - turn[0, 0])
+
+
 def test_a_shaded_normal_never_pulls() -> None:
     """On a mesh all of spikes, smoothed as if it were round."""
     rng = np.random.default_rng(11)
