@@ -63,6 +63,13 @@ def test_every_scene_presses_and_stays_within_the_device(stats):
     assert stats["non_finite_events"] == 0
 
 
+def test_a_run_tells_where_its_energy_went(stats):
+    books = stats["energy_J"]
+    assert list(books)[:5] == ["device", "display", "coupling", "tool", "contact"]
+    assert books["device"]["in"] > books["device"]["out"] > 0.0
+    assert books["contact"]["in"] > 0.0
+
+
 def test_every_scene_penetrates_only_lightly(stats):
     assert 0.0 < stats["max_penetration_m"] < 1e-3
 
