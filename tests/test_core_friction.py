@@ -51,7 +51,7 @@ def touches(tick: Tick) -> list[Touch]:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_forces_andmemory_agree_with_the_formulas(seed: int) -> None:
+def test_forces_and_memory_agree_with_the_formulas(seed: int) -> None:
     ticks, q_WO, law = wander(seed)
     last: list[Touch] = []
     X_last = [matrix(IDENTITY)] * 2
