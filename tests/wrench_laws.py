@@ -10,7 +10,15 @@ from itertools import product
 
 import numpy as np
 from contact_samples import box, hull, spike
-from wrench_chain import DAMPING_NS_PER_M, Body, Case, place, run_chain, wrench_at
+from wrench_chain import (
+    DAMPING_NS_PER_M,
+    Body,
+    Case,
+    join_hulls,
+    place,
+    run_chain,
+    wrench_at,
+)
 from wrench_scenarios import (
     DISTANCES_M,
     OFFSET,
@@ -24,8 +32,6 @@ from wrench_scenarios import (
     make_sphere,
     make_walls,
 )
-
-from drake_haptics import _core
 
 KV = DAMPING_NS_PER_M
 AT_ZERO = np.zeros(6)
@@ -108,7 +114,7 @@ def two_posts(method: str) -> Iterator[Case]:
 def two_posts_of_one_object(method: str) -> Iterator[Case]:
     """What a method makes of two contacts with one object along one direction."""
     d, gap = -2e-4, 0.03
-    posts = _together(spike([0, 0, 0]), spike(gap * X))
+    posts = join_hulls(spike([0, 0, 0]), spike(gap * X))
     # Half a turn about y takes the second tip to −gap.
     solid = place(posts, [0, 0, 0], [0, np.pi, 0])
     tool = place(box(_PLATE, _PLATE[2] / 2 * Z), d * Z - gap / 2 * X)
@@ -140,19 +146,6 @@ def two_posts_of_one_object(method: str) -> Iterator[Case]:
         )
 
 
-def _together(*bodies: _core.Decomposition) -> _core.Decomposition:
-    """Convex solids as one body."""
-    starts = np.cumsum([0, *(len(b.vertices) for b in bodies)])[:-1]
-    triangles = np.vstack(
-        [b.triangles + s for b, s in zip(bodies, starts, strict=True)]
-    ).astype(np.int32)
-    return _core.decompose_surface(
-        np.vstack([b.vertices for b in bodies]),
-        triangles,
-        np.ones(len(triangles), dtype=np.uint8),
-    )
-
-
 def groove(method: str) -> Iterator[Case]:
     """Two tips on the two sides of a groove, as one cluster: Eq. 1, 3, 4 and 5."""
     if method != "octree":
@@ -167,7 +160,7 @@ def groove(method: str) -> Iterator[Case]:
     d = np.array([-4e-4, 3e-4])
     feet = 0.012 * slopes
     tips = feet + d[:, None] * normals
-    tool = place(_together(*(spike(tip - OFFSET) for tip in tips)), OFFSET)
+    tool = place(join_hulls(*(spike(tip - OFFSET) for tip in tips)), OFFSET)
     w = T - d
     n = w @ normals
     p = w @ ((tips + feet) / 2) / w.sum()
@@ -177,7 +170,7 @@ def groove(method: str) -> Iterator[Case]:
         "1, 3, 4, 5, 6, 9",
         method,
         wrench_at(p - OFFSET, K * w.max() * n / np.linalg.norm(n)),
-        run_chain(tool, [place(_together(*sides))], method, 0.04).tool,
+        run_chain(tool, [place(join_hulls(*sides))], method, 0.04).tool,
         0.012,
     )
 
@@ -190,7 +183,7 @@ def action_and_reaction(method: str) -> Iterator[Case]:
     tool = place(box(2 * half, -OFFSET), half + d + OFFSET, V_SB=rng.normal(size=6))
     walls = [
         place(
-            _moved_hull(wall.shape, -p),
+            hull(wall.shape.vertices - p),
             p,
             V_SB=rng.normal(size=6),
             stiffness_N_per_m=rng.uniform(1e3, 3e3),
@@ -212,10 +205,6 @@ def action_and_reaction(method: str) -> Iterator[Case]:
         np.sum(about_S[1:], axis=0),
         0.1,
     )
-
-
-def _moved_hull(shape: _core.Decomposition, by: np.ndarray) -> _core.Decomposition:
-    return hull(shape.vertices + by)
 
 
 def materials(method: str) -> Iterator[Case]:
