@@ -14,11 +14,12 @@ NB_MODULE(_core, m) {
   drake_haptics::BindConvexPair(m);
   drake_haptics::BindTracker(m);
   drake_haptics::BindForce(m);
+  drake_haptics::BindJacobian(m);
+  drake_haptics::BindShading(m);
   drake_haptics::BindFriction(m);
   drake_haptics::BindBraking(m);
   drake_haptics::BindGravity(m);
   drake_haptics::BindPassivity(m);
-  drake_haptics::BindShading(m);
   drake_haptics::BindHand(m);
   drake_haptics::BindEnergy(m);
   drake_haptics::BindClock(m);

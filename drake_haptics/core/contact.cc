@@ -18,6 +18,7 @@ Contact InWorld(const PairContact& pair, const Pose& X_WA) {
   contact.p_WC = (contact.p_WCa + contact.p_WCb) / 2;
   contact.extent = pair.extent;
   contact.flushness = pair.flushness;
+  contact.support = pair.support;
   contact.feature_A = KindAndIndex(pair.feature_A);
   contact.feature_B = KindAndIndex(pair.feature_B);
   contact.status = static_cast<std::int32_t>(pair.status);

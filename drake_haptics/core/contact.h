@@ -20,6 +20,8 @@ struct Contact {
   Vec3 p_WC;             ///< their mean (Eq. 1), m
   double extent = 0;     ///< measure of the overlap, m² (contact_patch.h)
   double flushness = 0;  ///< share of it in flush faces and edges
+  /// Vertices of the pieces that support them along the normal.
+  std::array<std::int32_t, 2> support{};
   std::int32_t object = 0;
   std::int32_t piece_A = 0;
   std::int32_t piece_B = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "types.h"
@@ -26,6 +27,8 @@ struct PairContact {
   ContactStatus status = ContactStatus::kNear;
   double extent = 0;     ///< measure of the overlap, m² (contact_patch.h)
   double flushness = 0;  ///< share of it in flush faces and edges
+  /// Vertices of A and B that support the pair along n.
+  std::array<std::int32_t, 2> support{};
 };
 
 }  // namespace drake_haptics

@@ -34,9 +34,6 @@ constexpr double kEntryShare = 0.25;
 constexpr double kLargestPromotion = 0.5;
 // Cosine of the angle within which two normals count as one.
 constexpr double kSameNormal = 0.996;
-// Thickness of the layer between flush faces, as a share of the tolerance: thin
-// enough that it ends on the face, thick enough to be soft against rocking.
-constexpr double kSpreadShare = 0.1;
 // How far beyond its features' sides a contact in depth may lie, as a share of
 // the size.
 constexpr double kSlideShare = 1e-2;
@@ -80,6 +77,7 @@ class Query {
     }
     contact->extent = patch.extent;
     contact->flushness = patch.flushness;
+    contact->support = {state_.hub.a, state_.hub.b};
     return contact;
   }
 
@@ -326,7 +324,7 @@ class Query {
   PressurePatch FindPatch(const Vec3& n, double h, const Hub& hub,
                           const Vec3& p_a) {
     const double tolerance = request_.tolerance;
-    const double layer = kSpreadShare * tolerance;
+    const double layer = kPressureLayerShare * tolerance;
     return FindPressurePatch(pair_, n, h, hub, p_a,
                              std::clamp(tolerance - h, 0.0, layer), layer,
                              &workspace_.patch);

@@ -1,0 +1,53 @@
+#include "patch_gradient.h"
+
+#include <algorithm>
+
+#include "contact_patch.h"
+#include "rotation.h"
+
+namespace drake_haptics {
+namespace {
+
+// Step of the differences, as a share of the layer.
+constexpr double kStepShare = 1e-4;
+
+}  // namespace
+
+void DifferentiatePatch(const PosedPieces& pieces, const Contact& contact,
+                        double tolerance, ContactGradient* gradient,
+                        MovingWitness* witness) {
+  const double layer = kPressureLayerShare * tolerance;
+  const Hub hub{contact.support[0], contact.support[1]};
+  const MovingWitness of_features = *witness;
+  PatchWorkspace workspace;
+  // In A's frame, with the tool displaced by `by`.
+  const auto patch_at = [&](const Vec6& by) {
+    const Mat3 R_WA =
+        RotationExp(by.head<3>()).toRotationMatrix() * pieces.X_WA.R;
+    const Mat3 R_AW = R_WA.transpose();
+    const Vec3 p_ToBo = pieces.X_WB.p - pieces.X_WA.p - by.tail<3>();
+    const PosedPair pair{
+        pieces.A, pieces.B, {R_AW * pieces.X_WB.R, R_AW * p_ToBo}};
+    const Vec3 n = (contact.nhat_BA_W + gradient->nhat_BA_W * by).normalized();
+    const double h = contact.distance + gradient->distance.dot(by);
+    const Vec3 p_a = of_features.p + of_features.motion * by - by.tail<3>();
+    PressurePatch patch = FindPressurePatch(
+        pair, R_AW * n, h, hub, R_AW * p_a,
+        std::clamp(tolerance - h, 0.0, layer), layer, &workspace);
+    patch.center = R_WA * patch.center.value_or(R_AW * p_a) + by.tail<3>();
+    return patch;
+  };
+  const double step = kStepShare * layer;
+  const double arm = std::max(of_features.p.norm(), layer);
+  witness->p = *patch_at(Vec6::Zero()).center;
+  for (int k = 0; k < 6; ++k) {
+    const double by = k < 3 ? step / arm : step;
+    const PressurePatch ahead = patch_at(by * Vec6::Unit(k));
+    const PressurePatch behind = patch_at(-by * Vec6::Unit(k));
+    gradient->extent[k] = (ahead.extent - behind.extent) / (2 * by);
+    gradient->flushness[k] = (ahead.flushness - behind.flushness) / (2 * by);
+    witness->motion.col(k) = (*ahead.center - *behind.center) / (2 * by);
+  }
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,340 @@
+"""Test the wrench's derivatives against differences of the whole chain.
+
+A difference asks the query anew at each displaced pose. Where it answers with other
+features, or other contacts push, there is no derivative to compare with.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from contact_samples import box
+from press_tools import MODELS
+from scipy.spatial.transform import Rotation
+from touching_poses import touching_pose
+
+from drake_haptics import _core
+from drake_haptics.decomposition import decompose
+from drake_haptics.mesh import load_mesh
+
+T = 2e-3
+STEP = 2e-7
+METHODS = ("octree", "shared")
+FAR = np.array([0.3, -0.2, 0.5])
+
+
+@dataclass(frozen=True)
+class State:
+    """Where all is and how it moves: a tool and two objects that overlap.
+
+    Attributes:
+        tracker: Knows the contacts near this state.
+        method: Of clustering.
+        q: (3, 7) poses of the tool and the objects.
+        V: (3, 6) their spatial velocities.
+    """
+
+    bodies: tuple[_core.Decomposition, ...]
+    tracker: _core.SceneTracker
+    method: str
+    q: np.ndarray
+    V: np.ndarray
+
+    def contacts(self) -> _core.ContactSet:
+        """What the query answers here."""
+        tracker = copy.deepcopy(self.tracker)
+        for i, q in enumerate(self.q[1:]):
+            tracker.set_object_pose(i, q)
+        return tracker.query(self.q[0])
+
+    def clusters(self, contacts: _core.ContactSet) -> _core.ClusterSet:
+        """Of contacts here."""
+        if self.method == "octree":
+            return _core.cluster_contacts(contacts, 2 * T, T)
+        return _core.share_stiffness(contacts, T)
+
+    def displaced(self, body: int, by: np.ndarray) -> State:
+        """With one body turned and moved by a displacement (6,)."""
+        q = self.q.copy()
+        R = Rotation.from_rotvec(by[:3]) * Rotation.from_quat(q[body, [1, 2, 3, 0]])
+        x, y, z, w = R.as_quat()
+        q[body] = [w, x, y, z, *(q[body, 4:] + by[3:])]
+        return replace(self, q=q)
+
+    def faster(self, body: int, by: np.ndarray) -> State:
+        """With another velocity (6,) added to a body's."""
+        V = self.V.copy()
+        V[body] += by
+        return replace(self, V=V)
+
+
+K, KV = np.array([1000.0, 600.0]), np.array([3.0, 5.0])
+
+
+def features(state: State) -> list[object]:
+    """All that must stay for the derivative to exist."""
+    contacts = state.contacts()
+    clusters = state.clusters(contacts)
+    pieces = [contacts.object_index, contacts.piece_A, contacts.piece_B]
+    columns = [*pieces, contacts.feature_A, contacts.feature_B, contacts.status]
+    rows = np.column_stack(columns).tolist()
+    return [rows, clusters.label.tolist(), (clusters.compression > 0).tolist()]
+
+
+def wrench(state: State) -> np.ndarray:
+    clusters = state.clusters(state.contacts())
+    return _core.penalty_force(
+        clusters, state.q[0, 4:], state.V[0], state.q[1:, 4:], state.V[1:], K, KV
+    ).F_Tool_W
+
+
+def jacobian(state: State) -> _core.WrenchJacobian:
+    contacts = state.contacts()
+    tool, *objects = state.bodies
+    return _core.wrench_jacobian(
+        contacts,
+        state.clusters(contacts),
+        T,
+        tool,
+        state.q[0],
+        state.V[0],
+        objects,
+        state.q[1:],
+        state.V[1:],
+        K,
+        KV,
+    )
+
+
+def differences(
+    state: State, move: Callable[[np.ndarray], State], step: float
+) -> np.ndarray | None:
+    """The derivative (6, 6), or nothing where features change."""
+    columns = []
+    for e in np.eye(6):
+        ahead, behind = move(step * e), move(-step * e)
+        if not features(ahead) == features(behind) == features(state):
+            return None
+        columns.append((wrench(ahead) - wrench(behind)) / (2 * step))
+    return np.array(columns).T
+
+
+def error(found: np.ndarray, expected: np.ndarray) -> float:
+    return float(np.abs(found - expected).max() / np.abs(expected).max())
+
+
+def shipped(name: str) -> _core.Decomposition:
+    return decompose(load_mesh(MODELS / f"{name}.obj", scale=1.0)).core
+
+
+@pytest.fixture(scope="module")
+def pairs() -> dict[str, tuple[_core.Decomposition, _core.Decomposition]]:
+    return {
+        "box on box": (box([0.02, 0.03, 0.01]), box([0.03, 0.02, 0.02])),
+        "spoon in cup": (shipped("spoon"), shipped("cup")),
+        "peg in torus": (shipped("peg"), shipped("torus")),
+        "cup on block": (shipped("cup"), shipped("block")),
+    }
+
+
+def states(
+    pair: tuple[_core.Decomposition, _core.Decomposition], method: str, count: int
+) -> list[State]:
+    """Random touches, a second object a little beside the first."""
+    rng = np.random.default_rng(0)
+    tool, solid = pair
+    found = []
+    while len(found) < count:
+        q = touching_pose(rng, tool, solid, T)
+        beside = np.array([1, 0, 0, 0, *rng.uniform(-T, T, 3)])
+        q = np.stack([q, [1.0, 0, 0, 0, 0, 0, 0], beside])
+        tracker = _core.SceneTracker(tool, [solid, solid], T)
+        tracker.set_object_pose(1, beside)
+        tracker.query(q[0])
+        V = 0.1 * rng.normal(size=(3, 6))
+        state = State((tool, solid, solid), tracker, method, q, V)
+        if (state.contacts().distance < T).any():
+            found.append(state)
+    return found
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    "name", ["box on box", "spoon in cup", "peg in torus", "cup on block"]
+)
+def test_by_the_pose_of_the_tool(pairs, name: str, method: str) -> None:
+    """To 1e-6, but for states at a kink: an edge that lies in a face to round-off.
+
+    Of some hundred states one or two are. The step of the difference itself costs
+    the most where a vertex is near a vertex or an edge: there the normal turns by
+    1 / distance.
+    """
+    errors = []
+    for state in states(pairs[name], method, 40):
+        move = differences(state, lambda by, s=state: s.displaced(0, by), STEP)
+        if move is not None:
+            errors.append(error(jacobian(state).by_X_WTool, move))
+    assert len(errors) >= 35
+    errors.sort()
+    assert np.median(errors) < 1e-8
+    assert errors[-2] < 1e-6
+    assert errors[-1] < 1e-3
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("body", [1, 2])
+def test_by_the_pose_of_an_object(pairs, method: str, body: int) -> None:
+    """Far from the world's origin too."""
+    checked = 0
+    for near in states(pairs["spoon in cup"], method, 15):
+        far = near.q.copy()
+        far[:, 4:] += FAR
+        for state in (near, replace(near, q=far)):
+            move = differences(state, lambda by, s=state: s.displaced(body, by), STEP)
+            if move is None or not np.abs(move).max() > 0:
+                continue
+            found = jacobian(state).by_X_WO[6 * (body - 1) : 6 * body]
+            assert error(found, move) < 2e-6
+            checked += 1
+    assert checked >= 15
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_by_the_velocities(pairs, method: str) -> None:
+    """The force is linear in them where no contact turns from approach to departure."""
+    for state in states(pairs["peg in torus"], method, 15):
+        found = jacobian(state)
+        for body in range(3):
+            move = differences(state, lambda by, s=state, b=body: s.faster(b, by), 1e-6)
+            by_V = found.by_V_WO[6 * body - 6 : 6 * body] if body else found.by_V_WTool
+            np.testing.assert_allclose(by_V, move, atol=1e-6)
+        # The wrench model's B is minus that by the tool's velocity.
+        contacts = state.contacts()
+        model = _core.penalty_force(
+            state.clusters(contacts),
+            state.q[0, 4:],
+            state.V[0],
+            state.q[1:, 4:],
+            state.V[1:],
+            K,
+            KV,
+        ).wrench_model
+        np.testing.assert_allclose(
+            found.by_V_WTool, -model[42:].reshape(6, 6), atol=1e-12
+        )
+
+
+def test_one_vertex_on_a_face_is_the_frozen_model_and_what_turns() -> None:
+    """K of the wrench model, less the torque's change as the arm turns."""
+    tool, ground = box([0.02, 0.02, 0.02]), box([0.2, 0.2, 0.02], [0, 0, -0.01])
+    R = Rotation.from_rotvec([0.5, 0.4, 0.1])
+    corner = np.array([0.01, 0.01, 0.01]) * np.sign(R.inv().apply([0, 0, -1]))
+    arm = R.apply(corner)
+    x, y, z, w = R.as_quat()
+    q = np.array([[w, x, y, z, 0, 0, 1e-3 - arm[2]], [1, 0, 0, 0, 0, 0, 0]])
+    tracker = _core.SceneTracker(tool, [ground], T)
+    state = State((tool, ground), tracker, "shared", q, np.zeros((2, 6)))
+    contacts = state.contacts()
+    found = _core.wrench_jacobian(
+        contacts,
+        state.clusters(contacts),
+        T,
+        tool,
+        q[0],
+        np.zeros(6),
+        [ground],
+        q[1:],
+        np.zeros((1, 6)),
+        K[:1],
+        KV[:1],
+    )
+    up = np.array([0, 0, 1.0])
+    G = np.concatenate([np.cross(arm, up), up])
+    expected = -K[0] * np.outer(G, G)
+    # The vertex turns with the tool: d(r × n) = (δ × r) × n, a force 1 mm thick.
+    for i, e in enumerate(np.eye(3)):
+        expected[:3, i] += K[0] * 1e-3 * np.cross(np.cross(e, arm), up)
+    np.testing.assert_allclose(found.by_X_WTool, expected, atol=1e-9)
+    # Moved together nothing changes but the direction of what is seen.
+    shift = np.eye(6)
+    p = q[0, 4:]
+    shift[3:, :3] = -np.array([[0, -p[2], p[1]], [p[2], 0, -p[0]], [-p[1], p[0], 0]])
+    together = found.by_X_WTool + found.by_X_WO @ np.linalg.inv(shift)
+    np.testing.assert_allclose(together[:, 3:], 0, atol=1e-9)
+
+
+def test_a_face_exactly_flush_has_a_finite_answer() -> None:
+    tool, ground = box([0.02, 0.02, 0.02]), box([0.2, 0.2, 0.02], [0, 0, -0.01])
+    for height in (-1e-3, 1e-3):
+        q = np.array([[1, 0, 0, 0, 0, 0, 0.01 + height], [1, 0, 0, 0, 0, 0, 0]])
+        tracker = _core.SceneTracker(tool, [ground], T)
+        contacts = tracker.query(q[0])
+        clusters = _core.share_stiffness(contacts, T)
+        found = _core.wrench_jacobian(
+            contacts,
+            clusters,
+            T,
+            tool,
+            q[0],
+            np.zeros(6),
+            [ground],
+            q[1:],
+            np.zeros((1, 6)),
+            K[:1],
+            KV[:1],
+        )
+        assert np.isfinite(found.by_X_WTool).all()
+        np.testing.assert_allclose(
+            found.by_X_WTool[3:, 3:], np.diag([0, 0, -K[0]]), atol=1e-6
+        )
+        # The layer resists rocking, to either side.
+        assert found.by_X_WTool[0, 0] < 0
+        assert found.by_X_WTool[1, 1] < 0
+
+
+def test_nothing_near_changes_nothing(pairs) -> None:
+    tool, solid = pairs["box on box"]
+    q = np.array([[1.0, 0, 0, 0, 0, 0, 1], [1, 0, 0, 0, 0, 0, 0]])
+    contacts = _core.SceneTracker(tool, [solid], T).query(q[0])
+    for clusters in (
+        _core.share_stiffness(contacts, T),
+        _core.cluster_contacts(contacts, T, T),
+    ):
+        found = _core.wrench_jacobian(
+            contacts,
+            clusters,
+            T,
+            tool,
+            q[0],
+            np.zeros(6),
+            [solid],
+            q[1:],
+            np.zeros((1, 6)),
+            K[:1],
+            KV[:1],
+        )
+        assert not found.by_X_WTool.any()
+        assert not found.by_X_WO.any()
+
+
+def test_what_does_not_belong_together_is_refused(pairs) -> None:
+    state = states(pairs["box on box"], "shared", 1)[0]
+    contacts = state.contacts()
+    tool, *objects = state.bodies
+    rest = (tool, state.q[0], state.V[0], objects, state.q[1:], state.V[1:], K, KV)
+    nothing = _core.SceneTracker(tool, objects, T).query([1, 0, 0, 0, 0, 0, 1])
+    if len(contacts) == len(nothing):
+        pytest.skip("no contacts")
+    with pytest.raises(ValueError, match="clusters must be those of the contacts"):
+        _core.wrench_jacobian(contacts, state.clusters(nothing), T, *rest)
+    clusters = state.clusters(contacts)
+    with pytest.raises(ValueError, match="one row"):
+        _core.wrench_jacobian(contacts, clusters, T, *rest[:-1], KV[:1])
+    with pytest.raises(ValueError, match="X_WO"):
+        _core.wrench_jacobian(
+            contacts, clusters, T, *rest[:4], np.nan * state.q[1:], *rest[5:]
+        )
