@@ -338,3 +338,50 @@ def test_what_does_not_belong_together_is_refused(pairs) -> None:
         _core.wrench_jacobian(
             contacts, clusters, T, *rest[:4], np.nan * state.q[1:], *rest[5:]
         )
+
+
+def test_other_bodies_than_the_query_had_are_refused(pairs) -> None:
+    """Pieces, and features of pieces, that are not there."""
+    state = next(
+        s
+        for s in states(pairs["spoon in cup"], "shared", 20)
+        if s.contacts().piece_B.max() > 0
+    )
+    contacts = state.contacts()
+    small = box([0.01, 0.01, 0.01])
+    rest = (state.q[1:], state.V[1:], K, KV)
+    for tool, solid in ((state.bodies[0], small), (small, state.bodies[1])):
+        if tool is small and contacts.piece_A.max() == 0:
+            continue
+        with pytest.raises(IndexError):
+            _core.wrench_jacobian(
+                contacts,
+                state.clusters(contacts),
+                T,
+                tool,
+                state.q[0],
+                state.V[0],
+                [solid, solid],
+                *rest,
+            )
+    # A peg has more edges than a box, on the one piece that both are.
+    peg = next(
+        s
+        for s in states(pairs["peg in torus"], "shared", 40)
+        if s.contacts().feature_A[:, 1].max() > 11
+    )
+    contacts = peg.contacts()
+    with pytest.raises(IndexError, match="feature"):
+        _core.wrench_jacobian(
+            contacts,
+            peg.clusters(contacts),
+            T,
+            small,
+            peg.q[0],
+            peg.V[0],
+            list(peg.bodies[1:]),
+            peg.q[1:],
+            peg.V[1:],
+            K,
+            KV,
+        )
