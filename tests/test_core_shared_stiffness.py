@@ -70,18 +70,17 @@ def test_compressions_are_those_of_the_convex_problem(
         )
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_small_problems_by_trying_every_set_of_contacts(seed: int) -> None:
-    contacts = scatter(random_sites(np.random.default_rng(seed), 3, T), T)
-    C, w = rows(contacts, T)
-    C, w = C[:8, :8], w[:8]
-    some = np.flatnonzero(contacts.distance < T)[:8]
-    # The contacts left out do not push if they are beyond the tolerance.
-    assert len(some) >= 1
-    if len(some) < len(contacts):
-        pytest.skip("more than 256 sets")
-    found = _core.share_stiffness(contacts, T).compression
-    np.testing.assert_allclose(found, skin_forces_of_all_sets(C, w), atol=1e-15)
+def test_small_problems_by_trying_every_set_of_contacts() -> None:
+    tried = 0
+    for seed in range(20):
+        contacts = scatter(random_sites(np.random.default_rng(seed), 3, T), T)
+        if len(contacts) > 8:
+            continue
+        C, w = rows(contacts, T)
+        found = _core.share_stiffness(contacts, T).compression
+        np.testing.assert_allclose(found, skin_forces_of_all_sets(C, w), atol=1e-15)
+        tried += 1
+    assert tried >= 8
 
 
 def test_the_shipped_meshes_too() -> None:
