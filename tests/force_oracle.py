@@ -11,7 +11,7 @@ from scipy.optimize import nnls
 from drake_haptics import _core
 
 # The constants of shared_stiffness.h.
-OWN_SHARE = 0.5  # ρ
+OWN_SHARE = 0.25  # ρ
 SAME_PLANE = 1.37e-3  # 1 - cos(3°)
 SAME_DIRECTION = 0.134  # 1 - cos(30°)
 ALL_FLUSH = 1.25
