@@ -185,8 +185,11 @@ struct Blend {
   double total = 0, rest = 1, extent = 0;
   Vec3 sum = Vec3::Zero();
 
-  void Add(const Part& part, double share) {
+  /// @param share of what features of higher dimension leave.
+  /// @param left what they leave.
+  void Add(const Part& part, double share, double left) {
     rest *= 1 - share;
+    share *= left;
     if (!part.center) return;
     total += share;
     sum += share * *part.center;
@@ -226,14 +229,14 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
   Blend blend;
   for (const FlushFacets::Item& a : of_A) {
     for (const FlushFacets::Item& b : of_B) {
-      blend.Add(patch.OfFacets(a.index, b.index), a.share * b.share);
+      blend.Add(patch.OfFacets(a.index, b.index), a.share * b.share, 1);
     }
   }
   if (of_A.rest > 0) {
     VisitFlushEdges(pair.A, hub.a, n, [&](int edge_A, double share_A) {
-      const double left = share_A * of_A.rest;
       for (const FlushFacets::Item& b : of_B) {
-        blend.Add(patch.OfEdgeOfA(edge_A, b.index), left * b.share);
+        blend.Add(patch.OfEdgeOfA(edge_A, b.index), share_A * b.share,
+                  of_A.rest);
       }
       if (!(of_B.rest > 0)) return;
       const Vec3 along_A =
@@ -243,15 +246,16 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
             pair.b(pair.B.edges[edge_B].v1) - pair.b(pair.B.edges[edge_B].v0);
         const double sine =
             along_A.cross(along_B).norm() / (along_A.norm() * along_B.norm());
-        const double share = left * share_B * of_B.rest * EdgeShare(sine);
-        if (share > 0) blend.Add(patch.OfEdges(edge_A, edge_B), share);
+        const double share = share_A * share_B * EdgeShare(sine);
+        if (!(share > 0)) return;
+        blend.Add(patch.OfEdges(edge_A, edge_B), share, of_A.rest * of_B.rest);
       });
     });
   }
   if (of_B.rest > 0) {
     VisitFlushEdges(pair.B, hub.b, n_B, [&](int edge, double share) {
       for (const FlushFacets::Item& a : of_A) {
-        blend.Add(patch.OfEdgeOfB(a.index, edge), share * a.share * of_B.rest);
+        blend.Add(patch.OfEdgeOfB(a.index, edge), share * a.share, of_B.rest);
       }
     });
   }

@@ -20,8 +20,9 @@ namespace drake_haptics {
 /// The first part is what all feel: contacts along one direction share it
 /// (c = 1), contacts at right angles or opposed have nothing in common (c = 0).
 /// The second is the contact's own, and m_i its share of the constraint that it
-/// is part of: its extent over that of all contacts with the same normal, at
-/// the same depth, in the same flush face or place. So
+/// is part of: its extent over that of all contacts at the same depth that are
+/// flush in one plane, or in one place with normals not far apart, as on the
+/// facets of a smooth surface. So
 /// - a single contact pushes with k w along n (paper, Eq. 6), and a face that
 ///   is cut into any number of pieces as the whole face does;
 /// - any number of contacts along one direction are together at most 1 / (1 −

@@ -1,0 +1,57 @@
+"""A spoon pressed against a cup for a minute: it rests, and makes nothing."""
+
+import numpy as np
+import pytest
+
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_effects import Effects, Friction, Gravity, Shading
+from drake_haptics.scene_library import find_scene
+from drake_haptics.simulation import run
+
+SETTLED_S, END_S = 3.0, 63.0
+LAST_WAYPOINT_S = 1.2
+LARGEST_DRIFT_M = 10e-6
+LARGEST_FORCE_CYCLE_N = 0.01
+
+
+@pytest.mark.parametrize(
+    ("clustering", "effects"),
+    [
+        ("shared", Effects()),
+        ("octree", Effects()),
+        ("shared", Effects(shading=Shading(), friction=Friction(), gravity=Gravity())),
+    ],
+    ids=["shared", "octree", "effects"],
+)
+def test_a_minute_of_rest(clustering, effects):
+    scene = load_scene(find_scene("cup_spoon"))
+    scene.contact.clustering = clustering
+    if clustering == "octree":
+        scene.contact.cluster_size_m = 6e-3
+    scene.effects = effects
+    path = scene.hand.path
+    path.periodic = False
+    path.waypoints = [x for x in path.waypoints if x.time_s <= LAST_WAYPOINT_S]
+    haptic = BuildHapticDiagram(scene)
+    tool, device = haptic.loop.haptic_tool, haptic.loop.device
+    p_WT, f_shown = [], []
+
+    def watch(context):
+        if context.get_time() < SETTLED_S:
+            return
+        pose = tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(context))
+        shown = device.get_applied_wrench_output_port().Eval(
+            device.GetMyContextFromRoot(context)
+        )
+        p_WT.append(pose[4:])
+        f_shown.append(shown[3:])
+
+    figures = run(haptic, END_S, on_tick=watch).to_dict()
+    assert (figures["limit_hits"], figures["non_finite_events"]) == (0, 0)
+    assert np.linalg.norm(f_shown[-1]) > 0.5
+    assert np.ptp(p_WT, axis=0).max() < LARGEST_DRIFT_M
+    assert np.ptp(f_shown, axis=0).max() < LARGEST_FORCE_CYCLE_N
+    for name, part in figures["energy_J"].items():
+        if name in ("coupling", "tool", "display"):
+            assert part["created"] <= part["bound"] + 1e-9, name
