@@ -111,8 +111,7 @@ class Query {
 
   // The closest points of the hulls are not closest points of the surfaces, as
   // at a hollow corner: the nearest facet beside them that faces a vertex of
-  // the other body, if that vertex is over it or its face is flush (paper,
-  // 5.3.2).
+  // the other body, if that vertex is over it (paper, 5.3.2).
   std::optional<PairContact> Promoted() {
     DepthCandidate best;
     Hub best_hub;
@@ -127,11 +126,8 @@ class Query {
       const Witness witness = WitnessOfFeatures(pair_, a, b, n, h);
       const SurfaceSupport support = ClassifySupport(
           pair_.A, a, n, pair_.B, b, pair_.X_AB.R.transpose() * n);
-      if (support != SurfaceSupport::kSupported) return;
-      // A face wider than the pieces has its lowest corner over another one,
-      // and lies flush on this one.
-      if (LateralOffset(pair_, a, b, witness) > 0 &&
-          !FindPatch(n, h, hub, witness.p_a).center) {
+      if (support != SurfaceSupport::kSupported ||
+          LateralOffset(pair_, a, b, witness) > 0) {
         return;
       }
       best = {h, n, a, b, support};
