@@ -30,10 +30,12 @@ format: $(STAMP)-test
 	$(BIN)/clang-format -i drake_haptics/core/*.cc drake_haptics/core/*.h tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
 
 # Rebuilds the C++ core after an edit, without a fresh build environment.
-build: $(STAMP)-test
+build:
+	@test -e $(STAMP)-test || $(MAKE) $(STAMP)-test
 	$(BIN)/pip install --quiet "scikit-build-core>=0.11" "nanobind>=2.7" "cmeel-eigen>=3.4"
 	$(BIN)/pip install --quiet --no-build-isolation --no-deps -e .
 	$(BIN)/python -m nanobind.stubgen -q -m drake_haptics._core -o drake_haptics/_core.pyi
+	@touch $(STAMP) $(STAMP)-test
 
 $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || { \

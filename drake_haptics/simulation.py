@@ -44,6 +44,7 @@ def run(
     duration_s: float | None = None,
     *,
     realtime: bool = False,
+    energy: bool = False,
     on_tick: Callable[[Context], None] | None = None,
 ) -> RunStatistics:
     """Runs a scene from its start and measures every tick.
@@ -53,6 +54,8 @@ def run(
         duration_s: Simulated time, s; until Ctrl-C where not given.
         realtime: Whether to wait so that simulated time is clock time. Time lost
             to a stall is not caught up: a device must never be hurried.
+        energy: Whether to keep the books of an `EnergyLedger`, for some 10 µs in
+            each tick.
         on_tick: Called after every tick with the diagram's context, to be read
             only. Its time counts in the tick.
 
@@ -63,7 +66,7 @@ def run(
         RunError: The tool or the arm has a pose or velocity that is not finite.
     """
     simulator = make_simulator(haptic)
-    ledger = EnergyLedger(haptic.loop, simulator.get_context())
+    ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
     statistics = RunStatistics(haptic.period_s, ledger)
     measure = _make_measure(haptic, simulator.get_context(), statistics, ledger)
     pace_s = haptic.period_s if realtime else 0.0
@@ -73,7 +76,8 @@ def run(
     gc.freeze()
     try:
         simulator.Initialize()
-        ledger.add()
+        if ledger is not None:
+            ledger.add()
         simulator.set_monitor(_make_monitor(measure, on_tick, pace_s))
         simulator.AdvanceTo(math.inf if duration_s is None else duration_s)
     except KeyboardInterrupt:
@@ -117,7 +121,7 @@ def _make_measure(
     haptic: HapticDiagram,
     root: Context,
     statistics: RunStatistics,
-    ledger: EnergyLedger,
+    ledger: EnergyLedger | None,
 ) -> Callable[[Context, float], None]:
     """Returns what reads a tick's values from the context into both books."""
     loop = haptic.loop
@@ -151,6 +155,7 @@ def _make_measure(
             min(contacts.distance.tolist(), default=0.0),
             shown,
         )
-        ledger.add()
+        if ledger is not None:
+            ledger.add()
 
     return measure

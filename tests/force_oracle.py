@@ -13,8 +13,8 @@ from drake_haptics import _core
 # The constants of shared_stiffness.h.
 OWN_SHARE = 0.25  # ρ
 SAME_PLANE = 1.37e-3  # 1 - cos(3°)
-SAME_DIRECTION = 0.134  # 1 - cos(30°)
-ALL_FLUSH = 1.25
+SAME_DIRECTION = 0.293  # 1 - cos(45°)
+ALMOST = 1.25
 SAME_DEPTH = 0.25
 LAYER_SHARE = 0.1
 LEAST_EXTENT_M2 = 1e-24
@@ -56,11 +56,12 @@ def sameness(contacts: _core.ContactSet, pushing: np.ndarray, t: float) -> np.nd
         np.linalg.norm(p[:, None] - p[None], axis=2), t + np.add.outer(reach, reach)
     )
     turn = np.maximum(0, 1 - n @ n.T)
-    flush = np.minimum(1, ALL_FLUSH * np.outer(flushness, flushness))
+    flush = np.outer(flushness, flushness)
     depth = fade(np.abs(w[:, None] - w[None]), SAME_DEPTH * np.maximum.outer(w, w))
-    same = depth * np.maximum(
+    part = np.maximum(
         fade(turn, SAME_PLANE) * flush, fade(turn, SAME_DIRECTION) * place
     )
+    same = np.minimum(1, ALMOST * depth * part)
     np.fill_diagonal(same, 1)
     return same
 

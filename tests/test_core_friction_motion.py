@@ -193,5 +193,6 @@ def test_rolling_makes_no_friction() -> None:
         assert tick.normal_force > 1.0
         worst = max(worst, np.linalg.norm(tick.friction_force) / tick.normal_force)
     assert rig.state[4] > 0.12
-    # Before an edge arrives there is a gap below it, and a contact is half-way.
-    assert worst < 0.1 * MU
+    # Before an edge arrives there is a gap below it, and a contact is half-way: for
+    # a tick or two the wheel seems to slip by half the tolerance times the turn.
+    assert worst < 2 * TOLERANCE_M / 2 * 0.02 / BREAK_AWAY_M * MU

@@ -51,7 +51,7 @@ def record(scene, duration_s):
             seen[name].append(port.Eval(context).copy())
 
     read(haptic.diagram.CreateDefaultContext())
-    figures = run(haptic, duration_s, on_tick=read).to_dict()
+    figures = run(haptic, duration_s, energy=True, on_tick=read).to_dict()
     p_TTcm, I_TTcm_T = calc_mass_properties(haptic.tool.mesh, TOOL_MASS)
     return SimpleNamespace(
         books=figures["energy_J"],
@@ -236,5 +236,5 @@ def test_a_loop_of_one_s_own_has_the_same_books(tmp_path):
     ledger.add()
     simulator.set_monitor(lambda context: ledger.add())
     simulator.AdvanceTo(0.4)
-    assert ledger.to_dict() == run(haptic, 0.4).to_dict()["energy_J"]
+    assert ledger.to_dict() == run(haptic, 0.4, energy=True).to_dict()["energy_J"]
     assert ledger.to_dict()["contact"]["in"] > 0.0

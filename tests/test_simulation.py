@@ -39,7 +39,7 @@ def test_a_run_measures_every_tick(haptic):
 
 
 def test_a_run_starts_anew_each_time(haptic):
-    first, second = (run(haptic, 0.3).to_dict() for _ in range(2))
+    first, second = (run(haptic, 0.3, energy=True).to_dict() for _ in range(2))
     for key in (
         "max_force_N",
         "max_torque_Nm",
@@ -52,7 +52,7 @@ def test_a_run_starts_anew_each_time(haptic):
 
 def test_the_energy_of_every_tick_is_booked(haptic):
     # The books begin with the first tick: what the tool has at the end came in.
-    books = run(haptic, 0.3).to_dict()["energy_J"]
+    books = run(haptic, 0.3, energy=True).to_dict()["energy_J"]
     tool = books["tool"]
     assert tool["stored"] > 0.0
     assert tool["net"] == pytest.approx(tool["stored"] + tool["lost"], rel=1e-12)
@@ -103,7 +103,7 @@ def test_a_value_that_is_not_finite_stops_the_run(haptic, monkeypatch):
         simulation.RunError,
         match=r"stopped at 0.0010 s: the tool's state is not finite",
     ) as caught:
-        run(haptic, 1.0)
+        run(haptic, 1.0, energy=True)
     figures = caught.value.statistics.to_dict()
     assert figures["non_finite_events"] == 1
     # The device was shown nothing, and nothing was booked.
@@ -121,7 +121,7 @@ def test_an_arm_that_is_lost_stops_the_run(haptic, monkeypatch):
 
     monkeypatch.setattr(simulation, "make_simulator", make_broken_simulator)
     with pytest.raises(simulation.RunError, match="the arm's state is not finite"):
-        run(haptic, 1.0)
+        run(haptic, 1.0, energy=True)
 
 
 def test_no_coupling_is_too_stiff_for_the_limits_of_the_device(tmp_path):

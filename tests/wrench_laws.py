@@ -137,10 +137,10 @@ def two_posts_of_one_object(method: str) -> Iterator[Case]:
         # k w = λ₁ + ½ λ₂ = ½ λ₁ + λ₂: the skin that they share is half of it.
         yield Case(
             "two posts of a solid",
-            "f = 4/3 k (t − d) n at the middle",
+            "f = 8/7 k (t − d) n at the middle",
             "6, 9",
             method,
-            wrench_at([0, 0, 0], 4 / 3 * K * w * Z),
+            wrench_at([0, 0, 0], 8 / 7 * K * w * Z),
             run_chain(tool, [solid], method).tool,
             gap,
         )

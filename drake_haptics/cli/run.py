@@ -132,7 +132,11 @@ def run(
 
         try:
             statistics = run_haptic(
-                haptic, duration, realtime=not headless, on_tick=end_tick
+                haptic,
+                duration,
+                realtime=not headless,
+                energy=json_file is not None,
+                on_tick=end_tick,
             )
             unstable = None
         except RunError as error:

@@ -15,9 +15,9 @@ constexpr double kOwnShare = 0.25;
 // 1 − cos(3°): contacts of flush features within that angle can be one
 // constraint, wherever they are.
 constexpr double kSamePlane = 1.37e-3;
-// 1 − cos(30°): the same for contacts in one place, as on the facets of a
+// 1 − cos(45°): the same for contacts in one place, as on the facets of a
 // surface that is smooth.
-constexpr double kSameDirection = 0.134;
+constexpr double kSameDirection = 0.293;
 // Contacts at depths below the tolerance that differ by less than this share
 // can be one constraint. A share, not a length: how fast contacts part must not
 // depend on how deep they are.
@@ -25,9 +25,9 @@ constexpr double kSameDepth = 0.25;
 // Damping sets in over this share of the tolerance, the thickness of the
 // pressure layer.
 constexpr double kLayerShare = 0.1;
-// Contacts that are nearly flush count as wholly so: what little is missing
-// would leave a sliver a spring of its own.
-constexpr double kAllFlush = 1.25;
+// Contacts that are nearly the same count as wholly so: what little is missing
+// would leave each a spring of its own.
+constexpr double kAlmost = 1.25;
 // Added to extents (m²), so that those of no extent are shared equally.
 constexpr double kLeastExtent = 1e-24;
 
@@ -52,13 +52,13 @@ double Sameness(const Contact& a, const Contact& b, double tolerance) {
       Fade(std::abs(a.distance - b.distance), kSameDepth * deeper);
   if (same_depth == 0) return 0;
   const double in_one_plane =
-      Fade(turn, kSamePlane) *
-      std::min(1.0, kAllFlush * a.flushness * b.flushness);
+      Fade(turn, kSamePlane) * a.flushness * b.flushness;
   const double in_one_place =
       Fade(turn, kSameDirection) *
       Fade((a.p_WC - b.p_WC).norm(),
            tolerance + Reach(a, tolerance) + Reach(b, tolerance));
-  return same_depth * std::max(in_one_plane, in_one_place);
+  return std::min(1.0,
+                  kAlmost * same_depth * std::max(in_one_plane, in_one_place));
 }
 
 // m of a contact with the given sameness to all contacts: its share of the

@@ -11,6 +11,7 @@
 #include "draw_mesh.h"
 #include "pair_truth.h"
 #include "penalty_force.h"
+#include "shared_stiffness.h"
 #include "target.h"
 
 namespace drake_haptics::fuzz {
@@ -120,11 +121,8 @@ void CheckOrder(const ContactSet& contacts, Tally* tally) {
   }
 }
 
-void CheckForce(const Scene& scene, const ContactSet& contacts,
-                ByteSource* source, Tally* tally) {
-  ClusterSet clusters;
-  ClusterContacts(contacts.contacts, scene.size * source->Power(-6, 0),
-                  scene.tolerance, &clusters);
+void CheckClusters(const ClusterSet& clusters, const ContactSet& contacts,
+                   const Scene& scene, const Vec6& V_WTool, Tally* tally) {
   std::size_t members = 0;
   for (const Cluster& cluster : clusters.clusters) {
     members += static_cast<std::size_t>(cluster.num_contacts);
@@ -134,17 +132,18 @@ void CheckForce(const Scene& scene, const ContactSet& contacts,
                       cluster.nhat_BA_W.norm());
     }
   }
-  if (members != contacts.contacts.size()) {
+  const auto pushing = static_cast<std::size_t>(std::count_if(
+      contacts.contacts.begin(), contacts.contacts.end(),
+      [&](const Contact& c) { return c.distance < scene.tolerance; }));
+  if (members != pushing) {
     tally->Violated("each contact in a cluster", "%zu of %zu", members,
-                    contacts.contacts.size());
+                    pushing);
   }
   std::vector<MovingFrame> frames;
   for (const Pose& X : scene.X_WO) frames.push_back({X.p, Vec6::Zero()});
-  Vec6 V_WTool;
-  V_WTool << DrawVector(source), DrawVector(source);
-  const PenaltyWrench wrench =
-      ComputePenaltyWrench(clusters.clusters, {scene.X_WTool.p, V_WTool},
-                           frames, {1000, 1, scene.tolerance});
+  const std::vector<ContactMaterial> materials(frames.size(), {1000, 1});
+  const PenaltyWrench wrench = ComputePenaltyWrench(
+      clusters, {scene.X_WTool.p, V_WTool}, frames, materials);
   for (std::size_t k = 0; k < clusters.clusters.size(); ++k) {
     const Vec3& f = wrench.f_cluster_W[k];
     const Vec3& n = clusters.clusters[k].nhat_BA_W;
@@ -152,6 +151,18 @@ void CheckForce(const Scene& scene, const ContactSet& contacts,
       tally->Violated("a force that pushes", "f · n = %g", f.dot(n));
     }
   }
+}
+
+void CheckForce(const Scene& scene, const ContactSet& contacts,
+                ByteSource* source, Tally* tally) {
+  const double delta = scene.size * source->Power(-6, 0);
+  Vec6 V_WTool;
+  V_WTool << DrawVector(source), DrawVector(source);
+  ClusterSet clusters;
+  ClusterContacts(contacts.contacts, delta, scene.tolerance, &clusters);
+  CheckClusters(clusters, contacts, scene, V_WTool, tally);
+  ShareStiffness(contacts.contacts, scene.tolerance, &clusters);
+  CheckClusters(clusters, contacts, scene, V_WTool, tally);
 }
 
 }  // namespace

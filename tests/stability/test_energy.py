@@ -26,7 +26,7 @@ PATHS = {
 
 def energies(scene, duration_s=1.2):
     """Returns the books of a run."""
-    return run(BuildHapticDiagram(scene), duration_s).to_dict()["energy_J"]
+    return run(BuildHapticDiagram(scene), duration_s, energy=True).to_dict()["energy_J"]
 
 
 def assert_nothing_is_created(books):
@@ -72,7 +72,9 @@ def test_spoon_and_cup_at_rest_make_and_take_nothing():
         x for x in scene.hand.path.waypoints if x.time_s <= 1.2
     ]
     haptic = BuildHapticDiagram(scene)
-    settled, end = (run(haptic, t).to_dict()["energy_J"] for t in (3.0, 8.0))
+    settled, end = (
+        run(haptic, t, energy=True).to_dict()["energy_J"] for t in (5.0, 8.0)
+    )
     assert settled["contact"]["stored"] > 1e-4
     for name, part in end.items():
         for what in ("in", "out", "stored", "lost"):

@@ -47,7 +47,7 @@ def test_a_minute_of_rest(clustering, effects):
         p_WT.append(pose[4:])
         f_shown.append(shown[3:])
 
-    figures = run(haptic, END_S, on_tick=watch).to_dict()
+    figures = run(haptic, END_S, energy=True, on_tick=watch).to_dict()
     assert (figures["limit_hits"], figures["non_finite_events"]) == (0, 0)
     assert np.linalg.norm(f_shown[-1]) > 0.5
     assert np.ptp(p_WT, axis=0).max() < LARGEST_DRIFT_M

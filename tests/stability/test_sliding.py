@@ -82,10 +82,7 @@ def test_the_chain_feels_no_ripple(plate, tool, method):
         for contacts in slide(TOOLS[tool], plate, path, UP, np.eye(3), T):
             felt = feel(contacts, method, gains, velocity(path))
             expected = gains.stiffness_N_per_m * (T - height)
-            # A facet of the ball that is all but flush is shared as if in part it were
-            # no face: its pieces together are a little stiffer than the whole.
-            rel = 0.1 if (method, tool) == ("shared", "ball") else 1e-5
-            assert felt.force_W[2] == pytest.approx(expected, rel=rel)
+            assert felt.force_W[2] == pytest.approx(expected, rel=1e-5)
             assert np.abs(felt.force_W[:2]).max() < 1e-3 * expected
 
 
@@ -136,19 +133,7 @@ def globe():
     return load_mesh(MODELS / "sphere.obj", scale=1.0)
 
 
-@pytest.mark.parametrize(
-    "method",
-    [
-        "octree",
-        pytest.param(
-            "shared",
-            marks=pytest.mark.xfail(
-                strict=True,
-                reason="facets at a vertex are up to 1.8 times as stiff as one alone",
-            ),
-        ),
-    ],
-)
+@pytest.mark.parametrize("method", ["octree", "shared"])
 def test_a_tessellated_ball_is_felt_as_far_as_its_facets_are_tilted(globe, method):
     """A tip at a constant distance from the centre of 1,280 pieces of a sphere.
 
