@@ -223,7 +223,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
                                 PatchWorkspace* workspace) {
   const double point = layer * layer;
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
-  if (!(spread > 0)) return {std::nullopt, 0, point};
+  if (!(spread > 0)) return {std::nullopt, false, 0, point};
   const FlushFacets of_A(pair.A, hub.a, -n), of_B(pair.B, hub.b, n_B);
   Patch patch(pair, n, h, spread, layer, workspace);
   Blend blend;
@@ -232,6 +232,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
       blend.Add(patch.OfFacets(a.index, b.index), a.share * b.share, 1);
     }
   }
+  const bool has_faces = blend.total > 0;
   if (of_A.rest > 0) {
     VisitFlushEdges(pair.A, hub.a, n, [&](int edge_A, double share_A) {
       for (const FlushFacets::Item& b : of_B) {
@@ -259,7 +260,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
       }
     });
   }
-  PressurePatch found{std::nullopt, 1 - blend.rest,
+  PressurePatch found{std::nullopt, has_faces, 1 - blend.rest,
                       blend.extent + blend.rest * point};
   if (blend.total > 0) {
     const Vec3 flat = witness - n * n.dot(witness);

@@ -6,6 +6,7 @@
 
 #include "contact_passage.h"
 #include "facet_revisit.h"
+#include "flush_features.h"
 #include "pair_answer.h"
 #include "separation.h"
 #include "surface_support.h"
@@ -105,14 +106,15 @@ class Query {
     if (AreBothWanted(pair_, separation_)) return Overlapping();
     const PairContact contact = ContactApart(pair_, separation_);
     if (IsSupported(contact)) return contact;
-    const auto promoted = Promoted();
+    const auto promoted = Promoted(IsSupported(contact, kFlush));
     return promoted ? promoted : Behind();
   }
 
   // The closest points of the hulls are not closest points of the surfaces, as
-  // at a hollow corner: the nearest facet beside them that faces a vertex of
-  // the other body, if that vertex is over it (paper, 5.3.2).
-  std::optional<PairContact> Promoted() {
+  // at a hollow corner or a seam: the nearest facet beside them that faces a
+  // vertex of the other body, if that vertex is over it (paper, 5.3.2), or its
+  // face lies flush on it.
+  std::optional<PairContact> Promoted(bool surface_goes_on_flat) {
     DepthCandidate best;
     Hub best_hub;
     const auto consider = [&](const Vec3& n, int facet, bool is_of_A) {
@@ -126,8 +128,12 @@ class Query {
       const Witness witness = WitnessOfFeatures(pair_, a, b, n, h);
       const SurfaceSupport support = ClassifySupport(
           pair_.A, a, n, pair_.B, b, pair_.X_AB.R.transpose() * n);
-      if (support != SurfaceSupport::kSupported ||
-          LateralOffset(pair_, a, b, witness) > 0) {
+      if (support != SurfaceSupport::kSupported) return;
+      // A flush face wider than the pieces has its lowest corner over another
+      // one.
+      if (LateralOffset(pair_, a, b, witness) > 0 &&
+          !(surface_goes_on_flat &&
+            FindPatch(n, h, hub, witness.p_a).has_faces)) {
         return;
       }
       best = {h, n, a, b, support};
@@ -152,11 +158,12 @@ class Query {
     return state_.in_contact ? Held(state_.n) : TakenOver();
   }
 
-  bool IsSupported(const PairContact& contact) const {
+  bool IsSupported(const PairContact& contact,
+                   double slack = kSurfaceSlack) const {
     return ClassifySupport(pair_.A, contact.feature_A, contact.n, pair_.B,
                            contact.feature_B,
-                           pair_.X_AB.R.transpose() * contact.n) ==
-           SurfaceSupport::kSupported;
+                           pair_.X_AB.R.transpose() * contact.n,
+                           slack) == SurfaceSupport::kSupported;
   }
 
   std::optional<PairContact> Overlapping() {

@@ -5,11 +5,6 @@
 namespace drake_haptics {
 namespace {
 
-// Sine of the angle by which the surface may rise above the supporting plane:
-// wide enough for the noise of single-precision mesh files, too narrow to be
-// felt.
-constexpr double kSlack = 1e-3;
-
 int FindEdge(const Polytope& polytope, int v0, int v1) {
   for (const Polytope::Spoke& spoke : polytope.fan_of(v0)) {
     if (spoke.neighbor == v1) return spoke.edge;
@@ -30,7 +25,7 @@ bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
                 const Vec3& n) {
   const Vec3 along = polytope.vertices[edge.v1] - polytope.vertices[edge.v0];
   const bool is_rim = edge.wings[0].isZero(0) || edge.wings[1].isZero(0);
-  const double least = (is_rim ? -kSlack : kSlack) * along.norm();
+  const double least = (is_rim ? -kSurfaceSlack : kSurfaceSlack) * along.norm();
   const auto leaves = [&](const Vec3& wing, const Vec3& normal) {
     return !wing.isZero(0) && n.dot(normal) > least;
   };
@@ -43,7 +38,7 @@ bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
   bool has_surface = false;
   for (const Polytope::Spoke& spoke : polytope.fan_of(vertex)) {
     if (spoke.facet < 0 || !polytope.facets[spoke.facet].original) continue;
-    if (n.dot(spoke.normal) > -kSlack) return true;
+    if (n.dot(spoke.normal) > -kSurfaceSlack) return true;
     has_surface = true;
   }
   return !has_surface;
@@ -51,7 +46,7 @@ bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
 
 // Support of one side; n points out of the polytope, in its frame.
 SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
-                            const Vec3& n) {
+                            const Vec3& n, double slack) {
   const auto supported_if = [](bool condition) {
     return condition ? SurfaceSupport::kSupported : SurfaceSupport::kOriginal;
   };
@@ -65,8 +60,8 @@ SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
       if (!edge.original || !LeavesEdge(polytope, edge, n)) {
         return SurfaceSupport::kVirtual;
       }
-      return supported_if(n.dot(edge.wings[0]) <= kSlack &&
-                          n.dot(edge.wings[1]) <= kSlack);
+      return supported_if(n.dot(edge.wings[0]) <= slack &&
+                          n.dot(edge.wings[1]) <= slack);
     }
     default: {
       // Vertices are never created by a decomposition: all are original.
@@ -76,7 +71,7 @@ SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
       const auto ring = polytope.ring_of(feature.index());
       return supported_if(
           std::all_of(ring.begin(), ring.end(),
-                      [&](const Vec3& r) { return n.dot(r) <= kSlack; }));
+                      [&](const Vec3& r) { return n.dot(r) <= slack; }));
     }
   }
 }
@@ -85,10 +80,11 @@ SurfaceSupport ClassifySide(const Polytope& polytope, Feature feature,
 
 SurfaceSupport ClassifySupport(const Polytope& A, Feature feature_A,
                                const Vec3& n_A, const Polytope& B,
-                               Feature feature_B, const Vec3& n_B) {
-  const SurfaceSupport of_A = ClassifySide(A, feature_A, -n_A);
+                               Feature feature_B, const Vec3& n_B,
+                               double slack) {
+  const SurfaceSupport of_A = ClassifySide(A, feature_A, -n_A, slack);
   if (of_A == SurfaceSupport::kVirtual) return of_A;
-  return std::min(of_A, ClassifySide(B, feature_B, n_B));
+  return std::min(of_A, ClassifySide(B, feature_B, n_B, slack));
 }
 
 Feature FeatureOfVertices(const Polytope& polytope, const int* vertices,
