@@ -16,15 +16,22 @@ _LEGEND = (
     (colors.NEAR_CONTACT, "near contact"),
     (colors.PENETRATING_CONTACT, "penetrating contact"),
 )
+_FRICTION_LEGEND = (
+    (colors.STICKING_CONTACT, "friction that sticks"),
+    (colors.SLIDING_CONTACT, "friction that slides"),
+)
 
 
-def write_recording(meshcat: Meshcat, path: Path, title: str) -> None:
+def write_recording(
+    meshcat: Meshcat, path: Path, title: str, *, has_friction: bool = False
+) -> None:
     """Writes the page as one HTML file that needs nothing else.
 
     Args:
         meshcat: Whose recording has been published.
         path: The file to write.
         title: Heading of the legend.
+        has_friction: Whether friction is drawn.
 
     Raises:
         OSError: The file cannot be written.
@@ -33,7 +40,7 @@ def write_recording(meshcat: Meshcat, path: Path, title: str) -> None:
         f'<div><span style="display:inline-block;width:0.8em;height:0.8em;'
         f"margin-right:0.6em;border-radius:50%;background:{_css(color)}"
         f'"></span>{html.escape(text)}</div>'
-        for color, text in _LEGEND
+        for color, text in _LEGEND + (_FRICTION_LEGEND if has_friction else ())
     )
     legend = (
         '<div id="legend" style="position:fixed;left:1.2em;bottom:1.2em;'

@@ -137,7 +137,7 @@ def _judge_energy(
     held = [
         0.5
         * gains.stiffness_N_per_m
-        * np.sum(np.maximum(0, gains.tolerance_m - t.clusters.distance) ** 2)
+        * float(t.clusters.compression @ (gains.tolerance_m - t.clusters.distance))
         for t in ticks
     ]
     rise = (work + held) - np.minimum.accumulate(work + held)

@@ -151,7 +151,12 @@ def run(
     if record is not None and meshcat is not None and visualizer is not None:
         visualizer.StopRecording()
         visualizer.PublishRecording()
-        write_recording(meshcat, record, chosen.description)
+        write_recording(
+            meshcat,
+            record,
+            chosen.description,
+            has_friction=chosen.effects.friction is not None,
+        )
         console.print(f"Wrote [bold]{record}[/].", soft_wrap=True)
     if json_file is not None:
         write_json(figures, json_file)

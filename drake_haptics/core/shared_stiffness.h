@@ -25,8 +25,7 @@ namespace drake_haptics {
 /// facets of a smooth surface. So
 /// - a single contact pushes with k w along n (paper, Eq. 6), and a face that
 ///   is cut into any number of pieces as the whole face does;
-/// - any number of contacts along one direction are together at most 1 / (1 −
-/// ρ)
+/// - contacts along one direction, however many, are together at most 1/(1 − ρ)
 ///   as stiff as one; one that begins, at w = 0, brings nothing with it;
 /// - λ is the solution of a convex problem: it is unique, never pulls, changes
 ///   with w by at most k / ρ per metre, and is the gradient of a potential

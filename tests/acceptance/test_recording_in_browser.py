@@ -96,6 +96,15 @@ def test_arrows_come_and_go_with_the_contacts(page):
     assert arrows.sum() > 20
 
 
+def test_the_legend_tells_of_friction_where_there_is_some(tmp_path):
+    for scene, has_friction in [("rubbed_sphere", True), ("sphere_pen", False)]:
+        file = tmp_path / f"{scene}.html"
+        arguments = ["run", scene, "--headless", "--duration", "0.05"]
+        result = CliRunner().invoke(main, [*arguments, "--record", str(file)])
+        assert result.exit_code == 0, result.output
+        assert ("friction that slides" in file.read_text("utf-8")) == has_friction
+
+
 def test_the_legend_is_on_the_page(page):
     text = page.evaluate("document.getElementById('legend').innerText")
     assert "penetrating" in text and "spoon" in text
