@@ -90,7 +90,7 @@ def test_shared_contacts_multiply_no_change(key: str) -> None:
 def test_contacts_that_only_glide_make_no_jump() -> None:
     found = measure(make_scene("tips"), STEPS)
     assert found["octree"].ratio.max() > 3 * JUMP
-    # Contacts along one direction are at most twice as stiff as one; the tips press
+    # Contacts along one direction are at most 4/3 as stiff as one; the tips press
     # along five, and shares shift.
     assert found["shared"].ratio[:, 0].max() < 5
     assert not found["shared"].exceeds.any()
