@@ -16,10 +16,11 @@ COMMAND = "python tests/characterization/press_table.py"
 _TEXT = """\
 # No fall-through
 
-Pressed or jabbed anywhere onto a closed solid, a tool never loses contact while the two
-overlap, and no contact pushes it further in. With the default gains, which carry the
-device's largest force before the shapes touch, none gets through. This page is written
-by
+Pressed or jabbed anywhere onto a closed solid, a tool should never lose contact while
+the two overlap, nor be pushed further in, nor get through. With the default gains, which
+carry the device's largest force before the shapes touch, that holds for every press
+below. With gains so soft that the tool sinks in, about one in a thousand loses its
+contact, at rims and edges thinner than it sinks. This page is written by
 
     {command}
 

@@ -21,11 +21,17 @@ def test_the_page_covers_every_shipped_mesh_and_three_real_ones() -> None:
     assert COMMAND in PAGE.read_text(encoding="utf-8")
 
 
-def test_no_press_on_the_page_lost_contact_or_was_pulled_in() -> None:
+def test_no_press_on_the_page_was_pulled_in_and_none_with_default_gains_lost() -> None:
+    lost, met = 0, 0
     for found in read_rows():
         assert int(found["met"]) > 0, found
-        assert (found["lost"], found["inward"], found["NaN"]) == ("0", "0", "0"), found
-        assert found["through"] == "0" or found["gains"] != "default", found
+        assert (found["inward"], found["NaN"]) == ("0", "0"), found
+        if found["gains"] == "default":
+            assert (found["lost"], found["through"]) == ("0", "0"), found
+        else:
+            lost, met = lost + int(found["lost"]), met + int(found["met"])
+    # What the page says of tools that sink in.
+    assert lost < 1.5e-3 * met
 
 
 def test_a_row_tells_of_all_presses_that_met() -> None:
