@@ -17,10 +17,10 @@ _TEXT = """\
 # No fall-through
 
 Pressed or jabbed anywhere onto a closed solid, a tool should never lose contact while
-the two overlap, nor be pushed further in, nor get through. With the default gains, which
-carry the device's largest force before the shapes touch, that holds for every press
-below. With gains so soft that the tool sinks in, about one in a thousand loses its
-contact, at rims and edges thinner than it sinks. This page is written by
+the two overlap, nor be pushed further in, nor get through. With the default gains,
+which carry the device's largest force before the shapes touch, that holds for every
+press below. With gains so soft that the tool sinks in, about one in a thousand loses
+its contact, at rims and edges thinner than it sinks. This page is written by
 
     {command}
 
