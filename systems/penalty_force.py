@@ -17,6 +17,7 @@ from pydrake.systems.framework import (
 
 from drake_haptics._core import PenaltyWrench, penalty_force
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.object_motions import ObjectMotions
 
 
 class PenaltyForce(LeafSystem):
@@ -76,21 +77,7 @@ class PenaltyForce(LeafSystem):
         self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
-        self._moving = [
-            (
-                i,
-                self.DeclareVectorInputPort(f"X_WO_{item.name}", 7),
-                self.DeclareVectorInputPort(f"V_WO_{item.name}", 6),
-            )
-            for i, item in enumerate(objects)
-            if item.X_WO is None
-        ]
-        # Poses and velocities of objects at rest are read nowhere else.
-        self._p_WO = np.zeros((len(objects), 3))
-        self._V_WO = np.zeros((len(objects), 6))
-        for i, item in enumerate(objects):
-            if item.X_WO is not None:
-                self._p_WO[i] = item.X_WO.translation()
+        self._motions = ObjectMotions(self, objects)
         # Each port calls the core, which takes less time than to share one answer:
         # in a loop without a viewer only the first one is asked.
         from_inputs = {self.all_input_ports_ticket()}
@@ -145,12 +132,7 @@ class PenaltyForce(LeafSystem):
         return self._contact_wrench
 
     def _calc_wrench(self, context: Context) -> PenaltyWrench:
-        p_WO, V_WO = self._p_WO, self._V_WO
-        if self._moving:
-            p_WO, V_WO = p_WO.copy(), V_WO.copy()
-            for i, X_WO, V_WOi in self._moving:
-                p_WO[i] = X_WO.Eval(context)[4:]
-                V_WO[i] = V_WOi.Eval(context)
+        p_WO, V_WO = self._motions.read(context)
         return penalty_force(
             self._clusters.Eval(context),
             self._X_WTool.Eval(context)[4:],

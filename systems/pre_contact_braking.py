@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 from pydrake.common.value import Value
 from pydrake.systems.framework import (
     BasicVector,
@@ -16,6 +15,7 @@ from pydrake.systems.framework import (
 
 from drake_haptics._core import BrakingGains, pre_contact_braking
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.object_motions import ObjectMotions
 
 
 class PreContactBraking(LeafSystem):
@@ -75,18 +75,7 @@ class PreContactBraking(LeafSystem):
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
-        self._moving = [
-            (
-                i,
-                self.DeclareVectorInputPort(f"X_WO_{item.name}", 7),
-                self.DeclareVectorInputPort(f"V_WO_{item.name}", 6),
-            )
-            for i, item in enumerate(objects)
-            if item.X_WO is None
-        ]
-        # An object at rest has no velocity, wherever it is.
-        self._p_WO = np.zeros((len(objects), 3))
-        self._V_WO = np.zeros((len(objects), 6))
+        self._motions = ObjectMotions(self, objects)
         self._wrench_model = self.DeclareVectorOutputPort(
             "wrench_model",
             78,
@@ -119,12 +108,7 @@ class PreContactBraking(LeafSystem):
         return self._wrench_model
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
-        p_WO, V_WO = self._p_WO, self._V_WO
-        if self._moving:
-            p_WO, V_WO = p_WO.copy(), V_WO.copy()
-            for i, X_WO, V_WOi in self._moving:
-                p_WO[i] = X_WO.Eval(context)[4:]
-                V_WO[i] = V_WOi.Eval(context)
+        p_WO, V_WO = self._motions.read(context)
         output.SetFromVector(
             pre_contact_braking(
                 self._contacts.Eval(context),

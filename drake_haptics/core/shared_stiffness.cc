@@ -5,6 +5,7 @@
 #include <numbers>
 #include <span>
 
+#include "contact_patch.h"
 #include "skin_forces.h"
 
 namespace drake_haptics {
@@ -22,9 +23,6 @@ constexpr double kSameDirection = 0.293;
 // can be one constraint. A share, not a length: how fast contacts part must not
 // depend on how deep they are.
 constexpr double kSameDepth = 0.25;
-// Damping sets in over this share of the tolerance, the thickness of the
-// pressure layer.
-constexpr double kLayerShare = 0.1;
 // Contacts that are nearly the same count as wholly so: what little is missing
 // would leave each a spring of its own.
 constexpr double kAlmost = 1.25;
@@ -38,9 +36,9 @@ double Fade(double distance, double width) {
 
 // How far a flush face or edge reaches, m: as far as an edge of its extent.
 double Reach(const Contact& contact, double tolerance) {
-  return tolerance > 0
-             ? contact.flushness * contact.extent / (kLayerShare * tolerance)
-             : 0.0;
+  return tolerance > 0 ? contact.flushness * contact.extent /
+                             (kPressureLayerShare * tolerance)
+                       : 0.0;
 }
 
 // In how far two contacts are parts of one constraint, 0 to 1.
@@ -149,8 +147,9 @@ void Press(std::span<const Contact* const> contacts, double tolerance,
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     Cluster& cluster = out->clusters[first + i];
     cluster.compression = forces.compression[i];
-    cluster.damping_share =
-        cluster.compression / std::max(depth[i], kLayerShare * tolerance);
+    // Damping sets in over the thickness of the pressure layer.
+    cluster.damping_share = cluster.compression /
+                            std::max(depth[i], kPressureLayerShare * tolerance);
     for (std::size_t j = 0; j < contacts.size(); ++j) {
       out->coupling[(first + i) * all + first + j] = forces.coupling(i, j);
     }

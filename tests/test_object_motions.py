@@ -1,0 +1,41 @@
+"""Objects that rest are placed once; those that move are read from ports."""
+
+import numpy as np
+import pytest
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import LeafSystem
+from test_contact_query import box_core
+
+from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.object_motions import ObjectMotions
+
+
+class Asking(LeafSystem):
+    def __init__(self, objects):
+        super().__init__()
+        self.motions = ObjectMotions(self, objects)
+
+
+@pytest.fixture(scope="module")
+def core():
+    return box_core(0.02, 0.02, 0.02)
+
+
+def test_an_object_at_rest_has_no_port(core):
+    system = Asking([ContactObject("table", core, RigidTransform([1.0, 2.0, 3.0]))])
+    assert system.num_input_ports() == 0
+    p_WO, V_WO = system.motions.read(system.CreateDefaultContext())
+    np.testing.assert_array_equal(p_WO, [[1.0, 2.0, 3.0]])
+    np.testing.assert_array_equal(V_WO, np.zeros((1, 6)))
+
+
+def test_an_object_that_moves_is_read_in_its_place(core):
+    table = ContactObject("table", core, RigidTransform([1.0, 2.0, 3.0]))
+    system = Asking([table, ContactObject("cart", core)])
+    context = system.CreateDefaultContext()
+    for x in (0.1, 0.2):
+        system.GetInputPort("X_WO_cart").FixValue(context, [1, 0, 0, 0, x, 0, 0])
+        system.GetInputPort("V_WO_cart").FixValue(context, [0, 0, 1, x, 0, 0])
+        p_WO, V_WO = system.motions.read(context)
+        np.testing.assert_array_equal(p_WO, [[1.0, 2.0, 3.0], [x, 0, 0]])
+        np.testing.assert_array_equal(V_WO, [np.zeros(6), [0, 0, 1, x, 0, 0]])
