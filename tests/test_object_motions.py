@@ -11,6 +11,8 @@ from drake_haptics.systems.object_motions import ObjectMotions
 
 
 class Asking(LeafSystem):
+    """Nothing but its objects' ports."""
+
     def __init__(self, objects):
         super().__init__()
         self.motions = ObjectMotions(self, objects)
