@@ -4,7 +4,7 @@ The compiled core of drake_haptics: geometry, contact query, clustering and wren
 
 from collections.abc import Callable, Sequence
 import enum
-from typing import Annotated, Literal
+from typing import Annotated, Literal, overload
 
 import numpy
 import numpy.typing
@@ -13,6 +13,31 @@ from numpy.typing import NDArray
 import drake_haptics.decomposition
 import drake_haptics.pose_like
 
+
+class AutoDiffVector:
+    """
+    Numbers with their derivatives by D variables that all arguments of a call have in common. Immutable.
+    """
+
+    def __init__(self, value: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], gradient: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='F')]) -> None:
+        """
+        Args:
+            value: (n,).
+            gradient: (n, D).
+
+        Raises:
+            ValueError: the sizes do not match.
+        """
+
+    def __len__(self) -> int: ...
+
+    @property
+    def value(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
+        """(n,)."""
+
+    @property
+    def gradient(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='F')]:
+        """(n, D)."""
 
 class ConvexPolytope:
     """
@@ -775,6 +800,7 @@ class CouplingGains:
     @property
     def rotational_damping_Nms_per_rad(self) -> float: ...
 
+@overload
 def coupling_wrench(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], gains: CouplingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
     """
     Wrenches of the virtual coupling between handle H and tool.
@@ -786,6 +812,10 @@ def coupling_wrench(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), orde
     Returns:
         (84,): wrench model on the tool at To (78), then the reaction on the handle at Ho in W (6).
     """
+
+@overload
+def coupling_wrench(q_WH: AutoDiffVector, V_WH: AutoDiffVector, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WTool: AutoDiffVector, V_WTool: AutoDiffVector, gains: CouplingGains) -> AutoDiffVector:
+    """The same with derivatives."""
 
 class RigidToolDynamics:
     """A free rigid tool, advanced implicitly."""
@@ -806,10 +836,15 @@ class RigidToolDynamics:
     def p_TTcm(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
         """Centre of mass (3,) in the tool's frame, m."""
 
+    @overload
     def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], wrench_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], h: float) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
         """
         Advances the state (13,) = [pose (7); spatial velocity (6)] by one linearized backward Euler step of h seconds under a wrench model (78,).
         """
+
+    @overload
+    def step(self, state: AutoDiffVector, wrench_model: AutoDiffVector, h: float) -> AutoDiffVector:
+        """The same with derivatives."""
 
 class WrenchJacobian:
     """

@@ -11,10 +11,14 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteValues,
     InputPort,
-    LeafSystem,
     OutputPort,
 )
 
+from drake_haptics._core import AutoDiffVector
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 from drake_haptics.systems.vector_ports import export_parts
 
 # Values of the port `status`.
@@ -88,7 +92,7 @@ class DisplayForceHold(Diagram):
         return self.GetOutputPort("status")
 
 
-class _LimitedSample(LeafSystem):
+class _LimitedSample(DifferentiableSystem):
     """The state of a `DisplayForceHold`, and its update."""
 
     def __init__(self, period_s: float, max_force_N: float, max_torque_Nm: float):
@@ -100,16 +104,35 @@ class _LimitedSample(LeafSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
-        wrench = self._F_display.Eval(context).tolist()
+        next_state.set_value(np.array(self._show(self._F_display.Eval(context))))
+
+    def _show(self, F_display: np.ndarray) -> list[float]:
+        """Returns [F_applied; status] for a wrench that is asked for."""
+        wrench = F_display.tolist()
         torque, torque_limited = _limit(wrench[:3], self._max_torque_Nm)
         force, force_limited = _limit(wrench[3:], self._max_force_N)
         if not (torque_limited or force_limited):
-            shown = [*wrench, SHOWN_AS_ASKED]
-        elif all(map(math.isfinite, wrench)):
-            shown = [*torque, *force, LIMITED]
-        else:
-            shown = [0.0] * 6 + [NOT_FINITE]
-        next_state.set_value(np.array(shown))
+            return [*wrench, SHOWN_AS_ASKED]
+        if all(map(math.isfinite, wrench)):
+            return [*torque, *force, LIMITED]
+        return [0.0] * 6 + [NOT_FINITE]
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the state."""
+        return at.state
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns what is shown with its derivatives; the status has none."""
+        asked = at["F_display"]
+        gradient = np.zeros((7, at.num_derivatives))
+        if np.isfinite(asked.value).all():
+            for rows, largest in [
+                (slice(0, 3), self._max_torque_Nm),
+                (slice(3, 6), self._max_force_N),
+            ]:
+                part = asked.value[rows]
+                gradient[rows] = _limit_slope(part, largest) @ asked.gradient[rows]
+        return AutoDiffVector(np.array(self._show(asked.value)), gradient)
 
 
 def _limit(vector: list[float], largest: float) -> tuple[list[float], bool]:
@@ -119,3 +142,12 @@ def _limit(vector: list[float], largest: float) -> tuple[list[float], bool]:
         return vector, False
     # Divided first: the norm of huge values may be infinite, their ratios are not.
     return [largest * (x / norm) for x in vector], True
+
+
+def _limit_slope(vector: np.ndarray, largest: float) -> np.ndarray:
+    """Returns the derivative (3, 3) of `_limit`."""
+    norm = float(np.linalg.norm(vector))
+    if norm <= largest:
+        return np.eye(3)
+    direction = vector / norm
+    return largest / norm * (np.eye(3) - np.outer(direction, direction))

@@ -12,12 +12,15 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteValues,
     InputPort,
-    LeafSystem,
     OutputPort,
 )
 
-from drake_haptics._core import RigidToolDynamics
+from drake_haptics._core import AutoDiffVector, RigidToolDynamics
 from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 from drake_haptics.systems.vector_ports import export_parts
 
 
@@ -103,7 +106,7 @@ class HapticTool(Diagram):
         return self.GetOutputPort("V_WTool")
 
 
-class _ImplicitStep(LeafSystem):
+class _ImplicitStep(DifferentiableSystem):
     """The state of a `HapticTool`, and its update."""
 
     def __init__(
@@ -137,3 +140,21 @@ class _ImplicitStep(LeafSystem):
                 self._period_s,
             )
         )
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the state."""
+        return at.state
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the next state with its derivatives."""
+        models = [
+            at[port.get_name()] for port in self._wrenches if port.get_name() in at
+        ]
+        wrench_model = AutoDiffVector(
+            sum((model.value for model in models), np.zeros(78)),
+            sum(
+                (model.gradient for model in models),
+                np.zeros((78, at.num_derivatives)),
+            ),
+        )
+        return self._dynamics.step(at.state, wrench_model, self._period_s)

@@ -9,12 +9,15 @@ from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
     InputPort,
-    LeafSystem,
     OutputPort,
 )
 
-from drake_haptics._core import CouplingGains, coupling_wrench
+from drake_haptics._core import AutoDiffVector, CouplingGains, coupling_wrench
 from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 from drake_haptics.systems.vector_ports import export_parts
 
 
@@ -103,7 +106,7 @@ class VirtualCoupling(Diagram):
         return self.GetOutputPort("F_display")
 
 
-class _SpringAndDamper(LeafSystem):
+class _SpringAndDamper(DifferentiableSystem):
     """Both wrenches of a `VirtualCoupling` from one call of the core."""
 
     def __init__(self, gains: CouplingGains, X_HT: RigidTransform):
@@ -128,4 +131,15 @@ class _SpringAndDamper(LeafSystem):
                 self._V_WTool.Eval(context),
                 self._gains,
             )
+        )
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the wrenches with their derivatives."""
+        return coupling_wrench(
+            at["X_WH"],
+            at["V_WH"],
+            self._q_HT,
+            at["X_WTool"],
+            at["V_WTool"],
+            self._gains,
         )

@@ -7,12 +7,14 @@
 /// Each bind_<topic>.cc adds one topic to the Python module `_core`.
 namespace drake_haptics {
 
+void BindAutoDiff(nanobind::module_& m);
 void BindPolytope(nanobind::module_& m);
 void BindDecomposition(nanobind::module_& m);
 void BindContact(nanobind::module_& m);
 void BindConvexPair(nanobind::module_& m);
 void BindTracker(nanobind::module_& m);
 void BindForce(nanobind::module_& m);
+void BindTool(nanobind::module_& m);
 void BindJacobian(nanobind::module_& m);
 void BindShading(nanobind::module_& m);
 void BindFriction(nanobind::module_& m);

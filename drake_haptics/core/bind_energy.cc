@@ -101,11 +101,11 @@ void BindLedger(nb::module_& m) {
             LoopReading reading{{tool_state.head<7>(), tool_state.tail<6>()},
                                 q_WH,
                                 F_applied,
-                                FromVector(coupling),
+                                ToWrenchModel(coupling),
                                 {}};
             for (std::size_t i = 0; i < stored.size(); ++i) {
               reading.sources.push_back(
-                  {FromVector(wrench_models[i]), stored[i]});
+                  {ToWrenchModel<double>(wrench_models[i]), stored[i]});
             }
             self.ledger.Add(reading);
           },

@@ -7,9 +7,7 @@
 #include "bind_columns.h"
 #include "clustering.h"
 #include "penalty_force.h"
-#include "rigid_tool.h"
 #include "shared_stiffness.h"
-#include "virtual_coupling.h"
 #include "wrench_model.h"
 
 namespace nb = nanobind;
@@ -152,95 +150,11 @@ void BindPenaltyForce(nb::module_& m) {
       "    IndexError: a cluster names an object that has no row.");
 }
 
-void BindCoupling(nb::module_& m) {
-  nb::class_<CouplingGains>(m, "CouplingGains",
-                            "Spring and damper of the virtual coupling.")
-      .def(
-          "__init__",
-          [](CouplingGains* self, double k, double b, double kr, double br) {
-            for (const double gain : {k, b, kr, br}) {
-              if (!std::isfinite(gain) || gain < 0) {
-                throw std::invalid_argument(
-                    "coupling gains must be finite and at least 0");
-              }
-            }
-            new (self) CouplingGains{k, b, kr, br};
-          },
-          nb::arg("stiffness_N_per_m"), nb::arg("damping_Ns_per_m"),
-          nb::arg("rotational_stiffness_Nm_per_rad"),
-          nb::arg("rotational_damping_Nms_per_rad"))
-      .def_ro("stiffness_N_per_m", &CouplingGains::stiffness)
-      .def_ro("damping_Ns_per_m", &CouplingGains::damping)
-      .def_ro("rotational_stiffness_Nm_per_rad",
-              &CouplingGains::rotational_stiffness)
-      .def_ro("rotational_damping_Nms_per_rad",
-              &CouplingGains::rotational_damping);
-  m.def(
-      "coupling_wrench",
-      [](const PoseVector& q_WH, const Vec6& V_WH, const PoseVector& q_HT,
-         const PoseVector& q_WTool, const Vec6& V_WTool,
-         const CouplingGains& gains) {
-        const CouplingWrench wrench =
-            ComputeCoupling(q_WH, V_WH, q_HT, q_WTool, V_WTool, gains);
-        Eigen::Matrix<double, kWrenchModelSize + 6, 1> out;
-        out << ToVector(wrench.tool), wrench.F_display;
-        return out;
-      },
-      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WTool"),
-      nb::arg("V_WTool"), nb::arg("gains"),
-      "Wrenches of the virtual coupling between handle H and tool.\n\n"
-      "Args:\n"
-      "    q_WH, q_HT, q_WTool: (7,) poses [qw qx qy qz x y z]: handle, the "
-      "tool's place in it, tool.\n"
-      "    V_WH, V_WTool: (6,) spatial velocities [rad/s; m/s].\n\n"
-      "Returns:\n"
-      "    (84,): wrench model on the tool at To (78), then the reaction on "
-      "the handle at Ho in W (6).");
-}
-
-void BindRigidTool(nb::module_& m) {
-  nb::class_<ToolInertia>(m, "RigidToolDynamics",
-                          "A free rigid tool, advanced implicitly.")
-      .def(
-          "__init__",
-          [](ToolInertia* self, double mass, const Vec3& p_TTcm,
-             const Mat3& I_TTcm_T) {
-            const ToolInertia inertia{mass, p_TTcm, I_TTcm_T};
-            RequirePhysical(inertia);
-            new (self) ToolInertia(inertia);
-          },
-          nb::arg("mass_kg"), nb::arg("p_TTcm"), nb::arg("I_TTcm_T"),
-          "Tool of `mass_kg`, centre of mass (3,) m and rotational inertia "
-          "about it (3, 3) kg·m², both in the tool's frame.\n\n"
-          "Raises:\n    ValueError: not a physical inertia.")
-      .def_ro("mass_kg", &ToolInertia::mass, "Mass, kg.")
-      .def_prop_ro(
-          "p_TTcm", [](const ToolInertia& self) { return self.p_TTcm; },
-          "Centre of mass (3,) in the tool's frame, m.")
-      .def(
-          "step",
-          [](const ToolInertia& self, const Eigen::Matrix<double, 13, 1>& state,
-             const WrenchModelVector& wrench, double h) {
-            const ToolState next =
-                StepTool(self, {state.head<7>(), state.tail<6>()},
-                         FromVector(wrench), h);
-            Eigen::Matrix<double, 13, 1> out;
-            out << next.q_WT, next.V_WT;
-            return out;
-          },
-          nb::arg("state"), nb::arg("wrench_model"), nb::arg("h"),
-          "Advances the state (13,) = [pose (7); spatial velocity (6)] by one "
-          "linearized backward Euler step of h seconds under a wrench model "
-          "(78,).");
-}
-
 }  // namespace
 
 void BindForce(nb::module_& m) {
   BindClustering(m);
   BindPenaltyForce(m);
-  BindCoupling(m);
-  BindRigidTool(m);
 }
 
 }  // namespace drake_haptics

@@ -8,12 +8,14 @@ NB_MODULE(_core, m) {
   // Drake keeps the Python systems of a Diagram alive until the interpreter is
   // gone, and with them what they hold of ours: no leak, but reported as one.
   nanobind::set_leak_warnings(false);
+  drake_haptics::BindAutoDiff(m);
   drake_haptics::BindPolytope(m);
   drake_haptics::BindDecomposition(m);
   drake_haptics::BindContact(m);
   drake_haptics::BindConvexPair(m);
   drake_haptics::BindTracker(m);
   drake_haptics::BindForce(m);
+  drake_haptics::BindTool(m);
   drake_haptics::BindJacobian(m);
   drake_haptics::BindShading(m);
   drake_haptics::BindFriction(m);

@@ -42,7 +42,7 @@ SixJointArm::Handle SixJointArm::Evaluate(const State& state) const {
   for (int i = 0; i < 6; ++i) {
     const Axis& axis = axes_[i];
     axes[i] = {R * axis.direction, R * axis.point + p};
-    R = R * RotationExp(state[i] * axis.direction);
+    R = R * RotationExp<double>(state[i] * axis.direction);
     p = axes[i].point - R * axis.point;
   }
   const Eigen::Quaterniond R_WH = R * R_WH_;

@@ -23,7 +23,7 @@ void DifferentiatePatch(const PosedPieces& pieces, const Contact& contact,
   // In A's frame, with the tool displaced by `by`.
   const auto patch_at = [&](const Vec6& by) {
     const Mat3 R_WA =
-        RotationExp(by.head<3>()).toRotationMatrix() * pieces.X_WA.R;
+        RotationExp<double>(by.head<3>()).toRotationMatrix() * pieces.X_WA.R;
     const Mat3 R_AW = R_WA.transpose();
     const Vec3 p_ToBo = pieces.X_WB.p - pieces.X_WA.p - by.tail<3>();
     const PosedPair pair{

@@ -8,9 +8,10 @@
 namespace drake_haptics {
 namespace {
 
-Mat3 Cross(const Vec3& v) {
-  Mat3 m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+template <typename T>
+Mat3Of<T> CrossMatrix(const Vec3Of<T>& v) {
+  Mat3Of<T> m;
+  m << T(0), -v.z(), v.y(), v.z(), T(0), -v.x(), -v.y(), v.x(), T(0);
   return m;
 }
 
@@ -30,34 +31,45 @@ void RequirePhysical(const ToolInertia& inertia) {
   }
 }
 
-ToolMotionTerms ComputeMotionTerms(const ToolInertia& inertia,
-                                   const ToolState& state) {
-  const Mat3 R = QuaternionOf(state.q_WT).toRotationMatrix();
-  const Vec3 c = R * inertia.p_TTcm;
-  const Mat3 C = Cross(c);
+template <typename T>
+ToolMotionTermsOf<T> ComputeMotionTerms(const ToolInertia& inertia,
+                                        const ToolStateOf<T>& state) {
+  const Mat3Of<T> R = QuaternionOf(state.q_WT).toRotationMatrix();
+  const Vec3Of<T> c = R * inertia.p_TTcm.template cast<T>();
+  const Mat3Of<T> C = CrossMatrix(c);
   const double m = inertia.mass;
-  const Mat3 I_To = R * inertia.I_TTcm_T * R.transpose() - m * C * C;
-  const Vec3 w = state.V_WT.head<3>();
+  const Mat3Of<T> I_To =
+      R * inertia.I_TTcm_T.template cast<T>() * R.transpose() - m * C * C;
+  const Vec3Of<T> w = state.V_WT.template head<3>();
 
-  ToolMotionTerms terms;
-  terms.M << I_To, m * C, -m * C, m * Mat3::Identity();
+  ToolMotionTermsOf<T> terms;
+  terms.M << I_To, m * C, -m * C, m * Mat3Of<T>::Identity();
   terms.b << w.cross(I_To * w), m * w.cross(w.cross(c));
   return terms;
 }
 
-ToolState StepTool(const ToolInertia& inertia, const ToolState& state,
-                   const WrenchModel& wrench, double h) {
+template <typename T>
+ToolStateOf<T> StepTool(const ToolInertia& inertia, const ToolStateOf<T>& state,
+                        const WrenchModelOf<T>& wrench, double h) {
   const auto [M, b] = ComputeMotionTerms(inertia, state);
-  const Mat6 left = M + h * wrench.B + h * h * wrench.K;
-  const Vec6 right = h * (wrench.F - b - h * (wrench.K * state.V_WT));
-  ToolState next;
+  const Mat6Of<T> left = M + h * wrench.B + h * h * wrench.K;
+  const Vec6Of<T> right = h * (wrench.F - b - h * (wrench.K * state.V_WT));
+  ToolStateOf<T> next;
   next.V_WT = state.V_WT + left.partialPivLu().solve(right);
-  const Vec3 turn = h * next.V_WT.head<3>();
-  const Eigen::Quaterniond R_next =
+  const Vec3Of<T> turn = h * next.V_WT.template head<3>();
+  const Eigen::Quaternion<T> R_next =
       (RotationExp(turn) * QuaternionOf(state.q_WT)).normalized();
   next.q_WT << R_next.w(), R_next.vec(),
-      state.q_WT.tail<3>() + h * next.V_WT.tail<3>();
+      state.q_WT.template tail<3>() + h * next.V_WT.template tail<3>();
   return next;
 }
+
+template ToolMotionTermsOf<double> ComputeMotionTerms(const ToolInertia&,
+                                                      const ToolState&);
+template ToolState StepTool(const ToolInertia&, const ToolState&,
+                            const WrenchModel&, double);
+template ToolStateOf<AutoDiff> StepTool(const ToolInertia&,
+                                        const ToolStateOf<AutoDiff>&,
+                                        const WrenchModelOf<AutoDiff>&, double);
 
 }  // namespace drake_haptics

@@ -15,10 +15,12 @@ struct ToolInertia {
 
 /// Pose [qw qx qy qz x y z] and spatial velocity [rad/s; m/s] of the tool's
 /// frame in the world.
-struct ToolState {
-  PoseVector q_WT;
-  Vec6 V_WT;
+template <typename T>
+struct ToolStateOf {
+  PoseVectorOf<T> q_WT;
+  Vec6Of<T> V_WT;
 };
+using ToolState = ToolStateOf<double>;
 
 /// @throws std::invalid_argument unless the mass is above zero and the inertia
 ///         is symmetric and positive definite.
@@ -26,13 +28,16 @@ void RequirePhysical(const ToolInertia& inertia);
 
 /// Spatial inertia M about To in W and the velocity terms b of
 /// M dV/dt + b = F.
-struct ToolMotionTerms {
-  Mat6 M;
-  Vec6 b;
+template <typename T>
+struct ToolMotionTermsOf {
+  Mat6Of<T> M;
+  Vec6Of<T> b;
 };
+using ToolMotionTerms = ToolMotionTermsOf<double>;
 
-ToolMotionTerms ComputeMotionTerms(const ToolInertia& inertia,
-                                   const ToolState& state);
+template <typename T>
+ToolMotionTermsOf<T> ComputeMotionTerms(const ToolInertia& inertia,
+                                        const ToolStateOf<T>& state);
 
 /// Advances the free rigid tool by one step of linearized backward Euler:
 ///   (M + h B + h² K) ΔV = h (F − b − h K V),  V ← V + ΔV,  δ = h V,
@@ -40,7 +45,8 @@ ToolMotionTerms ComputeMotionTerms(const ToolInertia& inertia,
 /// Stable for stiff contacts at any step, where explicit steps are bounded by
 /// 4 m / h² (stability-and-device notes, section 5).
 /// @param h step, s.
-ToolState StepTool(const ToolInertia& inertia, const ToolState& state,
-                   const WrenchModel& wrench, double h);
+template <typename T>
+ToolStateOf<T> StepTool(const ToolInertia& inertia, const ToolStateOf<T>& state,
+                        const WrenchModelOf<T>& wrench, double h);
 
 }  // namespace drake_haptics

@@ -14,34 +14,44 @@ struct CouplingGains {
   double rotational_damping = 0;    ///< N·m·s/rad
 };
 
-struct CouplingWrench {
-  WrenchModel tool;               ///< on the tool at To
-  Vec6 F_display = Vec6::Zero();  ///< its reaction on the handle at Ho, in W
+template <typename T>
+struct CouplingWrenchOf {
+  WrenchModelOf<T> tool;  ///< on the tool at To
+  Vec6Of<T> F_display;    ///< its reaction on the handle at Ho, in W
 };
+using CouplingWrench = CouplingWrenchOf<double>;
 
 /// Where the handle holds the tool, against where it is.
-struct CouplingStretch {
-  Vec3 p_HT_W;   ///< from the handle to where it holds the tool, in W, m
-  Vec3 twist;    ///< rotation vector from the tool to there, rad
-  Vec3 stretch;  ///< from the tool to there, m
+template <typename T>
+struct CouplingStretchOf {
+  Vec3Of<T> p_HT_W;   ///< from the handle to where it holds the tool, in W, m
+  Vec3Of<T> twist;    ///< rotation vector from the tool to there, rad
+  Vec3Of<T> stretch;  ///< from the tool to there, m
 
   /// ½ k |stretch|² + ½ k_r |twist|², J.
-  double Energy(const CouplingGains& gains) const {
+  T Energy(const CouplingGains& gains) const {
     return 0.5 * (gains.stiffness * stretch.squaredNorm() +
                   gains.rotational_stiffness * twist.squaredNorm());
   }
 };
+using CouplingStretch = CouplingStretchOf<double>;
 
-CouplingStretch ComputeStretch(const PoseVector& q_WH, const PoseVector& q_HT,
-                               const PoseVector& q_WT);
+template <typename T>
+CouplingStretchOf<T> ComputeStretch(const Eigen::Matrix<T, 7, 1>& q_WH,
+                                    const PoseVector& q_HT,
+                                    const Eigen::Matrix<T, 7, 1>& q_WT);
 
 /// Couples a tool to a handle: the tool is drawn to the pose X_WH·X_HT at
 /// which the handle holds it, and the handle feels the reaction. The spring
 /// acts between To and the point of the handle where To belongs, so that the
 /// wrenches do the work which the spring's energy loses. K is that of the
 /// relaxed spring.
-CouplingWrench ComputeCoupling(const PoseVector& q_WH, const Vec6& V_WH,
-                               const PoseVector& q_HT, const PoseVector& q_WT,
-                               const Vec6& V_WT, const CouplingGains& gains);
+template <typename T>
+CouplingWrenchOf<T> ComputeCoupling(const Eigen::Matrix<T, 7, 1>& q_WH,
+                                    const Eigen::Matrix<T, 6, 1>& V_WH,
+                                    const PoseVector& q_HT,
+                                    const Eigen::Matrix<T, 7, 1>& q_WT,
+                                    const Eigen::Matrix<T, 6, 1>& V_WT,
+                                    const CouplingGains& gains);
 
 }  // namespace drake_haptics

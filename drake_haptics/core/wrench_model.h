@@ -1,5 +1,6 @@
 #pragma once
 
+#include "autodiff.h"
 #include "types.h"
 
 namespace drake_haptics {
@@ -8,24 +9,31 @@ namespace drake_haptics {
 /// in the world frame: F(δ, V + ΔV) ≈ F − K δ − B ΔV, where δ is the tool's
 /// displacement [rotation vector (rad); translation (m)]. The order is Drake's:
 /// rotational first.
-struct WrenchModel {
-  Vec6 F = Vec6::Zero();  ///< [torque (N·m); force (N)]
-  Mat6 K = Mat6::Zero();  ///< stiffness
-  Mat6 B = Mat6::Zero();  ///< damping
+template <typename T>
+struct WrenchModelOf {
+  Vec6Of<T> F = Vec6Of<T>::Zero();  ///< [torque (N·m); force (N)]
+  Mat6Of<T> K = Mat6Of<T>::Zero();  ///< stiffness
+  Mat6Of<T> B = Mat6Of<T>::Zero();  ///< damping
 
-  WrenchModel& operator+=(const WrenchModel& other) {
+  WrenchModelOf& operator+=(const WrenchModelOf& other) {
     F += other.F;
     K += other.K;
     B += other.B;
     return *this;
   }
 };
+using WrenchModel = WrenchModelOf<double>;
 
 /// Number of entries of a wrench model as a vector: F, K by rows, B by rows.
 inline constexpr int kWrenchModelSize = 6 + 36 + 36;
-using WrenchModelVector = Eigen::Matrix<double, kWrenchModelSize, 1>;
+template <typename T>
+using WrenchModelVectorOf = Eigen::Matrix<T, kWrenchModelSize, 1>;
+using WrenchModelVector = WrenchModelVectorOf<double>;
 
-WrenchModelVector ToVector(const WrenchModel& model);
-WrenchModel FromVector(const WrenchModelVector& vector);
+template <typename T>
+WrenchModelVectorOf<T> ToVector(const WrenchModelOf<T>& model);
+template <typename T>
+WrenchModelOf<T> ToWrenchModel(
+    const Eigen::Matrix<T, kWrenchModelSize, 1>& vector);
 
 }  // namespace drake_haptics

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <stdexcept>
+#include <string>
+#include <unsupported/Eigen/AutoDiff>
+#include <vector>
+
+namespace drake_haptics {
+
+/// A number with its derivatives by any number of variables. What is
+/// differentiated in the core is a template over the scalar, of double on the
+/// tick and of this for gradients: one derivation serves both.
+using AutoDiff = Eigen::AutoDiffScalar<Eigen::VectorXd>;
+
+template <typename T>
+using Vec3Of = Eigen::Matrix<T, 3, 1>;
+template <typename T>
+using Mat3Of = Eigen::Matrix<T, 3, 3>;
+template <typename T>
+using Vec6Of = Eigen::Matrix<T, 6, 1>;
+template <typename T>
+using Mat6Of = Eigen::Matrix<T, 6, 6>;
+
+/// The value alone, on which decisions are made.
+inline double ValueOf(double x) { return x; }
+inline double ValueOf(const AutoDiff& x) { return x.value(); }
+
+/// The values of a matrix.
+template <typename Derived>
+auto ValuesOf(const Eigen::MatrixBase<Derived>& matrix) {
+  return matrix
+      .unaryExpr([](const typename Derived::Scalar& x) { return ValueOf(x); })
+      .eval();
+}
+
+/// Numbers with their derivatives by D variables: value (n), gradient (n, D).
+struct AutoDiffVector {
+  Eigen::VectorXd value;
+  Eigen::MatrixXd gradient;
+
+  Eigen::Index size() const { return value.size(); }
+  Eigen::Index num_derivatives() const { return gradient.cols(); }
+
+  /// Entry i as a scalar.
+  AutoDiff operator()(Eigen::Index i) const {
+    return AutoDiff(value[i], gradient.row(i).transpose());
+  }
+};
+
+/// @throws std::invalid_argument unless the vector has `Size` entries; `what`
+///         names it in the message.
+template <int Size>
+Eigen::Matrix<AutoDiff, Size, 1> ToScalars(const AutoDiffVector& vector,
+                                           const char* what) {
+  if (vector.size() != Size) {
+    throw std::invalid_argument(std::string(what) + " must have " +
+                                std::to_string(Size) + " entries, has " +
+                                std::to_string(vector.size()));
+  }
+  Eigen::Matrix<AutoDiff, Size, 1> scalars;
+  for (int i = 0; i < Size; ++i) scalars[i] = vector(i);
+  return scalars;
+}
+
+/// Constants, which have no derivatives, get those that are zero.
+template <typename Derived>
+AutoDiffVector ToAutoDiffVector(const Eigen::MatrixBase<Derived>& scalars,
+                                Eigen::Index num_derivatives) {
+  AutoDiffVector vector{ValuesOf(scalars),
+                        Eigen::MatrixXd::Zero(scalars.size(), num_derivatives)};
+  for (Eigen::Index i = 0; i < scalars.size(); ++i) {
+    const Eigen::VectorXd& gradient = scalars[i].derivatives();
+    if (gradient.size() > 0) vector.gradient.row(i) = gradient.transpose();
+  }
+  return vector;
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,141 @@
+#include <nanobind/eigen/dense.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "autodiff.h"
+#include "bind.h"
+#include "rigid_tool.h"
+#include "virtual_coupling.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+template <typename T>
+Eigen::Matrix<T, kWrenchModelSize + 6, 1> ToVector(
+    const CouplingWrenchOf<T>& wrench) {
+  Eigen::Matrix<T, kWrenchModelSize + 6, 1> out;
+  out << drake_haptics::ToVector(wrench.tool), wrench.F_display;
+  return out;
+}
+
+template <typename T>
+Eigen::Matrix<T, 13, 1> Step(
+    const ToolInertia& inertia, const Eigen::Matrix<T, 13, 1>& state,
+    const Eigen::Matrix<T, kWrenchModelSize, 1>& wrench, double h) {
+  const ToolStateOf<T> next =
+      StepTool<T>(inertia, {state.template head<7>(), state.template tail<6>()},
+                  ToWrenchModel(wrench), h);
+  Eigen::Matrix<T, 13, 1> out;
+  out << next.q_WT, next.V_WT;
+  return out;
+}
+
+void BindCoupling(nb::module_& m) {
+  nb::class_<CouplingGains>(m, "CouplingGains",
+                            "Spring and damper of the virtual coupling.")
+      .def(
+          "__init__",
+          [](CouplingGains* self, double k, double b, double kr, double br) {
+            for (const double gain : {k, b, kr, br}) {
+              if (!std::isfinite(gain) || gain < 0) {
+                throw std::invalid_argument(
+                    "coupling gains must be finite and at least 0");
+              }
+            }
+            new (self) CouplingGains{k, b, kr, br};
+          },
+          nb::arg("stiffness_N_per_m"), nb::arg("damping_Ns_per_m"),
+          nb::arg("rotational_stiffness_Nm_per_rad"),
+          nb::arg("rotational_damping_Nms_per_rad"))
+      .def_ro("stiffness_N_per_m", &CouplingGains::stiffness)
+      .def_ro("damping_Ns_per_m", &CouplingGains::damping)
+      .def_ro("rotational_stiffness_Nm_per_rad",
+              &CouplingGains::rotational_stiffness)
+      .def_ro("rotational_damping_Nms_per_rad",
+              &CouplingGains::rotational_damping);
+  m.def(
+      "coupling_wrench",
+      [](const PoseVector& q_WH, const Vec6& V_WH, const PoseVector& q_HT,
+         const PoseVector& q_WTool, const Vec6& V_WTool,
+         const CouplingGains& gains) {
+        return ToVector(
+            ComputeCoupling(q_WH, V_WH, q_HT, q_WTool, V_WTool, gains));
+      },
+      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WTool"),
+      nb::arg("V_WTool"), nb::arg("gains"),
+      "Wrenches of the virtual coupling between handle H and tool.\n\n"
+      "Args:\n"
+      "    q_WH, q_HT, q_WTool: (7,) poses [qw qx qy qz x y z]: handle, the "
+      "tool's place in it, tool.\n"
+      "    V_WH, V_WTool: (6,) spatial velocities [rad/s; m/s].\n\n"
+      "Returns:\n"
+      "    (84,): wrench model on the tool at To (78), then the reaction on "
+      "the handle at Ho in W (6).");
+  m.def(
+      "coupling_wrench",
+      [](const AutoDiffVector& q_WH, const AutoDiffVector& V_WH,
+         const PoseVector& q_HT, const AutoDiffVector& q_WTool,
+         const AutoDiffVector& V_WTool, const CouplingGains& gains) {
+        return ToAutoDiffVector(
+            ToVector(ComputeCoupling(ToScalars<7>(q_WH, "q_WH"),
+                                     ToScalars<6>(V_WH, "V_WH"), q_HT,
+                                     ToScalars<7>(q_WTool, "q_WTool"),
+                                     ToScalars<6>(V_WTool, "V_WTool"), gains)),
+            q_WH.num_derivatives());
+      },
+      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WTool"),
+      nb::arg("V_WTool"), nb::arg("gains"), "The same with derivatives.");
+}
+
+void BindRigidTool(nb::module_& m) {
+  nb::class_<ToolInertia>(m, "RigidToolDynamics",
+                          "A free rigid tool, advanced implicitly.")
+      .def(
+          "__init__",
+          [](ToolInertia* self, double mass, const Vec3& p_TTcm,
+             const Mat3& I_TTcm_T) {
+            const ToolInertia inertia{mass, p_TTcm, I_TTcm_T};
+            RequirePhysical(inertia);
+            new (self) ToolInertia(inertia);
+          },
+          nb::arg("mass_kg"), nb::arg("p_TTcm"), nb::arg("I_TTcm_T"),
+          "Tool of `mass_kg`, centre of mass (3,) m and rotational inertia "
+          "about it (3, 3) kg·m², both in the tool's frame.\n\n"
+          "Raises:\n    ValueError: not a physical inertia.")
+      .def_ro("mass_kg", &ToolInertia::mass, "Mass, kg.")
+      .def_prop_ro(
+          "p_TTcm", [](const ToolInertia& self) { return self.p_TTcm; },
+          "Centre of mass (3,) in the tool's frame, m.")
+      .def(
+          "step",
+          [](const ToolInertia& self, const Eigen::Matrix<double, 13, 1>& state,
+             const WrenchModelVector& wrench,
+             double h) { return Step(self, state, wrench, h); },
+          nb::arg("state"), nb::arg("wrench_model"), nb::arg("h"),
+          "Advances the state (13,) = [pose (7); spatial velocity (6)] by one "
+          "linearized backward Euler step of h seconds under a wrench model "
+          "(78,).")
+      .def(
+          "step",
+          [](const ToolInertia& self, const AutoDiffVector& state,
+             const AutoDiffVector& wrench, double h) {
+            return ToAutoDiffVector(
+                Step(self, ToScalars<13>(state, "state"),
+                     ToScalars<kWrenchModelSize>(wrench, "wrench_model"), h),
+                state.num_derivatives());
+          },
+          nb::arg("state"), nb::arg("wrench_model"), nb::arg("h"),
+          "The same with derivatives.");
+}
+
+}  // namespace
+
+void BindTool(nb::module_& m) {
+  BindCoupling(m);
+  BindRigidTool(m);
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,254 @@
+"""Systems whose core has derivatives, and their twins of scalar type AutoDiffXd."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydrake.autodiffutils import (
+    AutoDiffXd,
+    ExtractGradient,
+    ExtractValue,
+    InitializeAutoDiff,
+)
+from pydrake.common.value import AbstractValue, Value
+from pydrake.systems.framework import (
+    BasicVector_,
+    Context_,
+    DiscreteValues_,
+    InputPort_,
+    LeafSystem,
+    LeafSystem_,
+    OutputPort,
+    PortDataType,
+)
+from pydrake.systems.scalar_conversion import TemplateSystem
+
+from drake_haptics._core import AutoDiffVector
+
+
+class AutoDiffPoint:
+    """Where a system is to be differentiated: its inputs, state and time.
+
+    All vectors have derivatives by the same D variables; what does not depend on
+    them has zeros.
+
+    Attributes:
+        state: The discrete state, all groups one after another.
+        time_s: The time (1,), s.
+    """
+
+    def __init__(
+        self,
+        twin: LeafSystem_[AutoDiffXd],
+        context: Context_[AutoDiffXd],
+        inputs: Iterable[int],
+    ):
+        """Reads those of some inputs of a twin that have a value.
+
+        Raises:
+            ValueError: An abstract input carries no derivatives although vectors
+                do, or vectors have derivatives by different variables.
+        """
+        vectors: dict[str, np.ndarray] = {}
+        self._inputs: dict[str, Any] = {}
+        for port in map(twin.get_input_port, inputs):
+            if not port.HasValue(context):
+                continue
+            kept = vectors if _is_vector(port) else self._inputs
+            kept[port.get_name()] = port.Eval(context)
+        state = [
+            context.get_discrete_state(i).CopyToVector()
+            for i in range(context.num_discrete_state_groups())
+        ]
+        # Names that no port has.
+        vectors["\0state"] = np.concatenate([np.zeros(0), *state])
+        vectors["\0time"] = np.array([context.get_time()])
+        self.num_derivatives = _find_num_derivatives(twin, vectors, self._inputs)
+        for name, vector in vectors.items():
+            self._inputs[name] = _to_core(vector, self.num_derivatives)
+        self.state: AutoDiffVector = self._inputs.pop("\0state")
+        self.time_s: AutoDiffVector = self._inputs.pop("\0time")
+
+    def __contains__(self, port: str) -> bool:
+        """Whether an input is connected or fixed."""
+        return port in self._inputs
+
+    def __getitem__(self, port: str) -> Any:
+        """Returns an input: an `AutoDiffVector`, or the value of an abstract port."""
+        return self._inputs[port]
+
+
+@TemplateSystem.define(
+    "_Convertible_", T_list=[float, AutoDiffXd], T_pairs=[(AutoDiffXd, float)]
+)
+def _Convertible_(T: type) -> type:
+    if T is float:
+
+        class Impl(LeafSystem):
+            def _construct(self, converter: Any = None) -> None:
+                LeafSystem.__init__(self, converter=converter)
+
+            def _construct_copy(self, other: Any, converter: Any = None) -> None:
+                raise TypeError("only the twin is made by conversion")
+
+    else:
+
+        class Impl(LeafSystem_[AutoDiffXd]):  # type: ignore[no-redef]
+            def _construct(self, converter: Any = None) -> None:
+                raise TypeError("the twin is made by conversion")
+
+            def _construct_copy(self, other: Any, converter: Any = None) -> None:
+                LeafSystem_[AutoDiffXd].__init__(self, converter=converter)
+                _declare_twin(self, other)
+
+    return Impl
+
+
+if TYPE_CHECKING:
+    from pydrake.systems.framework import LeafSystem as _Convertible
+else:
+    _Convertible = _Convertible_[float]
+
+
+class DifferentiableSystem(_Convertible):
+    """A LeafSystem of doubles that Drake can convert to AutoDiffXd.
+
+    The twin has the same ports, discrete state, abstract parameters and periodic
+    update, and asks this system for values and derivatives. So the system itself
+    stays one fast call of the core per tick.
+    """
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> Any:
+        """Returns an output with its derivatives.
+
+        Args:
+            port: Name of the output.
+            at: Where. Has the inputs that the output depends on directly.
+
+        Returns:
+            An `AutoDiffVector`; of an abstract output, a value that carries
+            derivatives.
+        """
+        raise NotImplementedError(f"{type(self).__name__} has no derivatives of {port}")
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the discrete state after the periodic update, all groups."""
+        raise NotImplementedError(f"{type(self).__name__} has no update")
+
+
+def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -> None:
+    """Declares in a twin all that a system has."""
+    for port in map(system.get_input_port, range(system.num_input_ports())):
+        if _is_vector(port):
+            twin.DeclareVectorInputPort(port.get_name(), port.size())
+        else:
+            twin.DeclareAbstractInputPort(port.get_name(), Value[object]())
+    for _ in range(system.num_abstract_parameters()):
+        twin.DeclareAbstractParameter(Value[object]())
+    if system.num_discrete_state_groups():
+        defaults = system.CreateDefaultContext().get_discrete_state()
+        for i in range(defaults.num_groups()):
+            twin.DeclareDiscreteState(InitializeAutoDiff(defaults.value(i)).ravel())
+    timing = system.GetUniquePeriodicDiscreteUpdateAttribute()
+    if timing is not None:
+        twin.DeclarePeriodicDiscreteUpdateEvent(
+            timing.period_sec(),
+            timing.offset_sec(),
+            lambda context, next_state: _update(twin, system, context, next_state),
+        )
+    for output in map(system.get_output_port, range(system.num_output_ports())):
+        inputs = [
+            i
+            for i in range(system.num_input_ports())
+            if system.HasDirectFeedthrough(i, output.get_index())
+        ]
+        _declare_output(twin, system, output, inputs)
+
+
+def _declare_output(
+    twin: LeafSystem_[AutoDiffXd],
+    system: DifferentiableSystem,
+    output: OutputPort,
+    inputs: list[int],
+) -> None:
+    """Declares an output of a twin that depends directly on some inputs."""
+    name = output.get_name()
+    tickets = {twin.xd_ticket(), twin.time_ticket(), twin.pa_ticket()}
+    tickets |= {twin.get_input_port(i).ticket() for i in inputs}
+
+    def calc_vector(
+        context: Context_[AutoDiffXd], vector: BasicVector_[AutoDiffXd]
+    ) -> None:
+        answer = system.differentiate(name, AutoDiffPoint(twin, context, inputs))
+        vector.SetFromVector(_from_core(answer))
+
+    def calc_abstract(context: Context_[AutoDiffXd], value: AbstractValue) -> None:
+        value.set_value(
+            system.differentiate(name, AutoDiffPoint(twin, context, inputs))
+        )
+
+    if _is_vector(output):
+        twin.DeclareVectorOutputPort(name, output.size(), calc_vector, tickets)
+    else:
+        twin.DeclareAbstractOutputPort(name, Value[object], calc_abstract, tickets)
+
+
+def _update(
+    twin: LeafSystem_[AutoDiffXd],
+    system: DifferentiableSystem,
+    context: Context_[AutoDiffXd],
+    next_state: DiscreteValues_[AutoDiffXd],
+) -> None:
+    """Updates a twin's state."""
+    at = AutoDiffPoint(twin, context, range(twin.num_input_ports()))
+    answer = _from_core(system.differentiate_update(at))
+    start = 0
+    for i in range(next_state.num_groups()):
+        group = next_state.get_vector(i)
+        group.SetFromVector(answer[start : start + group.size()])
+        start += group.size()
+
+
+def _is_vector(port: InputPort_[AutoDiffXd] | OutputPort) -> bool:
+    return port.get_data_type() == PortDataType.kVectorValued
+
+
+def _find_num_derivatives(
+    twin: LeafSystem_[AutoDiffXd],
+    vectors: dict[str, np.ndarray],
+    values: dict[str, Any],
+) -> int:
+    """Returns the number D of variables, 0 where nothing has derivatives."""
+    sizes = {
+        entry.derivatives().size for vector in vectors.values() for entry in vector
+    }
+    for name, value in values.items():
+        if not hasattr(value, "num_derivatives"):
+            raise ValueError(
+                f"input {name} of {twin.GetSystemPathname()} is a"
+                f" {type(value).__name__}, which carries no derivatives: fix or"
+                " connect the value that a system of type AutoDiffXd gives"
+            )
+        sizes.add(value.num_derivatives)
+    sizes.discard(0)
+    if len(sizes) > 1:
+        raise ValueError(
+            f"inputs of {twin.GetSystemPathname()} have derivatives by different"
+            f" numbers of variables: {sorted(sizes)}"
+        )
+    return sizes.pop() if sizes else 0
+
+
+def _to_core(vector: np.ndarray, num_derivatives: int) -> AutoDiffVector:
+    """Hands scalars of Drake's to the core; constants get zero derivatives."""
+    gradient = ExtractGradient(vector.reshape(-1, 1))
+    if gradient.shape[1] == 0:
+        gradient = np.zeros((len(vector), num_derivatives))
+    return AutoDiffVector(ExtractValue(vector.reshape(-1, 1)).ravel(), gradient)
+
+
+def _from_core(vector: AutoDiffVector) -> np.ndarray:
+    """Takes scalars from the core."""
+    return InitializeAutoDiff(vector.value, vector.gradient).ravel()
