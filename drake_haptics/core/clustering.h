@@ -10,27 +10,31 @@ namespace drake_haptics {
 
 /// A contact that carries force, in the world. It stands for one contact or
 /// for a cluster of them (paper, Eq. 3 to 5).
-struct Cluster {
-  double distance = 0;  ///< smallest distance of the members (Eq. 5), m
-  Vec3 nhat_BA_W;       ///< weighted mean direction (Eq. 3), unit
-  Vec3 p_WC;            ///< weighted mean position (Eq. 4), m
+template <typename T>
+struct ClusterOf {
+  T distance{0};        ///< smallest distance of the members (Eq. 5), m
+  Vec3Of<T> nhat_BA_W;  ///< weighted mean direction (Eq. 3), unit
+  Vec3Of<T> p_WC;       ///< weighted mean position (Eq. 4), m
   /// The elastic force is the stiffness times this, m.
-  double compression = 0;
+  T compression{0};
   /// The damping force is the damping times the speed times this.
-  double damping_share = 0;
+  T damping_share{0};
   std::int32_t object = 0;
   std::int32_t num_contacts = 0;
 };
+using Cluster = ClusterOf<double>;
 
 /// Clusters ordered by their first contact.
-struct ClusterSet {
-  std::vector<Cluster> clusters;
+template <typename T>
+struct ClusterSetOf {
+  std::vector<ClusterOf<T>> clusters;
   std::vector<std::int32_t> label;  ///< cluster of each contact; -1 for none
   /// How the compression of each cluster (row) changes with the depth of each
   /// (column), n x n by rows; symmetric and positive semidefinite. Empty where
   /// each has its own: the identity.
-  std::vector<double> coupling;
+  std::vector<T> coupling;
 };
+using ClusterSet = ClusterSetOf<double>;
 
 /// @throws std::invalid_argument unless tolerance >= 0 and finite.
 void RequireTolerance(double tolerance);

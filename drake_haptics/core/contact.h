@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "autodiff.h"
 #include "pair_contact.h"
 #include "types.h"
 
@@ -12,14 +13,15 @@ namespace drake_haptics {
 /// One contact between a piece of the tool (A) and a piece of an object (B),
 /// in the world frame. Words and signs are those of Drake's
 /// SignedDistancePair.
-struct Contact {
-  double distance = 0;   ///< m; > 0 apart, < 0 penetrating
-  Vec3 nhat_BA_W;        ///< unit, out of B into A
-  Vec3 p_WCa;            ///< witness point on A, m
-  Vec3 p_WCb;            ///< witness point on B, m
-  Vec3 p_WC;             ///< their mean (Eq. 1), m
-  double extent = 0;     ///< measure of the overlap, m² (contact_patch.h)
-  double flushness = 0;  ///< share of it in flush faces and edges
+template <typename T>
+struct ContactOf {
+  T distance{0};        ///< m; > 0 apart, < 0 penetrating
+  Vec3Of<T> nhat_BA_W;  ///< unit, out of B into A
+  Vec3Of<T> p_WCa;      ///< witness point on A, m
+  Vec3Of<T> p_WCb;      ///< witness point on B, m
+  Vec3Of<T> p_WC;       ///< their mean (Eq. 1), m
+  T extent{0};          ///< measure of the overlap, m² (contact_patch.h)
+  T flushness{0};       ///< share of it in flush faces and edges
   /// Vertices of the pieces that support them along the normal.
   std::array<std::int32_t, 2> support{};
   std::int32_t object = 0;
@@ -29,14 +31,17 @@ struct Contact {
   std::array<std::int32_t, 2> feature_B{};
   std::int32_t status = 0;  ///< ContactStatus
 };
+using Contact = ContactOf<double>;
 
 /// The contact of a pair as seen in the world, object and pieces left at zero.
 Contact InWorld(const PairContact& pair, const Pose& X_WA);
 
 /// The contacts of one tick, ordered by object, piece of A, piece of B.
-struct ContactSet {
-  std::vector<Contact> contacts;
+template <typename T>
+struct ContactSetOf {
+  std::vector<ContactOf<T>> contacts;
   double query_seconds = 0;  ///< time that the query took inside the core
 };
+using ContactSet = ContactSetOf<double>;
 
 }  // namespace drake_haptics

@@ -16,17 +16,22 @@ struct ContactMaterial {
 
 /// A moving frame in the world: origin (m) and spatial velocity
 /// [angular (rad/s); linear (m/s)].
-struct MovingFrame {
-  Vec3 p_WF = Vec3::Zero();
-  Vec6 V_WF = Vec6::Zero();
+template <typename T>
+struct MovingFrameOf {
+  Vec3Of<T> p_WF = Vec3Of<T>::Zero();
+  Vec6Of<T> V_WF = Vec6Of<T>::Zero();
 };
+using MovingFrame = MovingFrameOf<double>;
 
 /// The wrenches of all clusters.
-struct PenaltyWrench {
-  WrenchModel tool;               ///< on the tool at To
-  std::vector<Vec6> F_objects_W;  ///< on each object at its origin (Eq. 7, 10)
-  std::vector<Vec3> f_cluster_W;  ///< force on the tool of each cluster, N
+template <typename T>
+struct PenaltyWrenchOf {
+  WrenchModelOf<T> tool;  ///< on the tool at To
+  /// On each object at its origin (Eq. 7, 10).
+  std::vector<Vec6Of<T>> F_objects_W;
+  std::vector<Vec3Of<T>> f_cluster_W;  ///< force on the tool of each cluster, N
 };
+using PenaltyWrench = PenaltyWrenchOf<double>;
 
 /// Sums the penalty wrenches of the clusters (paper, Eq. 6 to 10): at each an
 /// elastic force, k times its compression, along n, and k_v |v| times its
