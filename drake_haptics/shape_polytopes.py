@@ -1,0 +1,172 @@
+"""Corners of convex polytopes that stand for round shapes, within a stated error.
+
+The error is shared by both sides: corners are outside of the true surface and the
+middles of facets inside of it by at most the chord error, so that with as few corners
+the shape is neither too large nor too small. What is flat is exact.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+# Beyond, a hull takes seconds and says no more to a hand.
+_LARGEST_FREQUENCY = 40
+_MOST_SIDES = 720
+
+
+def make_box_corners(size_m: np.ndarray) -> np.ndarray:
+    """Returns the (8, 3) corners of a box about the origin with sides `size_m`, m."""
+    return np.array(list(product((-0.5, 0.5), repeat=3))) * size_m
+
+
+def make_ellipsoid_corners(
+    semi_axes_m: tuple[float, float, float], chord_error_m: float
+) -> np.ndarray:
+    """Returns corners (n, 3) of an ellipsoid, or of a ball, about the origin.
+
+    A geodesic sphere is stretched: its error grows at most with the longest axis.
+
+    Args:
+        semi_axes_m: Half lengths along x, y, z, m.
+        chord_error_m: Largest distance of the hull of the corners from the surface, m.
+
+    Raises:
+        ValueError: The error is not positive, or so small that it takes more than
+            some ten thousand corners.
+    """
+    largest = max(semi_axes_m)
+    _check_error(chord_error_m)
+    # The error goes with the square of the facets' size.
+    frequency = max(1, int(0.3 * np.sqrt(largest / chord_error_m)))
+    while True:
+        if frequency > _LARGEST_FREQUENCY:
+            least = largest * _split_error(_geodesic(_LARGEST_FREQUENCY)[1])[1]
+            raise ValueError(
+                f"chord_error_m is {chord_error_m:g}, too small for a radius of"
+                f" {largest:g} m: take {1.01 * least:.2g} or more"
+            )
+        directions, height = _geodesic(frequency)
+        scale, error = _split_error(height)
+        if error * largest <= chord_error_m:
+            return scale * directions * semi_axes_m
+        frequency += 1
+
+
+def make_capsule_corners(
+    radius_m: float, length_m: float, chord_error_m: float
+) -> np.ndarray:
+    """Returns corners (n, 3) of a capsule along z about the origin.
+
+    The hull of a ball at either end of the segment; it inherits the ball's error.
+
+    Args:
+        radius_m: Of the ball, m.
+        length_m: Of the segment, m.
+        chord_error_m: As for `make_ellipsoid_corners`.
+
+    Raises:
+        ValueError: As `make_ellipsoid_corners`.
+    """
+    ball = make_ellipsoid_corners((radius_m, radius_m, radius_m), chord_error_m)
+    up = np.array([0.0, 0.0, 0.5 * length_m])
+    return np.concatenate([ball + up, ball - up])
+
+
+def make_cylinder_corners(
+    radius_m: float, length_m: float, chord_error_m: float
+) -> np.ndarray:
+    """Returns corners (n, 3) of a cylinder along z about the origin.
+
+    Its ends are exact.
+
+    Args:
+        radius_m: Radius, m.
+        length_m: From end to end, m.
+        chord_error_m: Largest distance of the sides from the round surface, m.
+
+    Raises:
+        ValueError: The error is not positive, or so small that it takes more than
+            some hundred sides.
+    """
+    _check_error(chord_error_m)
+    sides = 3
+    while _split_error(np.cos(np.pi / sides))[1] * radius_m > chord_error_m:
+        sides += 1
+        if sides > _MOST_SIDES:
+            least = radius_m * _split_error(np.cos(np.pi / _MOST_SIDES))[1]
+            raise ValueError(
+                f"chord_error_m is {chord_error_m:g}, too small for a radius of"
+                f" {radius_m:g} m: take {1.01 * least:.2g} or more"
+            )
+    scale, _ = _split_error(np.cos(np.pi / sides))
+    angle = np.arange(sides) * (2.0 * np.pi / sides)
+    ring = scale * radius_m * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return np.concatenate(
+        [np.insert(ring, 2, z, axis=1) for z in (-0.5 * length_m, 0.5 * length_m)]
+    )
+
+
+def _check_error(chord_error_m: float) -> None:
+    if not chord_error_m > 0.0:
+        raise ValueError(f"chord_error_m must be positive, is {chord_error_m}")
+
+
+def _split_error(height: float) -> tuple[float, float]:
+    """Returns the scale that puts the error of a unit shape on both sides, and it.
+
+    Args:
+        height: Least distance of a facet's plane from the middle, corners being at 1.
+    """
+    return 2.0 / (1.0 + height), (1.0 - height) / (1.0 + height)
+
+
+def _geodesic(frequency: int) -> tuple[np.ndarray, float]:
+    """Returns (10 f² + 2, 3) even unit vectors and how near their facets come to 0.
+
+    Each side of an icosahedron is divided into f parts, each face into f² triangles.
+    """
+    golden = (1.0 + np.sqrt(5.0)) / 2.0
+    corners = np.array(
+        [
+            np.roll((0.0, s, t), k)
+            for k in range(3)
+            for s in (-1.0, 1.0)
+            for t in (-golden, golden)
+        ]
+    )
+    near = np.linalg.norm(corners[:, None] - corners[None], axis=2) < 2.1
+    faces = [
+        corners[[i, j, k]]
+        for i in range(12)
+        for j in range(i)
+        for k in range(j)
+        if near[i, j] and near[j, k] and near[k, i]
+    ]
+    f = frequency
+    weights = np.array(
+        [(i, j, f - i - j) for i in range(f + 1) for j in range(f + 1 - i)]
+    )
+    row = {(i, j): n for n, (i, j, _) in enumerate(weights.tolist())}
+    triangles = np.array(
+        [
+            (row[i, j], row[i + 1, j], row[i, j + 1])
+            for i in range(f)
+            for j in range(f - i)
+        ]
+        + [
+            (row[i + 1, j], row[i + 1, j + 1], row[i, j + 1])
+            for i in range(f - 1)
+            for j in range(f - 1 - i)
+        ]
+    )
+    points = np.concatenate([weights @ face for face in faces])
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    # All faces are alike, so the first says how near facets come.
+    a, b, c = np.swapaxes(points[triangles], 0, 1)
+    normal = np.cross(b - a, c - a)
+    height = np.abs(np.einsum("ni,ni->n", normal, a)) / np.linalg.norm(normal, axis=1)
+    # Points on the icosahedron's sides came from both faces.
+    _, kept = np.unique(np.round(points, 9), axis=0, return_index=True)
+    return points[kept], float(height.min())
