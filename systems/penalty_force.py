@@ -40,6 +40,7 @@ class PenaltyForce(LeafSystem):
         output_ports:
         - wrench_model
         - F_Tool_W
+        - F_O_W (with objects that move)
         - contact_wrench
 
     Poses are [qw qx qy qz x y z], m. `V_WTool` and `V_WO_<name>` are spatial
@@ -50,6 +51,8 @@ class PenaltyForce(LeafSystem):
       world, N·m and N, and its 6 x 6 stiffness and damping, row-major, with
       F(δ, V + dV) ≈ F - K δ - B dV, δ = [rotation vector; translation] of the tool.
     * `F_Tool_W` (6) is its F, [τ; f].
+    * `F_O_W` (6 for each object that moves) are the wrenches [τ; f] on those objects,
+      each at its origin in the world, N·m and N.
     * `contact_wrench` is the `drake_haptics._core.PenaltyWrench` with the force of
       each cluster and the wrench on each object.
     """
@@ -87,6 +90,11 @@ class PenaltyForce(LeafSystem):
         self._F_Tool_W = self.DeclareVectorOutputPort(
             "F_Tool_W", 6, self._calc_F_Tool_W, from_inputs
         )
+        self._moving = [i for i, item in enumerate(objects) if item.X_WO is None]
+        if self._moving:
+            self.DeclareVectorOutputPort(
+                "F_O_W", 6 * len(self._moving), self._calc_F_O_W, from_inputs
+            )
         self._contact_wrench = self.DeclareAbstractOutputPort(
             "contact_wrench",
             Value[object],
@@ -127,6 +135,10 @@ class PenaltyForce(LeafSystem):
         """Returns the output `F_Tool_W`."""
         return self._F_Tool_W
 
+    def get_object_wrenches_output_port(self) -> OutputPort:
+        """Returns the output `F_O_W`; there is none if no object moves."""
+        return self.GetOutputPort("F_O_W")
+
     def get_contact_wrench_output_port(self) -> OutputPort:
         """Returns the output `contact_wrench`."""
         return self._contact_wrench
@@ -148,6 +160,10 @@ class PenaltyForce(LeafSystem):
 
     def _calc_F_Tool_W(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._calc_wrench(context).F_Tool_W)
+
+    def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
+        wrench = self._calc_wrench(context)
+        output.SetFromVector(wrench.F_objects_W[self._moving].ravel())
 
     def _calc_contact_wrench(self, context: Context, output: AbstractValue) -> None:
         output.set_value(self._calc_wrench(context))

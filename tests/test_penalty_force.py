@@ -49,6 +49,7 @@ def test_topology(plate):
     assert names == ["clusters", "X_WTool", "V_WTool", "X_WO_cart", "V_WO_cart"]
     assert force.GetOutputPort("wrench_model").size() == 78
     assert force.GetOutputPort("F_Tool_W").size() == 6
+    assert force.GetOutputPort("F_O_W").size() == 6
     assert force.CreateDefaultContext().num_total_states() == 0
 
 
@@ -65,6 +66,26 @@ def test_a_pressed_box_is_pushed_up(plate, clusters):
     model = force.get_wrench_model_output_port().Eval(context)
     np.testing.assert_allclose(model[:6], F)
     assert model[6:42].reshape(6, 6)[5, 5] == pytest.approx(K)
+
+
+def test_objects_that_move_feel_the_reaction(plate, clusters):
+    objects = [ContactObject("cart", plate)]
+    force, context = make_force(objects)
+    fix(force, context, clusters)
+    p_WO = np.array([0.3, -0.2, 0.1])
+    force.get_object_pose_input_port("cart").FixValue(context, [1, 0, 0, 0, *p_WO])
+    force.get_object_velocity_input_port("cart").FixValue(context, AT_REST)
+    F_O_W = force.get_object_wrenches_output_port().Eval(context)
+    f = K * (TOLERANCE + 5e-4) * np.array([0, 0, -1])
+    np.testing.assert_allclose(F_O_W[3:], f, atol=1e-9)
+    np.testing.assert_allclose(
+        F_O_W[:3], np.cross(clusters.p_WC[0] - p_WO, f), atol=1e-9
+    )
+
+
+def test_nothing_that_moves_has_no_reaction(plate):
+    force, _ = make_force([ContactObject("plate", plate, RigidTransform())])
+    assert not force.HasOutputPort("F_O_W")
 
 
 def test_approach_is_damped_and_departure_is_not(plate, clusters):
