@@ -1,0 +1,64 @@
+"""A bar that shows on the terminal how far a study is."""
+
+from __future__ import annotations
+
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+
+class StudyProgress:
+    """A line at the foot of the terminal, gone when the study is.
+
+    ::
+
+        with StudyProgress("stiffness-damping map") as progress:
+            results = run_study(function, tasks, progress=progress)
+
+    Where the output is not a terminal it writes nothing.
+
+    Args:
+        what: Is computed.
+        console: Where to write; None is stderr.
+    """
+
+    def __init__(self, what: str, console: Console | None = None):
+        console = console or Console(stderr=True)
+        self._bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("left:"),
+            TimeRemainingColumn(),
+            console=console,
+            transient=True,
+            disable=not console.is_terminal,
+        )
+        self._task = self._bar.add_task(what, total=None)
+
+    def __enter__(self) -> StudyProgress:
+        """Starts the line."""
+        self._bar.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Takes the line away."""
+        self._bar.stop()
+
+    def __call__(self, done: int, total: int) -> None:
+        """Shows that so many tasks of all are done."""
+        self._bar.update(self._task, completed=done, total=total)
