@@ -1,0 +1,193 @@
+"""One period of a sampled system: the update of its memory, then its motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
+from pydrake.systems.framework import (
+    Context,
+    DiscreteValues,
+    InputPort,
+    OutputPort,
+    System,
+)
+
+from drake_haptics.analysis.diagram_systems import walk_systems
+
+
+@dataclass(frozen=True)
+class SampledValues:
+    """What one period makes of a state: values, or their derivatives.
+
+    Attributes:
+        update: (n_d,) x_d⁺, the discrete groups after the update at t from x(t⁻); or
+            (n_d, n + m), its derivative by [x_c; x_d; u].
+        rates: (n_c,) ẋ_c with x_d⁺ held; or (n_c, n + m), by [x_c; x_d⁺; u].
+        output: (p,) y at t⁻; or (p, n + m), by [x_c; x_d; u].
+    """
+
+    update: np.ndarray
+    rates: np.ndarray
+    output: np.ndarray
+
+    def stack(self) -> np.ndarray:
+        """Returns all rows, (n_d + n_c + p, ...)."""
+        return np.concatenate([self.update, self.rates, self.output])
+
+
+class SampledMap:
+    """x_d⁺ = f_d(x_c, x_d, u), ẋ_c = f_c(x_c, x_d⁺, u), y = g(x_c, x_d, u) of a system.
+
+    In doubles and in AutoDiffXd, at one time and with all other inputs as they are in
+    the context, which is cloned and never changed. A system with a method
+    `prepare_conversion(context)` is told the clone before the AutoDiffXd twin is made.
+
+    Attributes:
+        x: (n,) the context's state [x_c; all discrete groups].
+        u: (m,) the value of the input port, empty without one.
+        num_continuous: n_c.
+        context: The clone.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        context: Context,
+        *,
+        updates: bool,
+        input_port: InputPort | None = None,
+        output_port: OutputPort | None = None,
+    ):
+        """Reads state and input.
+
+        Args:
+            system: Any system; its AutoDiffXd twin is made when it is first asked for.
+            context: Its root context.
+            updates: Whether it has a periodic discrete update.
+            input_port: A vector port of the system, whose value the context fixes.
+            output_port: A vector port of the system.
+        """
+        self.context = context.Clone()
+        for part in walk_systems(system):
+            if hasattr(part, "prepare_conversion"):
+                part.prepare_conversion(part.GetMyMutableContextFromRoot(self.context))
+        self._system = system
+        self._updates = updates
+        self._input = None if input_port is None else int(input_port.get_index())
+        self._output = None if output_port is None else int(output_port.get_index())
+        self._work = self.context.Clone()
+        self._twin: tuple[System, Context] | None = None
+        self.num_continuous = self.context.num_continuous_states()
+        self.x = np.concatenate(
+            [
+                self.context.get_continuous_state_vector().CopyToVector(),
+                *_copy_groups(self.context.get_discrete_state()),
+            ]
+        )
+        self.u = np.zeros(0)
+        if input_port is not None:
+            self.u = np.array(input_port.Eval(self.context))
+
+    def hold(self, x: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Returns [x_c; x_d⁺] (n,), which the motion starts from."""
+        return self._step(self._system, self._work, x, u)
+
+    def calc(self, x: np.ndarray, held: np.ndarray, u: np.ndarray) -> SampledValues:
+        """Returns the values of the three functions.
+
+        Args:
+            x: (n,) where update and output are taken.
+            held: (n,) [x_c; x_d⁺], where the rates are taken.
+            u: (m,) the input.
+        """
+        return self._calc(self._system, self._work, x, held, u)
+
+    def differentiate(
+        self, x: np.ndarray, held: np.ndarray, u: np.ndarray
+    ) -> SampledValues:
+        """Returns the derivatives of the three functions, arguments as for `calc`.
+
+        A row without derivatives is zero: whether it should be is for
+        `check_derivatives` to say.
+
+        Raises:
+            RuntimeError: A system has no AutoDiffXd twin, or cannot be evaluated.
+        """
+        size = len(x) + len(u)
+        seed = InitializeAutoDiff(np.concatenate([x, u])).ravel()
+        seed_held = InitializeAutoDiff(np.concatenate([held, u])).ravel()
+        n = len(x)
+        found = self._calc(*self._make_twin(), seed[:n], seed_held[:n], seed[n:])
+        return SampledValues(
+            _gradient(found.update, size),
+            _gradient(found.rates, size),
+            _gradient(found.output, size),
+        )
+
+    def _make_twin(self) -> tuple[System, Context]:
+        if self._twin is None:
+            system = self._system.ToScalarType[AutoDiffXd]()
+            context = system.CreateDefaultContext()
+            context.SetTimeStateAndParametersFrom(self.context)
+            system.FixInputPortsFrom(self._system, self.context, context)
+            self._twin = (system, context)
+        return self._twin
+
+    def _calc(
+        self,
+        system: System,
+        context: Context,
+        x: np.ndarray,
+        held: np.ndarray,
+        u: np.ndarray,
+    ) -> SampledValues:
+        """Returns the values, in the scalar of the system."""
+        update = self._step(system, context, x, u)[self.num_continuous :]
+        output = np.zeros(0)
+        if self._output is not None:
+            output = system.get_output_port(self._output).Eval(context)
+        rates = np.zeros(0)
+        if self.num_continuous:
+            self._set(system, context, held, u)
+            rates = system.EvalTimeDerivatives(context).CopyToVector()
+        return SampledValues(update, rates, output)
+
+    def _step(
+        self, system: System, context: Context, x: np.ndarray, u: np.ndarray
+    ) -> np.ndarray:
+        self._set(system, context, x, u)
+        if not self._updates:
+            return x
+        updated = system.EvalUniquePeriodicDiscreteUpdate(context)
+        return np.concatenate([x[: self.num_continuous], *_copy_groups(updated)])
+
+    def _set(
+        self, system: System, context: Context, x: np.ndarray, u: np.ndarray
+    ) -> None:
+        set_state(context, x)
+        if self._input is not None:
+            system.get_input_port(self._input).FixValue(context, u)
+
+
+def set_state(context: Context, x: np.ndarray) -> None:
+    """Sets the state [x_c; all discrete groups] (n,) of a context."""
+    end = context.num_continuous_states()
+    if end:
+        context.SetContinuousState(x[:end])
+    for i in range(context.num_discrete_state_groups()):
+        start, end = end, end + context.get_discrete_state(i).size()
+        context.SetDiscreteState(i, x[start:end])
+
+
+def _copy_groups(values: DiscreteValues) -> list[np.ndarray]:
+    return [values.get_vector(i).CopyToVector() for i in range(values.num_groups())]
+
+
+def _gradient(values: np.ndarray, size: int) -> np.ndarray:
+    """Returns the gradient (len(values), size), zero where all are constants."""
+    if len(values) == 0:
+        return np.zeros((0, size))
+    gradient = ExtractGradient(values.reshape(-1, 1))
+    return gradient if gradient.shape[1] else np.zeros((len(values), size))
