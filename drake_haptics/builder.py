@@ -10,10 +10,10 @@ from typing import cast
 
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import Diagram, DiagramBuilder
+from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from drake_haptics import _core
-from drake_haptics.builder_effects import EffectSite, add_effects
+from drake_haptics.builder_effects import EffectSite, add_effects, find_springs
 from drake_haptics.decomposition import Decomposition, Method, decompose
 from drake_haptics.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.held_handle import check_scene_coupling
@@ -152,7 +152,16 @@ def AddHapticLoop(
     )
     _connect_base(builder, base)
     site = EffectSite(
-        effects, builder, base, tool, tool_dynamics, objects, materials, period_s
+        effects=effects,
+        builder=builder,
+        sources=_find_sources(base),
+        tool=tool,
+        tool_mass_kg=tool_dynamics.mass_kg,
+        p_TTcm=tool_dynamics.p_TTcm.tolist(),
+        objects=objects,
+        materials=materials,
+        period_s=period_s,
+        springs=find_springs(device, gains, min(base.penalty_force.stiffness_N_per_m)),
     )
     systems = add_effects(site)
     sources = {
@@ -213,6 +222,21 @@ def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
         (V_WTool, force.get_tool_velocity_input_port()),
     ]:
         builder.Connect(output, input)
+
+
+def _find_sources(base: BaseSystems) -> dict[str, OutputPort]:
+    """Returns what systems of effects ask for, by the names of their inputs."""
+    return {
+        "X_WH": base.device.get_handle_pose_output_port(),
+        "V_WH": base.device.get_handle_velocity_output_port(),
+        "X_WTool": base.haptic_tool.get_pose_output_port(),
+        "V_WTool": base.haptic_tool.get_velocity_output_port(),
+        "F_applied": base.device.get_applied_wrench_output_port(),
+        "F_asked": base.virtual_coupling.get_display_wrench_output_port(),
+        "contacts": base.contact_query.get_contacts_output_port(),
+        "clusters": base.contact_clustering.get_clusters_output_port(),
+        "contact_wrench": base.penalty_force.get_contact_wrench_output_port(),
+    }
 
 
 def BuildHapticDiagram(

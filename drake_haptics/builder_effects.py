@@ -6,15 +6,15 @@ loaded.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pydrake.systems.framework import DiagramBuilder, System
+from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 
 from drake_haptics import _core
-from drake_haptics.haptic_loop import BaseSystems, EffectSystems
+from drake_haptics.haptic_loop import EffectSystems
 from drake_haptics.passivity_bounds import calc_returnable_energy
 from drake_haptics.scene_effects import (
     Braking,
@@ -26,6 +26,7 @@ from drake_haptics.scene_effects import (
     Shading,
 )
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.haptic_device import HapticDevice
 
 # Hands on a desk reach no higher.
 _HIGHEST_LIFT_M = 0.5
@@ -38,22 +39,45 @@ class EffectSite:
     Attributes:
         effects: Those to add are not None.
         builder: Gets the systems.
-        base: What is in it already.
+        sources: What the systems' inputs are connected to, by their names; poses and
+            velocities of objects that move are left out.
         tool: Pieces of the tool, in its frame T.
-        tool_dynamics: Its mass.
+        tool_mass_kg: Its mass, kg.
+        p_TTcm: Its centre of mass (3,), m.
         objects: What it meets.
         materials: Of each object.
         period_s: The tick, s.
+        springs: What can push the device: the largest load and the stiffness of each,
+            in N and N/m or N·m and N·m/rad.
     """
 
     effects: Effects
     builder: DiagramBuilder
-    base: BaseSystems
+    sources: Mapping[str, OutputPort]
     tool: _core.Decomposition
-    tool_dynamics: _core.RigidToolDynamics
+    tool_mass_kg: float
+    p_TTcm: Sequence[float]
     objects: Sequence[ContactObject]
     materials: Sequence[Material]
     period_s: float
+    springs: Sequence[tuple[float, float]]
+
+
+def find_springs(
+    device: HapticDevice, gains: _core.CouplingGains, contact_N_per_m: float
+) -> list[tuple[float, float]]:
+    """Returns the springs that push a device, as `EffectSite` wants them.
+
+    Args:
+        device: Its limits load them.
+        gains: Of the coupling.
+        contact_N_per_m: The softest contact, N/m.
+    """
+    return [
+        (device.max_force_N, gains.stiffness_N_per_m),
+        (device.max_torque_Nm, gains.rotational_stiffness_Nm_per_rad),
+        (device.max_force_N, contact_N_per_m),
+    ]
 
 
 def add_effects(site: EffectSite) -> EffectSystems:
@@ -116,8 +140,8 @@ def _add_gravity(effect: Gravity, site: EffectSite) -> System:
     from drake_haptics.systems.tool_gravity import ToolGravity
 
     system = ToolGravity(
-        mass_kg=site.tool_dynamics.mass_kg,
-        p_TTcm=site.tool_dynamics.p_TTcm.tolist(),
+        mass_kg=site.tool_mass_kg,
+        p_TTcm=list(site.p_TTcm),
         gravity_m_per_s2=effect.acceleration_m_per_s2,
     )
     return _add(site, "tool_gravity", system)
@@ -138,45 +162,20 @@ def _add_passivity(effect: Passivity, site: EffectSite) -> System:
 
 def _calc_reserve(site: EffectSite) -> float:
     """Returns the energy that springs and tool can give back to the device, J."""
-    base = site.base
-    force_N, torque_Nm = base.device.max_force_N, base.device.max_torque_Nm
-    gains = base.virtual_coupling.gains
-    mass_kg = site.tool_dynamics.mass_kg
     weight_N = 0.0
     if site.effects.gravity is not None:
         gravity = site.effects.gravity.acceleration_m_per_s2
-        weight_N = mass_kg * float(np.linalg.norm(gravity))
+        weight_N = site.tool_mass_kg * float(np.linalg.norm(gravity))
     return calc_returnable_energy(
-        [
-            (force_N, gains.stiffness_N_per_m),
-            (torque_Nm, gains.rotational_stiffness_Nm_per_rad),
-            (force_N, min(base.penalty_force.stiffness_N_per_m)),
-        ],
-        mass_kg,
-        _HIGHEST_LIFT_M * weight_N,
+        site.springs, site.tool_mass_kg, _HIGHEST_LIFT_M * weight_N
     )
 
 
 def _add(site: EffectSite, name: str, system: System) -> System:
-    """Adds a system and connects its inputs, which say by their names what they want.
-
-    Poses and velocities of objects that move are left out.
-    """
-    base = site.base
-    sources = {
-        "X_WH": base.device.get_handle_pose_output_port(),
-        "V_WH": base.device.get_handle_velocity_output_port(),
-        "X_WTool": base.haptic_tool.get_pose_output_port(),
-        "V_WTool": base.haptic_tool.get_velocity_output_port(),
-        "F_applied": base.device.get_applied_wrench_output_port(),
-        "F_asked": base.virtual_coupling.get_display_wrench_output_port(),
-        "contacts": base.contact_query.get_contacts_output_port(),
-        "clusters": base.contact_clustering.get_clusters_output_port(),
-        "contact_wrench": base.penalty_force.get_contact_wrench_output_port(),
-    }
+    """Adds a system and connects the inputs whose names say what they want."""
     site.builder.AddNamedSystem(name, system)
     for i in range(system.num_input_ports()):
         port = system.get_input_port(i)
-        if port.get_name() in sources:
-            site.builder.Connect(sources[port.get_name()], port)
+        if port.get_name() in site.sources:
+            site.builder.Connect(site.sources[port.get_name()], port)
     return system
