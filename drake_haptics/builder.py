@@ -19,6 +19,7 @@ from drake_haptics.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.held_handle import check_scene_coupling
 from drake_haptics.mass_properties import calc_mass_properties
 from drake_haptics.mesh import load_mesh
+from drake_haptics.model_file import is_model_file, load_model_mesh
 from drake_haptics.scene import (
     Contact,
     Coupling,
@@ -326,7 +327,8 @@ def _decompose(
     progress: Callable[[str, float], None] | None,
 ) -> Decomposition:
     """Loads and cuts the mesh of an object of a scene."""
-    mesh = load_mesh(item.mesh, scale=item.scale)
+    load = load_model_mesh if is_model_file(item.mesh) else load_mesh
+    mesh = load(item.mesh, scale=item.scale)
     return decompose(
         mesh,
         cast(Method, item.decomposition),

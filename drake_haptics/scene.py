@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from pydrake.common.yaml import yaml_load_file, yaml_load_typed
 from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.multibody.parsing import PackageMap
 
 import drake_haptics
 from drake_haptics.scene_check import SceneError, check_keys, check_values
@@ -45,8 +46,6 @@ __all__ = [
     "load_scene",
 ]
 
-_PACKAGE_URL = "package://drake_haptics/"
-
 
 @dataclass
 class Pose:
@@ -73,8 +72,9 @@ class Tool:
     Its inertia is that of the mesh filled with one density.
 
     Attributes:
-        mesh: Path of the mesh, relative to the scene file, absolute, or
-            `package://drake_haptics/...`.
+        mesh: Path of a mesh, or of a model (SDF, URDF, MJCF) whose collision shapes
+            are taken, as a whole rigid; relative to the scene file, absolute, or
+            `package://...` of this package or of Drake.
         scale: Metres per unit of the mesh file.
         decomposition: How the mesh is cut into convex pieces: a method of
             `drake_haptics.decomposition.decompose`.
@@ -304,6 +304,15 @@ def load_scene(path: str | Path) -> Scene:
 
 def _absolute(mesh: str, folder: Path) -> str:
     """Returns a mesh path that holds from any folder."""
-    if mesh.startswith(_PACKAGE_URL):
-        return str(Path(drake_haptics.__file__).parent / mesh[len(_PACKAGE_URL) :])
-    return str((folder / mesh).resolve())
+    if not mesh.startswith("package://"):
+        return str((folder / mesh).resolve())
+    packages = PackageMap()
+    packages.Add("drake_haptics", str(Path(drake_haptics.__file__).parent))
+    name, _, rest = mesh.removeprefix("package://").partition("/")
+    if not packages.Contains(name):
+        known = ", ".join(packages.GetPackageNames())
+        raise SceneError(f"{mesh}: there is no package {name!r}; known: {known}")
+    try:
+        return str(Path(packages.GetPath(name)) / rest)
+    except RuntimeError as error:  # A package that Drake would have to download.
+        raise SceneError(f"{mesh}: {error}") from error

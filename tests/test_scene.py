@@ -1,5 +1,7 @@
 """Scene files: what is read, and what is refused by name."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -272,3 +274,15 @@ def test_default_coupling_is_stable_on_the_shipped_device():
     )
     # Sampled damping itself is bounded: B T / m of the lightest handle motion.
     assert coupling.damping_Ns_per_m / Device().rate_hz / 0.12 < 0.2
+
+
+def test_a_mesh_may_come_from_drake(tmp_path):
+    url = "package://drake/examples/kuka_iiwa_arm/models/objects/open_top_box.urdf"
+    text = GOOD.replace("package://drake_haptics/models/meshes/plate.obj", url)
+    assert Path(load(tmp_path, text).environment[0].mesh).is_file()
+
+
+def test_an_unknown_package_is_refused(tmp_path):
+    text = GOOD.replace("package://drake_haptics/", "package://drak/")
+    with pytest.raises(SceneError, match=r"no package 'drak'; known: .*drake_haptics"):
+        load(tmp_path, text)
