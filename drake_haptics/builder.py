@@ -14,6 +14,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from drake_haptics import _core
 from drake_haptics.builder_effects import EffectSite, add_effects, find_springs
+from drake_haptics.contact_systems import add_contact_systems
 from drake_haptics.decomposition import Decomposition, Method, decompose
 from drake_haptics.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.held_handle import check_scene_coupling
@@ -31,15 +32,10 @@ from drake_haptics.scene import (
 )
 from drake_haptics.scene_check import SceneWarning
 from drake_haptics.simulated_device import make_hand_path, make_simulated_device
-from drake_haptics.systems.contact_clustering import (
-    ClusteringMethod,
-    ContactClustering,
-)
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.haptic_tool import HapticTool
 from drake_haptics.systems.haptic_visualizer import HapticVisualizer
-from drake_haptics.systems.penalty_force import PenaltyForce
 from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
 # Effects that push the tool, each through the input of its name.
@@ -114,11 +110,6 @@ def AddHapticLoop(
     effects = effects or Effects()
     if materials is None:
         materials = [Material()] * len(objects)
-    if len(materials) != len(objects):
-        raise ValueError(
-            f"materials must be one for each of the {len(objects)} objects, are"
-            f" {len(materials)}"
-        )
     gains = _core.CouplingGains(
         coupling.stiffness_N_per_m,
         coupling.damping_Ns_per_m,
@@ -135,20 +126,8 @@ def AddHapticLoop(
             "haptic_tool",
             HapticTool(tool_dynamics, period_s, ["coupling", "contact", *forces], X_WT),
         ),
-        contact_query=builder.AddNamedSystem(
-            "contact_query",
-            ContactQuery(tool, objects, _find_tolerance(contact, effects)),
-        ),
-        contact_clustering=builder.AddNamedSystem(
-            "contact_clustering",
-            ContactClustering(
-                cast(ClusteringMethod, contact.clustering),
-                contact.tolerance_m,
-                contact.cluster_size_m,
-            ),
-        ),
-        penalty_force=builder.AddNamedSystem(
-            "penalty_force", _make_penalty_force(objects, contact, materials)
+        **vars(
+            add_contact_systems(builder, tool, objects, contact, effects, materials)
         ),
     )
     _connect_base(builder, base)
@@ -179,26 +158,6 @@ def AddHapticLoop(
     builder.Connect(loop.contacts, loop.contact_clustering.get_contacts_input_port())
     builder.Connect(loop.display_wrench, device.get_display_wrench_input_port())
     return loop
-
-
-def _find_tolerance(contact: Contact, effects: Effects) -> float:
-    """Returns how far contacts must be looked for, m."""
-    if effects.braking is None:
-        return contact.tolerance_m
-    return max(contact.tolerance_m, effects.braking.distance_m)
-
-
-def _make_penalty_force(
-    objects: Sequence[ContactObject], contact: Contact, materials: Sequence[Material]
-) -> PenaltyForce:
-    """Returns the penalty force with the gains of each object."""
-    stiffness = [material.stiffness_N_per_m for material in materials]
-    damping = [material.damping_Ns_per_m for material in materials]
-    return PenaltyForce(
-        objects,
-        [contact.stiffness_N_per_m if k is None else k for k in stiffness],
-        [contact.damping_Ns_per_m if b is None else b for b in damping],
-    )
 
 
 def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 
 from drake_haptics import _core
+from drake_haptics.contact_systems import connect_by_name
 from drake_haptics.haptic_loop import EffectSystems
 from drake_haptics.passivity_bounds import calc_returnable_energy
 from drake_haptics.scene_effects import (
@@ -174,8 +175,5 @@ def _calc_reserve(site: EffectSite) -> float:
 def _add(site: EffectSite, name: str, system: System) -> System:
     """Adds a system and connects the inputs whose names say what they want."""
     site.builder.AddNamedSystem(name, system)
-    for i in range(system.num_input_ports()):
-        port = system.get_input_port(i)
-        if port.get_name() in site.sources:
-            site.builder.Connect(site.sources[port.get_name()], port)
+    connect_by_name(site.builder, system, site.sources)
     return system
