@@ -1,0 +1,108 @@
+"""Where a loop stops being stable as one number of it is raised."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+# Eigenvalues so near to 1 belong to what has no place of its own: the adhesion
+# points of friction, a balance of energy, the sign of a quaternion.
+_NEUTRAL = 1e-6
+
+
+@dataclass(frozen=True)
+class StabilityLimit:
+    """The largest value at which a loop is stable.
+
+    Attributes:
+        value: Infinite where no value up to `highest` is unstable; 0 where none down
+            to `lowest` is stable.
+        lowest: The range that was searched.
+        highest: Its upper end.
+        evaluations: How many values were tried.
+    """
+
+    value: float
+    lowest: float
+    highest: float
+    evaluations: int
+
+
+def calc_growth(eigenvalues: np.ndarray) -> float:
+    """Returns by how much the fastest growing motion is multiplied in a period.
+
+    Args:
+        eigenvalues: (n,) of one period. Those at 1, to 1e-6, are neutral and left out.
+    """
+    moving = eigenvalues[np.abs(eigenvalues - 1.0) > _NEUTRAL]
+    return float(np.abs(moving).max(initial=0.0))
+
+
+def find_stability_limit(
+    growth: Callable[[float], float],
+    start: float,
+    *,
+    lowest: float,
+    highest: float,
+    relative_tolerance: float = 1e-4,
+) -> StabilityLimit:
+    """Finds the smallest value above the stable ones at which motions grow.
+
+    Steps by a factor of two from `start` until the growth passes 1, then closes in.
+    A loop that becomes stable again within a factor of two is not seen.
+
+    Args:
+        growth: How much motions grow per period at a value, as `calc_growth` says;
+            NaN where it cannot be told, which counts as unstable.
+        start: Where to begin, in the range.
+        lowest: Above 0.
+        highest: Above `lowest`.
+        relative_tolerance: Of the limit.
+
+    Raises:
+        ValueError: The range is not one, or `start` is not in it.
+    """
+    if not 0.0 < lowest <= start <= highest:
+        raise ValueError(
+            f"start must be in the range from lowest to highest, above 0: {lowest:g} <="
+            f" {start:g} <= {highest:g} is wrong"
+        )
+    tried: dict[float, float] = {}
+
+    def excess(logarithm: float) -> float:
+        if logarithm not in tried:
+            found = growth(math.exp(logarithm)) - 1.0
+            tried[logarithm] = math.inf if math.isnan(found) else found
+        return tried[logarithm]
+
+    def answer(value: float) -> StabilityLimit:
+        return StabilityLimit(value, lowest, highest, len(tried))
+
+    stable = unstable = math.log(start)
+    if excess(stable) < 0.0:
+        while excess(unstable) < 0.0:
+            stable = unstable
+            if stable == math.log(highest):
+                return answer(math.inf)
+            unstable = min(stable + math.log(2.0), math.log(highest))
+    else:
+        while excess(stable) >= 0.0:
+            unstable = stable
+            if unstable == math.log(lowest):
+                return answer(0.0)
+            stable = max(unstable - math.log(2.0), math.log(lowest))
+    # Where a value cannot be evaluated halving is all that is left.
+    while math.isinf(excess(unstable)) and unstable - stable > relative_tolerance:
+        middle = (stable + unstable) / 2.0
+        if excess(middle) < 0.0:
+            stable = middle
+        else:
+            unstable = middle
+    if math.isinf(excess(unstable)):
+        return answer(math.exp(stable))
+    root = brentq(excess, stable, unstable, xtol=relative_tolerance)
+    return answer(math.exp(root))
