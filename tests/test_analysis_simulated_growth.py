@@ -55,11 +55,14 @@ def test_the_context_stays_as_it_is():
 
 @pytest.mark.parametrize("radius", [1e-3, 1e9])
 def test_a_disturbance_out_of_sight_is_an_error(radius):
-    system = make_system(radius, 0.5)
+    none = np.zeros((0, 0))
+    system = LinearSystem(
+        [[radius]], np.zeros((1, 0)), np.zeros((0, 1)), none, PERIOD_S
+    )
     with pytest.raises(ValueError, match="could be followed for . periods only"):
         measure_growth(
             lambda start: Simulator(system, start),
             system.CreateDefaultContext(),
-            eigenvectors(system),
+            (np.ones(1), np.ones(1)),
             PERIOD_S,
         )
