@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
+from pydrake.systems.framework import Context
 
 from drake_haptics.coupling_check import HeldHandle, check_coupling
 from drake_haptics.device_preset import load_device_preset
@@ -23,16 +24,33 @@ def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
     Returns:
         A sentence for each bound that is broken, as `check_coupling` has it.
     """
-    plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
-    handle = plant.GetBodyByName(load_device_preset(scene.device.preset).handle_link)
-    held = calc_held_handle(plant, handle, HAND_GRIPS[scene.hand.grip])
+    held = calc_scene_handle(scene, device)
     return check_coupling(scene.coupling, held, 1.0 / scene.device.rate_hz)
 
 
-def calc_held_handle(
-    plant: MultibodyPlant, handle: RigidBody, grip: HandGrip | None
+def calc_scene_handle(
+    scene: Scene, device: HapticDevice, root: Context | None = None
 ) -> HeldHandle:
-    """Calculates the least inertia and damping at the handle, at the default angles.
+    """Returns what a scene's simulated device in its hand is at the handle.
+
+    Args:
+        scene: Names preset and grip.
+        device: What `make_simulated_device` returned for it.
+        root: Where the arm stands; at its default angles if not given.
+    """
+    plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
+    handle = plant.GetBodyByName(load_device_preset(scene.device.preset).handle_link)
+    context = None if root is None else plant.GetMyContextFromRoot(root)
+    return calc_held_handle(plant, handle, HAND_GRIPS[scene.hand.grip], context)
+
+
+def calc_held_handle(
+    plant: MultibodyPlant,
+    handle: RigidBody,
+    grip: HandGrip | None,
+    context: Context | None = None,
+) -> HeldHandle:
+    """Calculates the least inertia and damping at the handle.
 
     Where all joints are free, a force at the handle meets the apparent inertia
     (J M⁻¹ Jᵀ)⁻¹, and in the same way the damping of the joints. The least of it in any
@@ -42,8 +60,9 @@ def calc_held_handle(
         plant: The arm, its hand welded to it.
         handle: The body that is held.
         grip: Its damping counts; None where the arm is free.
+        context: The plant's; at the default angles if not given.
     """
-    context = plant.CreateDefaultContext()
+    context = context or plant.CreateDefaultContext()
     J_WH = plant.CalcJacobianSpatialVelocity(
         context,
         JacobianWrtVariable.kV,
