@@ -1,4 +1,4 @@
-"""The systems inside a Diagram, their names, timings and states."""
+"""The systems inside a Diagram, their names and timings."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import Context, Diagram, System
+from pydrake.autodiffutils import AutoDiffXd
+from pydrake.systems.framework import Context, Diagram, Diagram_, System
 
 _TIMING = re.compile(r"\(([\d.e+-]+),([\d.e+-]+)\)")
+_DIAGRAMS = (Diagram, Diagram_[AutoDiffXd])
 
 
 @dataclass(frozen=True, order=True)
@@ -30,14 +31,14 @@ class Timing:
 def walk_systems(system: System) -> Iterator[System]:
     """Yields a system and, if it is a Diagram, all that it holds, depth first."""
     yield system
-    if isinstance(system, Diagram):
+    if isinstance(system, _DIAGRAMS):
         for part in system.GetSystems():
             yield from walk_systems(part)
 
 
 def walk_leaves(system: System) -> Iterator[System]:
     """Yields the systems that hold no others, in the order of Drake's states."""
-    return (part for part in walk_systems(system) if not isinstance(part, Diagram))
+    return (part for part in walk_systems(system) if not isinstance(part, _DIAGRAMS))
 
 
 def calc_path(root: System, system: System) -> str:
@@ -73,44 +74,3 @@ def find_timings(root: System, context: Context) -> list[Timing]:
                 for offset, period in _TIMING.findall(str(error))
             ]
     return sorted(found)
-
-
-def list_state_names(root: System) -> list[str]:
-    """Returns a name for each number of the state [continuous; discrete groups].
-
-    A `MultibodyPlant` names its own coordinates, as "plant/tool_x"; other states are
-    "path/xc[0]" for continuous ones and "path/xd[0]" for discrete ones ("path/xd1[0]"
-    for the first of the second group).
-    """
-    context = root.CreateDefaultContext()
-    continuous, discrete = [], []
-    for leaf in walk_leaves(root):
-        own = leaf.GetMyContextFromRoot(context)
-        path = calc_path(root, leaf)
-        groups = [
-            own.get_discrete_state(i).size()
-            for i in range(own.num_discrete_state_groups())
-        ]
-        given = _list_plant_names(leaf, "" if leaf is root else f"{path}/")
-        size = own.num_continuous_states()
-        continuous += given[:size] if size == len(given) else _count(path, "xc", size)
-        if groups[:1] == [len(given)] and given:
-            discrete += given
-            groups[0] = 0
-        for i, size in enumerate(groups):
-            discrete += _count(path, f"xd{i or ''}", size)
-    return continuous + discrete
-
-
-def _list_plant_names(leaf: System, prefix: str) -> list[str]:
-    """Returns the names of a plant's positions and velocities, short if unique."""
-    if not isinstance(leaf, MultibodyPlant):
-        return []
-    names = leaf.GetStateNames(add_model_instance_prefix=False)
-    if len(set(names)) < len(names):
-        names = leaf.GetStateNames(add_model_instance_prefix=True)
-    return [prefix + name for name in names]
-
-
-def _count(path: str, kind: str, size: int) -> list[str]:
-    return [f"{path}/{kind}[{i}]" for i in range(size)]

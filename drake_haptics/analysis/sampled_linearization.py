@@ -7,7 +7,7 @@ haptic loop is neither: a device moves continuously, and its controller samples 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from pydrake.systems.framework import (
@@ -20,9 +20,10 @@ from pydrake.systems.framework import (
 from pydrake.systems.primitives import LinearSystem
 from scipy.linalg import expm
 
-from drake_haptics.analysis.derivative_check import check_derivatives
-from drake_haptics.analysis.diagram_systems import list_state_names
+from drake_haptics.analysis.derivative_check import calc_sizes, check_derivatives
+from drake_haptics.analysis.diagram_systems import find_timings
 from drake_haptics.analysis.drake_errors import explain_drake_errors
+from drake_haptics.analysis.period_map import PeriodMap, check_return
 from drake_haptics.analysis.sampled_map import SampledMap, SampledValues
 from drake_haptics.analysis.sampled_preconditions import (
     check_abstract_state,
@@ -30,63 +31,28 @@ from drake_haptics.analysis.sampled_preconditions import (
     check_events,
     find_period,
 )
+from drake_haptics.analysis.state_layout import find_state_layout
 
 _Port = TypeVar("_Port", InputPort, OutputPort)
 
 
 @dataclass(frozen=True)
-class SampledLinearization:
-    """x⁺ = A x + B u, y = C x + D u about an equilibrium, x = [x_c; discrete groups].
-
-    The state is that just before a sampling instant; u is held over the period.
+class SampledLinearization(PeriodMap):
+    """x⁺ = A x + B u, y = C x + D u about an equilibrium; u is held over the period.
 
     Attributes:
-        A: (n, n).
         B: (n, m), without columns if no input was chosen.
         C: (p, n), without rows if no output was chosen.
         D: (p, m).
-        period_s: T, s.
-        state_names: (n,), as "plant/tool_x" or "controller/xd[0]".
-        state: (n,) the equilibrium.
-        equilibrium_residual: Largest change of a state over one period, relative to
-            its size or 1, whichever is larger.
     """
 
-    A: np.ndarray
     B: np.ndarray
     C: np.ndarray
     D: np.ndarray
-    period_s: float
-    state_names: tuple[str, ...]
-    state: np.ndarray
-    equilibrium_residual: float
-
-    def eigenvalues(self) -> np.ndarray:
-        """Returns the eigenvalues of A (n,), complex, largest magnitude first."""
-        values = np.linalg.eigvals(self.A).astype(complex)
-        return values[np.argsort(-np.abs(values), kind="stable")]
-
-    def spectral_radius(self) -> float:
-        """Returns the largest magnitude of an eigenvalue: stable below 1."""
-        return float(np.abs(self.eigenvalues()).max())
 
     def to_linear_system(self) -> LinearSystem:
         """Returns Drake's discrete-time system of the same matrices and period."""
         return LinearSystem(self.A, self.B, self.C, self.D, self.period_s)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Returns the fields and the eigenvalues ([re, im] each), ready for JSON."""
-        return {
-            "A": self.A.tolist(),
-            "B": self.B.tolist(),
-            "C": self.C.tolist(),
-            "D": self.D.tolist(),
-            "period_s": self.period_s,
-            "state_names": list(self.state_names),
-            "state": self.state.tolist(),
-            "equilibrium_residual": self.equilibrium_residual,
-            "eigenvalues": [[z.real, z.imag] for z in self.eigenvalues()],
-        }
 
 
 @explain_drake_errors("linearizing over one period")
@@ -128,42 +94,47 @@ def linearize_sampled(
     if not 0.0 < tolerance < 1.0:
         raise ValueError(f"tolerance must be between 0 and 1, is {tolerance}")
     check_abstract_state(diagram)
-    period, updates = find_period(diagram, context, period_s)
+    timings = find_timings(diagram, context)
+    period = find_period(timings, period_s)
     check_conversion(diagram)
     one_period = SampledMap(
         diagram,
         context,
-        updates=updates,
+        timings,
         input_port=_find_input(diagram, context, input_port),
         output_port=_find_output(diagram, output_port),
     )
     x, u, n_c = one_period.x, one_period.u, one_period.num_continuous
     if len(x) == 0:
         raise ValueError("the system has no state: there is nothing to linearize")
-    check_events(diagram, one_period.context, period)
-    names = list_state_names(diagram)
+    check_events(diagram, context, period)
+    layout = find_state_layout(diagram)
+    names = layout.names
     held = one_period.hold(x, u)
     values = one_period.calc(x, held, u)
-    residual = _check_equilibrium(x, values, period, names, tolerance)
+    change = np.concatenate([period * values.rates, values.update - x[n_c:]])
+    residual = check_return(x, change, names, tolerance)
     jacobian = one_period.differentiate(x, held, u)
+    n, outputs = len(x), [f"y[{i}]" for i in range(len(values.output))]
     check_derivatives(
-        one_period,
-        jacobian,
-        x,
-        held,
-        u,
-        [*names[n_c:], *names[:n_c], *(f"y[{i}]" for i in range(len(values.output)))],
+        lambda step: one_period.calc(
+            x + step[:n], held + step[:n], u + step[n:]
+        ).stack(),
+        jacobian.stack(),
+        calc_sizes(np.concatenate([x, u])),
+        [*names[n_c:], *names[:n_c], *outputs],
         [*names, *(f"u[{i}]" for i in range(len(u)))],
     )
-    A_B = _compose(jacobian, n_c, len(x), period)
+    A_B = _compose(jacobian, n_c, n, period)
     return SampledLinearization(
-        A=A_B[:, : len(x)],
-        B=A_B[:, len(x) :],
-        C=jacobian.output[:, : len(x)],
-        D=jacobian.output[:, len(x) :],
+        A=A_B[:, :n],
+        B=A_B[:, n:],
+        C=jacobian.output[:, :n],
+        D=jacobian.output[:, n:],
         period_s=period,
-        state_names=tuple(names),
+        state_names=names,
         state=x,
+        quaternions=layout.quaternions,
         equilibrium_residual=residual,
     )
 
@@ -177,27 +148,6 @@ def _compose(jacobian: SampledValues, n_c: int, n: int, period_s: float) -> np.n
     rates = np.zeros((size, size))
     rates[:n_c] = jacobian.rates
     return (expm(rates * period_s) @ update)[:n]
-
-
-def _check_equilibrium(
-    x: np.ndarray,
-    values: SampledValues,
-    period_s: float,
-    names: list[str],
-    tolerance: float,
-) -> float:
-    """Returns the largest relative change over a period, or raises ValueError."""
-    n_c = len(values.rates)
-    change = np.concatenate([period_s * values.rates, values.update - x[n_c:]])
-    relative = np.abs(change) / np.maximum(np.abs(x), 1.0)
-    worst = int(np.argmax(np.where(np.isfinite(relative), relative, np.inf)))
-    if not relative[worst] <= tolerance:
-        raise ValueError(
-            f"not an equilibrium: {names[worst]} changes by {change[worst]:.3g} in one"
-            f" period, more than {tolerance:g} of its size or 1: use the context that"
-            " find_equilibrium returns"
-        )
-    return float(relative[worst])
 
 
 def _find_input(

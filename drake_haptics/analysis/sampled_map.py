@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
+from pydrake.autodiffutils import ExtractGradient, InitializeAutoDiff
 from pydrake.systems.framework import (
     Context,
     DiscreteValues,
@@ -14,7 +15,8 @@ from pydrake.systems.framework import (
     System,
 )
 
-from drake_haptics.analysis.diagram_systems import walk_systems
+from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
+from drake_haptics.analysis.diagram_systems import Timing, calc_path, walk_leaves
 
 
 @dataclass(frozen=True)
@@ -41,22 +43,22 @@ class SampledMap:
     """x_d⁺ = f_d(x_c, x_d, u), ẋ_c = f_c(x_c, x_d⁺, u), y = g(x_c, x_d, u) of a system.
 
     In doubles and in AutoDiffXd, at one time and with all other inputs as they are in
-    the context, which is cloned and never changed. A system with a method
-    `prepare_conversion(context)` is told the clone before the AutoDiffXd twin is made.
+    the context. All discrete groups that are updated periodically are updated, of
+    whatever period.
 
     Attributes:
         x: (n,) the context's state [x_c; all discrete groups].
         u: (m,) the value of the input port, empty without one.
         num_continuous: n_c.
-        context: The clone.
+        context: A clone of the context, which the functions leave changed.
     """
 
     def __init__(
         self,
         system: System,
         context: Context,
+        timings: Sequence[Timing],
         *,
-        updates: bool,
         input_port: InputPort | None = None,
         output_port: OutputPort | None = None,
     ):
@@ -64,35 +66,39 @@ class SampledMap:
 
         Args:
             system: Any system; its AutoDiffXd twin is made when it is first asked for.
-            context: Its root context.
-            updates: Whether it has a periodic discrete update.
-            input_port: A vector port of the system, whose value the context fixes.
+            context: Its root context; only a clone is used.
+            timings: What `find_timings` found.
+            input_port: A vector port of the system, which has a value.
             output_port: A vector port of the system.
+
+        Raises:
+            ValueError: A system inside has several timings, which pydrake does not
+                let one evaluate singly.
         """
+        names = [timing.system for timing in timings]
+        several = sorted({name for name in names if names.count(name) > 1})
+        if several:
+            raise ValueError(
+                f"{several[0]} updates its state at several timings, which cannot be"
+                " evaluated singly: make a system of each"
+            )
         self.context = context.Clone()
-        for part in walk_systems(system):
-            if hasattr(part, "prepare_conversion"):
-                part.prepare_conversion(part.GetMyMutableContextFromRoot(self.context))
         self._system = system
-        self._updates = updates
+        self._updated = [
+            calc_path(system, leaf) in names for leaf in walk_leaves(system)
+        ]
         self._input = None if input_port is None else int(input_port.get_index())
         self._output = None if output_port is None else int(output_port.get_index())
-        self._work = self.context.Clone()
-        self._twin: tuple[System, Context] | None = None
+        self._twin: AutoDiffTwin | None = None
         self.num_continuous = self.context.num_continuous_states()
-        self.x = np.concatenate(
-            [
-                self.context.get_continuous_state_vector().CopyToVector(),
-                *_copy_groups(self.context.get_discrete_state()),
-            ]
-        )
+        self.x = get_state(self.context)
         self.u = np.zeros(0)
         if input_port is not None:
             self.u = np.array(input_port.Eval(self.context))
 
     def hold(self, x: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Returns [x_c; x_d⁺] (n,), which the motion starts from."""
-        return self._step(self._system, self._work, x, u)
+        return self._step(self._system, self.context, x, u)
 
     def calc(self, x: np.ndarray, held: np.ndarray, u: np.ndarray) -> SampledValues:
         """Returns the values of the three functions.
@@ -102,7 +108,7 @@ class SampledMap:
             held: (n,) [x_c; x_d⁺], where the rates are taken.
             u: (m,) the input.
         """
-        return self._calc(self._system, self._work, x, held, u)
+        return self._calc(self._system, self.context, x, held, u)
 
     def differentiate(
         self, x: np.ndarray, held: np.ndarray, u: np.ndarray
@@ -119,21 +125,15 @@ class SampledMap:
         seed = InitializeAutoDiff(np.concatenate([x, u])).ravel()
         seed_held = InitializeAutoDiff(np.concatenate([held, u])).ravel()
         n = len(x)
-        found = self._calc(*self._make_twin(), seed[:n], seed_held[:n], seed[n:])
+        twin = self._twin = self._twin or AutoDiffTwin(self._system)
+        self._set(self._system, self.context, x, u)
+        twin.follow(self.context)
+        found = self._calc(twin.system, twin.context, seed[:n], seed_held[:n], seed[n:])
         return SampledValues(
-            _gradient(found.update, size),
-            _gradient(found.rates, size),
-            _gradient(found.output, size),
+            extract_gradient(found.update, size),
+            extract_gradient(found.rates, size),
+            extract_gradient(found.output, size),
         )
-
-    def _make_twin(self) -> tuple[System, Context]:
-        if self._twin is None:
-            system = self._system.ToScalarType[AutoDiffXd]()
-            context = system.CreateDefaultContext()
-            context.SetTimeStateAndParametersFrom(self.context)
-            system.FixInputPortsFrom(self._system, self.context, context)
-            self._twin = (system, context)
-        return self._twin
 
     def _calc(
         self,
@@ -158,10 +158,16 @@ class SampledMap:
         self, system: System, context: Context, x: np.ndarray, u: np.ndarray
     ) -> np.ndarray:
         self._set(system, context, x, u)
-        if not self._updates:
-            return x
-        updated = system.EvalUniquePeriodicDiscreteUpdate(context)
-        return np.concatenate([x[: self.num_continuous], *_copy_groups(updated)])
+        next_x = [x[: self.num_continuous]]
+        for leaf, updated in zip(walk_leaves(system), self._updated, strict=True):
+            if leaf.num_discrete_state_groups() == 0:
+                continue
+            own = leaf.GetMyContextFromRoot(context)
+            if updated:
+                next_x += _copy_groups(leaf.EvalUniquePeriodicDiscreteUpdate(own))
+            else:
+                next_x += _copy_groups(own.get_discrete_state())
+        return np.concatenate(next_x)
 
     def _set(
         self, system: System, context: Context, x: np.ndarray, u: np.ndarray
@@ -169,6 +175,12 @@ class SampledMap:
         set_state(context, x)
         if self._input is not None:
             system.get_input_port(self._input).FixValue(context, u)
+
+
+def get_state(context: Context) -> np.ndarray:
+    """Returns the state [x_c; all discrete groups] (n,) of a context."""
+    x_c = context.get_continuous_state_vector().CopyToVector()
+    return np.concatenate([x_c, *_copy_groups(context.get_discrete_state())])
 
 
 def set_state(context: Context, x: np.ndarray) -> None:
@@ -185,7 +197,7 @@ def _copy_groups(values: DiscreteValues) -> list[np.ndarray]:
     return [values.get_vector(i).CopyToVector() for i in range(values.num_groups())]
 
 
-def _gradient(values: np.ndarray, size: int) -> np.ndarray:
+def extract_gradient(values: np.ndarray, size: int) -> np.ndarray:
     """Returns the gradient (len(values), size), zero where all are constants."""
     if len(values) == 0:
         return np.zeros((0, size))

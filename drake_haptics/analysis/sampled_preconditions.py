@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import (
@@ -15,7 +16,6 @@ from pydrake.systems.framework import Context, System
 from drake_haptics.analysis.diagram_systems import (
     Timing,
     calc_path,
-    find_timings,
     walk_leaves,
 )
 
@@ -55,27 +55,23 @@ def check_conversion(system: System) -> None:
         )
 
 
-def find_period(
-    system: System, context: Context, period_s: float | None
-) -> tuple[float, bool]:
-    """Returns the one period T of a system, s, and whether anything updates with it.
+def find_period(timings: Sequence[Timing], period_s: float | None) -> float:
+    """Returns the one period T of a system, s.
 
     Args:
-        system: Any system.
-        context: Its root context.
+        timings: What `find_timings` found.
         period_s: The period, s, needed for a system without periodic updates.
 
     Raises:
         ValueError: There are several periods, an offset, none and `period_s` is not
             given, or `period_s` is another one or not positive.
     """
-    if period_s is not None and not (period_s > 0.0 and math.isfinite(period_s)):
-        raise ValueError(f"period_s must be positive, is {period_s}")
-    timings = find_timings(system, context)
+    if period_s is not None:
+        check_positive("period_s", period_s)
     if not timings:
         if period_s is None:
             raise ValueError("period_s must be given: no state is updated periodically")
-        return period_s, False
+        return period_s
     if len({timing.period_s for timing in timings}) > 1:
         raise ValueError(
             f"several periods, {_list_timings(timings)}: one linear map over one"
@@ -93,7 +89,13 @@ def find_period(
             f"period_s is {period_s:g}, but {timings[0].system} is updated every"
             f" {found:g} s: leave period_s out"
         )
-    return found, True
+    return found
+
+
+def check_positive(name: str, value: float) -> None:
+    """Raises ValueError if a number is not positive and finite."""
+    if not (value > 0.0 and math.isfinite(value)):
+        raise ValueError(f"{name} must be positive, is {value}")
 
 
 def check_events(system: System, context: Context, period_s: float) -> None:
@@ -142,7 +144,7 @@ def _is_own(leaf: System) -> bool:
     return not type(leaf).__module__.startswith("pydrake.")
 
 
-def _list_timings(timings: list[Timing]) -> str:
+def _list_timings(timings: Sequence[Timing]) -> str:
     return ", ".join(
         f"{t.period_s:g} s"
         + (f" from {t.offset_s:g} s on" if t.offset_s else "")

@@ -1,0 +1,218 @@
+"""Finds where a diagram stays as it is: a fixed point of its sampled motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import Context, System
+
+from drake_haptics.analysis.derivative_check import calc_sizes
+from drake_haptics.analysis.diagram_systems import find_timings
+from drake_haptics.analysis.drake_errors import explain_drake_errors
+from drake_haptics.analysis.sampled_map import (
+    SampledMap,
+    get_state,
+    set_state,
+)
+from drake_haptics.analysis.sampled_preconditions import (
+    check_abstract_state,
+    check_conversion,
+    check_positive,
+)
+from drake_haptics.analysis.state_layout import StateLayout, find_state_layout
+
+# Singular values below this part of the largest are directions that nothing holds:
+# quaternion lengths, memories of friction. A step has no part in them.
+_RANK = 1e-11
+# Levenberg's damping of a step, relative to the largest singular value.
+_FIRST_DAMPING = 1e-8
+_LARGEST_DAMPING = 1e2
+_RAISE = 10.0
+# A step must lower the residual by some part of itself.
+_LEAST_DECREASE = 1e-4
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Where a diagram stays.
+
+    Attributes:
+        context: A root context there, apart from the state as the user's.
+        residual: Largest change of a state over a period, relative to its size or 1.
+        iterations: Steps of Newton's method taken.
+    """
+
+    context: Context
+    residual: float
+    iterations: int
+
+
+@explain_drake_errors("finding an equilibrium")
+def find_equilibrium(
+    diagram: System,
+    context: Context,
+    *,
+    period_s: float | None = None,
+    settle_s: float = 0.0,
+    tolerance: float = 1e-10,
+    max_iterations: int = 50,
+) -> Equilibrium:
+    """Finds a state near the context's that one period leaves as it is.
+
+    x_d⁺ = x_d for all periodic discrete updates, of one rate or several, and ẋ_c = 0,
+    with time and inputs as they are in the context. Newton's method with AutoDiffXd
+    derivatives and steps of least length, damped as Levenberg and Marquardt do (Nocedal
+    and Wright, Numerical Optimization, 2nd ed., section 10.3) where a full step does
+    not help. Quaternions of MultibodyPlants keep unit length.
+
+    Args:
+        diagram: Any system that converts to AutoDiffXd.
+        context: Its root context; it is not changed.
+        period_s: Time over which a rate counts as a change, s; if not given the
+            shortest period, or 1 s where nothing is updated periodically.
+        settle_s: Simulated first for so long, s; for systems that do not depend on
+            time.
+        tolerance: Bound of `Equilibrium.residual`.
+        max_iterations: Bound of `Equilibrium.iterations`.
+
+    Raises:
+        ValueError: No equilibrium was reached: says how far it got and what to try; a
+            system has abstract state or no AutoDiffXd twin; `settle_s` is given and
+            the system depends on time; an argument is out of its bounds.
+    """
+    if period_s is not None:
+        check_positive("period_s", period_s)
+    check_positive("tolerance", tolerance)
+    if max_iterations < 1:
+        raise ValueError(f"max_iterations must be at least 1, is {max_iterations}")
+    if settle_s < 0.0 or not np.isfinite(settle_s):
+        raise ValueError(f"settle_s must be 0 or more, is {settle_s}")
+    check_abstract_state(diagram)
+    check_conversion(diagram)
+    timings = find_timings(diagram, context)
+    if period_s is None:
+        period_s = timings[0].period_s if timings else 1.0
+    one_period = SampledMap(diagram, context, timings)
+    if settle_s:
+        one_period.x = _settle(diagram, context, one_period, settle_s)
+    search = _Search(one_period, find_state_layout(diagram), period_s)
+    while search.residual > tolerance:
+        if search.iterations == max_iterations or not search.step():
+            raise ValueError(search.explain(tolerance, settle_s))
+    found = one_period.context.Clone()
+    set_state(found, search.x)
+    return Equilibrium(found, search.residual, search.iterations)
+
+
+class _Search:
+    """Newton's method on the changes of the state over a period."""
+
+    def __init__(self, one_period: SampledMap, layout: StateLayout, period_s: float):
+        self._one_period = one_period
+        self._layout = layout
+        self._period_s = period_s
+        self._damping = 0.0
+        self.iterations = 0
+        self.x = self._normalize(one_period.x)
+        self._sizes = calc_sizes(self.x)
+        self._change = self._calc_change(self.x)
+
+    @property
+    def residual(self) -> float:
+        """Largest relative change; infinite if one is not finite."""
+        relative = np.abs(self._change) / self._sizes
+        return float(np.where(np.isfinite(relative), relative, np.inf).max(initial=0.0))
+
+    def step(self) -> bool:
+        """Goes to a better state; returns False if there is none on the way."""
+        if not np.isfinite(self._change).all():
+            return False
+        self.iterations += 1
+        # In units of the coordinates' sizes, so that a step's length means something.
+        J = self._calc_jacobian() * self._sizes / self._sizes[:, np.newaxis]
+        if not np.isfinite(J).all():
+            return False
+        U, sigma, Vt = np.linalg.svd(J)
+        aim = U.T @ (self._change / self._sizes)
+        held = sigma > _RANK * sigma[0]
+        merit = float(np.linalg.norm(self._change / self._sizes))
+        while self._damping <= _LARGEST_DAMPING:
+            damped = sigma**2 + (self._damping * sigma[0]) ** 2
+            part = np.zeros_like(sigma)
+            part[held] = sigma[held] / damped[held] * aim[held]
+            x = self._normalize(self.x - self._sizes * (Vt.T @ part))
+            change = self._calc_change(x)
+            lower = float(np.linalg.norm(change / self._sizes))
+            if lower <= (1.0 - _LEAST_DECREASE) * merit:
+                self.x, self._change = x, change
+                self._sizes = calc_sizes(x)
+                self._damping /= _RAISE**2
+                if self._damping < _FIRST_DAMPING:
+                    self._damping = 0.0
+                return True
+            self._damping = max(_FIRST_DAMPING, _RAISE * self._damping)
+        return False
+
+    def explain(self, tolerance: float, settle_s: float) -> str:
+        """Returns why there is no equilibrium, and what to try."""
+        relative = np.abs(self._change) / self._sizes
+        worst = int(np.argmax(np.where(np.isfinite(relative), relative, np.inf)))
+        longer = "a longer settle_s" if settle_s else "settle_s to simulate first"
+        return (
+            f"no equilibrium after {self.iterations} iterations:"
+            f" {self._layout.names[worst]} still changes by {self._change[worst]:.3g}"
+            f" in {self._period_s:g} s, more than {tolerance:g} of its size or 1. Start"
+            f" nearer to rest, give {longer}, or more max_iterations; a body that"
+            " nothing holds, or a contact that opens and closes, has none"
+        )
+
+    def _normalize(self, x: np.ndarray) -> np.ndarray:
+        x = x.copy()
+        for quaternion in self._layout.quaternions:
+            x[list(quaternion)] /= np.linalg.norm(x[list(quaternion)])
+        return x
+
+    def _calc_change(self, x: np.ndarray) -> np.ndarray:
+        """Returns [T ẋ_c; x_d⁺ - x_d], NaN where a system says it diverged."""
+        u, n_c = self._one_period.u, self._one_period.num_continuous
+        try:
+            values = self._one_period.calc(x, self._one_period.hold(x, u), u)
+        except FloatingPointError:
+            return np.full_like(x, np.nan)
+        return np.concatenate([self._period_s * values.rates, values.update - x[n_c:]])
+
+    def _calc_jacobian(self) -> np.ndarray:
+        """Returns the derivative of the changes by the state, (n, n)."""
+        one_period, x, n_c = self._one_period, self.x, self._one_period.num_continuous
+        found = one_period.differentiate(
+            x, one_period.hold(x, one_period.u), one_period.u
+        )
+        update = np.eye(len(x))
+        update[n_c:] = found.update
+        J = np.concatenate([self._period_s * found.rates @ update, found.update])
+        J[n_c:, n_c:] -= np.eye(len(x) - n_c)
+        return J
+
+
+def _settle(
+    diagram: System, context: Context, one_period: SampledMap, settle_s: float
+) -> np.ndarray:
+    """Returns the state after a simulation, of a system that time does not change."""
+    start = context.Clone()
+    x, u, time_s = one_period.x, one_period.u, context.get_time()
+    held = one_period.hold(x, u)
+    now = one_period.calc(x, held, u).stack()
+    for share in (0.37, 1.0):
+        one_period.context.SetTime(time_s + share * settle_s)
+        if not np.array_equal(one_period.calc(x, held, u).stack(), now):
+            raise ValueError(
+                "settle_s needs a system that does not depend on time, but this one"
+                " changes with it: settle by a simulation of your own up to the time"
+                " of interest, and give its context"
+            )
+    one_period.context.SetTime(time_s)
+    simulator = Simulator(diagram, start)
+    simulator.AdvanceTo(time_s + settle_s)
+    return get_state(simulator.get_context())
