@@ -12,7 +12,12 @@ from queue import SimpleQueue
 from typing import Any
 
 from drake_haptics.analysis.exact_json import from_exact_json, to_exact_json
-from drake_haptics.analysis.study_chunk import Outcome, StudyChunk, is_in_task
+from drake_haptics.analysis.study_chunk import (
+    Outcome,
+    StudyChunk,
+    is_in_task,
+    one_blas_thread,
+)
 from drake_haptics.analysis.study_error import StudyError, TaskFailure
 from drake_haptics.analysis.study_function import StudyFunction
 from drake_haptics.analysis.study_pool import (
@@ -127,6 +132,9 @@ class _Study:
             return
         chunks = -(-len(pending) // chunk_size)
         with (
+            # The threads of an executor share this process's BLAS: where each held it
+            # for its own chunk, the first to end would free it for the others.
+            one_blas_thread(),
             _open_executor(executor, self._function, chunks) as workers,
             closing(_compute(workers, self._function, pending, chunk_size)) as done,
         ):

@@ -55,7 +55,9 @@ def _name_innermost(function: Any) -> str:
 
 
 def _has_name(value: Any) -> bool:
-    return isinstance(value, (types.FunctionType, types.BuiltinFunctionType, type))
+    if isinstance(value, types.BuiltinFunctionType):
+        return value.__module__ is not None  # not a method of an object
+    return isinstance(value, (types.FunctionType, type))
 
 
 def _name(value: Any) -> str:

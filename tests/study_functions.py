@@ -1,0 +1,89 @@
+"""Functions of tasks that worker processes can import."""
+
+from __future__ import annotations
+
+import functools
+import os
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from drake_haptics.analysis.study import run_study
+
+
+def square(x):
+    return x * x
+
+
+def calc_matrix_figures(seed: int) -> dict:
+    """Figures whose last bits depend on the threads of the BLAS."""
+    A = np.random.default_rng(seed).standard_normal((160, 160))
+    return {
+        "inverse": np.linalg.inv(A),
+        "radius": float(np.abs(np.linalg.eigvals(A)).max()),
+        "not finite": [float("nan"), float("inf"), -0.0],
+    }
+
+
+@dataclass(frozen=True)
+class Journal:
+    """Writes every task that it computes to a file, as text; some tasks are odd.
+
+    Args:
+        path: Of the file.
+        seconds: How long a task takes.
+    """
+
+    path: str
+    seconds: float = 0.0
+
+    def __call__(self, task):
+        """Returns the task and the file's name."""
+        with open(self.path, "a") as stream:
+            stream.write(f"{task}\n")
+        if task == "raise":
+            raise OddError(1, 2)
+        if task == "exit":
+            raise SystemExit("Failure at linear_system.cc:89")
+        if task == "object":
+            return object()
+        if task == "die":
+            os._exit(1)
+        if task == "wait":
+            time.sleep(60.0)
+        time.sleep(self.seconds)
+        return [task, os.path.basename(self.path)]
+
+    def read(self) -> list[str]:
+        """The tasks that were computed, in their order."""
+        if not os.path.exists(self.path):
+            return []
+        with open(self.path) as stream:
+            return stream.read().split()
+
+
+class OddError(Exception):
+    """Does not unpickle: its constructor takes other arguments than it keeps."""
+
+    def __init__(self, a, b):
+        super().__init__("odd")
+
+
+def add_scaled(a, x, *, b):
+    return a + b * x
+
+
+add_three_scaled = functools.partial(add_scaled, 3, b=2)
+
+
+def empty_list(task: list) -> int:
+    """Returns the length of a list, and empties it."""
+    n = len(task)
+    task.clear()
+    return n
+
+
+def sum_of_squares(n: int) -> list:
+    """A study inside of a task."""
+    return [os.getpid(), sum(run_study(square, range(n)))]
