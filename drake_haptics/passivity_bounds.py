@@ -16,13 +16,22 @@ from collections.abc import Iterable
 _FASTEST_HAND_M_PER_S = 1.0
 
 
-def calc_passive_damping(stiffness: float, damping: float, period_s: float) -> float:
+def calc_passive_damping(
+    stiffness: float, damping: float, period_s: float, delay_s: float = 0.0
+) -> float:
     """Returns the physical damping b that makes a sampled K and B passive.
 
     b > K T/2 + |B| (Colgate and Schenkel 1997): then no passive hand, however it
-    holds, can be driven into motion.
+    holds, can be driven into motion. With a delay t_d, b > K (T/2 + t_d) + |B| is
+    enough; it is needed too where B is zero or negative. Between whole periods a
+    delay counts as the mean of itself and the next whole period
+    (docs/stability-theory.md).
     """
-    return stiffness * period_s / 2.0 + abs(damping)
+    periods = delay_s / period_s
+    # A delay of whole periods may be a round-off above them.
+    next_whole_s = math.ceil(periods - 1e-9) * period_s
+    held_s = 0.5 * (period_s + delay_s + next_whole_s)
+    return stiffness * held_s + abs(damping)
 
 
 def calc_stable_stiffness(
@@ -34,6 +43,20 @@ def calc_stable_stiffness(
     b T/m and B T/m: for dampings that are small against m/T.
     """
     return (held_damping + damping) / (period_s / 2.0 + delay_s)
+
+
+def calc_stable_delay(
+    stiffness: float, held_damping: float, damping: float, period_s: float
+) -> float:
+    """Returns the delay t_d below which the sampled loop is stable, s.
+
+    t_d < (b + B)/K - T/2, the law of `calc_stable_stiffness` solved for the delay. It
+    is also how long a loop may stall: until the next tick the force is older by so
+    much. Zero where the loop is unstable without any, infinite without stiffness.
+    """
+    if stiffness == 0.0:
+        return math.inf
+    return max(0.0, (held_damping + damping) / stiffness - period_s / 2.0)
 
 
 def calc_quantized_stiffness(

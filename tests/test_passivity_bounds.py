@@ -10,6 +10,7 @@ from drake_haptics.passivity_bounds import (
     calc_returnable_energy,
     calc_sampled_damping,
     calc_sampled_stiffness,
+    calc_stable_delay,
     calc_stable_stiffness,
 )
 
@@ -50,6 +51,55 @@ def test_passive_damping_is_the_largest_of_the_general_expression(K, B):
 
 def test_negative_damping_needs_as_much_as_positive():
     assert calc_passive_damping(100.0, -3.0, T) == calc_passive_damping(100.0, 3.0, T)
+
+
+@pytest.mark.parametrize("K", [300.0, 5000.0])
+@pytest.mark.parametrize("B", [-2.0, 0.0, 1.0])
+@pytest.mark.parametrize("delay_ticks", [1, 2, 5])
+def test_passive_damping_with_a_delay_is_enough(K, B, delay_ticks):
+    """The general expression of H z⁻ᵈ, which needs all of it at ω = 0 if B <= 0."""
+    angle = np.linspace(1e-4, np.pi, 20001)
+    z = np.exp(1j * angle)
+    H = (K + B * (z - 1) / (T * z)) * z**-delay_ticks
+    needed = (T / (2 * (1 - np.cos(angle))) * ((1 - 1 / z) * H).real).max()
+    bound = calc_passive_damping(K, B, T, delay_ticks * T)
+    assert needed <= bound * (1 + 1e-6)
+    if B <= 0:
+        assert needed == pytest.approx(bound, rel=1e-5)
+
+
+@pytest.mark.parametrize("delay_s", [0.0, 0.3e-3, 1e-3, 2.6e-3])
+def test_passive_damping_with_any_delay_pays_for_every_motion(delay_s):
+    """The work that a held, delayed spring does beyond an ideal one: ∫ K v (x_old - x).
+
+    Of all velocities of a size, the largest eigenvalue of that form's symmetric part
+    gains most. Long motions approach the bound from below, where the delay is whole.
+    """
+    K, fine, ticks = 800.0, 10, 60
+    time = np.arange(fine * ticks) * T / fine + T / fine / 2
+    sample = np.floor((time - delay_s) / T) * T
+    # x(t) - x(sample) = ∫ v from the sample to t, on cells with their middles in it.
+    form = (time > sample[:, None]) & (time < time[:, None])
+    form = K * T / fine * (form + 0.5 * np.eye(len(time)))
+    needed = np.linalg.eigvalsh((form + form.T) / 2)[-1]
+    bound = calc_passive_damping(K, 0.0, T, delay_s)
+    assert needed <= bound * (1 + 1e-9)
+    assert needed > (0.9 if delay_s in (0.0, T) else 0.7) * bound
+
+
+@pytest.mark.parametrize(("K", "held", "B"), [(300.0, 0.5, 0.2), (100.0, 0.1, 0.4)])
+def test_stable_delay_is_where_the_sampled_loop_begins_to_grow(K, held, B):
+    ticks = calc_stable_delay(K, held, B, T) / T
+    assert 1 < ticks < 5
+    assert calc_growth(MASS, held, K, B, int(np.floor(0.95 * ticks))) < 1
+    assert calc_growth(MASS, held, K, B, int(np.ceil(1.05 * ticks))) > 1
+
+
+def test_the_stall_of_the_notes_needs_the_damping_of_the_notes():
+    # 500 N/m over 20 ms, and half a period.
+    assert calc_stable_delay(500.0, 4.0, 6.25, T) == pytest.approx(20e-3)
+    assert calc_stable_delay(500.0, 0.1, 0.1, T) == 0.0
+    assert calc_stable_delay(0.0, 0.1, 0.1, T) == np.inf
 
 
 @pytest.mark.parametrize(
