@@ -1,0 +1,216 @@
+"""A sampled wall on a handle that moves in continuous time: one axis, exactly.
+
+The handle has mass m and damper b, and a hand may hold it by mass m_h, damper b_h and
+spring k_h. Every period T the wall's force -(K x + B v) is calculated from the sampled
+position, shown t_d later and then held. Between the changes of the force the flow is
+linear, so one period is a matrix and stability its spectral radius: what the six-axis
+linearization of a Drake diagram must agree with where its motion is one axis.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+from scipy.linalg import expm
+
+# Stiffnesses are tried this factor apart before the edge is bisected.
+_STEP = 2.0 ** (1.0 / 8.0)
+# The softest that is tried, as K T²/m: softer ones are not told from the free handle.
+_SOFTEST_ALPHA = 1e-6
+_RELATIVE_TOLERANCE = 1e-10
+# Delays are told apart to this part of a period: less is round-off of t_d/T.
+_DELAY_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class SampledWall:
+    """A wall on a held handle, along or about one axis.
+
+    All values hold for rotation too, in kg·m², N·m·s/rad and N·m/rad.
+
+    Attributes:
+        mass: m of the handle, kg.
+        damping: b, physical damping of the handle, N·s/m.
+        period_s: T, s.
+        stiffness: K of the wall, N/m.
+        wall_damping: B of the wall, N·s/m.
+        delay_s: t_d, delay of the force on top of the hold, s; any, not only whole
+            periods.
+        hand_mass: m_h, kg; it moves with the handle.
+        hand_damping: b_h, N·s/m.
+        hand_stiffness: k_h, N/m.
+        true_velocity: The wall's damper sees the handle's velocity itself, instead of
+            the backward difference of its positions.
+    """
+
+    mass: float
+    damping: float
+    period_s: float
+    stiffness: float = 0.0
+    wall_damping: float = 0.0
+    delay_s: float = 0.0
+    hand_mass: float = 0.0
+    hand_damping: float = 0.0
+    hand_stiffness: float = 0.0
+    true_velocity: bool = False
+
+    def __post_init__(self) -> None:
+        """Checks the values.
+
+        Raises:
+            ValueError: The mass or the period is not positive, or anything else
+                is negative or no number.
+        """
+        for name in ("mass", "period_s"):
+            value = getattr(self, name)
+            if not (value > 0.0 and math.isfinite(value)):
+                raise ValueError(f"{name} must be positive, is {value}")
+        for name in (
+            "damping",
+            "stiffness",
+            "wall_damping",
+            "delay_s",
+            "hand_mass",
+            "hand_damping",
+            "hand_stiffness",
+        ):
+            value = getattr(self, name)
+            if not (value >= 0.0 and math.isfinite(value)):
+                raise ValueError(f"{name} must be at least 0, is {value}")
+
+    def make_step_matrix(self) -> np.ndarray:
+        """Returns A of z[k+1] = A z[k], just before each sample.
+
+        The state is x, v, the x of the sample before, and the forces that are still
+        to be shown or just shown, the newest first.
+        """
+        T = self.period_s
+        whole = math.floor(self.delay_s / T + _DELAY_TOLERANCE)
+        late_s = self.delay_s - whole * T
+        if late_s < _DELAY_TOLERANCE * T:
+            late_s = 0.0
+        forces = whole + (late_s > 0.0)
+        size = 3 + forces
+        difference = 0.0 if self.true_velocity else self.wall_damping / T
+        force = np.zeros(size)
+        force[0] = -self.stiffness - difference
+        force[1] = -self.wall_damping if self.true_velocity else 0.0
+        force[2] = difference
+        # By row: what is shown 0, 1, ... periods after it was calculated.
+        shown = np.vstack([force, np.eye(size)[3:]])
+
+        A = np.zeros((size, size))
+        flow, push = self._calc_flow(T - late_s)
+        if late_s > 0.0:
+            late_flow, late_push = self._calc_flow(late_s)
+            A[:2] = np.outer(flow @ late_push, shown[whole + 1])
+            flow_of_all = flow @ late_flow
+        else:
+            flow_of_all = flow
+        A[:2, :2] += flow_of_all
+        A[:2] += np.outer(push, shown[whole])
+        A[2, 0] = 1.0
+        A[3:] = shown[:forces]
+        return A
+
+    def calc_spectral_radius(self) -> float:
+        """Returns the growth per period of the slowest mode to die; stable below 1."""
+        return float(np.abs(np.linalg.eigvals(self.make_step_matrix())).max())
+
+    def _calc_flow(self, time_s: float) -> tuple[np.ndarray, np.ndarray]:
+        """Returns Φ (2, 2) and Γ (2,) of [x, v] under a force held for a time."""
+        return _calc_flow(
+            self.mass + self.hand_mass,
+            self.damping + self.hand_damping,
+            self.hand_stiffness,
+            time_s,
+        )
+
+
+# A search changes the wall again and again, but not what it acts on.
+@lru_cache(maxsize=64)
+def _calc_flow(
+    m: float, b: float, k: float, time_s: float
+) -> tuple[np.ndarray, np.ndarray]:
+    rate = np.array([[0.0, 1.0, 0.0], [-k / m, -b / m, 1.0 / m], [0.0, 0.0, 0.0]])
+    flow = expm(rate * time_s)
+    flow.flags.writeable = False
+    return flow[:2, :2], flow[:2, 2]
+
+
+def calc_largest_stiffness(wall: SampledWall) -> float:
+    """Returns the stiffness K up to which every softer wall is stable too.
+
+    Tries stiffer walls, a factor of 1.09 apart, until one grows, and bisects that step
+    to 1e-10 of K. A wall that is stable again beyond an unstable one does not count
+    (tests over random walls found none). The stiffness of `wall` is not used. Zero
+    if even the softest is unstable, as with too much damping of the wall.
+
+    Args:
+        wall: All but its stiffness.
+    """
+
+    def is_stable(stiffness: float) -> bool:
+        return replace(wall, stiffness=stiffness).calc_spectral_radius() < 1.0
+
+    mass = wall.mass + wall.hand_mass
+    stable, tried = 0.0, _SOFTEST_ALPHA * mass / wall.period_s**2
+    if not is_stable(tried):
+        return 0.0
+    # Ends: held for a period, a stiff enough spring throws the handle back farther
+    # than it was.
+    while is_stable(tried):
+        stable, tried = tried, tried * _STEP
+    while tried - stable > _RELATIVE_TOLERANCE * tried:
+        middle = 0.5 * (stable + tried)
+        stable, tried = (middle, tried) if is_stable(middle) else (stable, middle)
+    return stable
+
+
+def calc_largest_delay(wall: SampledWall) -> float:
+    """Returns the delay t_d up to which every shorter one is stable too, s.
+
+    Tries longer delays, a quarter of a period or 2 % apart, until one grows, and
+    bisects that step to 1e-10 of it. The delay of `wall` is not used. Zero if the
+    wall is unstable without delay; infinite if its loop gain is below one at every
+    frequency, as of a soft wall in a firm hand.
+
+    Args:
+        wall: All but its delay.
+    """
+
+    def is_stable(delay_s: float) -> bool:
+        return replace(wall, delay_s=delay_s).calc_spectral_radius() < 1.0
+
+    if not is_stable(0.0):
+        return 0.0
+    if _calc_largest_loop_gain(wall) < 1.0:
+        return math.inf
+    stable, tried = 0.0, 0.25 * wall.period_s
+    while is_stable(tried):
+        stable, tried = tried, tried + max(0.25 * wall.period_s, 0.02 * tried)
+    while tried - stable > _RELATIVE_TOLERANCE * tried:
+        middle = 0.5 * (stable + tried)
+        stable, tried = (middle, tried) if is_stable(middle) else (stable, middle)
+    return stable
+
+
+def _calc_largest_loop_gain(wall: SampledWall) -> float:
+    """Returns the most that the wall's force makes of itself in one round."""
+    flow, push = wall._calc_flow(wall.period_s)
+    angles = np.geomspace(1e-6, math.pi, 4000)
+    z = np.exp(1j * angles)
+    # The response of [x, v] to the held force: (z I - Φ)⁻¹ Γ.
+    response = np.linalg.solve(
+        z[:, None, None] * np.eye(2) - flow,
+        np.broadcast_to(push[:, None], (4000, 2, 1)),
+    )[:, :, 0]
+    if wall.true_velocity:
+        force = wall.stiffness * response[:, 0] + wall.wall_damping * response[:, 1]
+    else:
+        B = wall.wall_damping / wall.period_s * (1.0 - 1.0 / z)
+        force = (wall.stiffness + B) * response[:, 0]
+    return float(np.abs(force).max())
