@@ -1,0 +1,214 @@
+"""How much physical damping makes a sampled wall passive, frequency by frequency.
+
+A device with damping matrix D moves in continuous time. Its position is sampled, a
+discrete law -H(z) x gives a force, and the force is held for a period T. Whatever
+passive hand holds the device, the loop cannot be driven into motion if and only if
+
+    D - R(ω) is positive semidefinite for 0 < ω <= π/T, with
+    R(ω) = T/(2 (1 - cos ωT)) · Herm[(1 - e^(-jωT)) H(e^(jωT))],
+
+Herm[M] = (M + M*)/2. On one axis that is the condition of Colgate and Schenkel (1997),
+b > T/(2 (1 - cos ωT)) Re{(1 - e^(-jωT)) H(e^(jωT))}. For several axes it follows in the
+same way (docs/stability-theory.md): at one baseband ω the motion is any set of aliases
+v_n at ω + 2πn/T, the samples know only their sum s = Σ v_n/(jω_n), and of all motions
+with the same s the device dissipates the least in that with v_n ∝ s/ω_n, namely
+s* D s / Σ 1/ω_n², where Σ 1/ω_n² = T²/(2 (1 - cos ωT)).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from drake_haptics.analysis.transfer_function import TransferFunction, as_transfer
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_POINTS = 400
+# The condition is even in ω: this near to 0 it is its limit there to 1e-8 of itself,
+# and cot(ωT/2) still loses only four digits.
+_LOWEST_ANGLE = 1e-4
+# As many of the highest points of the grid are refined.
+_PEAKS = 3
+
+
+@dataclass(frozen=True)
+class Passivity:
+    """The damping that makes a sampled law passive.
+
+    Attributes:
+        period_s: T, s.
+        frequencies_Hz: (n,), rising; the last is 1/(2 T).
+        required_matrix: R(ω), (n, m, m), Hermitian, N·s/m (N·m·s/rad).
+        required_damping: Its largest eigenvalue, (n,): the b of a device that damps
+            all m axes alike, D = b I. Meaningless where axes of translation and of
+            rotation are mixed: see `calc_usage`.
+        worst_damping: The largest of `required_damping`: b must be larger.
+        worst_frequency_Hz: Where; 0 where it is the limit at standstill.
+    """
+
+    period_s: float
+    frequencies_Hz: np.ndarray
+    required_matrix: np.ndarray
+    required_damping: np.ndarray
+    worst_damping: float
+    worst_frequency_Hz: float
+
+    def calc_usage(self, damping: np.ndarray) -> np.ndarray:
+        """Returns how much of a damping is needed, (n,), without unit.
+
+        That is the largest eigenvalue of L⁻¹ R(ω) L⁻ᵀ with D = L Lᵀ: passive where
+        it is at most one. Axes of different units may be mixed.
+
+        Args:
+            damping: D of device (and hand), symmetric and positive definite, (m, m).
+
+        Raises:
+            ValueError: D has another shape or is not positive definite.
+        """
+        D = np.asarray(damping, dtype=float)
+        axes = self.required_matrix.shape[1]
+        if D.shape != (axes, axes):
+            raise ValueError(f"damping must be ({axes}, {axes}), is {D.shape}")
+        if not np.allclose(D, D.T):
+            raise ValueError("damping must be symmetric")
+        try:
+            L = np.linalg.inv(np.linalg.cholesky(D))
+        except np.linalg.LinAlgError as error:
+            raise ValueError("damping must be positive definite") from error
+        return np.linalg.eigvalsh(L @ self.required_matrix @ L.T)[:, -1]
+
+    def plot(
+        self, axes: Axes | None = None, available: Mapping[str, float] | None = None
+    ) -> Axes:
+        """Draws the required damping over frequency.
+
+        Args:
+            axes: Where; new ones if not given.
+            available: What there is, N·s/m, by name: "device", "device and hand".
+        """
+        if axes is None:
+            from matplotlib import pyplot
+
+            axes = pyplot.figure().add_subplot()
+        axes.plot(self.frequencies_Hz, self.required_damping, label="required")
+        axes.plot(self.worst_frequency_Hz, self.worst_damping, "o", color="C0")
+        for i, (name, damping) in enumerate((available or {}).items(), start=1):
+            axes.axhline(damping, ls="--", color=f"C{i}", label=name)
+        axes.set_xlim(0.0, self.frequencies_Hz[-1])
+        axes.set_xlabel("frequency, Hz")
+        axes.set_ylabel("damping, N·s/m or N·m·s/rad")
+        axes.legend()
+        return axes
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns numbers and lists only; the matrix is left out."""
+        return {
+            "period_s": self.period_s,
+            "frequencies_Hz": self.frequencies_Hz.tolist(),
+            "required_damping": self.required_damping.tolist(),
+            "worst_damping": self.worst_damping,
+            "worst_frequency_Hz": self.worst_frequency_Hz,
+        }
+
+
+def calc_passivity(
+    H: TransferFunction,
+    period_s: float,
+    frequencies_Hz: Sequence[float] | np.ndarray | None = None,
+) -> Passivity:
+    """Calculates how much damping makes a sampled law passive, over frequency.
+
+    Args:
+        H: The law: the force that the device shows is -H(z) x of the sampled
+            positions. A function of complex z that returns a number or an (m, m)
+            array, as `make_spring_damper` does; or a linear system of period T
+            with A, B, C and D, such as pydrake's `LinearSystem`, whose input is x and
+            whose output is the force that resists, +H x.
+        period_s: T, s.
+        frequencies_Hz: Where to look, 0 < f <= 1/(2 T); 0 asks for the limit. If not
+            given, a grid over all, with the angles of a linear system's poles, and
+            refined at its three highest peaks.
+
+    Raises:
+        ValueError: The period is not positive or not that of the system, a frequency
+            is out of its range, H is not square, or is not finite somewhere.
+    """
+    if not period_s > 0.0:
+        raise ValueError(f"period_s must be positive, is {period_s}")
+    transfer, pole_angles = as_transfer(H, period_s)
+    nyquist_Hz = 0.5 / period_s
+
+    def matrix_at(angle: float) -> np.ndarray:
+        return _calc_required_matrix(transfer, max(angle, _LOWEST_ANGLE), period_s)
+
+    if frequencies_Hz is None:
+        angles = _refine(_make_grid(pole_angles), matrix_at)
+    else:
+        f = np.sort(np.asarray(frequencies_Hz, dtype=float))
+        if f.size == 0 or not (f[0] >= 0.0 and f[-1] <= nyquist_Hz * (1.0 + 1e-12)):
+            raise ValueError(
+                f"frequencies_Hz must be from 0 to 1/(2 T), {nyquist_Hz:g} Hz"
+            )
+        angles = np.minimum(2.0 * math.pi * f * period_s, math.pi)
+    required = np.array([matrix_at(angle) for angle in angles])
+    damping = np.linalg.eigvalsh(required)[:, -1]
+    worst = int(np.argmax(damping))
+    hertz = angles / (2.0 * math.pi * period_s)
+    return Passivity(
+        period_s=period_s,
+        frequencies_Hz=hertz,
+        required_matrix=required,
+        required_damping=damping,
+        worst_damping=float(damping[worst]),
+        worst_frequency_Hz=float(hertz[worst]),
+    )
+
+
+def _calc_required_matrix(
+    transfer: Callable[[complex], np.ndarray], angle: float, period_s: float
+) -> np.ndarray:
+    """Returns R at ωT, (m, m).
+
+    T/2 (Re H - cot(ωT/2) Im H), where Re and Im are the two Hermitian parts of
+    H = Re H + j Im H: the module's expression with its small differences cancelled.
+    """
+    H = transfer(complex(math.cos(angle), math.sin(angle)))
+    real, imaginary = (H + H.conj().T) / 2.0, (H - H.conj().T) / 2.0j
+    return period_s / 2.0 * (real - imaginary / math.tan(angle / 2.0))
+
+
+def _make_grid(pole_angles: np.ndarray) -> np.ndarray:
+    """Returns angles in [0, π], close where H may change fast."""
+    even = np.linspace(0.0, math.pi, _POINTS)
+    slow = np.geomspace(_LOWEST_ANGLE, even[1], _POINTS // 8)
+    near = pole_angles[:, None] * np.linspace(0.97, 1.03, 13)
+    every = np.concatenate([even, slow, near.ravel()])
+    return np.unique(every[(every == 0.0) | (every >= _LOWEST_ANGLE)].clip(0, math.pi))
+
+
+def _refine(angles: np.ndarray, matrix_at: Callable[[float], np.ndarray]) -> np.ndarray:
+    """Returns the angles with the tops of the highest peaks added."""
+
+    def damping_at(angle: float) -> float:
+        return float(np.linalg.eigvalsh(matrix_at(angle))[-1])
+
+    values = np.array([damping_at(angle) for angle in angles])
+    inner = values[1:-1]
+    peaks = 1 + np.flatnonzero((inner >= values[:-2]) & (inner >= values[2:]))
+    tops = [
+        minimize_scalar(
+            lambda angle: -damping_at(angle),
+            bounds=(angles[i - 1], angles[i + 1]),
+            method="bounded",
+            options={"xatol": 1e-9},
+        ).x
+        for i in peaks[np.argsort(values[peaks])[-_PEAKS:]]
+    ]
+    return np.unique(np.concatenate([angles, tops]))
