@@ -48,9 +48,10 @@ class AutoDiffPoint:
         """Reads those of some inputs of a twin that have a value.
 
         Raises:
-            ValueError: An abstract input carries no derivatives although vectors
-                do, or vectors have derivatives by different variables.
+            ValueError: An abstract input carries no derivatives, or inputs have
+                derivatives by different numbers of variables.
         """
+        self._system = twin.GetSystemPathname()
         vectors: dict[str, np.ndarray] = {}
         self._inputs: dict[str, Any] = {}
         for port in map(twin.get_input_port, inputs):
@@ -76,7 +77,14 @@ class AutoDiffPoint:
         return port in self._inputs
 
     def __getitem__(self, port: str) -> Any:
-        """Returns an input: an `AutoDiffVector`, or the value of an abstract port."""
+        """Returns an input: an `AutoDiffVector`, or the value of an abstract port.
+
+        Raises:
+            ValueError: It is neither connected nor fixed, or not one that the output
+                depends on.
+        """
+        if port not in self._inputs:
+            raise ValueError(f"input {port} of {self._system} has no value")
         return self._inputs[port]
 
 
@@ -117,7 +125,11 @@ class DifferentiableSystem(_Convertible):
 
     The twin has the same ports, discrete state, abstract parameters and periodic
     update, and asks this system for values and derivatives. So the system itself
-    stays one fast call of the core per tick.
+    stays one fast call of the core per tick. Events that publish are left out: the
+    twin draws and prints nothing.
+
+    What else a system can have, a conversion refuses: another state, numeric
+    parameters, discrete state without one periodic update.
     """
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> Any:
@@ -139,19 +151,36 @@ class DifferentiableSystem(_Convertible):
 
 
 def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -> None:
-    """Declares in a twin all that a system has."""
+    """Declares in a twin all that a system has.
+
+    Raises:
+        ValueError: It has something that a twin cannot have.
+    """
+    defaults = system.CreateDefaultContext()
+    timing = system.GetUniquePeriodicDiscreteUpdateAttribute()
+    for impossible, what in [
+        (defaults.num_continuous_states(), "continuous state"),
+        (defaults.num_abstract_states(), "abstract state"),
+        (defaults.num_numeric_parameter_groups(), "numeric parameters"),
+        (
+            bool(defaults.num_discrete_state_groups()) != (timing is not None),
+            "discrete state without one periodic update, or the reverse",
+        ),
+    ]:
+        if impossible:
+            raise ValueError(
+                f"{system.GetSystemPathname()} has {what}: no system of type"
+                " AutoDiffXd can be made from it"
+            )
     for port in map(system.get_input_port, range(system.num_input_ports())):
         if _is_vector(port):
             twin.DeclareVectorInputPort(port.get_name(), port.size())
         else:
             twin.DeclareAbstractInputPort(port.get_name(), Value[object]())
-    for _ in range(system.num_abstract_parameters()):
-        twin.DeclareAbstractParameter(Value[object]())
-    if system.num_discrete_state_groups():
-        defaults = system.CreateDefaultContext().get_discrete_state()
-        for i in range(defaults.num_groups()):
-            twin.DeclareDiscreteState(InitializeAutoDiff(defaults.value(i)).ravel())
-    timing = system.GetUniquePeriodicDiscreteUpdateAttribute()
+    for i in range(defaults.num_abstract_parameters()):
+        twin.DeclareAbstractParameter(defaults.get_abstract_parameter(i).Clone())
+    for i in range(defaults.num_discrete_state_groups()):
+        twin.DeclareDiscreteState(_to_constants(defaults.get_discrete_state(i).value()))
     if timing is not None:
         twin.DeclarePeriodicDiscreteUpdateEvent(
             timing.period_sec(),
@@ -209,6 +238,11 @@ def _update(
         group = next_state.get_vector(i)
         group.SetFromVector(answer[start : start + group.size()])
         start += group.size()
+
+
+def _to_constants(values: np.ndarray) -> np.ndarray:
+    """Returns scalars of Drake's without derivatives."""
+    return InitializeAutoDiff(values, np.zeros((values.size, 0))).ravel()
 
 
 def _is_vector(port: InputPort_[AutoDiffXd] | OutputPort) -> bool:
