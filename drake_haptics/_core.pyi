@@ -1105,13 +1105,23 @@ class HeldArm:
             gains: of the hand.
         """
 
+    @overload
     def calc_handle_state(self, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
         """Pose X_WH and spatial velocity V_WH, (13,) = [pose (7); rad/s; m/s]."""
 
+    @overload
+    def calc_handle_state(self, state: AutoDiffVector) -> AutoDiffVector:
+        """The same with derivatives."""
+
+    @overload
     def calc_joint_torques(self, time_s: float, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """
         Joint torques (6,), N·m, of the hand and of a wrench (6,) on the handle at its origin in the world, [N·m; N].
         """
+
+    @overload
+    def calc_joint_torques(self, time_s: AutoDiffVector, state: AutoDiffVector, F_applied: AutoDiffVector) -> AutoDiffVector:
+        """The same with derivatives; `time_s` is (1,)."""
 
 class EnergyAccount:
     """

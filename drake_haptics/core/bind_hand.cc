@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "autodiff.h"
 #include "bind.h"
 #include "bind_array.h"
 #include "held_arm.h"
@@ -13,7 +14,8 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-using State = SixJointArm::State;
+template <typename T>
+using State = Eigen::Matrix<T, 12, 1>;
 using CubicsArg = nb::ndarray<const double, nb::shape<-1, 4, 7>, nb::c_contig,
                               nb::device::cpu>;
 
@@ -32,11 +34,29 @@ PosePath MakePath(std::vector<double> starts, const CubicsArg& cubics,
   return path;
 }
 
-void RequireFinite(const State& state) {
-  if (!state.allFinite()) {
+template <typename T>
+void RequireFinite(const State<T>& state) {
+  if (!ValuesOf(state).allFinite()) {
     PyErr_SetString(PyExc_FloatingPointError, "the arm's state is not finite");
     throw nb::python_error();
   }
+}
+
+template <typename T>
+Eigen::Matrix<T, 13, 1> HandleState(const HeldArm& held,
+                                    const State<T>& state) {
+  RequireFinite(state);
+  const MovingPoseOf<T> pose = held.arm.Evaluate(state).pose;
+  Eigen::Matrix<T, 13, 1> out;
+  out << pose.q, pose.V;
+  return out;
+}
+
+template <typename T>
+Vec6Of<T> JointTorques(const HeldArm& held, const T& time,
+                       const State<T>& state, const Vec6Of<T>& F_applied) {
+  RequireFinite(state);
+  return held.JointTorques<T>(time, state, F_applied);
 }
 
 void BindPath(nb::module_& m) {
@@ -91,28 +111,33 @@ void BindHeldArm(nb::module_& m) {
           "    path: X_WP over time.\n"
           "    q_PH: (7,) where the hand wants the handle in P.\n"
           "    gains: of the hand.")
+      .def("calc_handle_state", &HandleState<double>, nb::arg("state"),
+           "Pose X_WH and spatial velocity V_WH, (13,) = [pose (7); rad/s; "
+           "m/s].")
       .def(
           "calc_handle_state",
-          [](const HeldArm& self, const State& state) {
-            RequireFinite(state);
-            const MovingPose pose = self.arm.Evaluate(state).pose;
-            Eigen::Matrix<double, 13, 1> out;
-            out << pose.q, pose.V;
-            return out;
+          [](const HeldArm& self, const AutoDiffVector& state) {
+            return ToAutoDiffVector(
+                HandleState<AutoDiff>(self, ToScalars<12>(state, "state")),
+                state.num_derivatives());
           },
-          nb::arg("state"),
-          "Pose X_WH and spatial velocity V_WH, (13,) = [pose (7); rad/s; "
-          "m/s].")
+          nb::arg("state"), "The same with derivatives.")
+      .def("calc_joint_torques", &JointTorques<double>, nb::arg("time_s"),
+           nb::arg("state"), nb::arg("F_applied"),
+           "Joint torques (6,), N·m, of the hand and of a wrench (6,) on the "
+           "handle at its origin in the world, [N·m; N].")
       .def(
           "calc_joint_torques",
-          [](const HeldArm& self, double time, const State& state,
-             const Vec6& F_applied) {
-            RequireFinite(state);
-            return self.JointTorques(time, state, F_applied);
+          [](const HeldArm& self, const AutoDiffVector& time,
+             const AutoDiffVector& state, const AutoDiffVector& F_applied) {
+            return ToAutoDiffVector(
+                JointTorques<AutoDiff>(self, ToScalars<1>(time, "time_s")[0],
+                                       ToScalars<12>(state, "state"),
+                                       ToScalars<6>(F_applied, "F_applied")),
+                state.num_derivatives());
           },
           nb::arg("time_s"), nb::arg("state"), nb::arg("F_applied"),
-          "Joint torques (6,), N·m, of the hand and of a wrench (6,) on the "
-          "handle at its origin in the world, [N·m; N].");
+          "The same with derivatives; `time_s` is (1,).");
 }
 
 }  // namespace

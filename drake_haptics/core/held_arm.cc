@@ -4,22 +4,38 @@
 #include <cmath>
 
 namespace drake_haptics {
+namespace {
 
-MovingPose PosePath::Evaluate(double time) const {
-  const double t = std::fmod(time, period);
-  const auto next = std::upper_bound(starts.begin() + 1, starts.end(), t);
+/// A time since the path began (anew).
+double TimeOnPath(double time, double period) {
+  return std::fmod(time, period);
+}
+AutoDiff TimeOnPath(const AutoDiff& time, double period) {
+  return {std::fmod(time.value(), period), time.derivatives()};
+}
+
+}  // namespace
+
+template <typename T>
+MovingPoseOf<T> PosePath::Evaluate(const T& time) const {
+  const T t = TimeOnPath(time, period);
+  const auto next =
+      std::upper_bound(starts.begin() + 1, starts.end(), ValueOf(t));
   const auto i = next - starts.begin() - 1;
-  const double s = t - starts[i];
-  const PoseVector value = cubics[i] * Eigen::Vector4d(1, s, s * s, s * s * s);
-  const PoseVector rate = cubics[i] * Eigen::Vector4d(0, 1, 2 * s, 3 * s * s);
+  const T s = t - starts[i];
+  const Eigen::Matrix<T, 7, 4> cubic = cubics[i].template cast<T>();
+  const PoseVectorOf<T> value =
+      cubic * Eigen::Vector4<T>(T(1), s, s * s, s * s * s);
+  const PoseVectorOf<T> rate =
+      cubic * Eigen::Vector4<T>(T(0), T(1), 2 * s, 3 * s * s);
 
-  const Eigen::Quaterniond R(value[0], value[1], value[2], value[3]);
-  const Eigen::Quaterniond dR(rate[0], rate[1], rate[2], rate[3]);
+  const Eigen::Quaternion<T> R(value[0], value[1], value[2], value[3]);
+  const Eigen::Quaternion<T> dR(rate[0], rate[1], rate[2], rate[3]);
   // The change of length is the real part of the product, which is not read.
-  const Vec3 w = 2 * (dR * R.conjugate()).vec() / R.squaredNorm();
-  MovingPose pose;
-  pose.q << value.head<4>().normalized(), value.tail<3>();
-  pose.V << w, rate.tail<3>();
+  const Vec3Of<T> w = 2 * (dR * R.conjugate()).vec() / R.squaredNorm();
+  MovingPoseOf<T> pose;
+  pose.q << value.template head<4>().normalized(), value.template tail<3>();
+  pose.V << w, rate.template tail<3>();
   return pose;
 }
 
@@ -34,38 +50,55 @@ SixJointArm::SixJointArm(const Mat6& J_WH, const PoseVector& q_WH)
   }
 }
 
-SixJointArm::Handle SixJointArm::Evaluate(const State& state) const {
+template <typename T>
+SixJointArm::HandleOf<T> SixJointArm::Evaluate(
+    const Eigen::Matrix<T, 12, 1>& state) const {
   // Motion from the zero pose of all that comes after the joint.
-  Eigen::Quaterniond R = Eigen::Quaterniond::Identity();
-  Vec3 p = Vec3::Zero();
-  std::array<Axis, 6> axes;
+  Eigen::Quaternion<T> R = Eigen::Quaternion<T>::Identity();
+  Vec3Of<T> p = Vec3Of<T>::Zero();
+  std::array<AxisOf<T>, 6> axes;
   for (int i = 0; i < 6; ++i) {
-    const Axis& axis = axes_[i];
-    axes[i] = {R * axis.direction, R * axis.point + p};
-    R = R * RotationExp<double>(state[i] * axis.direction);
-    p = axes[i].point - R * axis.point;
+    const Vec3Of<T> direction = axes_[i].direction.template cast<T>();
+    const Vec3Of<T> point = axes_[i].point.template cast<T>();
+    axes[i] = {R * direction, R * point + p};
+    R = R * RotationExp<T>(state[i] * direction);
+    p = axes[i].point - R * point;
   }
-  const Eigen::Quaterniond R_WH = R * R_WH_;
-  const Vec3 p_WH = R * p_WH_ + p;
+  const Eigen::Quaternion<T> R_WH = R * R_WH_.template cast<T>();
+  const Vec3Of<T> p_WH = R * p_WH_.template cast<T>() + p;
 
-  Handle handle;
+  HandleOf<T> handle;
   for (int i = 0; i < 6; ++i) {
     handle.J_WH.col(i) << axes[i].direction,
         axes[i].direction.cross(p_WH - axes[i].point);
   }
   handle.pose.q << R_WH.w(), R_WH.vec(), p_WH;
-  handle.pose.V = handle.J_WH * state.tail<6>();
+  handle.pose.V = handle.J_WH * state.template tail<6>();
   return handle;
 }
 
-Vec6 HeldArm::JointTorques(double time, const SixJointArm::State& state,
-                           const Vec6& F_applied) const {
-  const SixJointArm::Handle handle = arm.Evaluate(state);
-  const MovingPose aim = path.Evaluate(time);
-  const Vec6 F_hand =
+template <typename T>
+Vec6Of<T> HeldArm::JointTorques(const T& time,
+                                const Eigen::Matrix<T, 12, 1>& state,
+                                const Eigen::Matrix<T, 6, 1>& F_applied) const {
+  const SixJointArm::HandleOf<T> handle = arm.Evaluate(state);
+  const MovingPoseOf<T> aim = path.Evaluate(time);
+  const Vec6Of<T> F_hand =
       ComputeCoupling(aim.q, aim.V, q_PH, handle.pose.q, handle.pose.V, gains)
           .tool.F;
   return handle.J_WH.transpose() * (F_applied + F_hand);
 }
+
+template MovingPose PosePath::Evaluate(const double&) const;
+template SixJointArm::HandleOf<double> SixJointArm::Evaluate(
+    const Eigen::Matrix<double, 12, 1>&) const;
+template SixJointArm::HandleOf<AutoDiff> SixJointArm::Evaluate(
+    const Eigen::Matrix<AutoDiff, 12, 1>&) const;
+template Vec6 HeldArm::JointTorques(const double&,
+                                    const Eigen::Matrix<double, 12, 1>&,
+                                    const Vec6&) const;
+template Vec6Of<AutoDiff> HeldArm::JointTorques(
+    const AutoDiff&, const Eigen::Matrix<AutoDiff, 12, 1>&,
+    const Vec6Of<AutoDiff>&) const;
 
 }  // namespace drake_haptics

@@ -11,10 +11,12 @@ namespace drake_haptics {
 
 /// Pose [qw qx qy qz x y z] of a frame in the world and its spatial velocity
 /// [rad/s; m/s] at its origin.
-struct MovingPose {
-  PoseVector q;
-  Vec6 V;
+template <typename T>
+struct MovingPoseOf {
+  PoseVectorOf<T> q;
+  Vec6Of<T> V;
 };
+using MovingPose = MovingPoseOf<double>;
 
 /// A pose over time: each entry of its vector a cubic in each segment. The
 /// quaternion need not be of unit length; its direction is the rotation.
@@ -26,7 +28,8 @@ struct PosePath {
   std::vector<Cubic> cubics;   ///< one per segment; the last one never ends
   double period;               ///< when it begins anew, s; infinite if never
 
-  MovingPose Evaluate(double time) const;
+  template <typename T>
+  MovingPoseOf<T> Evaluate(const T& time) const;
 };
 
 /// Kinematics of a chain of six revolute joints from the world to a handle H,
@@ -35,26 +38,30 @@ struct PosePath {
 class SixJointArm {
  public:
   /// Six joint angles, rad, then their speeds, rad/s.
-  using State = Eigen::Matrix<double, 12, 1>;
+  template <typename T>
+  using StateOf = Eigen::Matrix<T, 12, 1>;
 
-  struct Handle {
-    MovingPose pose;
-    Mat6 J_WH;  ///< spatial velocity of H per joint speed
+  template <typename T>
+  struct HandleOf {
+    MovingPoseOf<T> pose;
+    Mat6Of<T> J_WH;  ///< spatial velocity of H per joint speed
   };
 
-  /// @param J_WH as in Handle, with all angles zero.
+  /// @param J_WH as in HandleOf, with all angles zero.
   /// @param q_WH pose of H there.
   SixJointArm(const Mat6& J_WH, const PoseVector& q_WH);
 
-  Handle Evaluate(const State& state) const;
+  template <typename T>
+  HandleOf<T> Evaluate(const Eigen::Matrix<T, 12, 1>& state) const;
 
  private:
-  struct Axis {
-    Vec3 direction;
-    Vec3 point;
+  template <typename T>
+  struct AxisOf {
+    Vec3Of<T> direction;
+    Vec3Of<T> point;
   };
 
-  std::array<Axis, 6> axes_;  ///< in the world, with all angles zero
+  std::array<AxisOf<double>, 6> axes_;  ///< in the world, with all angles zero
   Eigen::Quaterniond R_WH_;
   Vec3 p_WH_;
 };
@@ -67,8 +74,9 @@ struct HeldArm {
   CouplingGains gains;
 
   /// Joint torques (N·m) of the hand and of a wrench on the handle at Ho in W.
-  Vec6 JointTorques(double time, const SixJointArm::State& state,
-                    const Vec6& F_applied) const;
+  template <typename T>
+  Vec6Of<T> JointTorques(const T& time, const Eigen::Matrix<T, 12, 1>& state,
+                         const Eigen::Matrix<T, 6, 1>& F_applied) const;
 };
 
 }  // namespace drake_haptics
