@@ -10,12 +10,15 @@ from pydrake.systems.framework import (
     BasicVector,
     Context,
     InputPort,
-    LeafSystem,
     OutputPort,
 )
 
-from drake_haptics._core import CouplingGains, HeldArm
+from drake_haptics._core import AutoDiffVector, CouplingGains, HeldArm
 from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 from drake_haptics.systems.hand_path import HandPath
 
 _NUM_JOINTS = 6
@@ -25,7 +28,7 @@ _PROBE = np.array([0.3, -0.5, 0.7, 1.1, -0.9, 0.4, 1.0, -2.0, 3.0, 2.0, -1.0, 4.
 _MAX_DIFFERENCE = 1e-9
 
 
-class HandImpedance(LeafSystem):
+class HandImpedance(DifferentiableSystem):
     """A hand as a six-axis spring and damper that follows a path.
 
     It draws the handle to X_WP X_PH, with P the frame of the path, and passes on
@@ -115,6 +118,12 @@ class HandImpedance(LeafSystem):
 
     def _calc_handle_state(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._arm.calc_handle_state(self._arm_state.Eval(context)))
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns an output with its derivatives."""
+        if port == "handle_state":
+            return self._arm.calc_handle_state(at["arm_state"])
+        return self._arm.calc_joint_torques(at.time_s, at["arm_state"], at["F_applied"])
 
 
 def _make_held_arm(

@@ -10,7 +10,7 @@ import numpy as np
 from pydrake.common.value import Value
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import Context, InputPort, LeafSystem
+from pydrake.systems.framework import Context, InputPort
 
 from drake_haptics._core import (
     ClusterSet,
@@ -21,6 +21,7 @@ from drake_haptics._core import (
 )
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.differentiable_system import DifferentiableSystem
 from drake_haptics.systems.haptic_picture import HapticPicture
 
 _LONGEST_PERIOD_S = 1 / 30
@@ -33,7 +34,7 @@ _LARGEST_SHARE = 0.05
 _SHORTEST_FRAME_S = 1 / 50
 
 
-class HapticVisualizer(LeafSystem):
+class HapticVisualizer(DifferentiableSystem):
     """Tool, objects, handle, contacts and forces in Meshcat, live or recorded.
 
     * The tool, and as a ghost where the handle wants it: X_WH X_HT.
@@ -67,7 +68,7 @@ class HapticVisualizer(LeafSystem):
     is connected. So that drawing delays no tick, a frame is drawn in slices of 60 µs
     spread over the ticks that follow; and drawing takes at most one twentieth of clock
     time: after a frame that was slow to draw, the next ones are left out. A recording
-    is complete, whatever time that takes.
+    is complete, whatever time that takes. Of scalar type AutoDiffXd it draws nothing.
     """
 
     def __init__(
