@@ -37,6 +37,7 @@ class AutoDiffPoint:
     Attributes:
         state: The discrete state, all groups one after another.
         time_s: The time (1,), s.
+        parameters: The abstract parameters.
     """
 
     def __init__(
@@ -63,6 +64,10 @@ class AutoDiffPoint:
             context.get_discrete_state(i).CopyToVector()
             for i in range(context.num_discrete_state_groups())
         ]
+        self.parameters: tuple[Any, ...] = tuple(
+            context.get_abstract_parameter(i).get_value()
+            for i in range(context.num_abstract_parameters())
+        )
         # Names that no port has.
         vectors["\0state"] = np.concatenate([np.zeros(0), *state])
         vectors["\0time"] = np.array([context.get_time()])

@@ -63,6 +63,19 @@ Eigen::Matrix<AutoDiff, Size, 1> ToScalars(const AutoDiffVector& vector,
   return scalars;
 }
 
+/// Returns the number of variables D, that of all vectors.
+/// @throws std::invalid_argument if it is not.
+template <typename... Vectors>
+Eigen::Index CommonNumDerivatives(const AutoDiffVector& first,
+                                  const Vectors&... others) {
+  const Eigen::Index num_derivatives = first.num_derivatives();
+  if (((others.num_derivatives() != num_derivatives) || ...)) {
+    throw std::invalid_argument(
+        "all arguments must have derivatives by the same variables");
+  }
+  return num_derivatives;
+}
+
 /// Constants, which have no derivatives, get those that are zero.
 template <typename Derived>
 AutoDiffVector ToAutoDiffVector(const Eigen::MatrixBase<Derived>& scalars,

@@ -130,11 +130,13 @@ void BindHeldArm(nb::module_& m) {
           "calc_joint_torques",
           [](const HeldArm& self, const AutoDiffVector& time,
              const AutoDiffVector& state, const AutoDiffVector& F_applied) {
+            const Eigen::Index num_derivatives =
+                CommonNumDerivatives(time, state, F_applied);
             return ToAutoDiffVector(
                 JointTorques<AutoDiff>(self, ToScalars<1>(time, "time_s")[0],
                                        ToScalars<12>(state, "state"),
                                        ToScalars<6>(F_applied, "F_applied")),
-                state.num_derivatives());
+                num_derivatives);
           },
           nb::arg("time_s"), nb::arg("state"), nb::arg("F_applied"),
           "The same with derivatives; `time_s` is (1,).");

@@ -79,12 +79,14 @@ void BindCoupling(nb::module_& m) {
       [](const AutoDiffVector& q_WH, const AutoDiffVector& V_WH,
          const PoseVector& q_HT, const AutoDiffVector& q_WTool,
          const AutoDiffVector& V_WTool, const CouplingGains& gains) {
+        const Eigen::Index num_derivatives =
+            CommonNumDerivatives(q_WH, V_WH, q_WTool, V_WTool);
         return ToAutoDiffVector(
             ToVector(ComputeCoupling(ToScalars<7>(q_WH, "q_WH"),
                                      ToScalars<6>(V_WH, "V_WH"), q_HT,
                                      ToScalars<7>(q_WTool, "q_WTool"),
                                      ToScalars<6>(V_WTool, "V_WTool"), gains)),
-            q_WH.num_derivatives());
+            num_derivatives);
       },
       nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WTool"),
       nb::arg("V_WTool"), nb::arg("gains"), "The same with derivatives.");
@@ -122,10 +124,12 @@ void BindRigidTool(nb::module_& m) {
           "step",
           [](const ToolInertia& self, const AutoDiffVector& state,
              const AutoDiffVector& wrench, double h) {
+            const Eigen::Index num_derivatives =
+                CommonNumDerivatives(state, wrench);
             return ToAutoDiffVector(
                 Step(self, ToScalars<13>(state, "state"),
                      ToScalars<kWrenchModelSize>(wrench, "wrench_model"), h),
-                state.num_derivatives());
+                num_derivatives);
           },
           nb::arg("state"), nb::arg("wrench_model"), nb::arg("h"),
           "The same with derivatives.");
