@@ -44,11 +44,16 @@ class SampledLinearization(PeriodMap):
         B: (n, m), without columns if no input was chosen.
         C: (p, n), without rows if no output was chosen.
         D: (p, m).
+        update: (n, n) the discrete update alone, x_c unchanged.
+        rates: (n, n) of the motion after it, zero in the rows of x_d:
+            A = exp(T rates) update.
     """
 
     B: np.ndarray
     C: np.ndarray
     D: np.ndarray
+    update: np.ndarray
+    rates: np.ndarray
 
     def to_linear_system(self) -> LinearSystem:
         """Returns Drake's discrete-time system of the same matrices and period."""
@@ -125,12 +130,15 @@ def linearize_sampled(
         [*names[n_c:], *names[:n_c], *outputs],
         [*names, *(f"u[{i}]" for i in range(len(u)))],
     )
-    A_B = _compose(jacobian, n_c, n, period)
+    update, rates = _extend(jacobian, n_c, n)
+    A_B = expm(rates * period) @ update
     return SampledLinearization(
-        A=A_B[:, :n],
-        B=A_B[:, n:],
+        A=A_B[:n, :n],
+        B=A_B[:n, n:],
         C=jacobian.output[:, :n],
         D=jacobian.output[:, n:],
+        update=update[:n, :n],
+        rates=rates[:n, :n],
         period_s=period,
         state_names=names,
         state=x,
@@ -139,15 +147,14 @@ def linearize_sampled(
     )
 
 
-def _compose(jacobian: SampledValues, n_c: int, n: int, period_s: float) -> np.ndarray:
-    """Returns [A B] (n, n + m): update, then exact flow with the rest held."""
+def _extend(jacobian: SampledValues, n_c: int, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Returns update and rates of [x_c; x_d; u], each (n + m, n + m)."""
     size = jacobian.update.shape[1]
-    # [x_c; x_d; u] -> [x_c; x_d⁺; u]
     update = np.eye(size)
     update[n_c:n] = jacobian.update
     rates = np.zeros((size, size))
     rates[:n_c] = jacobian.rates
-    return (expm(rates * period_s) @ update)[:n]
+    return update, rates
 
 
 def _find_input(
