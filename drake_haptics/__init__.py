@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         PairTrajectory,
         SceneTracker,
     )
+    from drake_haptics.applied_force_port import AddAppliedSpatialForce
     from drake_haptics.builder import (
         AddHapticLoop,
         BuildHapticDiagram,
@@ -33,13 +34,17 @@ if TYPE_CHECKING:
     from drake_haptics.energy_ledger import EnergyLedger
     from drake_haptics.errors import UserError
     from drake_haptics.haptic_loop import ConnectMovingObject, HapticLoop
+    from drake_haptics.haptic_rendering import HapticRendering
     from drake_haptics.mesh import Mesh, load_mesh
+    from drake_haptics.rendering_builder import AddHapticRendering
     from drake_haptics.scene import Scene, load_scene
     from drake_haptics.scene_library import find_scene, list_scenes
     from drake_haptics.simulation import RunError, make_simulator, run
 
 __all__ = [
+    "AddAppliedSpatialForce",
     "AddHapticLoop",
+    "AddHapticRendering",
     "BuildHapticDiagram",
     "ConnectMovingObject",
     "Contact",
@@ -55,6 +60,7 @@ __all__ = [
     "FeatureKind",
     "HapticDiagram",
     "HapticLoop",
+    "HapticRendering",
     "Mesh",
     "PairTrajectory",
     "RunError",
@@ -71,7 +77,9 @@ __all__ = [
 ]
 
 _MODULE_OF = {
+    "AddAppliedSpatialForce": "applied_force_port",
     "AddHapticLoop": "builder",
+    "AddHapticRendering": "rendering_builder",
     "BuildHapticDiagram": "builder",
     "ConnectMovingObject": "haptic_loop",
     "Contact": "_core",
@@ -87,6 +95,7 @@ _MODULE_OF = {
     "FeatureKind": "_core",
     "HapticDiagram": "builder",
     "HapticLoop": "haptic_loop",
+    "HapticRendering": "haptic_rendering",
     "Mesh": "mesh",
     "PairTrajectory": "_core",
     "RunError": "simulation",

@@ -1,0 +1,191 @@
+"""Puts haptic rendering into a plant of one's own, with one call."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+
+from pydrake.geometry import Role, SceneGraph
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import RigidBody
+from pydrake.systems.framework import DiagramBuilder
+
+from drake_haptics.applied_force_port import AddAppliedSpatialForce
+from drake_haptics.haptic_rendering import HapticRendering
+from drake_haptics.rendered_bodies import (
+    RenderedBody,
+    exclude_own_contact,
+    find_body,
+    find_environment,
+    make_rendered_bodies,
+)
+from drake_haptics.rendering_stiffness import check_rendering_stiffness
+from drake_haptics.scene import Contact, Coupling, Effects, Material
+from drake_haptics.scene_check import SceneWarning
+from drake_haptics.systems.haptic_device import HapticDevice
+
+# The tick of effects with a memory in a plant without a time step, s.
+_DEFAULT_PERIOD_S = 1e-3
+
+
+def AddHapticRendering(
+    builder: DiagramBuilder,
+    plant: MultibodyPlant,
+    scene_graph: SceneGraph,
+    tool_body: RigidBody | str,
+    *,
+    environment: Sequence[RigidBody | str] | None = None,
+    role: Role = Role.kProximity,
+    chord_error_m: float = 1e-4,
+    contact: Contact | None = None,
+    materials: Mapping[str, Material] | None = None,
+    effects: Effects | None = None,
+    coupling: Coupling | None = None,
+    device: HapticDevice | None = None,
+    X_HT: RigidTransform | None = None,
+    period_s: float | None = None,
+    name: str = "haptic_rendering",
+    progress: Callable[[str, float], None] | None = None,
+) -> HapticRendering:
+    """Lets a body of a plant touch others by haptic rendering, and connects it.
+
+    The shapes are those that the bodies have in Drake; a `Mesh` keeps its true shape
+    (`drake_haptics.plant_shapes`). The forces go to the plant's port
+    `applied_spatial_force` beside whatever else feeds it (`AddAppliedSpatialForce`).
+    Bodies that are welded to the world are posed once, here, and never read again;
+    others that move feel the reaction.
+
+    So that no contact counts twice, a collision filter of the model excludes Drake's
+    own contact between the tool and the environment, in every Context made from then
+    on. Between all other bodies it acts as before.
+
+    With a coupling, a spring and damper draw the tool to a handle. The handle is that
+    of `device`, which goes inside; or, without one, is given by the inputs `X_WH` and
+    `V_WH` of the result, which shows its wrench at the output `F_display`.
+
+    Args:
+        builder: Of the diagram with the plant; not built yet.
+        plant: Finalized, continuous or discrete.
+        scene_graph: The plant's.
+        tool_body: The body that is the tool, or its name or `model::name`.
+        environment: The bodies that it meets; all that have shapes where not given,
+            but for those that are rigidly attached to the tool and those whose contact
+            with it the model filters out already.
+        role: Which shapes are used: those for proximity or for illustration.
+        chord_error_m: Largest distance of polytopes from the round shapes that they
+            stand for, m.
+        contact: Tolerance, clustering and gains.
+        materials: Of bodies of the environment, by the names of their ports; what one
+            does not give is that of `contact` and `effects`.
+        effects: What is felt besides contact. Gravity is the plant's own; passivity
+            control is of a device.
+        coupling: Gains between a handle and the tool; None for no handle.
+        device: The handle's, not yet in a builder.
+        X_HT: Pose of the tool in the handle at rest; the identity where not given.
+        period_s: The tick of effects with a memory, and the device's, s; where not
+            given, the plant's time step, or 1 ms for a continuous plant.
+        name: Of the system in the builder.
+        progress: Called while meshes are cut with the name of the body and the share
+            done, from 0 to 1.
+
+    Returns:
+        The system. Its ports are named; see `HapticRendering`.
+
+    Warns:
+        SceneWarning: A gain is too stiff for the explicit step of a discrete plant, or
+            Drake's own contact still acts between the tool and other bodies.
+
+    Raises:
+        ValueError: What was asked for cannot be; the message names the argument and
+            what to do. A mesh that cannot be treated is a
+            `drake_haptics.mesh.MeshError`.
+    """
+    if not plant.is_finalized():
+        raise ValueError("plant: call plant.Finalize() before AddHapticRendering")
+    if not plant.geometry_source_is_registered():
+        raise ValueError(
+            "plant: has no scene graph; make it with AddMultibodyPlantSceneGraph"
+        )
+    contact, effects = contact or Contact(), effects or Effects()
+    inspector = scene_graph.model_inspector()
+    tool = find_body(plant, tool_body, "tool_body")
+    if environment is None:
+        bodies = find_environment(plant, inspector, tool, role)
+    else:
+        bodies = [find_body(plant, body, "environment") for body in environment]
+    rendered_tool, objects = make_rendered_bodies(
+        plant,
+        inspector,
+        tool,
+        bodies,
+        role=role,
+        chord_error_m=chord_error_m,
+        progress=progress,
+    )
+    ordered = _order_materials(materials or {}, objects, effects)
+    rendering = HapticRendering(
+        rendered_tool,
+        objects,
+        contact=contact,
+        materials=ordered,
+        effects=effects,
+        coupling=coupling,
+        device=device,
+        X_HT=X_HT or RigidTransform(),
+        period_s=period_s or plant.time_step() or _DEFAULT_PERIOD_S,
+    )
+    builder.AddNamedSystem(name, rendering)
+    builder.Connect(
+        plant.get_body_poses_output_port(), rendering.get_body_poses_input_port()
+    )
+    builder.Connect(
+        plant.get_body_spatial_velocities_output_port(),
+        rendering.get_body_velocities_input_port(),
+    )
+    AddAppliedSpatialForce(builder, plant, rendering.get_applied_force_output_port())
+    touching = exclude_own_contact(plant, scene_graph, tool, bodies)
+    for sentence in [
+        *_describe_own_contact(tool, touching),
+        *check_rendering_stiffness(
+            plant, rendered_tool, objects, contact, ordered, coupling
+        ),
+    ]:
+        warnings.warn(sentence, SceneWarning, stacklevel=2)
+    return rendering
+
+
+def _order_materials(
+    materials: Mapping[str, Material],
+    objects: Sequence[RenderedBody],
+    effects: Effects,
+) -> list[Material]:
+    """Returns one material for each object."""
+    names = [item.name for item in objects]
+    for name, material in materials.items():
+        if name not in names:
+            raise ValueError(
+                f"materials: there is no {name!r} in the environment; there are"
+                f" {', '.join(names)}"
+            )
+        if material.friction_coefficient is not None and effects.friction is None:
+            raise ValueError(
+                f"materials[{name!r}].friction_coefficient: means nothing without"
+                " effects.friction"
+            )
+        if material.shading is not None and effects.shading is None:
+            raise ValueError(
+                f"materials[{name!r}].shading: means nothing without effects.shading"
+            )
+    return [materials.get(item, Material()) for item in names]
+
+
+def _describe_own_contact(tool: RigidBody, others: Sequence[str]) -> list[str]:
+    """Returns a sentence if Drake's own contact still acts on the tool."""
+    if not others:
+        return []
+    return [
+        f"Drake's own contact still acts between {tool.name()!r} and"
+        f" {', '.join(map(repr, others))}, which are not rendered: name them in"
+        " environment, or exclude them with a collision filter"
+    ]

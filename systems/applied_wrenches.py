@@ -1,0 +1,108 @@
+"""Wrenches on tool and objects as forces on the bodies of a plant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from pydrake.autodiffutils import AutoDiffXd
+from pydrake.common.value import AbstractValue
+from pydrake.multibody.math import SpatialForce_
+from pydrake.multibody.plant import ExternallyAppliedSpatialForce_
+from pydrake.multibody.tree import BodyIndex
+from pydrake.systems.framework import LeafSystem_
+from pydrake.systems.scalar_conversion import TemplateSystem
+
+
+@TemplateSystem.define("AppliedWrenches_", T_list=(float, AutoDiffXd))
+def AppliedWrenches_(T: type) -> type:
+    """Defines `AppliedWrenches` for one scalar type."""
+
+    class Impl(LeafSystem_[T]):
+        """Sums wrenches on the tool and on objects, each at its body's origin.
+
+        .. pydrake_system::
+
+            name: AppliedWrenches
+            input_ports:
+            - F_Tool_W_<name of each wrench on the tool>
+            - F_O_W_<name of each set of wrenches on the objects>
+            output_ports:
+            - applied_spatial_force
+
+        * `F_Tool_W_<name>` (6) is a wrench [τ; f] on the tool at its origin in the
+          world, N·m and N.
+        * `F_O_W_<name>` (6 for each object) are such wrenches on the objects, in
+          their order.
+        * `applied_spatial_force` is a list of `ExternallyAppliedSpatialForce`, for the
+          port of this name of a `MultibodyPlant`: tool, then objects.
+
+        It has no state, and converts to AutoDiffXd.
+        """
+
+        def _construct(
+            self,
+            tool: BodyIndex,
+            tool_wrenches: Sequence[str],
+            objects: Sequence[BodyIndex] = (),
+            object_wrenches: Sequence[str] = (),
+            converter: Any = None,
+        ) -> None:
+            """Constructs the system.
+
+            Args:
+                tool: The body that is the tool.
+                tool_wrenches: A name for each wrench on the tool.
+                objects: The bodies that are the objects that move.
+                object_wrenches: A name for each set of wrenches on them.
+                converter: For Drake.
+            """
+            LeafSystem_[T].__init__(self, converter=converter)
+            self._bodies = [tool, *objects]
+            self._names = (tuple(tool_wrenches), tuple(object_wrenches))
+            self._on_tool = [
+                self.DeclareVectorInputPort(f"F_Tool_W_{name}", 6)
+                for name in tool_wrenches
+            ]
+            self._on_objects = [
+                self.DeclareVectorInputPort(f"F_O_W_{name}", 6 * len(objects))
+                for name in object_wrenches
+            ]
+            self.DeclareAbstractOutputPort(
+                "applied_spatial_force",
+                lambda: AbstractValue.Make([ExternallyAppliedSpatialForce_[T]()]),
+                self._calc_forces,
+                {self.all_input_ports_ticket()},
+            )
+
+        def _construct_copy(self, other: Any, converter: Any = None) -> None:
+            tool, *objects = other._bodies
+            on_tool, on_objects = other._names
+            Impl._construct(self, tool, on_tool, objects, on_objects, converter)
+
+        def _calc_forces(self, context: Any, forces: AbstractValue) -> None:
+            on_tool = sum(port.Eval(context) for port in self._on_tool)
+            on_objects = sum(port.Eval(context) for port in self._on_objects)
+            wrenches = [on_tool]
+            wrenches += [
+                on_objects[6 * i : 6 * i + 6] for i in range(len(self._bodies) - 1)
+            ]
+            forces.set_value(
+                [
+                    _make_force(T, body, F_Bo_W)
+                    for body, F_Bo_W in zip(self._bodies, wrenches, strict=True)
+                ]
+            )
+
+    return Impl
+
+
+def _make_force(T: type, body: BodyIndex, F_Bo_W: Any) -> Any:
+    """Returns a wrench (6) on a body at its origin as what the plant takes."""
+    force = ExternallyAppliedSpatialForce_[T]()
+    force.body_index = body
+    force.F_Bq_W = SpatialForce_[T](F_Bo_W)
+    return force
+
+
+AppliedWrenches = AppliedWrenches_[None]
