@@ -16,6 +16,11 @@ def square(x):
     return x * x
 
 
+def wait_and_tell_process(seconds: float) -> int:
+    time.sleep(seconds)
+    return os.getpid()
+
+
 def calc_matrix_figures(seed: int) -> dict:
     """Figures whose last bits depend on the threads of the BLAS."""
     A = np.random.default_rng(seed).standard_normal((160, 160))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import hashlib
 import json
@@ -455,6 +456,18 @@ def test_arguments_that_cannot_be_used_are_named():
         run_study(square, [1], chunk_size=0)
     with pytest.raises(ValueError, match="function cannot go to another process"):
         run_study(lambda task: task, [1])
+
+
+def test_an_interrupted_study_takes_its_tasks_back(journal):
+    def interrupt(done: int, total: int) -> None:
+        if done == 2:
+            raise KeyboardInterrupt
+
+    journal = dataclasses.replace(journal, seconds=0.005)
+    with ThreadPoolExecutor(1) as threads:
+        with pytest.raises(KeyboardInterrupt, match="2 of 99 tasks are done; a store"):
+            run_study(journal, range(99), executor=threads, progress=interrupt)
+    assert len(journal.read()) < 50
 
 
 # Interruption, in programs of their own.

@@ -48,6 +48,8 @@ class StudyChunk:
     def __init__(self, function: Callable[[Any], Any], tasks: Sequence[str]):
         self._function = function
         self._tasks = tasks
+        # Dask's page shows it.
+        self.__name__ = getattr(function, "__name__", type(function).__name__)
 
     def __call__(self) -> list[Outcome]:
         """Computes the tasks in turn."""
