@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from pydrake.autodiffutils import AutoDiffXd
 from pydrake.common.value import AbstractValue
 from pydrake.multibody.math import SpatialForce_
@@ -101,6 +102,7 @@ def _make_force(T: type, body: BodyIndex, F_Bo_W: Any) -> Any:
     """Returns a wrench (6) on a body at its origin as what the plant takes."""
     force = ExternallyAppliedSpatialForce_[T]()
     force.body_index = body
+    force.p_BoBq_B = np.array([T(0.0)] * 3)
     force.F_Bq_W = SpatialForce_[T](F_Bo_W)
     return force
 

@@ -1,0 +1,93 @@
+"""Small plants for tests: bodies with shapes above a fixed slab, made on the spot."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.geometry import Box, SceneGraph, Shape
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import (
+    AddMultibodyPlant,
+    CoulombFriction,
+    MultibodyPlant,
+    MultibodyPlantConfig,
+)
+from pydrake.multibody.tree import RigidBody, SpatialInertia
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import Context, DiagramBuilder
+
+G = 9.81
+# A plant without a time step, and discrete ones with both kinds of output ports.
+PLANTS = {
+    "continuous": MultibodyPlantConfig(time_step=0.0),
+    "sampled": MultibodyPlantConfig(time_step=1e-3, use_sampled_output_ports=True),
+    "unsampled": MultibodyPlantConfig(time_step=1e-3, use_sampled_output_ports=False),
+}
+RUBBER = CoulombFriction(0.5, 0.5)
+
+
+class PlantScene:
+    """A plant that is being built; `finalize` it, render, then `start`."""
+
+    def __init__(self, config: MultibodyPlantConfig = PLANTS["sampled"]):
+        self.builder = DiagramBuilder()
+        self.plant: MultibodyPlant
+        self.scene_graph: SceneGraph
+        self.plant, self.scene_graph = AddMultibodyPlant(config, self.builder)
+
+    def add(
+        self, name: str, *shapes: Shape, mass: float = 0.1, side: float = 0.04
+    ) -> RigidBody:
+        """Adds a free body with shapes at its origin and the inertia of a cube."""
+        body = self.plant.AddRigidBody(
+            name, SpatialInertia.SolidBoxWithMass(mass, side, side, side)
+        )
+        for n, shape in enumerate(shapes):
+            self.touchable(body, shape, name=f"{name}{n}")
+        return body
+
+    def touchable(self, body, shape, X_BG=None, name="shape"):
+        """Gives a body a shape."""
+        self.plant.RegisterCollisionGeometry(
+            body, X_BG or RigidTransform(), shape, name, RUBBER
+        )
+
+    def add_slab(self, name: str = "slab") -> RigidBody:
+        """Adds a body welded to the world whose top is z = 0."""
+        slab = self.plant.AddRigidBody(name, SpatialInertia.SolidCubeWithDensity(1, 1))
+        self.touchable(slab, Box(1.0, 1.0, 0.1), RigidTransform([0, 0, -0.05]), name)
+        self.plant.WeldFrames(self.plant.world_frame(), slab.body_frame())
+        return slab
+
+    def finalize(self, gravity: float = G) -> PlantScene:
+        """Ends the plant."""
+        self.plant.mutable_gravity_field().set_gravity_vector([0, 0, -gravity])
+        self.plant.Finalize()
+        return self
+
+    def start(self, **poses: RigidTransform) -> PlantScene:
+        """Builds the diagram and places free bodies by their names."""
+        self.diagram = self.builder.Build()
+        self.simulator = Simulator(self.diagram)
+        self.root: Context = self.simulator.get_mutable_context()
+        self.context = self.plant.GetMyMutableContextFromRoot(self.root)
+        for name, X_WB in poses.items():
+            self.plant.SetFreeBodyPose(
+                self.context, self.plant.GetBodyByName(name), X_WB
+            )
+        return self
+
+    def pose(self, name: str) -> RigidTransform:
+        """Returns where a body is."""
+        return self.plant.EvalBodyPoseInWorld(
+            self.context, self.plant.GetBodyByName(name)
+        )
+
+    def velocity(self, name: str) -> np.ndarray:
+        """Returns the spatial velocity [ω; v] of a body's origin."""
+        return self.plant.EvalBodySpatialVelocityInWorld(
+            self.context, self.plant.GetBodyByName(name)
+        ).get_coeffs()
+
+    def read(self, system, port: str):
+        """Returns an output of a system."""
+        return system.GetOutputPort(port).Eval(system.GetMyContextFromRoot(self.root))
