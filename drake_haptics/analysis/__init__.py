@@ -10,21 +10,41 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from drake_haptics.analysis.drake_errors import explain_drake_errors
+    from drake_haptics.analysis.equilibrium import Equilibrium, find_equilibrium
+    from drake_haptics.analysis.mode_plot import plot_poles
+    from drake_haptics.analysis.modes import Mode, ModeKind, find_modes
+    from drake_haptics.analysis.multirate import Monodromy, monodromy
     from drake_haptics.analysis.sampled_linearization import (
         SampledLinearization,
         linearize_sampled,
     )
 
 __all__ = [
+    "Equilibrium",
+    "Mode",
+    "ModeKind",
+    "Monodromy",
     "SampledLinearization",
     "explain_drake_errors",
+    "find_equilibrium",
+    "find_modes",
     "linearize_sampled",
+    "monodromy",
+    "plot_poles",
 ]
 
 _MODULE_OF = {
+    "Equilibrium": "equilibrium",
+    "Mode": "modes",
+    "ModeKind": "modes",
+    "Monodromy": "multirate",
     "SampledLinearization": "sampled_linearization",
     "explain_drake_errors": "drake_errors",
+    "find_equilibrium": "equilibrium",
+    "find_modes": "modes",
     "linearize_sampled": "sampled_linearization",
+    "monodromy": "multirate",
+    "plot_poles": "mode_plot",
 }
 
 

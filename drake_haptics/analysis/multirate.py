@@ -1,0 +1,163 @@
+"""The linear map of a diagram over a whole simulated period, of several rates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from pydrake.autodiffutils import AutoDiffXd, ExtractValue, InitializeAutoDiff
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.analysis import (
+    InitializeParams,
+    ResetIntegratorFromFlags,
+    Simulator_,
+)
+from pydrake.systems.framework import Context, System
+
+from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
+from drake_haptics.analysis.derivative_check import calc_sizes, check_derivatives
+from drake_haptics.analysis.diagram_systems import Timing, find_timings, walk_leaves
+from drake_haptics.analysis.drake_errors import explain_drake_errors
+from drake_haptics.analysis.hyperperiod import find_hyperperiod, snap_to_update
+from drake_haptics.analysis.period_map import PeriodMap, check_return
+from drake_haptics.analysis.sampled_map import (
+    extract_gradient,
+    get_state,
+    set_state,
+)
+from drake_haptics.analysis.sampled_preconditions import (
+    check_abstract_state,
+    check_conversion,
+    check_positive,
+)
+from drake_haptics.analysis.state_layout import find_state_layout
+
+# Integration steps in the shortest period, if none is asked for.
+_STEPS = 10
+
+
+@dataclass(frozen=True)
+class Monodromy(PeriodMap):
+    """x⁺ = A x about an equilibrium over one hyperperiod, from a simulation.
+
+    Attributes:
+        step_s: Of the integrator, s.
+    """
+
+    step_s: float
+
+
+@explain_drake_errors("simulating one hyperperiod with derivatives")
+def monodromy(
+    diagram: System,
+    context: Context,
+    hyperperiod_s: float | None = None,
+    *,
+    step_s: float | None = None,
+    tolerance: float = 1e-8,
+) -> Monodromy:
+    """Linearizes a system over one hyperperiod, in which all its updates come round.
+
+    A simulation in AutoDiffXd with fixed steps of a third-order Runge-Kutta method
+    gives ∂x(t + H)/∂x(t); its eigenvalues are the Floquet multipliers. For several
+    rates and offsets, and for discrete plants that sample their output ports, whose
+    hidden state counts as following from the rest. For one rate `linearize_sampled`
+    is exact and faster. All events run, publish events too; time goes on from that
+    of the context.
+
+    Args:
+        diagram: Any system that converts to AutoDiffXd.
+        context: Its root context, at an equilibrium; only clones are simulated.
+        hyperperiod_s: H, s, a multiple of all periods; if not given the smallest.
+        step_s: Step of the integrator, s; if not given a tenth of the shortest period.
+        tolerance: Bound of `equilibrium_residual`.
+
+    Raises:
+        ValueError: The state does not return; H is no multiple of all periods, or
+            there is none and H is not given; a system has abstract state, does not
+            convert, or loses derivatives; Drake refuses otherwise.
+    """
+    check_positive("tolerance", tolerance)
+    if not all(_is_sampled_plant(leaf) for leaf in _list_abstract(diagram)):
+        check_abstract_state(diagram)
+    check_conversion(diagram)
+    timings = find_timings(diagram, context) + _find_sampled_plants(diagram)
+    H = find_hyperperiod(timings, hyperperiod_s)
+    shortest = min((timing.period_s for timing in timings), default=H)
+    step_s = shortest / _STEPS if step_s is None else step_s
+    check_positive("step_s", step_s)
+    start = snap_to_update(context.get_time(), timings)
+    end = snap_to_update(start + H, timings)
+    x = get_state(context)
+    if len(x) == 0:
+        raise ValueError("the system has no state: there is nothing to linearize")
+    layout = find_state_layout(diagram)
+
+    twin = AutoDiffTwin(diagram)
+    twin.follow(context.Clone())
+    seeds = InitializeAutoDiff(x).ravel()
+    final = _simulate(
+        AutoDiffXd, twin.system, twin.context, seeds, (start, end), step_s
+    )
+    A = extract_gradient(final, len(x))
+    values = ExtractValue(final.reshape(-1, 1)).ravel()
+    residual = check_return(x, values - x, layout.names, tolerance)
+    check_derivatives(
+        lambda step: _simulate(
+            float, diagram, context.Clone(), x + step, (start, end), step_s
+        ),
+        A,
+        calc_sizes(x),
+        layout.names,
+        layout.names,
+    )
+    return Monodromy(
+        A=A,
+        period_s=H,
+        state_names=layout.names,
+        state=x,
+        quaternions=layout.quaternions,
+        equilibrium_residual=residual,
+        step_s=step_s,
+    )
+
+
+def _simulate(
+    scalar: Any,
+    system: System,
+    context: Context,
+    x: np.ndarray,
+    span_s: tuple[float, float],
+    step_s: float,
+) -> np.ndarray:
+    """Returns the state (n,) just before the updates at the end, of a scalar."""
+    context.SetTime(span_s[0])
+    set_state(context, x)
+    simulator = Simulator_[scalar](system, context)
+    ResetIntegratorFromFlags(simulator, "runge_kutta3", scalar(step_s))
+    simulator.get_mutable_integrator().set_fixed_step_mode(True)
+    simulator.Initialize(InitializeParams(suppress_initialization_events=True))
+    simulator.AdvanceTo(span_s[1])
+    return get_state(context)
+
+
+def _list_abstract(diagram: System) -> list[System]:
+    return [leaf for leaf in walk_leaves(diagram) if leaf.num_abstract_states()]
+
+
+def _is_sampled_plant(leaf: System) -> bool:
+    return (
+        isinstance(leaf, MultibodyPlant)
+        and leaf.is_discrete()
+        and leaf.has_sampled_output_ports()
+    )
+
+
+def _find_sampled_plants(diagram: System) -> list[Timing]:
+    """Returns the timings of plants whose update is not a discrete one for Drake."""
+    return [
+        Timing(leaf.time_step(), 0.0, leaf.get_name())
+        for leaf in walk_leaves(diagram)
+        if _is_sampled_plant(leaf)
+    ]
