@@ -93,9 +93,9 @@ class AutoDiffPoint:
         return self._inputs[port]
 
 
-@TemplateSystem.define(
-    "_Convertible_", T_list=[float, AutoDiffXd], T_pairs=[(AutoDiffXd, float)]
-)
+# Both ways: `ToAutoDiffXd` of pydrake 1.51 denies a system of its own (not one in a
+# diagram) that converts one way only.
+@TemplateSystem.define("_Convertible_", T_list=[float, AutoDiffXd])
 def _Convertible_(T: type) -> type:
     if T is float:
 
@@ -104,7 +104,10 @@ def _Convertible_(T: type) -> type:
                 LeafSystem.__init__(self, converter=converter)
 
             def _construct_copy(self, other: Any, converter: Any = None) -> None:
-                raise TypeError("only the twin is made by conversion")
+                raise TypeError(
+                    f"{other.GetSystemPathname()} does not convert back to doubles:"
+                    " keep the system that it was made from"
+                )
 
     else:
 

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from pydrake.autodiffutils import InitializeAutoDiff
+from twin_check import check_twin
 
 from drake_haptics.systems.display_force_hold import (
     LIMITED,
@@ -84,3 +86,33 @@ def test_what_is_not_finite_is_shown_as_nothing(value, entry):
 def test_impossible_limits_are_refused(arguments):
     with pytest.raises(ValueError):
         DisplayForceHold(*arguments)
+
+
+@pytest.mark.parametrize("torque", [0.05, 1.0, 1e150], ids="{:g} N·m".format)
+@pytest.mark.parametrize("force", [0.0, 2.0, 40.0], ids="{:g} N".format)
+def test_its_twin_has_its_derivatives_within_the_limits_and_beyond(torque, force):
+    hold = DisplayForceHold(1e-3, MAX_FORCE, MAX_TORQUE)
+    direction = np.array([2.0, -1.0, 2.0]) / 3.0
+    wrench = np.concatenate([torque * direction, force * direction])
+    jacobian = check_twin(
+        hold, {"F_display": wrench}, state=np.arange(7.0), step=1e-3 * min(torque, 1)
+    )
+    # What is shown is of this sample alone, and limits keep the direction.
+    update = jacobian[7:]
+    assert not update[:, 6:].any()
+    assert np.abs(update[3:6, 3:6] @ direction).max() == pytest.approx(
+        2 / 3 if force <= MAX_FORCE else 0.0, abs=1e-12
+    )
+
+
+def test_what_is_not_finite_has_no_derivatives_that_are_not():
+    twin = DisplayForceHold(1e-3, MAX_FORCE, MAX_TORQUE).ToAutoDiffXd()
+    context = twin.CreateDefaultContext()
+    asked = np.array([0.0, 0.0, 0.0, np.inf, np.nan, 1.0])
+    twin.get_input_port().FixValue(context, InitializeAutoDiff(asked).ravel())
+    state = twin.EvalUniquePeriodicDiscreteUpdate(context).get_vector()
+    for entry, value in zip(
+        state.CopyToVector(), [0.0] * 6 + [NOT_FINITE], strict=True
+    ):
+        assert entry.value() == value
+        assert not entry.derivatives().any()

@@ -10,6 +10,7 @@ from pydrake.multibody.tree import (
     SpatialInertia,
     UnitInertia,
 )
+from twin_check import check_twin
 
 from drake_haptics._core import CouplingGains
 from drake_haptics.device_preset import load_device_preset
@@ -195,3 +196,30 @@ def test_an_arm_of_another_number_of_joints_is_refused():
     path = HandPath([0.0], [RigidTransform()])
     with pytest.raises(ValueError, match="6 revolute joints"):
         HandImpedance(plant, plant.world_body(), path, RigidTransform(), None)
+
+
+@pytest.mark.parametrize("time_s", [0.35, 1.25, 7.6])
+@pytest.mark.parametrize("periodic", [False, True])
+def test_its_twin_has_derivatives_by_arm_wrench_and_time(plant, time_s, periodic):
+    start = handle_pose(Q)
+    side = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [0.01, 0.02, 0.0]) @ start
+    poses, times = [start, side, start], [0.0, 1.0, 2.5]
+    path = HandPath(times, poses, periodic=periodic)
+    X_PH = RigidTransform(RollPitchYaw(0.0, 0.1, 0.0), [0.0, 0.01, 0.0])
+    hand = HandImpedance(
+        plant, plant.GetBodyByName("handle"), path, X_PH, CouplingGains(K, B, KR, BR)
+    )
+    rng = np.random.default_rng(2)
+    jacobian = check_twin(
+        hand,
+        {
+            "arm_state": np.concatenate([Q, rng.normal(size=6)]),
+            "F_applied": rng.normal(size=6),
+        },
+        time_s=time_s,
+        step=1e-3,
+    )
+    # The hand moves at all these times but after the end of a path that ends.
+    moves = periodic or time_s < times[-1]
+    assert jacobian[:6, -1].any() == moves
+    assert not jacobian[6:, -1].any()

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from pydrake.autodiffutils import InitializeAutoDiff
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.analysis import Simulator
+from twin_check import check_twin
 
 from drake_haptics._core import RigidToolDynamics
 from drake_haptics.pose_vector import pose_to_vector
@@ -88,3 +90,39 @@ def test_wrenches_add(tool):
 def test_a_period_must_be_positive():
     with pytest.raises(ValueError, match="period_s must be positive"):
         HapticTool(RigidToolDynamics(1, np.zeros(3), np.eye(3)), 0.0, [], X_WT)
+
+
+@pytest.mark.parametrize("spin_rad_s", [0.0, 1e-3, 3.0, 2000.0])
+def test_its_twin_has_the_derivatives_of_its_step(spin_rad_s):
+    """From a turn of nothing to one of two radians in a tick."""
+    rng = np.random.default_rng(11)
+    dynamics = RigidToolDynamics(
+        MASS, np.array([0.01, -0.02, 0.005]), np.diag([2e-5, 3e-5, 4e-5])
+    )
+    tool = HapticTool(dynamics, PERIOD, ["coupling", "contact"], X_WT)
+    velocity = rng.normal(size=6)
+    velocity[:3] *= spin_rad_s / np.linalg.norm(velocity[:3])
+    wrenches = {name: rng.normal(size=78) for name in ("coupling", "contact")}
+    for model in wrenches.values():
+        model[6:42] *= 1e3
+    if spin_rad_s == 0.0:
+        # The tool stays where it is: the turn that is differentiated is zero.
+        wrenches = {name: np.r_[np.zeros(6), w[6:]] for name, w in wrenches.items()}
+        velocity[:] = 0.0
+    check_twin(
+        tool,
+        wrenches,
+        state=np.concatenate([pose_to_vector(X_WT), velocity]),
+        step=1e-4,
+    )
+
+
+def test_an_open_input_of_its_twin_counts_as_zero(tool):
+    twin = tool.ToAutoDiffXd()
+    context = twin.CreateDefaultContext()
+    seed = InitializeAutoDiff(force_model([0.0, 0.0, 2.0])).ravel()
+    twin.GetInputPort("contact").FixValue(context, seed)
+    state = twin.EvalUniquePeriodicDiscreteUpdate(context).get_vector()
+    state = state.CopyToVector()
+    assert state[12].value() == pytest.approx(2.0 * PERIOD / MASS)
+    assert state[12].derivatives()[5] == pytest.approx(PERIOD / MASS)

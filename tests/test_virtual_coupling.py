@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
-from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.common.eigen_geometry import AngleAxis
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+from twin_check import check_twin
 
 from drake_haptics._core import CouplingGains
 from drake_haptics.pose_vector import pose_to_vector
@@ -76,3 +78,43 @@ def test_a_change_of_any_input_is_seen(coupling):
     moving = np.array([0.1, 0, 0, 0, 0.2, 0])
     assert not np.allclose(evaluate(coupling, X_WH @ X_HT, V_WH=moving)[1], rest)
     assert not np.allclose(evaluate(coupling, X_WH @ X_HT, V_WT=moving)[1], rest)
+
+
+@pytest.mark.parametrize(
+    "angle", [0.0, 1e-9, 1e-6, 1e-3, 0.5, 2.0, np.pi - 1e-2, np.pi - 1e-4]
+)
+def test_its_twin_has_its_derivatives_however_far_it_is_twisted(coupling, angle):
+    twist = RigidTransform(
+        RotationMatrix(AngleAxis(angle, np.array([0.36, 0.48, -0.8]))),
+        [0.01, -0.02, 0.03],
+    )
+    # Half a turn is as far as the spring goes: the steps must not pass it.
+    room = np.pi - angle
+    check_twin(
+        coupling,
+        {
+            "X_WH": pose_to_vector(X_WH),
+            "V_WH": np.array([0.1, 0.2, -0.3, 1.0, -2.0, 3.0]),
+            "X_WTool": pose_to_vector(X_WH @ X_HT @ twist),
+            "V_WTool": np.array([-0.4, 0.5, 0.6, -0.1, 0.2, 0.3]),
+        },
+        step=min(1e-3, 0.05 * room),
+        rtol=1e-8,
+    )
+
+
+def test_derivatives_do_not_mind_the_length_of_a_quaternion(coupling):
+    """A pose that is integrated or perturbed leaves the unit sphere."""
+    jacobian = check_twin(
+        coupling,
+        {
+            "X_WH": pose_to_vector(X_WH) * [1.1, 1.1, 1.1, 1.1, 1, 1, 1],
+            "V_WH": AT_REST,
+            "X_WTool": -pose_to_vector(X_WH) * [0.9, 0.9, 0.9, 0.9, -1, -1, -1],
+            "V_WTool": AT_REST,
+        },
+    )
+    # By the length itself nothing changes.
+    np.testing.assert_allclose(
+        jacobian[:, :4] @ pose_to_vector(X_WH)[:4], 0.0, atol=1e-11
+    )
