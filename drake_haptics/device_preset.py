@@ -22,7 +22,12 @@ class DevicePreset:
         workspace_center_m: Middle of the workspace in the frame of the base, m.
         workspace_radius_m: Radius of the workspace, m.
         max_force_N: Largest force it shows, N.
-        max_torque_Nm: Largest torque it shows, N·m.
+        max_torque_Nm: Largest torque it shows, N·m; 0 where it turns freely.
+        max_stiffness_N_per_m: Largest stiffness it is rated for, N/m. This and what
+            follows may be unknown.
+        max_damping_Ns_per_m: Largest damping, N·s/m.
+        max_rotational_stiffness_Nm_per_rad: N·m/rad.
+        max_rotational_damping_Nms_per_rad: N·m·s/rad.
     """
 
     description: str = ""
@@ -32,6 +37,10 @@ class DevicePreset:
     workspace_radius_m: float = 0.0
     max_force_N: float = 0.0
     max_torque_Nm: float = 0.0
+    max_stiffness_N_per_m: float | None = None
+    max_damping_Ns_per_m: float | None = None
+    max_rotational_stiffness_Nm_per_rad: float | None = None
+    max_rotational_damping_Nms_per_rad: float | None = None
 
     @property
     def model_path(self) -> Path:

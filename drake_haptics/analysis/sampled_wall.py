@@ -10,6 +10,7 @@ linearization of a Drake diagram must agree with where its motion is one axis.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -152,22 +153,33 @@ def calc_largest_stiffness(wall: SampledWall) -> float:
     Args:
         wall: All but its stiffness.
     """
-
-    def is_stable(stiffness: float) -> bool:
-        return replace(wall, stiffness=stiffness).calc_spectral_radius() < 1.0
-
-    mass = wall.mass + wall.hand_mass
-    stable, tried = 0.0, _SOFTEST_ALPHA * mass / wall.period_s**2
-    if not is_stable(tried):
-        return 0.0
     # Ends: held for a period, a stiff enough spring throws the handle back farther
     # than it was.
-    while is_stable(tried):
-        stable, tried = tried, tried * _STEP
-    while tried - stable > _RELATIVE_TOLERANCE * tried:
-        middle = 0.5 * (stable + tried)
-        stable, tried = (middle, tried) if is_stable(middle) else (stable, middle)
-    return stable
+    return _find_edge(
+        lambda stiffness: replace(wall, stiffness=stiffness),
+        start=_SOFTEST_ALPHA * (wall.mass + wall.hand_mass) / wall.period_s**2,
+        step=lambda stiffness: (_STEP - 1.0) * stiffness,
+    )
+
+
+def calc_gain_margin(wall: SampledWall) -> float:
+    """Returns the factor on both K and B up to which the wall is stable.
+
+    Searched as `calc_largest_stiffness` does, from factors far below one. Infinite if
+    both are zero.
+
+    Args:
+        wall: At its own gains; the margin is above 1 if it is stable.
+    """
+    K, B, T = wall.stiffness, wall.wall_damping, wall.period_s
+    if K == B == 0.0:
+        return math.inf
+    mass = wall.mass + wall.hand_mass
+    return _find_edge(
+        lambda factor: replace(wall, stiffness=factor * K, wall_damping=factor * B),
+        start=_SOFTEST_ALPHA * mass / T**2 / (K + B / T),
+        step=lambda factor: (_STEP - 1.0) * factor,
+    )
 
 
 def calc_largest_delay(wall: SampledWall) -> float:
@@ -181,17 +193,30 @@ def calc_largest_delay(wall: SampledWall) -> float:
     Args:
         wall: All but its delay.
     """
-
-    def is_stable(delay_s: float) -> bool:
-        return replace(wall, delay_s=delay_s).calc_spectral_radius() < 1.0
-
-    if not is_stable(0.0):
-        return 0.0
     if _calc_largest_loop_gain(wall) < 1.0:
         return math.inf
-    stable, tried = 0.0, 0.25 * wall.period_s
-    while is_stable(tried):
-        stable, tried = tried, tried + max(0.25 * wall.period_s, 0.02 * tried)
+    return _find_edge(
+        lambda delay_s: replace(wall, delay_s=delay_s),
+        start=0.0,
+        step=lambda delay_s: max(0.25 * wall.period_s, 0.02 * delay_s),
+    )
+
+
+def _find_edge(
+    make_wall: Callable[[float], SampledWall],
+    start: float,
+    step: Callable[[float], float],
+) -> float:
+    """Returns the value from which walls are unstable; 0 if they are at the start."""
+
+    def is_stable(value: float) -> bool:
+        return make_wall(value).calc_spectral_radius() < 1.0
+
+    if not is_stable(start):
+        return 0.0
+    stable = start
+    while is_stable(tried := stable + step(stable)):
+        stable = tried
     while tried - stable > _RELATIVE_TOLERANCE * tried:
         middle = 0.5 * (stable + tried)
         stable, tried = (middle, tried) if is_stable(middle) else (stable, middle)

@@ -1,0 +1,255 @@
+"""A spring and damper for one kind of motion of a device, and what limits them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from drake_haptics.analysis.exact_boundary import calc_boundary_peak
+from drake_haptics.analysis.sampled_wall import (
+    SampledWall,
+    calc_gain_margin,
+    calc_largest_delay,
+    calc_largest_stiffness,
+)
+from drake_haptics.passivity_bounds import (
+    calc_passive_damping,
+    calc_stable_stiffness,
+)
+
+# As B T/m. The laws that the gains come from are of first order in it.
+_LARGEST_BETA = 0.2
+
+
+@dataclass(frozen=True)
+class AxisDevice:
+    """A device, one kind of motion of it, on its own.
+
+    Units are those of translation; of rotation kg·m², N·m·s/rad and N·m/rad.
+
+    Attributes:
+        mass: Apparent mass, the least in any direction, kg.
+        damping: Physical damping, the least, N·s/m.
+        rated_stiffness: The stiffest it is made for, N/m; None where unknown.
+        rated_damping: The largest damping, N·s/m; None where unknown.
+    """
+
+    mass: float
+    damping: float
+    rated_stiffness: float | None = None
+    rated_damping: float | None = None
+
+
+@dataclass(frozen=True)
+class AxisHand:
+    """A hand on it: mass, damping and stiffness that it adds."""
+
+    mass: float = 0.0
+    damping: float = 0.0
+    stiffness: float = 0.0
+
+
+@dataclass(frozen=True)
+class GripMargins:
+    """How far from its limits a coupling is in one grip.
+
+    Attributes:
+        grip: Its name.
+        stiffness: The largest stable stiffness over that chosen, B as it is.
+        gain: The largest stable factor on both K and B.
+        largest_delay_s: The longest stable delay, s.
+        held_damping: b of device and hand, N·s/m.
+        is_passive: b is enough for passivity: whatever else the hand does.
+    """
+
+    grip: str
+    stiffness: float
+    gain: float
+    largest_delay_s: float
+    held_damping: float
+    is_passive: bool
+
+
+@dataclass(frozen=True)
+class AxisDesign:
+    """The gains for one kind of motion.
+
+    Attributes:
+        stiffness: K, N/m.
+        damping: B, N·s/m.
+        stiffness_limit: What holds K down, in words.
+        damping_limit: What holds B down.
+        required_damping: b that makes it passive, N·s/m.
+        device: What it is for.
+        margins: In each grip, the weakest first.
+    """
+
+    stiffness: float
+    damping: float
+    stiffness_limit: str
+    damping_limit: str
+    required_damping: float
+    device: AxisDevice
+    margins: tuple[GripMargins, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns numbers, words and lists only."""
+        return asdict(self) | {"margins": [asdict(margin) for margin in self.margins]}
+
+
+def design_axis(
+    device: AxisDevice,
+    grips: Mapping[str, AxisHand],
+    period_s: float,
+    delay_s: float,
+    margin: float,
+    passive_in: str | None,
+) -> AxisDesign:
+    """Chooses K and B.
+
+    B is the largest of which no reason forbids more, then K is, such that in every
+    grip the exact eigenvalues bear `margin` times K, and `margin` times both.
+
+    Args:
+        device: On its own.
+        grips: Every way in which it may be held, by name.
+        period_s: T, s.
+        delay_s: t_d on top of the hold, s.
+        margin: How many times the gains must be stable, above 1.
+        passive_in: The grip in which the coupling must be passive too, if any.
+
+    Raises:
+        ValueError: No stiffness has the margin.
+    """
+    held = min(device.damping + hand.damping for hand in grips.values())
+    passive_damping = (
+        device.damping + grips[passive_in].damping if passive_in is not None else None
+    )
+    B, damping_limit = _least(
+        _limit_damping(device, held, period_s, delay_s, margin, passive_damping)
+    )
+    walls = {
+        name: make_wall(device, hand, period_s, delay_s, wall_damping=B)
+        for name, hand in grips.items()
+    }
+    K, stiffness_limit = _least(
+        _limit_stiffness(device, held, walls, margin, passive_damping)
+    )
+    if not K > 0.0:
+        raise ValueError(
+            f"no stiffness is stable with a margin of {margin:g} at"
+            f" {1.0 / period_s:g} Hz and a delay of {delay_s:g} s: limited by"
+            f" {stiffness_limit}, with a damping of {B:g}, limited by {damping_limit}"
+        )
+    required = calc_passive_damping(K, B, period_s, delay_s)
+    return AxisDesign(
+        stiffness=K,
+        damping=B,
+        stiffness_limit=stiffness_limit,
+        damping_limit=damping_limit,
+        required_damping=required,
+        device=device,
+        margins=tuple(
+            _calc_margins(name, walls[name], K, required)
+            for name in sorted(walls, key=lambda name: grips[name].damping)
+        ),
+    )
+
+
+def make_wall(
+    device: AxisDevice,
+    hand: AxisHand,
+    period_s: float,
+    delay_s: float,
+    wall_damping: float = 0.0,
+) -> SampledWall:
+    """Returns the coupling as a wall: its tool held still, the stiffest it can be."""
+    return SampledWall(
+        mass=device.mass,
+        damping=device.damping,
+        period_s=period_s,
+        wall_damping=wall_damping,
+        delay_s=delay_s,
+        hand_mass=hand.mass,
+        hand_damping=hand.damping,
+        hand_stiffness=hand.stiffness,
+    )
+
+
+def _limit_damping(
+    device: AxisDevice,
+    held: float,
+    period_s: float,
+    delay_s: float,
+    margin: float,
+    passive_damping: float | None,
+) -> dict[str, float]:
+    """Returns the largest B that each reason allows, by the reason."""
+    per_beta = device.mass / period_s
+    # More than the damping of the stiffest wall costs stiffness.
+    whole = math.ceil(delay_s / period_s - 1e-9)
+    limits = {
+        "the apparent mass of the device at this rate": _LARGEST_BETA * per_beta,
+        "the delay": calc_boundary_peak(whole).beta / margin * per_beta,
+    }
+    if device.rated_damping is not None:
+        limits["the rated damping of the device"] = device.rated_damping
+    if passive_damping is not None:
+        # Where the line of stability, over the margin, meets that of passivity:
+        # (b + B)/margin = b_passive - B.
+        limits["passivity in the hand"] = (margin * passive_damping - held) / (
+            margin + 1.0
+        )
+    return limits
+
+
+def _limit_stiffness(
+    device: AxisDevice,
+    held: float,
+    walls: Mapping[str, SampledWall],
+    margin: float,
+    passive_damping: float | None,
+) -> dict[str, float]:
+    """Returns the largest K that each reason allows, by the reason."""
+    some = next(iter(walls.values()))
+    T, t_d, B = some.period_s, some.delay_s, some.wall_damping
+    limits = {
+        "the damping of device and coupling (law of Gil et al.)": (
+            calc_stable_stiffness(held, B, T, t_d) / margin
+        )
+    }
+    for name, wall in walls.items():
+        more = SampledWall(**{**vars(wall), "wall_damping": margin * B})
+        limits[f"stability in the grip '{name}' (exact eigenvalues)"] = (
+            min(calc_largest_stiffness(wall), calc_largest_stiffness(more)) / margin
+        )
+    if device.rated_stiffness is not None:
+        limits["the rated stiffness of the device"] = device.rated_stiffness
+    if passive_damping is not None:
+        limits["passivity in the hand"] = (passive_damping - B) / calc_passive_damping(
+            1.0, 0.0, T, t_d
+        )
+    return limits
+
+
+def _least(limits: Mapping[str, float]) -> tuple[float, str]:
+    reason = min(limits, key=lambda name: limits[name])
+    return limits[reason], reason
+
+
+def _calc_margins(
+    name: str, wall: SampledWall, stiffness: float, required: float
+) -> GripMargins:
+    chosen = SampledWall(**{**vars(wall), "stiffness": stiffness})
+    held = wall.damping + wall.hand_damping
+    return GripMargins(
+        grip=name,
+        stiffness=calc_largest_stiffness(chosen) / stiffness,
+        gain=calc_gain_margin(chosen),
+        largest_delay_s=calc_largest_delay(chosen),
+        held_damping=held,
+        # A design at the bound is passive, round-off or not.
+        is_passive=required <= held * (1.0 + 1e-9),
+    )

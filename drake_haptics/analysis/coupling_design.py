@@ -1,0 +1,231 @@
+"""Gains of a virtual coupling for a device, a rate and a delay."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydrake.math import RigidTransform
+
+from drake_haptics.analysis.axis_design import (
+    AxisDesign,
+    AxisDevice,
+    AxisHand,
+    design_axis,
+)
+from drake_haptics.coupling_check import HeldHandle
+from drake_haptics.device_preset import DevicePreset, load_device_preset
+from drake_haptics.held_handle import calc_held_handle
+from drake_haptics.scene import Coupling
+from drake_haptics.systems.hand_grip import HAND_GRIPS
+from drake_haptics.systems.simulated_arm import make_arm_plant
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True)
+class CouplingDesign:
+    """A coupling and how far from its limits it is.
+
+    Attributes:
+        coupling: The gains, as a scene has them.
+        period_s: T, s.
+        delay_s: t_d on top of the hold's half period, s.
+        margin: What the design asked for: so many times the gains are stable.
+        translation: Of N/m and N·s/m.
+        rotation: Of N·m/rad and N·m·s/rad; None for a device that shows no torque.
+    """
+
+    coupling: Coupling
+    period_s: float
+    delay_s: float
+    margin: float
+    translation: AxisDesign
+    rotation: AxisDesign | None
+
+    def describe(self) -> str:
+        """Returns the gains and what limits them, a line each."""
+        lines = [f"At {1.0 / self.period_s:g} Hz and {1e3 * self.delay_s:g} ms delay:"]
+        kinds = [("", self.translation, "N/m", "N·s/m")]
+        if self.rotation is not None:
+            kinds.append(("rotational ", self.rotation, "N·m/rad", "N·m·s/rad"))
+        for name, axis, stiffness_unit, damping_unit in kinds:
+            passive = [m.grip for m in axis.margins if m.is_passive]
+            weakest = min(axis.margins, key=lambda m: min(m.stiffness, m.gain))
+            lines += [
+                f"{name}stiffness {axis.stiffness:.4g} {stiffness_unit}, limited by"
+                f" {axis.stiffness_limit}",
+                f"{name}damping {axis.damping:.4g} {damping_unit}, limited by"
+                f" {axis.damping_limit}",
+                f"  stable with {min(weakest.stiffness, weakest.gain):.3g} times that,"
+                f" the least in the grip '{weakest.grip}'",
+                f"  passive with {axis.required_damping:.4g} {damping_unit} of device"
+                f" and hand: {', '.join(passive) if passive else 'in no grip'}",
+            ]
+        return "\n".join(lines)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draws what is stable and what is passive over B and K, and the choice.
+
+        Args:
+            axes: Where the translation goes; if not given, new ones, with those of
+                the rotation beside them.
+
+        Returns:
+            The axes of the translation.
+        """
+        # Drawing is long and needs nothing of what designing does.
+        from drake_haptics.analysis.coupling_plot import plot_axis_design
+
+        rotation = self.rotation
+        if axes is None:
+            from matplotlib import pyplot
+
+            figure = pyplot.figure(figsize=(10.0 if rotation else 5.5, 5.0))
+            axes = figure.add_subplot(1, 2 if rotation else 1, 1)
+            if rotation:
+                beside = figure.add_subplot(1, 2, 2)
+                plot_axis_design(
+                    beside,
+                    rotation,
+                    self.period_s,
+                    self.delay_s,
+                    ("N·m/rad", "N·m·s/rad"),
+                )
+                beside.set_title("rotation")
+            figure.set_layout_engine("tight")
+        plot_axis_design(
+            axes, self.translation, self.period_s, self.delay_s, ("N/m", "N·s/m")
+        )
+        axes.set_title("translation")
+        return axes
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns numbers, words and lists only."""
+        return {
+            "coupling": vars(self.coupling).copy(),
+            "period_s": self.period_s,
+            "delay_s": self.delay_s,
+            "margin": self.margin,
+            "translation": self.translation.to_dict(),
+            "rotation": None if self.rotation is None else self.rotation.to_dict(),
+        }
+
+
+def suggest_coupling(
+    device: str | DevicePreset | HeldHandle,
+    rate_hz: float,
+    *,
+    hand: str | None = None,
+    delay_s: float = 0.0,
+    margin: float = 2.0,
+) -> CouplingDesign:
+    """Suggests the gains of a coupling.
+
+    The damping B is at most what the device is rated for, and B T/m at most 0.2; the
+    stiffness is (b + B)/(T/2 + t_d) over the margin, with the damping b of the device
+    alone, at most what it is rated for, and lowered until the exact eigenvalues have
+    the margin in every grip of `HAND_GRIPS`, none included: a handle may be let go.
+    The tool is taken as held still by a rigid wall, the stiffest that the coupling
+    can be.
+
+    Args:
+        device: Name of a preset, or the preset: its arm at its default angles. Or
+            what is known of a handle without a hand, as `calc_held_handle` tells of
+            any plant at its default angles; it has no ratings.
+        rate_hz: Of the haptic loop, Hz.
+        hand: A grip of `HAND_GRIPS` in which the coupling must also be passive: then
+            B is lower. Where not given, the design only says which grips make it so.
+        delay_s: t_d on top of the hold's half period, s.
+        margin: How many times the gains must be stable, above 1.
+
+    Raises:
+        SceneError: There is no such preset.
+        ValueError: There is no such grip, the rate, mass or inertia is not positive,
+            the delay or a damping is negative, the margin is not above 1, or no
+            stiffness has it.
+    """
+    _check(rate_hz, delay_s, margin, hand)
+    handle, preset = _read_device(device)
+    period_s = 1.0 / rate_hz
+    translation = design_axis(
+        AxisDevice(
+            handle.mass_kg,
+            handle.damping_Ns_per_m,
+            preset.max_stiffness_N_per_m if preset else None,
+            preset.max_damping_Ns_per_m if preset else None,
+        ),
+        {
+            name: AxisHand(g.mass_kg, g.damping_Ns_per_m, g.stiffness_N_per_m)
+            if g
+            else AxisHand()
+            for name, g in HAND_GRIPS.items()
+        },
+        period_s,
+        delay_s,
+        margin,
+        hand,
+    )
+    rotation = None
+    if preset is None or preset.max_torque_Nm > 0.0:
+        rotation = design_axis(
+            AxisDevice(
+                handle.inertia_kgm2,
+                handle.rotational_damping_Nms_per_rad,
+                preset.max_rotational_stiffness_Nm_per_rad if preset else None,
+                preset.max_rotational_damping_Nms_per_rad if preset else None,
+            ),
+            {
+                name: AxisHand(
+                    g.inertia_kgm2,
+                    g.rotational_damping_Nms_per_rad,
+                    g.rotational_stiffness_Nm_per_rad,
+                )
+                if g
+                else AxisHand()
+                for name, g in HAND_GRIPS.items()
+            },
+            period_s,
+            delay_s,
+            margin,
+            hand,
+        )
+    return CouplingDesign(
+        coupling=Coupling(
+            translation.stiffness,
+            translation.damping,
+            rotation.stiffness if rotation else 0.0,
+            rotation.damping if rotation else 0.0,
+        ),
+        period_s=period_s,
+        delay_s=delay_s,
+        margin=margin,
+        translation=translation,
+        rotation=rotation,
+    )
+
+
+def _check(rate_hz: float, delay_s: float, margin: float, hand: str | None) -> None:
+    if not (rate_hz > 0.0 and np.isfinite(rate_hz)):
+        raise ValueError(f"rate_hz must be positive, is {rate_hz}")
+    if not (delay_s >= 0.0 and np.isfinite(delay_s)):
+        raise ValueError(f"delay_s must be at least 0, is {delay_s}")
+    if not (margin > 1.0 and np.isfinite(margin)):
+        raise ValueError(f"margin must be above 1, is {margin}")
+    if hand is not None and hand not in HAND_GRIPS:
+        raise ValueError(f"hand: '{hand}' is none of {', '.join(HAND_GRIPS)}")
+
+
+def _read_device(
+    device: str | DevicePreset | HeldHandle,
+) -> tuple[HeldHandle, DevicePreset | None]:
+    """Returns the handle without a hand, and its ratings if there are any."""
+    if isinstance(device, HeldHandle):
+        return device, None
+    preset = load_device_preset(device) if isinstance(device, str) else device
+    plant = make_arm_plant(preset.model_path, RigidTransform())
+    plant.Finalize()
+    handle = plant.GetBodyByName(preset.handle_link)
+    return calc_held_handle(plant, handle, None), preset

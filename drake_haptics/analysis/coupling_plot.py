@@ -1,0 +1,67 @@
+"""Picture of what is stable and what is passive, over a coupling's gains."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drake_haptics.analysis.axis_design import AxisDesign, AxisHand, make_wall
+from drake_haptics.analysis.sampled_wall import calc_largest_stiffness
+from drake_haptics.passivity_bounds import calc_passive_damping, calc_stable_stiffness
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_POINTS = 40
+# The picture reaches this many times the suggested stiffness at most.
+_HEADROOM = 12.0
+
+
+def plot_axis_design(
+    axes: Axes,
+    design: AxisDesign,
+    period_s: float,
+    delay_s: float,
+    units: tuple[str, str],
+) -> None:
+    """Draws K over B: the device's limits when let go, passivity, and the choice.
+
+    Args:
+        axes: Where.
+        design: Of one kind of motion.
+        period_s: T, s.
+        delay_s: t_d, s.
+        units: Of K and of B.
+    """
+    device = design.device
+    B = np.linspace(0.0, 3.0 * design.damping, _POINTS)
+    free = make_wall(device, AxisHand(), period_s, delay_s)
+    stable = [calc_largest_stiffness(replace(free, wall_damping=b)) for b in B]
+    axes.fill_between(B, stable, color="C0", alpha=0.15)
+    axes.plot(B, stable, color="C0", label="stable, let go (exact)")
+    law = calc_stable_stiffness(device.damping, B, period_s, delay_s)  # type: ignore[arg-type]
+    axes.plot(B, law, "--", color="C0", lw=1.0, label="law of Gil et al.")
+    held_s = calc_passive_damping(1.0, 0.0, period_s, delay_s)
+    visible = [m for m in design.margins if m.held_damping > 0.02 * B[-1]]
+    for i, margins in enumerate(visible, start=1):
+        axes.plot(
+            [0.0, margins.held_damping],
+            [margins.held_damping / held_s, 0.0],
+            ":",
+            color=f"C{i + (i > 2)}",
+            label=f"passive below, grip '{margins.grip}'",
+        )
+    if device.rated_stiffness is not None:
+        axes.axhline(device.rated_stiffness, color="0.7", lw=0.8, label="rated")
+    if device.rated_damping is not None:
+        axes.axvline(device.rated_damping, color="0.7", lw=0.8)
+    axes.plot(design.damping, design.stiffness, "o", color="C3", label="suggested")
+    axes.set_xlim(0.0, B[-1])
+    axes.set_ylim(0.0, min(1.1 * max(stable), _HEADROOM * design.stiffness))
+    axes.set_xlabel(f"damping, {units[1]}")
+    axes.set_ylabel(f"stiffness, {units[0]}")
+    axes.legend(
+        fontsize="small", ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.15)
+    )
