@@ -155,7 +155,9 @@ class DifferentiableSystem(_Convertible):
 
     def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the discrete state after the periodic update, all groups."""
-        raise NotImplementedError(f"{type(self).__name__} has no update")
+        raise NotImplementedError(
+            f"{type(self).__name__} has no derivatives of its update"
+        )
 
 
 def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -> None:

@@ -7,8 +7,12 @@ from pydrake.math import RigidTransform
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
+from twin_check import check_twin
 
 from drake_haptics._core import CouplingGains
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+from drake_haptics.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.systems.haptic_device import HapticDevice
 
 PERIOD = 1e-3
@@ -111,3 +115,20 @@ def test_a_wall_is_as_stiff_as_one_hold_of_delay_allows():
     # 333.8 N/m with one more sample of delay.
     assert growth(900.0) < 0.6
     assert growth(1100.0) > 1.6
+
+
+def test_its_twin_has_the_derivatives_of_hold_hand_and_arm():
+    scene = load_scene(find_scene("torus_peg"))
+    device = make_simulated_device(scene, make_hand_path(scene.hand.path))
+    context = device.CreateDefaultContext()
+    rng = np.random.default_rng(4)
+    arm = context.get_continuous_state_vector().CopyToVector()
+    check_twin(
+        device,
+        {"F_display": np.array([0.01, 0.02, -0.03, 1.0, 2.0, -1.0])},
+        continuous=arm + 0.1 * rng.normal(size=arm.size),
+        state=rng.normal(size=7),
+        time_s=0.3,
+        step=1e-3,
+        rtol=1e-8,
+    )

@@ -6,10 +6,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from pydrake.autodiffutils import AutoDiffXd
 from pydrake.common.value import Value
 from pydrake.geometry import Rgba
 from pydrake.math import RigidTransform, RollPitchYaw
-from pydrake.systems.analysis import Simulator
+from pydrake.systems.analysis import Simulator, Simulator_
 
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems import haptic_visualizer
@@ -446,3 +447,23 @@ def test_frames_fall_on_ticks_to_the_last_bit(tick_s):
     assert np.all(np.diff(times) > 0.9 * max(1 / 64, tick_s))
     for time in times:
         assert time == round(time / tick_s) * tick_s
+
+
+def test_its_twin_takes_the_same_and_draws_nothing():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat, [ContactObject("lid", make_mesh(), None)])
+    sent = len(meshcat.transforms), len(meshcat.properties), len(meshcat.objects)
+    twin = visualizer.ToAutoDiffXd()
+    ports = [
+        [system.get_input_port(i).get_name() for i in range(system.num_input_ports())]
+        for system in (visualizer, twin)
+    ]
+    assert ports[0] == ports[1]
+    # Nothing is connected: whatever read an input would fail.
+    Simulator_[AutoDiffXd](twin).AdvanceTo(AutoDiffXd(0.2))
+    twin.ForcedPublish(twin.CreateDefaultContext())
+    assert sent == (
+        len(meshcat.transforms),
+        len(meshcat.properties),
+        len(meshcat.objects),
+    )
