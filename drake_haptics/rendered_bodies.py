@@ -57,7 +57,7 @@ def find_body(plant: MultibodyPlant, body: RigidBody | str, argument: str) -> Ri
         ValueError: There is none, there are several, or it is of another plant.
     """
     if isinstance(body, RigidBody):
-        if body.index() >= plant.num_bodies() or (
+        if int(body.index()) >= plant.num_bodies() or (
             plant.get_body(body.index()) is not body
         ):
             raise ValueError(f"{argument}: body {body.name()!r} is of another plant")

@@ -71,7 +71,7 @@ class PlantScene:
         self.root: Context = self.simulator.get_mutable_context()
         self.context = self.plant.GetMyMutableContextFromRoot(self.root)
         for name, X_WB in poses.items():
-            self.plant.SetFreeBodyPose(
+            self.plant.SetFloatingBaseBodyPoseInWorldFrame(
                 self.context, self.plant.GetBodyByName(name), X_WB
             )
         return self

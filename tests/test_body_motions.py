@@ -64,7 +64,9 @@ def test_each_body_is_read_in_its_own_place(config):
 def test_the_velocity_is_that_of_the_pose():
     scene, motions = make_scene()
     X = RigidTransform(RollPitchYaw(0.4, -0.2, 2.0), [0.1, 0.2, 0.3])
-    scene.plant.SetFreeBodyPose(scene.context, scene.plant.GetBodyByName("tool"), X)
+    scene.plant.SetFloatingBaseBodyPoseInWorldFrame(
+        scene.context, scene.plant.GetBodyByName("tool"), X
+    )
     V = np.array([1.0, -2.0, 0.5, 0.3, 0.1, -0.4])
     scene.plant.SetVelocities(scene.context, [*np.zeros(12), *V])
     np.testing.assert_allclose(scene.read(motions, "V_WTool"), V)
