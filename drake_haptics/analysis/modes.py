@@ -18,6 +18,8 @@ _NEUTRAL = 1e-6
 # A remembered value is gone after as many periods as it is remembered, eigenvalue 0;
 # of a chain of three, 0 is found to the third root of round-off.
 _MEMORY = 1e-3
+# Growth that is no more than this cannot be told from none.
+_ROUND_OFF = 1e-9
 # A mode has died out when it has fallen to this.
 _DIED_OUT = 0.02
 # States with less than this part of the largest participation are not named.
@@ -115,11 +117,11 @@ class Mode:
         percent, ratio = 100.0 * self.growth_per_period, self.damping_ratio
         swings = self.eigenvalue.imag != 0.0 or self.eigenvalue.real < 0.0
         rate = f"{self.frequency_hz:.3g} Hz" if swings else "no swing"
+        if abs(self.growth_per_period) <= _ROUND_OFF:
+            return f"{rate}, neither grows nor dies out"
         if percent > 0.0:
             return f"grows by {percent:.2g} % each period: unstable; {rate}"
         damped = f", damped {100.0 * ratio:.2g} % of critical" if swings else ""
-        if math.isinf(self.decay_time_s):
-            return f"{rate}{damped}, neither grows nor dies out"
         return f"{rate}{damped}, dies out in {self.decay_time_s:.2g} s"
 
     def _list_largest(self) -> list[str]:

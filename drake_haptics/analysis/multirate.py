@@ -61,10 +61,11 @@ def monodromy(
 
     A simulation in AutoDiffXd with fixed steps of a third-order Runge-Kutta method
     gives ∂x(t + H)/∂x(t); its eigenvalues are the Floquet multipliers. For several
-    rates and offsets, and for discrete plants that sample their output ports, whose
-    hidden state counts as following from the rest. For one rate `linearize_sampled`
-    is exact and faster. All events run, publish events too; time goes on from that
-    of the context.
+    rates and offsets, and for discrete plants that sample their output ports; these
+    step before the discrete updates of the same time, and what they remember of the
+    last step counts as a function of the state. For one rate `linearize_sampled` is
+    exact and faster. All events run, publish events too; time goes on from that of
+    the context.
 
     Args:
         diagram: Any system that converts to AutoDiffXd.
@@ -149,7 +150,7 @@ def _list_abstract(diagram: System) -> list[System]:
 def _is_sampled_plant(leaf: System) -> bool:
     return (
         isinstance(leaf, MultibodyPlant)
-        and leaf.is_discrete()
+        and leaf.time_step() > 0.0
         and leaf.has_sampled_output_ports()
     )
 
