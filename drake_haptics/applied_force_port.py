@@ -29,9 +29,31 @@ def AddAppliedSpatialForce(
             connected any more.
     """
     port = plant.get_applied_spatial_force_input_port()
-    if not builder.IsConnectedOrExported(port):
+    earlier = find_applied_force(builder, plant)
+    if earlier is None:
         builder.Connect(forces, port)
         return
+    builder.Disconnect(earlier, port)
+    both = builder.AddNamedSystem(
+        f"{forces.get_system().get_name()}_{forces.get_name()}_beside_others",
+        ExternallyAppliedSpatialForceMultiplexer(num_inputs=2),
+    )
+    builder.Connect(earlier, both.get_input_port(0))
+    builder.Connect(forces, both.get_input_port(1))
+    builder.Connect(both.get_output_port(), port)
+
+
+def find_applied_force(
+    builder: DiagramBuilder, plant: MultibodyPlant
+) -> OutputPort | None:
+    """Returns what feeds a plant's port `applied_spatial_force` so far.
+
+    Raises:
+        ValueError: As `AddAppliedSpatialForce`.
+    """
+    port = plant.get_applied_spatial_force_input_port()
+    if not builder.IsConnectedOrExported(port):
+        return None
     source = builder.connection_map().get((plant, port.get_index()))
     if source is None:
         raise ValueError(
@@ -41,12 +63,4 @@ def AddAppliedSpatialForce(
             " that you pass to AddAppliedSpatialForce"
         )
     system, index = source
-    earlier = system.get_output_port(index)
-    builder.Disconnect(earlier, port)
-    both = builder.AddNamedSystem(
-        f"{forces.get_system().get_name()}_{forces.get_name()}_beside_others",
-        ExternallyAppliedSpatialForceMultiplexer(num_inputs=2),
-    )
-    builder.Connect(earlier, both.get_input_port(0))
-    builder.Connect(forces, both.get_input_port(1))
-    builder.Connect(both.get_output_port(), port)
+    return system.get_output_port(index)

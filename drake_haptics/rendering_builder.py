@@ -11,7 +11,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import RigidBody
 from pydrake.systems.framework import DiagramBuilder
 
-from drake_haptics.applied_force_port import AddAppliedSpatialForce
+from drake_haptics.applied_force_port import AddAppliedSpatialForce, find_applied_force
 from drake_haptics.haptic_rendering import HapticRendering
 from drake_haptics.rendered_bodies import (
     RenderedBody,
@@ -101,12 +101,9 @@ def AddHapticRendering(
             what to do. A mesh that cannot be treated is a
             `drake_haptics.mesh.MeshError`.
     """
-    if not plant.is_finalized():
-        raise ValueError("plant: call plant.Finalize() before AddHapticRendering")
-    if not plant.geometry_source_is_registered():
-        raise ValueError(
-            "plant: has no scene graph; make it with AddMultibodyPlantSceneGraph"
-        )
+    _check_builder(builder, plant, scene_graph, name)
+    if period_s is not None and not period_s > 0.0:
+        raise ValueError(f"period_s must be positive, is {period_s}")
     contact, effects = contact or Contact(), effects or Effects()
     inspector = scene_graph.model_inspector()
     tool = find_body(plant, tool_body, "tool_body")
@@ -153,6 +150,28 @@ def AddHapticRendering(
     ]:
         warnings.warn(sentence, SceneWarning, stacklevel=2)
     return rendering
+
+
+def _check_builder(
+    builder: DiagramBuilder, plant: MultibodyPlant, scene_graph: SceneGraph, name: str
+) -> None:
+    """Finds out what Drake would refuse, before anything is changed."""
+    if builder.already_built():
+        raise ValueError("builder: is built already; call AddHapticRendering before")
+    if plant not in builder.GetSystems():
+        raise ValueError("plant: is not in the builder")
+    if not plant.is_finalized():
+        raise ValueError("plant: call plant.Finalize() before AddHapticRendering")
+    source_id = plant.get_source_id()
+    if source_id is None:
+        raise ValueError(
+            "plant: has no scene graph; make it with AddMultibodyPlantSceneGraph"
+        )
+    if not scene_graph.model_inspector().SourceIsRegistered(source_id):
+        raise ValueError("scene_graph: is not that of the plant")
+    if builder.HasSubsystemNamed(name):
+        raise ValueError(f"name: the builder has a system {name!r} already")
+    find_applied_force(builder, plant)
 
 
 def _order_materials(

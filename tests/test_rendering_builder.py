@@ -7,7 +7,7 @@ import pytest
 import trimesh
 from plant_scenes import PLANTS, G, PlantScene
 from pydrake.common.value import Value
-from pydrake.geometry import Box, Cylinder, Mesh, Role, Sphere
+from pydrake.geometry import Box, Cylinder, Mesh, Role, SceneGraph, Sphere
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
@@ -305,21 +305,39 @@ def test_two_tools_may_meet_the_same_slab():
         assert scene.pose(name).translation()[2] == pytest.approx(REST, abs=1e-6)
 
 
-def test_a_plant_that_is_not_finalized_is_refused():
+def test_a_plant_that_cannot_be_used_is_refused():
     scene = PlantScene()
     scene.add("tool", CUBE)
+    scene.add_slab()
     with pytest.raises(ValueError, match=r"plant: call plant.Finalize\(\)"):
+        render(scene)
+    scene.finalize()
+    with pytest.raises(ValueError, match="plant: is not in the builder"):
+        AddHapticRendering(DiagramBuilder(), scene.plant, scene.scene_graph, "tool")
+    with pytest.raises(ValueError, match="scene_graph: is not that of the plant"):
+        AddHapticRendering(scene.builder, scene.plant, SceneGraph(), "tool")
+    scene.start()
+    with pytest.raises(ValueError, match="builder: is built already"):
         render(scene)
 
 
-def test_a_plant_without_shapes_is_refused():
+def test_a_plant_without_a_scene_graph_is_refused():
     scene = PlantScene()
-    builder = DiagramBuilder()
-    plant = builder.AddSystem(MultibodyPlant(0.0))
-    plant.AddRigidBody("tool", SpatialInertia.SolidSphereWithMass(1, 1))
+    plant = scene.builder.AddSystem(MultibodyPlant(0.0))
     plant.Finalize()
     with pytest.raises(ValueError, match="plant: has no scene graph"):
-        AddHapticRendering(builder, plant, scene.scene_graph, "tool")
+        AddHapticRendering(scene.builder, plant, scene.scene_graph, "tool")
+
+
+def test_a_name_that_is_taken_is_refused():
+    scene, _ = over_a_slab()
+    with pytest.raises(ValueError, match=r"name: .* 'haptic_rendering' already"):
+        render(scene)
+
+
+def test_a_period_must_be_positive():
+    with pytest.raises(ValueError, match="period_s must be positive, is 0"):
+        over_a_slab(period_s=0.0)
 
 
 def test_materials_that_mean_nothing_are_refused():
@@ -348,7 +366,12 @@ def test_what_was_refused_leaves_the_builder_as_it_was():
     with pytest.raises(ValueError, match="tolerance"):
         render(scene, contact=Contact(tolerance_m=-1.0))
     assert len(scene.builder.GetSystems()) == 2
-    render(scene)
+    port = scene.plant.get_applied_spatial_force_input_port()
+    assert not scene.builder.IsConnectedOrExported(port)
+    scene.builder.ExportInput(port, "applied")
+    with pytest.raises(ValueError, match="is exported"):
+        render(scene)
+    assert len(scene.builder.GetSystems()) == 2
 
 
 def test_progress_names_the_bodies(tmp_path):
