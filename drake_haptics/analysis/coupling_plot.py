@@ -44,7 +44,12 @@ def plot_axis_design(
     law = calc_stable_stiffness(device.damping, B, period_s, delay_s)  # type: ignore[arg-type]
     axes.plot(B, law, "--", color="C0", lw=1.0, label="law of Gil et al.")
     held_s = calc_passive_damping(1.0, 0.0, period_s, delay_s)
-    visible = [m for m in design.margins if m.held_damping > 0.02 * B[-1]]
+    top = min(1.1 * max(stable), _HEADROOM * design.stiffness)
+    visible = [
+        m
+        for m in design.margins
+        if 0.02 * B[-1] < m.held_damping < B[-1] + held_s * top
+    ]
     for i, margins in enumerate(visible, start=1):
         axes.plot(
             [0.0, margins.held_damping],
@@ -59,7 +64,7 @@ def plot_axis_design(
         axes.axvline(device.rated_damping, color="0.7", lw=0.8)
     axes.plot(design.damping, design.stiffness, "o", color="C3", label="suggested")
     axes.set_xlim(0.0, B[-1])
-    axes.set_ylim(0.0, min(1.1 * max(stable), _HEADROOM * design.stiffness))
+    axes.set_ylim(0.0, top)
     axes.set_xlabel(f"damping, {units[1]}")
     axes.set_ylabel(f"stiffness, {units[0]}")
     axes.legend(

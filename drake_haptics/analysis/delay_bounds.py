@@ -1,0 +1,106 @@
+"""How much stiffness a delay costs, exactly, by the linear law, and for passivity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from drake_haptics.analysis.sampled_wall import (
+    SampledWall,
+    calc_largest_delay,
+    calc_largest_stiffness,
+)
+from drake_haptics.passivity_bounds import calc_passive_damping, calc_stable_stiffness
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_POINTS = 41
+_PERIODS = 10.0
+
+
+@dataclass(frozen=True)
+class DelayBounds:
+    """The largest stiffness over the delay t_d, of which a stall is one.
+
+    Attributes:
+        wall: What was asked for.
+        delays_s: t_d on top of the hold's half period, s, (n,).
+        exact: The largest stable K by eigenvalues, N/m, (n,).
+        law: That of Gil et al., (b + B + b_h)/(T/2 + t_d), (n,).
+        passive: The largest passive K with the same B, (n,); 0 where B alone is not.
+        largest_delay_s: The longest delay with which `wall` is stable, s.
+    """
+
+    wall: SampledWall
+    delays_s: np.ndarray
+    exact: np.ndarray
+    law: np.ndarray
+    passive: np.ndarray
+    largest_delay_s: float
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draws the three over the delay, and the wall as a point."""
+        if axes is None:
+            from matplotlib import pyplot
+
+            axes = pyplot.figure().add_subplot()
+        delays_ms = 1e3 * self.delays_s
+        axes.semilogy(delays_ms, self.exact, label="stable (exact)")
+        axes.semilogy(delays_ms, self.law, "--", label="law of Gil et al.")
+        if self.passive.any():
+            axes.semilogy(delays_ms, self.passive, ":", label="passive")
+        if self.wall.stiffness > 0.0:
+            axes.plot(1e3 * self.wall.delay_s, self.wall.stiffness, "o", label="wall")
+        axes.set_xlabel("delay, ms")
+        axes.set_ylabel("largest stiffness, N/m or N·m/rad")
+        axes.legend()
+        return axes
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns numbers and lists only."""
+        return {
+            "wall": asdict(self.wall),
+            "delays_s": self.delays_s.tolist(),
+            "exact": self.exact.tolist(),
+            "law": self.law.tolist(),
+            "passive": self.passive.tolist(),
+            "largest_delay_s": self.largest_delay_s,
+        }
+
+
+def calc_delay_bounds(
+    wall: SampledWall, delays_s: Sequence[float] | np.ndarray | None = None
+) -> DelayBounds:
+    """Calculates how stiff a wall may be at each delay.
+
+    Args:
+        wall: All but its delay and its stiffness, which are those of the point that
+            is drawn and of `largest_delay_s`.
+        delays_s: From 0 to 10 periods if not given, s.
+
+    Raises:
+        ValueError: There is no delay, or a negative one.
+    """
+    if delays_s is None:
+        delays_s = np.linspace(0.0, _PERIODS * wall.period_s, _POINTS)
+    delays = np.asarray(delays_s, dtype=float)
+    if delays.size == 0 or not (delays >= 0.0).all():
+        raise ValueError("delays_s must be at least one, none of them negative")
+    T, B = wall.period_s, wall.wall_damping
+    held = wall.damping + wall.hand_damping
+    return DelayBounds(
+        wall=wall,
+        delays_s=delays,
+        exact=np.array(
+            [calc_largest_stiffness(replace(wall, delay_s=t)) for t in delays]
+        ),
+        law=np.array([calc_stable_stiffness(held, B, T, t) for t in delays]),
+        passive=np.array(
+            [max(0.0, held - B) / calc_passive_damping(1.0, 0.0, T, t) for t in delays]
+        ),
+        largest_delay_s=calc_largest_delay(wall),
+    )
