@@ -18,33 +18,53 @@ if TYPE_CHECKING:
         SampledLinearization,
         linearize_sampled,
     )
+    from drake_haptics.analysis.study import run_study
+    from drake_haptics.analysis.study_error import StudyError
+    from drake_haptics.analysis.study_pool import SerialExecutor
+    from drake_haptics.analysis.study_progress import StudyProgress
+    from drake_haptics.analysis.z_width_map import ZWidth, z_width
+    from drake_haptics.analysis.z_width_plot import HeldBounds
 
 __all__ = [
     "Equilibrium",
+    "HeldBounds",
     "Mode",
     "ModeKind",
     "Monodromy",
     "SampledLinearization",
+    "SerialExecutor",
+    "StudyError",
+    "StudyProgress",
+    "ZWidth",
     "explain_drake_errors",
     "find_equilibrium",
     "find_modes",
     "linearize_sampled",
     "monodromy",
     "plot_poles",
+    "run_study",
+    "z_width",
 ]
 
 _MODULE_OF = {
     "Equilibrium": "equilibrium",
+    "HeldBounds": "z_width_plot",
     "Mode": "modes",
     "ModeKind": "modes",
     "Monodromy": "multirate",
     "SampledLinearization": "sampled_linearization",
+    "SerialExecutor": "study_pool",
+    "StudyError": "study_error",
+    "StudyProgress": "study_progress",
+    "ZWidth": "z_width_map",
     "explain_drake_errors": "drake_errors",
     "find_equilibrium": "equilibrium",
     "find_modes": "modes",
     "linearize_sampled": "sampled_linearization",
     "monodromy": "multirate",
     "plot_poles": "mode_plot",
+    "run_study": "study",
+    "z_width": "z_width_map",
 }
 
 

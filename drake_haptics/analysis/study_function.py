@@ -24,7 +24,7 @@ class StudyFunction:
     """The identity of a function with what is bound to it.
 
     Attributes:
-        name: Module and qualified name.
+        name: Module and qualified name, for people.
         digest: Hash of the name, of all that is bound to it and of this package's
             version, hex. The source of the function is not in it.
     """
@@ -41,17 +41,25 @@ class StudyFunction:
         """
         described = json.dumps([PACKAGE_VERSION, _describe(function, "function")])
         digest = hashlib.sha256(described.encode()).hexdigest()[:16]
-        return StudyFunction(_name_innermost(function), digest)
+        return StudyFunction(_name_whole(function), digest)
 
     def make_key(self, task: str) -> str:
         """Returns the hash of this function with a task (exact JSON), hex."""
         return hashlib.sha256(f"{self.digest} {task}".encode()).hexdigest()[:32]
 
 
-def _name_innermost(function: Any) -> str:
-    while isinstance(function, functools.partial):
-        function = function.func
-    return _name(function if _has_name(function) else type(function))
+def _name_whole(function: Any) -> str:
+    """Returns the name, with those of functions that are bound to it in brackets."""
+    if _has_name(function):
+        return _name(function)
+    if isinstance(function, functools.partial):
+        name = _name_whole(function.func)
+        bound = [*function.args, *function.keywords.values()]
+    else:
+        name = _name(type(function))
+        bound = [getattr(function, field.name) for field in fields(function)]
+    inner = [_name_whole(value) for value in bound if callable(value)]
+    return f"{name}({', '.join(inner)})" if inner else name
 
 
 def _has_name(value: Any) -> bool:

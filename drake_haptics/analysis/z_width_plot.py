@@ -1,0 +1,156 @@
+"""Draws a Z-width map beside what theory says of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drake_haptics.passivity_bounds import calc_stable_stiffness
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from drake_haptics.analysis.z_width_map import ZWidth
+
+# Points of a line of theory.
+_FINE = 200
+
+
+@dataclass(frozen=True)
+class HeldBounds:
+    """What theory says of a sampled spring and damper on a held device.
+
+    Attributes:
+        held_damping: b of device and hand, N·s/m or N·m·s/rad.
+        period_s: T, s.
+        delay_s: t_d, delay on top of the hold's half period, s.
+    """
+
+    held_damping: float
+    period_s: float
+    delay_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Checks the values.
+
+        Raises:
+            ValueError: The period is not positive, or another value is negative.
+        """
+        if not (self.period_s > 0.0 and math.isfinite(self.period_s)):
+            raise ValueError(f"period_s must be positive, is {self.period_s}")
+        for name in ("held_damping", "delay_s"):
+            value = getattr(self, name)
+            if not (value >= 0.0 and math.isfinite(value)):
+                raise ValueError(f"{name} must be at least 0, is {value}")
+
+    def calc_passive_stiffness(self, damping: float) -> float:
+        """Returns the stiffness K up to which K and B are passive.
+
+        b > K T/2 + |B| (Colgate and Schenkel 1997). A delay of d whole periods makes
+        it b > K (T/2 + t_d) + |B|, which is enough, and for B = 0 exact: K then has
+        the factor T sin((d + ½) ωT)/(2 sin(ωT/2)), at most T (d + ½), and B one on the
+        unit circle. Zero where no spring is passive.
+        """
+        left = self.held_damping - abs(damping)
+        return max(0.0, left / (self.period_s / 2.0 + self.delay_s))
+
+    def calc_stable_stiffness(self, damping: float) -> float:
+        """Returns the stiffness K below which K and B are stable (Gil et al. 2004).
+
+        See `passivity_bounds.calc_stable_stiffness`: for small dampings.
+        """
+        return calc_stable_stiffness(
+            self.held_damping, damping, self.period_s, self.delay_s
+        )
+
+
+def plot_z_width(
+    z_width: ZWidth,
+    axes: Axes | None,
+    bounds: HeldBounds | None,
+    gains: tuple[float, float] | None,
+) -> Axes:
+    """Draws as `ZWidth.plot` says."""
+    K, B = z_width.stiffness, z_width.damping
+    if min(K.size, B.size) < 2:
+        raise ValueError(
+            "a map needs two stiffnesses and two dampings to be drawn, has"
+            f" {K.size} and {B.size}"
+        )
+    if axes is None:
+        from matplotlib import pyplot
+
+        axes = pyplot.figure().add_subplot()
+    _plot_region(z_width, axes)
+    if bounds is not None:
+        _plot_bounds(z_width, axes, bounds)
+    if gains is not None:
+        axes.plot(*gains, "*", ms=12, color="black", label="own gains")
+    _scale_axes(z_width, axes, gains)
+    axes.set_xlabel("stiffness K, N/m or N·m/rad")
+    axes.set_ylabel("damping B, N·s/m or N·m·s/rad")
+    axes.legend()
+    return axes
+
+
+def _plot_region(z_width: ZWidth, axes: Axes) -> None:
+    K, B = z_width.stiffness, z_width.damping
+    radius = np.ma.masked_invalid(z_width.spectral_radius)
+    if (radius < 1.0).any():
+        axes.contourf(K, B, radius, levels=[0.0, 1.0], colors=["C2"], alpha=0.25)
+        axes.fill([], [], color="C2", alpha=0.25, label="stable")
+    if (radius < 1.0).any() and (radius >= 1.0).any():
+        axes.contour(K, B, radius, levels=[1.0], colors=["C2"])
+        axes.plot([], [], color="C2", label="spectral radius 1")
+    if z_width.reasons:
+        rows, columns = np.array(list(z_width.reasons)).T
+        axes.plot(
+            K[columns], B[rows], "x", color="gray", clip_on=False, label="not evaluated"
+        )
+
+
+def _plot_bounds(z_width: ZWidth, axes: Axes, bounds: HeldBounds) -> None:
+    K, B = z_width.stiffness, z_width.damping
+    fine = np.linspace(B[0], B[-1], _FINE)
+    axes.plot(
+        [bounds.calc_stable_stiffness(b) for b in fine],
+        fine,
+        "--",
+        color="C0",
+        label="stability, (b + B)/(T/2 + t_d)",
+    )
+    axes.plot(
+        [bounds.calc_passive_stiffness(b) for b in fine],
+        fine,
+        "--",
+        color="C3",
+        label="passivity, (b - |B|)/(T/2 + t_d)",
+    )
+    # The required damping crosses what there is.
+    missing = np.ma.masked_invalid(z_width.passive_damping - bounds.held_damping)
+    if (missing <= 0.0).any() and (missing > 0.0).any():
+        axes.contour(K, B, missing, levels=[0.0], colors=["C3"])
+        axes.plot([], [], color="C3", label="passive with what the loop feels like")
+
+
+def _scale_axes(z_width: ZWidth, axes: Axes, gains: tuple[float, float] | None) -> None:
+    """Shows the map and the gains, whatever the lines do outside."""
+    if _rises_by_a_factor(z_width.stiffness):
+        axes.set_xscale("log")
+    if _rises_by_a_factor(z_width.damping):
+        axes.set_yscale("log")
+    own_K, own_B = gains or (z_width.stiffness[0], z_width.damping[0])
+    shown_K = [*z_width.stiffness, own_K]
+    shown_B = [*z_width.damping, own_B]
+    axes.set_xlim(min(shown_K), max(shown_K))
+    axes.set_ylim(min(shown_B), max(shown_B))
+
+
+def _rises_by_a_factor(values: np.ndarray) -> bool:
+    if values.size < 3 or values[0] <= 0.0:
+        return False
+    factors = values[1:] / values[:-1]
+    return bool(np.allclose(factors, factors[0]))
