@@ -1,0 +1,248 @@
+"""The diagram between a plant's ports: what is in it, what it shows and refuses."""
+
+import numpy as np
+import pytest
+from diagram_parts import names
+from plant_scenes import PLANTS, PlantScene
+from pydrake.geometry import Box
+from pydrake.math import RigidTransform
+from pydrake.systems.primitives import ConstantVectorSource
+from test_haptic_device import make_device
+
+from drake_haptics import AddHapticRendering
+from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.scene import (
+    Braking,
+    Contact,
+    Coupling,
+    Effects,
+    Friction,
+    Gravity,
+    Passivity,
+    Shading,
+)
+
+HALF, MASS, G = 0.02, 0.1, 9.81
+CUBE = Box(2 * HALF, 2 * HALF, 2 * HALF)
+CONTACT = Contact(stiffness_N_per_m=1e3, damping_Ns_per_m=3.0)
+REST = HALF + CONTACT.tolerance_m - MASS * G / 1e3
+BASE = {
+    "body_motions",
+    "contact_query",
+    "contact_clustering",
+    "penalty_force",
+    "applied_wrenches",
+}
+OUTPUTS = {
+    "applied_spatial_force",
+    "X_WTool",
+    "V_WTool",
+    "contacts",
+    "clusters",
+    "contact_wrench",
+    "F_Tool_W",
+}
+
+
+def make_scene(*, cart=False, config=PLANTS["sampled"], **options):
+    scene = PlantScene(config)
+    scene.add("tool", CUBE, mass=MASS)
+    if cart:
+        scene.add("cart", CUBE)
+    scene.add_slab()
+    scene.finalize()
+    rendering = AddHapticRendering(
+        scene.builder,
+        scene.plant,
+        scene.scene_graph,
+        "tool",
+        **{"contact": CONTACT, **options},
+    )
+    return scene, rendering
+
+
+def outputs(rendering):
+    ports = map(rendering.get_output_port, range(rendering.num_output_ports()))
+    return {port.get_name() for port in ports}
+
+
+def inputs(rendering):
+    ports = map(rendering.get_input_port, range(rendering.num_input_ports()))
+    return {port.get_name() for port in ports}
+
+
+def test_without_effects_there_is_only_contact():
+    _, rendering = make_scene()
+    assert names(rendering) == BASE
+    assert outputs(rendering) == OUTPUTS
+    assert inputs(rendering) == {"body_poses", "body_spatial_velocities"}
+    # A state of its own would be a sample of delay.
+    assert rendering.CreateDefaultContext().num_total_states() == 0
+
+
+def test_a_body_that_moves_has_ports_and_a_reaction():
+    _, rendering = make_scene(cart=True)
+    assert outputs(rendering) == OUTPUTS | {"X_WO_cart", "V_WO_cart", "F_O_W"}
+    assert rendering.GetOutputPort("F_O_W").size() == 6
+
+
+@pytest.mark.parametrize(
+    ("effects", "systems", "ports"),
+    [
+        (Effects(shading=Shading()), {"force_shading"}, set()),
+        (
+            Effects(friction=Friction()),
+            {"stick_slip_friction", "stick_slip_friction_wrench"},
+            {"friction_force"},
+        ),
+        (
+            Effects(braking=Braking()),
+            {"pre_contact_braking", "pre_contact_braking_wrench"},
+            set(),
+        ),
+    ],
+)
+def test_an_effect_adds_its_systems_and_no_others(effects, systems, ports):
+    scene, rendering = make_scene(effects=effects)
+    assert names(rendering) == BASE | systems
+    assert outputs(rendering) == OUTPUTS | ports
+    scene.start(tool=RigidTransform([0, 0, REST]))
+    scene.simulator.AdvanceTo(0.1)
+    assert scene.pose("tool").translation()[2] == pytest.approx(REST, abs=1e-6)
+
+
+def test_friction_stops_a_body_that_slides():
+    def slide(effects):
+        scene, _ = make_scene(effects=effects)
+        scene.start(tool=RigidTransform([0, 0, REST]))
+        scene.plant.SetVelocities(scene.context, [0, 0, 0, 0.2, 0, 0])
+        scene.simulator.AdvanceTo(0.3)
+        return scene.pose("tool").translation()[0]
+
+    assert slide(Effects()) == pytest.approx(0.2 * 0.3, abs=1e-6)
+    # It slides for v² / (2 μ g), within the give of what sticks and its tilt.
+    expected = 0.2**2 / (2 * 0.3 * G)
+    found = slide(Effects(friction=Friction(coefficient=0.3)))
+    assert found == pytest.approx(expected, abs=1e-3)
+
+
+def test_braking_takes_the_speed_that_it_says():
+    effects = Effects(braking=Braking(damping_Ns_per_m=20.0, distance_m=4e-3))
+    contact = Contact(tolerance_m=0.0, damping_Ns_per_m=0.0)
+    scene = PlantScene(PLANTS["continuous"])
+    scene.add("tool", CUBE, mass=MASS)
+    scene.add_slab()
+    scene.finalize(gravity=0.0)
+    AddHapticRendering(
+        scene.builder,
+        scene.plant,
+        scene.scene_graph,
+        "tool",
+        contact=contact,
+        effects=effects,
+    )
+    scene.start(tool=RigidTransform([0, 0, HALF + 5e-3]))
+    scene.plant.SetVelocities(scene.context, [0, 0, 0, 0, 0, -1.0])
+    scene.simulator.get_mutable_integrator().set_target_accuracy(1e-8)
+    while scene.pose("tool").translation()[2] > HALF + 1e-5:
+        scene.simulator.AdvanceTo(scene.simulator.get_context().get_time() + 1e-5)
+    lost = 2 * 20.0 * 4e-3 / (3 * MASS)
+    assert scene.velocity("tool")[5] == pytest.approx(-(1.0 - lost), abs=0.01)
+
+
+def hold_handle(scene, rendering, X_WH):
+    """Connects a handle that is held still."""
+    for name, value in [("X_WH", pose_to_vector(X_WH)), ("V_WH", np.zeros(6))]:
+        source = scene.builder.AddSystem(ConstantVectorSource(value))
+        scene.builder.Connect(source.get_output_port(), rendering.GetInputPort(name))
+
+
+def test_a_handle_outside_holds_the_tool_and_feels_it():
+    coupling = Coupling(stiffness_N_per_m=500.0)
+    X_HT = RigidTransform([0.0, 0.0, -0.1])
+    scene, rendering = make_scene(coupling=coupling, X_HT=X_HT)
+    assert inputs(rendering) - {"body_poses", "body_spatial_velocities"} == {
+        "X_WH",
+        "V_WH",
+    }
+    assert outputs(rendering) == OUTPUTS | {"F_display"}
+    assert names(rendering) == BASE | {"virtual_coupling", "virtual_coupling_wrench"}
+    hold_handle(scene, rendering, RigidTransform([0, 0, 0.4]))
+    scene.start(tool=RigidTransform([0, 0, 0.3]))
+    scene.simulator.AdvanceTo(1.0)
+    sag = MASS * G / 500.0
+    assert scene.pose("tool").translation()[2] == pytest.approx(0.3 - sag, abs=1e-6)
+    F = scene.read(rendering, "F_display")
+    np.testing.assert_allclose(F[3:], [0, 0, -MASS * G], atol=1e-4)
+    # The contact's own output is without the coupling.
+    np.testing.assert_array_equal(scene.read(rendering, "F_Tool_W"), np.zeros(6))
+
+
+def start_with_handle(scene, rendering, speed):
+    """Starts with tool and coupling at rest, and the handle, on its slider, moving."""
+    scene.start(tool=RigidTransform([0, 0, REST]))
+    device = rendering.GetSubsystemByName("device")
+    slider = device.GetSubsystemByName("slider")
+    context = slider.GetMyMutableContextFromRoot(scene.root)
+    context.SetContinuousState([0.0, speed])
+
+
+def test_a_device_inside_is_shown_the_contact():
+    X_HT = RigidTransform([0, 0, REST])
+    scene, rendering = make_scene(coupling=Coupling(), device=make_device(), X_HT=X_HT)
+    assert inputs(rendering) == {"body_poses", "body_spatial_velocities"}
+    device_ports = {"F_display", "X_WH", "V_WH", "F_applied", "status"}
+    assert outputs(rendering) == OUTPUTS | device_ports
+    assert "device" in names(rendering)
+    start_with_handle(scene, rendering, -0.1)
+    scene.simulator.AdvanceTo(0.02)
+    # The handle presses the tool down, and is pressed up.
+    assert scene.pose("tool").translation()[2] < REST - 1e-4
+    assert scene.read(rendering, "F_applied")[5] > 0.1
+    scene.simulator.AdvanceTo(3.0)
+    # At rest the handle is where the tool is borne.
+    assert scene.pose("tool").translation()[2] == pytest.approx(REST, abs=1e-5)
+    np.testing.assert_allclose(scene.read(rendering, "X_WH")[4:], 0.0, atol=1e-5)
+
+
+def test_passivity_control_goes_before_a_device():
+    effects = Effects(passivity=Passivity())
+    X_HT = RigidTransform([0, 0, REST])
+    scene, rendering = make_scene(
+        coupling=Coupling(), device=make_device(), effects=effects, X_HT=X_HT
+    )
+    assert "passivity_control" in names(rendering)
+    start_with_handle(scene, rendering, -0.1)
+    scene.simulator.AdvanceTo(0.005)
+    # The world has got what the handle has lost, but for the slider's damping.
+    v = scene.read(rendering, "V_WH")[5]
+    lost = 0.5 * 0.1 * (0.1**2 - v**2)
+    energy = scene.read(rendering, "energy_J")[0]
+    assert energy == pytest.approx(lost, rel=0.2)
+
+
+def test_what_would_mean_nothing_is_refused():
+    for options, message in [
+        ({"device": make_device()}, "device: needs a coupling"),
+        ({"effects": Effects(gravity=Gravity())}, "gravity: the plant's own gravity"),
+        ({"effects": Effects(passivity=Passivity())}, "passivity: is of a device"),
+        (
+            {"effects": Effects(passivity=Passivity()), "coupling": Coupling()},
+            "passivity: is of a device",
+        ),
+        (
+            {"effects": Effects(friction=Friction()), "cart": True},
+            "friction: gives no reaction .* 'cart'",
+        ),
+        (
+            {"effects": Effects(braking=Braking()), "cart": True},
+            "braking: gives no reaction .* 'cart'",
+        ),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            make_scene(**options)
+
+
+def test_a_gain_out_of_range_is_named():
+    with pytest.raises(ValueError, match="stiffness_N_per_m"):
+        make_scene(contact=Contact(stiffness_N_per_m=-1.0))
