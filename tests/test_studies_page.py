@@ -1,0 +1,46 @@
+"""The programs of docs/studies.md run as they stand."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PAGE = Path(__file__).parent.parent / "docs" / "studies.md"
+LOCAL, CLUSTER = re.findall(
+    r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S
+)
+
+
+def run(program: str, folder: Path) -> str:
+    """Runs a program twice; the second time it has its store."""
+    (folder / "program.py").write_text(program, encoding="utf-8")
+    outputs = [
+        subprocess.run(
+            [sys.executable, "program.py"],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for _ in range(2)
+    ]
+    assert outputs[0] == outputs[1]
+    return outputs[0]
+
+
+def test_the_map_is_made_and_drawn(tmp_path):
+    assert "1000." in run(LOCAL, tmp_path)  # N/m, without damping of the wall
+    assert (tmp_path / "map.png").stat().st_size > 10_000
+    assert len((tmp_path / "map.jsonl").read_bytes().splitlines()) == 400
+
+
+def test_the_study_on_a_cluster_has_all_results(tmp_path):
+    pytest.importorskip(
+        "distributed", reason="needs Dask: pip install 'drake_haptics[cluster]'"
+    )
+    assert run(CLUSTER, tmp_path).startswith("100 ")
+    assert len((tmp_path / "growth.jsonl").read_bytes().splitlines()) == 100
