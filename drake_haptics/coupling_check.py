@@ -105,7 +105,7 @@ def check_coupling(
         found += [
             *_check_stiffness(kind, K, B, b, period_s, delay_s),
             *_check_damping(kind, K, B, m, period_s),
-            *_check_passivity(kind, K, B, b, period_s),
+            *_check_passivity(kind, K, B, b, period_s, delay_s),
         ]
     return found
 
@@ -147,16 +147,16 @@ def _check_damping(
 
 
 def _check_passivity(
-    kind: _Kind, K: float, B: float, b: float, period_s: float
+    kind: _Kind, K: float, B: float, b: float, period_s: float, delay_s: float
 ) -> list[str]:
     """Checks K and B against the bound of Colgate and Schenkel."""
-    bound = calc_passive_damping(K, B, period_s)
+    bound = calc_passive_damping(K, B, period_s, delay_s)
     if b >= bound:
         return []
     name, value = (kind.damping, B) if 2.0 * B > K * period_s else (kind.stiffness, K)
     return [
         f"{name} is {value:g}: not passive, because device and hand damp"
-        f" by b = {b:g} {kind.damping_unit} and K T/2 + |B| is {bound:.5g} (Colgate and"
-        f" Schenkel), so that some grips may vibrate: lower {kind.damping} or"
+        f" by b = {b:g} {kind.damping_unit} and K (T/2 + t_d) + |B| is {bound:.5g}"
+        f" (Colgate and Schenkel), so that some grips may vibrate: lower {kind.damping} or"
         f" {kind.stiffness}, raise the rate, or hold the device more firmly"
     ]

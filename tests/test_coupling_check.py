@@ -45,7 +45,7 @@ def test_without_the_hands_damping_the_default_is_not_passive():
     (sentence,) = found
     assert sentence.startswith("damping_Ns_per_m is 2: not passive")
     assert "b = 1 N·s/m" in sentence
-    assert "K T/2 + |B| is 2.4 (Colgate and Schenkel)" in sentence
+    assert "K (T/2 + t_d) + |B| is 2.4 (Colgate and Schenkel)" in sentence
 
 
 @pytest.mark.parametrize(
@@ -92,6 +92,8 @@ def test_a_slower_rate_and_a_delay_count():
     assert check_coupling(coupling, handle, PERIOD) == []
     assert "Gil" in check_coupling(coupling, handle, 10 * PERIOD)[0]
     assert "Gil" in check_coupling(coupling, handle, PERIOD, 3 * PERIOD)[0]
+    # 3000 N/m times 1.5 periods and 2 N·s/m are more than the hand's 5 N·s/m.
+    assert "is 6.5 (Colgate" in check_coupling(coupling, handle, PERIOD, PERIOD)[0]
 
 
 @pytest.mark.parametrize("bad", [0.0, -1.0, float("nan")])
