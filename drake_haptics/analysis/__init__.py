@@ -9,61 +9,123 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from drake_haptics.analysis.axis_design import AxisDesign, GripMargins
+    from drake_haptics.analysis.coupling_design import CouplingDesign, suggest_coupling
+    from drake_haptics.analysis.delay_bounds import DelayBounds, calc_delay_bounds
     from drake_haptics.analysis.drake_errors import explain_drake_errors
     from drake_haptics.analysis.equilibrium import Equilibrium, find_equilibrium
+    from drake_haptics.analysis.exact_boundary import (
+        BoundaryPoint,
+        ExactBoundary,
+        calc_boundary_peak,
+        calc_exact_alpha,
+        calc_exact_boundary,
+    )
     from drake_haptics.analysis.mode_plot import plot_poles
     from drake_haptics.analysis.modes import Mode, ModeKind, find_modes
     from drake_haptics.analysis.multirate import Monodromy, monodromy
+    from drake_haptics.analysis.passivity import Passivity, calc_passivity
+    from drake_haptics.analysis.quantization import (
+        QuantizationBounds,
+        calc_quantization_bounds,
+    )
     from drake_haptics.analysis.sampled_linearization import (
         SampledLinearization,
         linearize_sampled,
+    )
+    from drake_haptics.analysis.sampled_wall import (
+        SampledWall,
+        calc_gain_margin,
+        calc_largest_delay,
+        calc_largest_stiffness,
     )
     from drake_haptics.analysis.study import run_study
     from drake_haptics.analysis.study_error import StudyError
     from drake_haptics.analysis.study_pool import SerialExecutor
     from drake_haptics.analysis.study_progress import StudyProgress
+    from drake_haptics.analysis.transfer_function import make_spring_damper
     from drake_haptics.analysis.z_width_map import ZWidth, z_width
     from drake_haptics.analysis.z_width_plot import HeldBounds
 
 __all__ = [
+    "AxisDesign",
+    "BoundaryPoint",
+    "CouplingDesign",
+    "DelayBounds",
     "Equilibrium",
+    "ExactBoundary",
+    "GripMargins",
     "HeldBounds",
     "Mode",
     "ModeKind",
     "Monodromy",
+    "Passivity",
+    "QuantizationBounds",
     "SampledLinearization",
+    "SampledWall",
     "SerialExecutor",
     "StudyError",
     "StudyProgress",
     "ZWidth",
+    "calc_boundary_peak",
+    "calc_delay_bounds",
+    "calc_exact_alpha",
+    "calc_exact_boundary",
+    "calc_gain_margin",
+    "calc_largest_delay",
+    "calc_largest_stiffness",
+    "calc_passivity",
+    "calc_quantization_bounds",
     "explain_drake_errors",
     "find_equilibrium",
     "find_modes",
     "linearize_sampled",
+    "make_spring_damper",
     "monodromy",
     "plot_poles",
     "run_study",
+    "suggest_coupling",
     "z_width",
 ]
 
 _MODULE_OF = {
+    "AxisDesign": "axis_design",
+    "BoundaryPoint": "exact_boundary",
+    "CouplingDesign": "coupling_design",
+    "DelayBounds": "delay_bounds",
     "Equilibrium": "equilibrium",
+    "ExactBoundary": "exact_boundary",
+    "GripMargins": "axis_design",
     "HeldBounds": "z_width_plot",
     "Mode": "modes",
     "ModeKind": "modes",
     "Monodromy": "multirate",
+    "Passivity": "passivity",
+    "QuantizationBounds": "quantization",
     "SampledLinearization": "sampled_linearization",
+    "SampledWall": "sampled_wall",
     "SerialExecutor": "study_pool",
     "StudyError": "study_error",
     "StudyProgress": "study_progress",
     "ZWidth": "z_width_map",
+    "calc_boundary_peak": "exact_boundary",
+    "calc_delay_bounds": "delay_bounds",
+    "calc_exact_alpha": "exact_boundary",
+    "calc_exact_boundary": "exact_boundary",
+    "calc_gain_margin": "sampled_wall",
+    "calc_largest_delay": "sampled_wall",
+    "calc_largest_stiffness": "sampled_wall",
+    "calc_passivity": "passivity",
+    "calc_quantization_bounds": "quantization",
     "explain_drake_errors": "drake_errors",
     "find_equilibrium": "equilibrium",
     "find_modes": "modes",
     "linearize_sampled": "sampled_linearization",
+    "make_spring_damper": "transfer_function",
     "monodromy": "multirate",
     "plot_poles": "mode_plot",
     "run_study": "study",
+    "suggest_coupling": "coupling_design",
     "z_width": "z_width_map",
 }
 
