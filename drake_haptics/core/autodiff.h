@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <unsupported/Eigen/AutoDiff>
@@ -32,6 +33,15 @@ auto ValuesOf(const Eigen::MatrixBase<Derived>& matrix) {
   return matrix
       .unaryExpr([](const typename Derived::Scalar& x) { return ValueOf(x); })
       .eval();
+}
+
+/// |v|, with derivatives that are zero at v = 0, where it has a kink.
+template <typename T>
+T LengthOf(const Eigen::Matrix<T, 3, 1>& v) {
+  using std::sqrt;
+  const T square = v.squaredNorm();
+  if (ValueOf(square) == 0) return T(0.0);
+  return sqrt(square);
 }
 
 /// Numbers with their derivatives by D variables: value (n), gradient (n, D).

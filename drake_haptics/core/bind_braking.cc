@@ -24,8 +24,8 @@ WrenchModelVector Brake(const ContactSet& contacts, const Vec3& p_WTo,
   for (Eigen::Index i = 0; i < p_WO.rows(); ++i) {
     objects.push_back({p_WO.row(i), V_WO.row(i)});
   }
-  return ToVector(
-      ComputeBraking(contacts.contacts, {p_WTo, V_WTool}, objects, gains));
+  return ToVector(ComputeBraking<double>(contacts.contacts, {p_WTo, V_WTool},
+                                         objects, gains));
 }
 
 }  // namespace

@@ -10,43 +10,92 @@
 namespace drake_haptics {
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+template <typename T>
+using Vec4Of = Eigen::Matrix<T, 4, 1>;
+template <typename T>
+using Mat4Of = Eigen::Matrix<T, 4, 4>;
+
+constexpr double kRounding = 0.1;  // ρ
 
 // W = w², w zero at touch and at D, one half-way.
-double Weight(const Contact& contact, const BrakingGains& gains) {
-  const double s = contact.distance / gains.distance;
-  const double w = s > 0 && s < 1 ? 4 * s * (1 - s) : 0;
+template <typename T>
+T Weight(const ContactOf<T>& contact, const BrakingGains& gains) {
+  const T s = contact.distance / gains.distance;
+  const T w = ValueOf(s) > 0 && ValueOf(s) < 1 ? T(4 * s * (1 - s)) : T(0);
   return w * w;
 }
 
 // m, a unit vector that tells opposite normals apart.
-Vec4 Lift(const Vec3& n) {
-  return std::numbers::sqrt2 / 2 * Vec4(1, n.x(), n.y(), n.z());
+template <typename T>
+Vec4Of<T> Lift(const Vec3Of<T>& n) {
+  return std::numbers::sqrt2 / 2 * Vec4Of<T>(T(1), n.x(), n.y(), n.z());
 }
 
-// The shares of contacts, from Σ W m mᵀ in its principal axes.
-class Shares {
+// The inverse of Σ W m mᵀ + ρ W I for any W > 0, from its principal axes.
+class RoundedInverse {
  public:
-  explicit Shares(const Eigen::Matrix4d& sum) : axes_(sum) {}
+  explicit RoundedInverse(const Eigen::Matrix4d& sum) : axes_(sum) {}
 
-  // That of a contact with weight W > 0.
-  double operator()(const Vec3& n, double W) const {
-    const Vec4 m = axes_.eigenvectors().transpose() * Lift(n);
-    const Eigen::Array4d along = axes_.eigenvalues().array().max(0.0);
-    return (1 + kRounding) * W *
-           (m.array().square() / (along + kRounding * W)).sum();
+  // mᵀ A⁻¹ m.
+  double Product(const Eigen::Vector4d& m_W, double W) const {
+    const Eigen::Vector4d m = axes_.eigenvectors().transpose() * m_W;
+    return (m.array().square() / Along(W)).sum();
+  }
+
+  // A⁻¹ m.
+  Eigen::Vector4d Solve(const Eigen::Vector4d& m_W, double W) const {
+    const Eigen::Vector4d m = axes_.eigenvectors().transpose() * m_W;
+    return axes_.eigenvectors() * (m.array() / Along(W)).matrix();
   }
 
  private:
-  static constexpr double kRounding = 0.1;  // ρ
+  Eigen::Array4d Along(double W) const {
+    return axes_.eigenvalues().array().max(0.0) + kRounding * W;
+  }
 
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> axes_;
 };
 
+// The shares of contacts with weights W > 0, from Σ W m mᵀ.
+template <typename T>
+class Shares {
+ public:
+  explicit Shares(const Mat4Of<T>& sum) : sum_(sum), inverse_(ValuesOf(sum)) {}
+
+  T operator()(const Vec3Of<T>& n, const T& W) const {
+    const Vec4Of<T> m = Lift<T>(n);
+    // Stationary in x = A⁻¹ m, which therefore needs no derivatives.
+    const Vec4Of<T> x =
+        inverse_.Solve(ValuesOf(m), ValueOf(W)).template cast<T>();
+    const Vec4Of<T> Ax = sum_ * x + T(kRounding * W) * x;
+    return (1 + kRounding) * W * T(2 * m.dot(x) - x.dot(Ax));
+  }
+
+ private:
+  Mat4Of<T> sum_;
+  RoundedInverse inverse_;
+};
+
+template <>
+class Shares<double> {
+ public:
+  explicit Shares(const Eigen::Matrix4d& sum) : inverse_(sum) {}
+
+  double operator()(const Vec3& n, double W) const {
+    return (1 + kRounding) * W * inverse_.Product(Lift<double>(n), W);
+  }
+
+ private:
+  RoundedInverse inverse_;
+};
+
 // Spatial velocity's part along n at a point p of a moving frame.
-double SpeedAlong(const Vec3& n, const Vec3& p_WC, const MovingFrame& frame) {
-  return n.dot(frame.V_WF.tail<3>() +
-               frame.V_WF.head<3>().cross(p_WC - frame.p_WF));
+template <typename T>
+T SpeedAlong(const Vec3Of<T>& n, const Vec3Of<T>& p_WC,
+             const MovingFrameOf<T>& frame) {
+  const Vec3Of<T> r = p_WC - frame.p_WF;
+  return n.dot(frame.V_WF.template tail<3>() +
+               frame.V_WF.template head<3>().cross(r));
 }
 
 }  // namespace
@@ -56,34 +105,44 @@ void RequirePossible(const BrakingGains& gains) {
   RequirePositive(gains.distance, "distance_m");
 }
 
-WrenchModel ComputeBraking(const std::vector<Contact>& contacts,
-                           const MovingFrame& tool,
-                           const std::vector<MovingFrame>& objects,
-                           const BrakingGains& gains) {
-  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  for (const Contact& contact : contacts) {
-    const double W = Weight(contact, gains);
-    const Vec4 m = Lift(contact.nhat_BA_W);
-    if (W > 0) sum.noalias() += W * m * m.transpose();
+template <typename T>
+WrenchModelOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
+                                const MovingFrameOf<T>& tool,
+                                const std::vector<MovingFrameOf<T>>& objects,
+                                const BrakingGains& gains) {
+  using std::sqrt;
+  Mat4Of<T> sum = Mat4Of<T>::Zero();
+  for (const ContactOf<T>& contact : contacts) {
+    const T W = Weight(contact, gains);
+    const Vec4Of<T> m = Lift<T>(contact.nhat_BA_W);
+    if (ValueOf(W) > 0) sum.noalias() += W * m * m.transpose();
   }
-  WrenchModel model;
-  if (sum.trace() == 0) return model;
-  const Shares shares(sum);
-  for (const Contact& contact : contacts) {
-    const double W = Weight(contact, gains);
-    if (W == 0) continue;
-    const Vec3& n = contact.nhat_BA_W;
-    const double approach =
-        SpeedAlong(n, contact.p_WC, objects.at(contact.object)) -
-        SpeedAlong(n, contact.p_WC, tool);
-    if (!(approach > 0)) continue;
-    const double damping = gains.damping * std::sqrt(W) * shares(n, W);
-    Vec6 G;
-    G << (contact.p_WC - tool.p_WF).cross(n), n;
-    model.F += damping * approach * G;
+  WrenchModelOf<T> model;
+  if (ValueOf(sum.trace()) == 0) return model;
+  const Shares<T> shares(sum);
+  for (const ContactOf<T>& contact : contacts) {
+    const T W = Weight(contact, gains);
+    if (ValueOf(W) == 0) continue;
+    const Vec3Of<T>& n = contact.nhat_BA_W;
+    const T approach =
+        SpeedAlong<T>(n, contact.p_WC, objects.at(contact.object)) -
+        SpeedAlong<T>(n, contact.p_WC, tool);
+    if (!(ValueOf(approach) > 0)) continue;
+    const T damping = gains.damping * sqrt(W) * shares(n, W);
+    Vec6Of<T> G;
+    G << Vec3Of<T>(contact.p_WC - tool.p_WF).cross(n), n;
+    model.F += T(damping * approach) * G;
     model.B.noalias() += damping * G * G.transpose();
   }
   return model;
 }
+
+template WrenchModel ComputeBraking(const std::vector<Contact>&,
+                                    const MovingFrame&,
+                                    const std::vector<MovingFrame>&,
+                                    const BrakingGains&);
+template WrenchModelOf<AutoDiff> ComputeBraking(
+    const std::vector<ContactOf<AutoDiff>>&, const MovingFrameOf<AutoDiff>&,
+    const std::vector<MovingFrameOf<AutoDiff>>&, const BrakingGains&);
 
 }  // namespace drake_haptics

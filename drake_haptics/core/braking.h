@@ -40,9 +40,10 @@ void RequirePossible(const BrakingGains& gains);
 /// proportional to the speed and has no definite sign.
 /// @param objects one frame for each object that the contacts name.
 /// @throws std::out_of_range for a contact with an object that is not given.
-WrenchModel ComputeBraking(const std::vector<Contact>& contacts,
-                           const MovingFrame& tool,
-                           const std::vector<MovingFrame>& objects,
-                           const BrakingGains& gains);
+template <typename T>
+WrenchModelOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
+                                const MovingFrameOf<T>& tool,
+                                const std::vector<MovingFrameOf<T>>& objects,
+                                const BrakingGains& gains);
 
 }  // namespace drake_haptics

@@ -13,26 +13,29 @@
 namespace drake_haptics {
 namespace {
 
-constexpr int kCapacity = AdhesiveContacts::kCapacity;
+constexpr int kCapacity = AdhesiveContactsOf<double>::kCapacity;
 
 // The clusters that rub, in their order, and the normal forces that they bear.
+template <typename T>
 struct Rubbing {
   std::array<int, kCapacity> cluster;
-  std::array<double, kCapacity> normal_force;
+  std::array<T, kCapacity> normal_force;
   int size = 0;
 };
 
 // The strongest, if they are too many; they bear what the others of the same
 // object leave, so that friction on the whole stays what it is.
-Rubbing FindRubbing(const std::vector<Cluster>& clusters,
-                    const std::vector<double>& normal_forces,
-                    const std::vector<double>& coefficients) {
+template <typename T>
+Rubbing<T> FindRubbing(const std::vector<ClusterOf<T>>& clusters,
+                       const std::vector<T>& normal_forces,
+                       const std::vector<double>& coefficients) {
   const auto rubs = [&](int c) {
-    return normal_forces[c] > 0 && std::isfinite(normal_forces[c]) &&
+    const double normal_force = ValueOf(normal_forces[c]);
+    return normal_force > 0 && std::isfinite(normal_force) &&
            coefficients[clusters[c].object] > 0;
   };
   const int num_clusters = static_cast<int>(clusters.size());
-  Rubbing rubbing;
+  Rubbing<T> rubbing;
   bool all = true;
   for (int c = 0; c < num_clusters; ++c) {
     if (!rubs(c)) continue;
@@ -47,7 +50,7 @@ Rubbing FindRubbing(const std::vector<Cluster>& clusters,
     if (normal_forces[*weakest] < normal_forces[c]) *weakest = c;
   }
   const auto sum = [&](int object, const auto& items, int size) {
-    double total = 0;
+    T total{0};
     for (int i = 0; i < size; ++i) {
       const int c = items(i);
       if (clusters[c].object == object && rubs(c)) total += normal_forces[c];
@@ -68,15 +71,18 @@ Rubbing FindRubbing(const std::vector<Cluster>& clusters,
 }
 
 // Adds a force at the point r from the tool's origin to its wrench.
-void AddAt(const Vec3& r, const FrictionForce& force, WrenchModel* wrench) {
-  wrench->F.head<3>() += r.cross(force.f_W);
-  wrench->F.tail<3>() += force.f_W;
+template <typename T>
+void AddAt(const Vec3Of<T>& r, const FrictionForceOf<T>& force,
+           WrenchModelOf<T>* wrench) {
+  wrench->F.template head<3>() += r.cross(force.f_W);
+  wrench->F.template tail<3>() += force.f_W;
   // Displacement of the point by that of the tool, with the point frozen.
-  Eigen::Matrix<double, 3, 6> J;
-  J << 0, r.z(), -r.y(), 1, 0, 0,  //
-      -r.z(), 0, r.x(), 0, 1, 0,   //
-      r.y(), -r.x(), 0, 0, 0, 1;
-  const Eigen::Matrix<double, 3, 6> KJ = force.K_W * J;
+  Eigen::Matrix<T, 3, 6> J;
+  const T zero(0.0), one(1.0);
+  J << zero, r.z(), -r.y(), one, zero, zero,  //
+      -r.z(), zero, r.x(), zero, one, zero,   //
+      r.y(), -r.x(), zero, zero, zero, one;
+  const Eigen::Matrix<T, 3, 6> KJ = force.K_W * J;
   wrench->K.noalias() += J.transpose() * KJ;
 }
 
@@ -105,62 +111,74 @@ StickSlipModel::StickSlipModel(std::vector<double> coefficients,
   RequirePositive(parameters.reach, "reach_m");
 }
 
-FrictionStep StickSlipModel::Step(const double* state,
-                                  const std::vector<Cluster>& clusters,
-                                  const std::vector<double>& normal_forces,
-                                  const PoseVector& q_WTool,
-                                  const double* q_WO) const {
+template <typename T>
+FrictionStepOf<T> StickSlipModel::Step(
+    const T* state, const std::vector<ClusterOf<T>>& clusters,
+    const std::vector<T>& normal_forces, const Eigen::Matrix<T, 7, 1>& q_WTool,
+    const T* q_WO) const {
+  using PoseMap = Eigen::Map<const PoseVectorOf<T>>;
   const int poses_size = 7 * (1 + num_moving_);
-  const RigidMove tool_move(Eigen::Map<const PoseVector>(state), q_WTool);
+  const RigidMoveOf<T> tool_move(PoseMap(state), q_WTool);
 
   const auto object_move = [&](int object) {
     const int m = moving_index_[object];
-    return m < 0 ? RigidMove()
-                 : RigidMove(Eigen::Map<const PoseVector>(state + 7 * (1 + m)),
-                             Eigen::Map<const PoseVector>(q_WO + 7 * m));
+    return m < 0 ? RigidMoveOf<T>()
+                 : RigidMoveOf<T>(PoseMap(state + 7 * (1 + m)),
+                                  PoseMap(q_WO + 7 * m));
   };
 
-  CarriedContacts last;
-  for (const AdhesiveContact& contact :
-       AdhesiveContacts::Read(state + poses_size)) {
+  CarriedContactsOf<T> last;
+  for (const AdhesiveContactOf<T>& contact :
+       AdhesiveContactsOf<T>::Read(state + poses_size)) {
     if (contact.object < 0 || contact.object >= num_objects()) continue;
-    CarriedContact& carried = last.items[last.size];
+    CarriedContactOf<T>& carried = last.items[last.size];
     carried = Carry(contact, tool_move, object_move(contact.object));
     // A pose that was not a number must not stay in the state.
-    if (carried.on_object.z_W.allFinite()) ++last.size;
+    if (ValuesOf(carried.on_object.z_W).allFinite()) ++last.size;
   }
 
-  const Rubbing rubbing = FindRubbing(clusters, normal_forces, coefficients_);
-  AdhesiveContacts now;
+  const Rubbing<T> rubbing =
+      FindRubbing(clusters, normal_forces, coefficients_);
+  AdhesiveContactsOf<T> now;
   for (int k = 0; k < rubbing.size; ++k) {
-    const Cluster& cluster = clusters[rubbing.cluster[k]];
+    const ClusterOf<T>& cluster = clusters[rubbing.cluster[k]];
     now.push_back({cluster.object, cluster.p_WC, cluster.nhat_BA_W,
-                   Vec3::Zero(), rubbing.normal_force[k], 1});
+                   Vec3Of<T>::Zero(), rubbing.normal_force[k], T(1.0)});
   }
   HandOnAdhesion(last, parameters_.reach, &now);
 
-  FrictionStep step;
-  step.f_cluster_W.assign(clusters.size(), Vec3::Zero());
+  FrictionStepOf<T> step;
+  step.f_cluster_W.assign(clusters.size(), Vec3Of<T>::Zero());
   step.sliding.assign(clusters.size(), 0);
   for (int k = 0; k < rubbing.size; ++k) {
     const int c = rubbing.cluster[k];
-    const Vec3& p_WC = now[k].p_WC;
-    const Vec3 motion = tool_move.Displacement(p_WC) -
-                        object_move(now[k].object).Displacement(p_WC);
-    const FrictionForce force =
+    const Vec3Of<T>& p_WC = now[k].p_WC;
+    const Vec3Of<T> motion = tool_move.Displacement(p_WC) -
+                             object_move(now[k].object).Displacement(p_WC);
+    const FrictionForceOf<T> force =
         ApplyStickSlip(rubbing.normal_force[k], coefficients_[now[k].object],
                        parameters_, motion, &now[k]);
-    AddAt(now[k].p_WC - q_WTool.tail<3>(), force, &step.tool);
+    AddAt<T>(now[k].p_WC - q_WTool.template tail<3>(), force, &step.tool);
     step.f_cluster_W[c] = force.f_W;
     step.sliding[c] = force.sliding;
     step.stored -= 0.5 * force.f_W.dot(now[k].z_W);
   }
 
-  step.next_state.resize(state_size());
+  step.next_state.resize(state_size(), T(0.0));
   std::copy_n(q_WTool.data(), 7, step.next_state.begin());
   std::copy_n(q_WO, 7 * num_moving_, step.next_state.begin() + 7);
   now.Write(step.next_state.data() + poses_size);
   return step;
 }
+
+template FrictionStep StickSlipModel::Step(const double*,
+                                           const std::vector<Cluster>&,
+                                           const std::vector<double>&,
+                                           const PoseVector&,
+                                           const double*) const;
+template FrictionStepOf<AutoDiff> StickSlipModel::Step(
+    const AutoDiff*, const std::vector<ClusterOf<AutoDiff>>&,
+    const std::vector<AutoDiff>&, const PoseVectorOf<AutoDiff>&,
+    const AutoDiff*) const;
 
 }  // namespace drake_haptics

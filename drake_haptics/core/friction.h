@@ -11,13 +11,15 @@
 namespace drake_haptics {
 
 /// Friction of all clusters at one tick.
-struct FrictionStep {
-  WrenchModel tool;               ///< on the tool at To
-  std::vector<Vec3> f_cluster_W;  ///< on the tool, at each cluster's point, N
-  std::vector<char> sliding;      ///< whether each cluster slides
-  double stored = 0;              ///< elastic energy of what sticks, J
-  std::vector<double> next_state;
+template <typename T>
+struct FrictionStepOf {
+  WrenchModelOf<T> tool;               ///< on the tool at To
+  std::vector<Vec3Of<T>> f_cluster_W;  ///< on the tool, at each cluster, N
+  std::vector<char> sliding;           ///< whether each cluster slides
+  T stored{0};                         ///< elastic energy of what sticks, J
+  std::vector<T> next_state;
 };
+using FrictionStep = FrictionStepOf<double>;
 
 /// Stick-slip friction of a tool on objects, for the representative contacts of
 /// clusters (paper, 4.4.2). A function of the last tick's state and of what is
@@ -37,8 +39,8 @@ class StickSlipModel {
   int num_objects() const { return static_cast<int>(coefficients_.size()); }
   int num_moving() const { return num_moving_; }
   int state_size() const {
-    return 7 * (1 + num_moving_) +
-           AdhesiveContacts::kCapacity * AdhesiveContacts::kSlotSize;
+    return 7 * (1 + num_moving_) + AdhesiveContactsOf<double>::kCapacity *
+                                       AdhesiveContactsOf<double>::kSlotSize;
   }
 
   /// Friction on the clusters. If they are more than 32, the strongest bear the
@@ -46,9 +48,12 @@ class StickSlipModel {
   /// @param state of the last tick, state_size() long.
   /// @param normal_forces N of each cluster.
   /// @param q_WO poses of the objects that move, num_moving() of them.
-  FrictionStep Step(const double* state, const std::vector<Cluster>& clusters,
-                    const std::vector<double>& normal_forces,
-                    const PoseVector& q_WTool, const double* q_WO) const;
+  template <typename T>
+  FrictionStepOf<T> Step(const T* state,
+                         const std::vector<ClusterOf<T>>& clusters,
+                         const std::vector<T>& normal_forces,
+                         const Eigen::Matrix<T, 7, 1>& q_WTool,
+                         const T* q_WO) const;
 
  private:
   std::vector<double> coefficients_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "autodiff.h"
 #include "friction_state.h"
 #include "types.h"
 
@@ -13,9 +14,10 @@ struct FrictionParameters {
 };
 
 /// The friction force of one contact and how it changes with displacement.
-struct FrictionForce {
-  Vec3 f_W = Vec3::Zero();  ///< on the tool, N
-  Mat3 K_W = Mat3::Zero();  ///< its stiffness, N/m, PSD
+template <typename T>
+struct FrictionForceOf {
+  Vec3Of<T> f_W = Vec3Of<T>::Zero();  ///< on the tool, N
+  Mat3Of<T> K_W = Mat3Of<T>::Zero();  ///< its stiffness, N/m, PSD
   bool sliding = false;
 };
 
@@ -40,8 +42,10 @@ struct FrictionForce {
 /// @param coefficient μ of sliding, above 0.
 /// @param motion of the tool against the object since the last tick, m.
 /// @param contact its displacement and grip are updated.
-FrictionForce ApplyStickSlip(double normal_force, double coefficient,
-                             const FrictionParameters& parameters,
-                             const Vec3& motion, AdhesiveContact* contact);
+template <typename T>
+FrictionForceOf<T> ApplyStickSlip(const T& normal_force, double coefficient,
+                                  const FrictionParameters& parameters,
+                                  const Eigen::Matrix<T, 3, 1>& motion,
+                                  AdhesiveContactOf<T>* contact);
 
 }  // namespace drake_haptics

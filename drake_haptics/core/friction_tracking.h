@@ -10,39 +10,44 @@
 namespace drake_haptics {
 
 /// What a body did between two poses. No motion gives exactly no displacement.
-class RigidMove {
+template <typename T>
+class RigidMoveOf {
  public:
   /// None.
-  RigidMove() = default;
-  RigidMove(const PoseVector& last_q_WB, const PoseVector& q_WB);
+  RigidMoveOf() = default;
+  RigidMoveOf(const PoseVectorOf<T>& last_q_WB, const PoseVectorOf<T>& q_WB);
 
   /// How far the body's point at p_W has gone, m.
-  Vec3 Displacement(const Vec3& p_W) const {
+  Vec3Of<T> Displacement(const Vec3Of<T>& p_W) const {
     return turn_ * (p_W - last_p_WBo_) + step_;
   }
   /// A direction that turns with the body.
-  Vec3 Turned(const Vec3& v_W) const { return v_W + turn_ * v_W; }
+  Vec3Of<T> Turned(const Vec3Of<T>& v_W) const { return v_W + turn_ * v_W; }
 
  private:
-  Mat3 turn_ = Mat3::Zero();  // rotation less identity
-  Vec3 last_p_WBo_ = Vec3::Zero();
-  Vec3 step_ = Vec3::Zero();
+  Mat3Of<T> turn_ = Mat3Of<T>::Zero();  // rotation less identity
+  Vec3Of<T> last_p_WBo_ = Vec3Of<T>::Zero();
+  Vec3Of<T> step_ = Vec3Of<T>::Zero();
 };
 
 /// A contact of the last tick, where either body has taken it since.
-struct CarriedContact {
-  AdhesiveContact on_object;  ///< with z_W grown by the relative displacement
-  Vec3 p_on_tool_W;
-  Vec3 nhat_on_tool_W;
+template <typename T>
+struct CarriedContactOf {
+  AdhesiveContactOf<T> on_object;  ///< with z_W grown by the displacement
+  Vec3Of<T> p_on_tool_W;
+  Vec3Of<T> nhat_on_tool_W;
 };
 
 /// Moves a contact of the last tick with the tool and with its object.
-CarriedContact Carry(const AdhesiveContact& last, const RigidMove& tool,
-                     const RigidMove& object);
+template <typename T>
+CarriedContactOf<T> Carry(const AdhesiveContactOf<T>& last,
+                          const RigidMoveOf<T>& tool,
+                          const RigidMoveOf<T>& object);
 
 /// The contacts of the last tick, carried.
-struct CarriedContacts {
-  std::array<CarriedContact, AdhesiveContacts::kCapacity> items;
+template <typename T>
+struct CarriedContactsOf {
+  std::array<CarriedContactOf<T>, AdhesiveContactsOf<T>::kCapacity> items;
   int size = 0;
 };
 
@@ -67,7 +72,8 @@ struct CarriedContacts {
 /// above 2 N is let go, and load between the two is kept. So no change of N
 /// makes energy, which it would if the stiffness followed N both ways (Elata
 /// and Berryman 1996), and a normal force that trembles makes no creep.
-void HandOnAdhesion(const CarriedContacts& last, double reach,
-                    AdhesiveContacts* now);
+template <typename T>
+void HandOnAdhesion(const CarriedContactsOf<T>& last, double reach,
+                    AdhesiveContactsOf<T>* now);
 
 }  // namespace drake_haptics
