@@ -1026,6 +1026,7 @@ def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.flo
         IndexError: a contact names an object that has no row.
     """
 
+@overload
 def tool_weight(q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
     """
     Weight of the tool, a force at its centre of mass.
@@ -1038,6 +1039,10 @@ def tool_weight(q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C
     Returns:
         (6,) wrench on the tool at To in W, [N·m; N].
     """
+
+@overload
+def tool_weight(q_WT: AutoDiffVector, p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> AutoDiffVector:
+    """The same with derivatives."""
 
 class PassivityBounds:
     """Bounds of the passivity controller."""
@@ -1054,6 +1059,7 @@ class PassivityBounds:
             ValueError: the period is not above 0, another one below 0, or one of them not finite.
         """
 
+@overload
 def passivity_control(state: Annotated[NDArray[numpy.float64], dict(shape=(8), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], F_asked: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], bounds: PassivityBounds) -> Annotated[NDArray[numpy.float64], dict(shape=(14), order='C')]:
     """
     Passivity observer and controller (Hannaford and Ryu 2002) of one tick.
@@ -1068,6 +1074,10 @@ def passivity_control(state: Annotated[NDArray[numpy.float64], dict(shape=(8), o
     Returns:
         (14,) wrench to show (6), F_asked itself where the balance is not below 0; the next state (8), balance now, J, and pose now.
     """
+
+@overload
+def passivity_control(state: AutoDiffVector, F_applied: AutoDiffVector, F_asked: AutoDiffVector, q_WH: AutoDiffVector, V_WH: AutoDiffVector, bounds: PassivityBounds) -> AutoDiffVector:
+    """The same with derivatives."""
 
 class PosePath:
     """A pose over time, a cubic per segment. Immutable."""

@@ -10,12 +10,15 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteValues,
     InputPort,
-    LeafSystem,
     OutputPort,
 )
 from pydrake.systems.primitives import Demultiplexer
 
-from drake_haptics._core import PassivityBounds, passivity_control
+from drake_haptics._core import AutoDiffVector, PassivityBounds, passivity_control
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 
 _AT_ORIGIN = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 
@@ -63,6 +66,9 @@ class PassivityControl(Diagram):
 
     The state is one discrete group (8), [balance; X_WH at the last tick], updated
     every period from 0 s on.
+
+    Derivatives are those of the branch taken: at a balance of 0 of the side on which
+    nothing is damped, with all of the damping or at the full reserve of that bound.
     """
 
     def __init__(
@@ -130,7 +136,7 @@ class PassivityControl(Diagram):
         return self.GetOutputPort("energy_J")
 
 
-class _ObservedPort(LeafSystem):
+class _ObservedPort(DifferentiableSystem):
     """The state of a `PassivityControl`, and both outputs from one call of the core."""
 
     def __init__(self, bounds: PassivityBounds, period_s: float):
@@ -165,3 +171,19 @@ class _ObservedPort(LeafSystem):
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         next_state.set_value(self._shown_and_state.Eval(context)[6:])
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns what is shown and the state with their derivatives."""
+        return passivity_control(
+            at.state,
+            at["F_applied"],
+            at["F_asked"],
+            at["X_WH"],
+            at["V_WH"],
+            self._bounds,
+        )
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the next state with its derivatives."""
+        both = self.differentiate("shown_and_state", at)
+        return AutoDiffVector(both.value[6:], both.gradient[6:])

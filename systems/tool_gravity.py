@@ -9,16 +9,19 @@ from pydrake.systems.framework import (
     BasicVector,
     Context,
     InputPort,
-    LeafSystem,
     OutputPort,
 )
 
-from drake_haptics._core import tool_weight
+from drake_haptics._core import AutoDiffVector, tool_weight
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 
 STANDARD_GRAVITY_M_PER_S2 = (0.0, 0.0, -9.81)
 
 
-class ToolGravity(LeafSystem):
+class ToolGravity(DifferentiableSystem):
     """Gravity on the tool, a constant force at its centre of mass.
 
     .. pydrake_system::
@@ -89,6 +92,14 @@ class ToolGravity(LeafSystem):
             self._X_WTool.Eval(context), self._p_TTcm, self._weight_W
         )
         output.SetFromVector(wrench_model)
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the wrench model with its derivatives."""
+        weight = tool_weight(at["X_WTool"], self._p_TTcm, self._weight_W)
+        return AutoDiffVector(
+            np.concatenate([weight.value, np.zeros(72)]),
+            np.vstack([weight.gradient, np.zeros((72, at.num_derivatives))]),
+        )
 
 
 def _check_vector(name: str, vector: Sequence[float]) -> np.ndarray:

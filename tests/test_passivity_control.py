@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.systems.framework import DiagramBuilder
+from twin_check import check_twin
 
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems.display_force_hold import DisplayForceHold
@@ -148,6 +149,33 @@ def test_what_the_device_did_not_show_is_not_counted(control):
         context.get_mutable_discrete_state().SetFrom(new)
     energy = loop.GetOutputPort("energy_J").Eval(context)[0]
     assert energy == pytest.approx(5.0 * 2e-3)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    ("balance", "damped"),
+    [(-5e-3, "in part"), (-10.0, "with all"), (1e-2, "not"), (0.11, "not, full")],
+)
+def test_derivatives_in_each_of_its_ways_are_those_of_the_law(
+    control, seed, balance, damped
+):
+    rng = np.random.default_rng(seed)
+    V_WH = np.concatenate([rng.normal(size=3), rng.uniform(0.4, 0.9, 3)])
+    last = pose_to_vector(RigidTransform(RotationMatrix(), rng.normal(size=3)))
+    turn = RotationMatrix.MakeXRotation(1e-2) @ RotationMatrix.MakeZRotation(2e-2)
+    now = pose_to_vector(RigidTransform(turn, last[4:] + 1e-4 * rng.normal(size=3)))
+    inputs = {
+        "F_asked": rng.normal(size=6),
+        "F_applied": rng.normal(size=6) * [1e-3, 1e-3, 1e-3, 1, 1, 1],
+        "X_WH": now,
+        "V_WH": V_WH,
+    }
+    state = np.concatenate([[balance], last])
+    slope = check_twin(control, inputs, state=state, step=1e-5, rtol=1e-8)
+    shown, energy = slope[:6], slope[6]
+    assert energy.any() == (damped != "not, full")
+    assert shown[:, 6:19].any() == (damped == "in part")
+    assert shown[:, 19:25].any() == (damped in {"in part", "with all"})
 
 
 def test_two_contexts_know_nothing_of_each_other(control):

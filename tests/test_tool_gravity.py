@@ -5,6 +5,7 @@ import pytest
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
+from twin_check import check_twin
 
 from drake_haptics._core import RigidToolDynamics
 from drake_haptics.pose_vector import pose_to_vector
@@ -45,6 +46,13 @@ def test_it_is_a_force_at_the_centre_of_mass(seed):
     np.testing.assert_allclose(model[:3], np.cross(arm, MASS * acceleration))
     np.testing.assert_allclose(model[3:6], MASS * acceleration)
     assert not model[6:].any()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_its_derivatives_are_those_of_the_wrench(seed):
+    gravity = ToolGravity(mass_kg=MASS, p_TTcm=P_TTCM)
+    slope = check_twin(gravity, {"X_WTool": pose_to_vector(random_pose(seed))})
+    assert np.abs(slope[:3, :4]).max() > 0.01
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -1,5 +1,6 @@
 #include <nanobind/eigen/dense.h>
 
+#include "autodiff.h"
 #include "bind.h"
 #include "tool_gravity.h"
 
@@ -8,7 +9,7 @@ namespace nb = nanobind;
 namespace drake_haptics {
 
 void BindGravity(nb::module_& m) {
-  m.def("tool_weight", &ToolWeight, nb::arg("q_WT"), nb::arg("p_TTcm"),
+  m.def("tool_weight", &ToolWeight<double>, nb::arg("q_WT"), nb::arg("p_TTcm"),
         nb::arg("weight_W"),
         "Weight of the tool, a force at its centre of mass.\n\n"
         "Args:\n"
@@ -17,6 +18,15 @@ void BindGravity(nb::module_& m) {
         "    weight_W: (3,) mass times gravity, N.\n\n"
         "Returns:\n"
         "    (6,) wrench on the tool at To in W, [N·m; N].");
+  m.def(
+      "tool_weight",
+      [](const AutoDiffVector& q_WT, const Vec3& p_TTcm, const Vec3& weight_W) {
+        return ToAutoDiffVector(
+            ToolWeight(ToScalars<7>(q_WT, "q_WT"), p_TTcm, weight_W),
+            q_WT.num_derivatives());
+      },
+      nb::arg("q_WT"), nb::arg("p_TTcm"), nb::arg("weight_W"),
+      "The same with derivatives.");
 }
 
 }  // namespace drake_haptics

@@ -1,5 +1,6 @@
 #include <nanobind/eigen/dense.h>
 
+#include "autodiff.h"
 #include "bind.h"
 #include "passivity.h"
 
@@ -8,17 +9,34 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-using State = Eigen::Matrix<double, 8, 1>;
-using Shown = Eigen::Matrix<double, 14, 1>;
-
-Shown Control(const State& state, const Vec6& F_applied, const Vec6& F_asked,
-              const PoseVector& q_WH, const Vec6& V_WH,
-              const PassivityBounds& bounds) {
-  const double work = HeldWrenchWork(F_applied, state.tail<7>(), q_WH);
-  const double balance = ObserveEnergy(state[0], work, bounds);
-  Shown out;
+template <typename T>
+Eigen::Matrix<T, 14, 1> Control(const Eigen::Matrix<T, 8, 1>& state,
+                                const Eigen::Matrix<T, 6, 1>& F_applied,
+                                const Eigen::Matrix<T, 6, 1>& F_asked,
+                                const Eigen::Matrix<T, 7, 1>& q_WH,
+                                const Eigen::Matrix<T, 6, 1>& V_WH,
+                                const PassivityBounds& bounds) {
+  const T work = HeldWrenchWork<T>(F_applied, state.template tail<7>(), q_WH);
+  const T balance = ObserveEnergy<T>(state[0], work, bounds);
+  Eigen::Matrix<T, 14, 1> out;
   out << LimitEnergy(F_asked, balance, V_WH, bounds), balance, q_WH;
   return out;
+}
+
+AutoDiffVector DifferentiateControl(const AutoDiffVector& state,
+                                    const AutoDiffVector& F_applied,
+                                    const AutoDiffVector& F_asked,
+                                    const AutoDiffVector& q_WH,
+                                    const AutoDiffVector& V_WH,
+                                    const PassivityBounds& bounds) {
+  const Eigen::Index num_derivatives =
+      CommonNumDerivatives(state, F_applied, F_asked, q_WH, V_WH);
+  return ToAutoDiffVector(
+      Control(ToScalars<8>(state, "state"),
+              ToScalars<6>(F_applied, "F_applied"),
+              ToScalars<6>(F_asked, "F_asked"), ToScalars<7>(q_WH, "q_WH"),
+              ToScalars<6>(V_WH, "V_WH"), bounds),
+      num_derivatives);
 }
 
 }  // namespace
@@ -45,8 +63,9 @@ void BindPassivity(nb::module_& m) {
           "Raises:\n"
           "    ValueError: the period is not above 0, another one below 0, or "
           "one of them not finite.");
-  m.def("passivity_control", &Control, nb::arg("state"), nb::arg("F_applied"),
-        nb::arg("F_asked"), nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("bounds"),
+  m.def("passivity_control", &Control<double>, nb::arg("state"),
+        nb::arg("F_applied"), nb::arg("F_asked"), nb::arg("q_WH"),
+        nb::arg("V_WH"), nb::arg("bounds"),
         "Passivity observer and controller (Hannaford and Ryu 2002) of one "
         "tick.\n\n"
         "Args:\n"
@@ -60,6 +79,9 @@ void BindPassivity(nb::module_& m) {
         "Returns:\n"
         "    (14,) wrench to show (6), F_asked itself where the balance is not "
         "below 0; the next state (8), balance now, J, and pose now.");
+  m.def("passivity_control", &DifferentiateControl, nb::arg("state"),
+        nb::arg("F_applied"), nb::arg("F_asked"), nb::arg("q_WH"),
+        nb::arg("V_WH"), nb::arg("bounds"), "The same with derivatives.");
 }
 
 }  // namespace drake_haptics

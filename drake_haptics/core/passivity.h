@@ -23,23 +23,28 @@ void RequirePossible(const PassivityBounds& bounds);
 /// vector. Exact for the force, and for the torque where the axis of rotation
 /// stood still.
 /// @param F_H_W [torque; force] at Ho in the world.
-double HeldWrenchWork(const Vec6& F_H_W, const PoseVector& from_q_WH,
-                      const PoseVector& to_q_WH);
+template <typename T>
+T HeldWrenchWork(const Eigen::Matrix<T, 6, 1>& F_H_W,
+                 const Eigen::Matrix<T, 7, 1>& from_q_WH,
+                 const Eigen::Matrix<T, 7, 1>& to_q_WH);
 
 /// The balance of the energy that a device's port has received after another
 /// tick, J: the passivity observer (Hannaford and Ryu 2002) with the work of
 /// the held wrench between the samples in place of force times velocity (Ryu,
 /// Kim and Hannaford 2004). Below zero, the port has given out more than it
 /// got. Never above the reserve. Work that is not finite is not counted.
-double ObserveEnergy(double balance, double work_on_device,
-                     const PassivityBounds& bounds);
+template <typename T>
+T ObserveEnergy(const T& balance, const T& work_on_device,
+                const PassivityBounds& bounds);
 
 /// The passivity controller: adds to the wrench asked for the damping that
 /// dissipates in one tick, at the twist of the handle, what the balance lacks.
 /// Both dampings are the same share of their largest ones. Returns exactly
 /// what was asked where nothing lacks or the handle stands still. It never
 /// adds power to the handle.
-Vec6 LimitEnergy(const Vec6& F_asked, double balance, const Vec6& V_WH,
-                 const PassivityBounds& bounds);
+template <typename T>
+Vec6Of<T> LimitEnergy(const Eigen::Matrix<T, 6, 1>& F_asked, const T& balance,
+                      const Eigen::Matrix<T, 6, 1>& V_WH,
+                      const PassivityBounds& bounds);
 
 }  // namespace drake_haptics

@@ -10,7 +10,8 @@ namespace drake_haptics {
 /// @param q_WT pose of the tool.
 /// @param p_TTcm centre of mass in the tool's frame, m.
 /// @param weight_W m g, N.
-Vec6 ToolWeight(const PoseVector& q_WT, const Vec3& p_TTcm,
-                const Vec3& weight_W);
+template <typename T>
+Vec6Of<T> ToolWeight(const Eigen::Matrix<T, 7, 1>& q_WT, const Vec3& p_TTcm,
+                     const Vec3& weight_W);
 
 }  // namespace drake_haptics
