@@ -1,0 +1,96 @@
+"""How much later a loop's force may come before the loop is unstable."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import expm
+
+from drake_haptics.analysis.held_loop import HeldLoop
+from drake_haptics.analysis.stability_limit import calc_growth
+
+# Delays are tried so far apart, in periods or as a share, before the edge is bisected.
+_STEP, _STEP_SHARE = 0.25, 0.2
+_LONGEST = 50.0
+_TOLERANCE = 1e-4
+
+
+def calc_delay_margin(loop: HeldLoop) -> float:
+    """Returns the further delay of the device's force at which motions grow, s.
+
+    The wrench that the hold samples is shown so much later; all else stays. Infinite
+    where 50 periods are not enough, 0 where the loop is unstable as it is.
+
+    Args:
+        loop: At its equilibrium.
+    """
+    low = high = 0.0
+    if _calc_growth(loop, high) >= 1.0:
+        return 0.0
+    while _calc_growth(loop, high) < 1.0:
+        if high >= _LONGEST:
+            return np.inf
+        low, high = high, high + max(_STEP, _STEP_SHARE * high)
+    while high - low > _TOLERANCE:
+        middle = (low + high) / 2.0
+        if _calc_growth(loop, middle) < 1.0:
+            low = middle
+        else:
+            high = middle
+    return loop.linearization.period_s * (low + high) / 2.0
+
+
+def _calc_growth(loop: HeldLoop, delay: float) -> float:
+    """Returns the growth per period with the wrench so many periods later."""
+    return calc_growth(np.linalg.eigvals(make_delayed_map(loop, delay)))
+
+
+def make_delayed_map(loop: HeldLoop, delay: float) -> np.ndarray:
+    """Returns the map of one period with the device's wrench shown later.
+
+    The state is that of the linearization, then the wrenches (6 each) that were
+    sampled and are not shown yet, the newest first.
+
+    Args:
+        loop: At its equilibrium.
+        delay: In periods, any number from 0 on.
+
+    Raises:
+        ValueError: The delay is negative.
+    """
+    if not delay >= 0.0:
+        raise ValueError(f"delay must be at least 0 periods, is {delay}")
+    linear = loop.linearization
+    n, T = len(linear.A), linear.period_s
+    shown = find_shown_wrench(linear.state_names)
+    whole = int(delay + 1e-9)
+    late = max(0.0, delay - whole)
+    late = 0.0 if late < 1e-9 else late
+    waiting = whole + (late > 0.0)
+    size = n + 6 * waiting
+
+    def flow(periods: float) -> np.ndarray:
+        moved = np.eye(size)
+        moved[:n, :n] = expm(linear.rates * periods * T)
+        return moved
+
+    # What each place of the queue holds after the update, by the state before it.
+    sampled = np.zeros((6, size))
+    sampled[:, :n] = linear.update[shown]
+    queue = np.vstack([sampled, np.eye(size)[n:]])
+    update = np.eye(size)
+    update[:n, :n] = linear.update
+    update[shown] = queue[6 * whole : 6 * whole + 6]
+    update[n:] = queue[: 6 * waiting]
+    if late == 0.0:
+        return flow(1.0) @ update
+    # Until it is late enough the wrench before this one is still shown.
+    update[shown] = queue[6 * whole + 6 : 6 * whole + 12]
+    switch = np.eye(size)
+    switch[shown] = np.eye(size)[n + 6 * whole : n + 6 * whole + 6]
+    return flow(1.0 - late) @ switch @ flow(late) @ update
+
+
+def find_shown_wrench(names: tuple[str, ...]) -> np.ndarray:
+    """Returns where F_applied (6) of the device's hold is in a state with names."""
+    hold = [i for i, name in enumerate(names) if "display_force_hold" in name]
+    return np.array(hold[:6])
