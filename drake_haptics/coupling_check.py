@@ -157,6 +157,7 @@ def _check_passivity(
     return [
         f"{name} is {value:g}: not passive, because device and hand damp"
         f" by b = {b:g} {kind.damping_unit} and K (T/2 + t_d) + |B| is {bound:.5g}"
-        f" (Colgate and Schenkel), so that some grips may vibrate: lower {kind.damping} or"
-        f" {kind.stiffness}, raise the rate, or hold the device more firmly"
+        " (Colgate and Schenkel), so that some grips may vibrate: lower"
+        f" {kind.damping} or {kind.stiffness}, raise the rate, or hold the device more"
+        " firmly"
     ]

@@ -27,11 +27,18 @@ def calc_passive_damping(
     delay counts as the mean of itself and the next whole period
     (docs/stability-theory.md).
     """
-    periods = delay_s / period_s
-    # A delay of whole periods may be a round-off above them.
-    next_whole_s = math.ceil(periods - 1e-9) * period_s
-    held_s = 0.5 * (period_s + delay_s + next_whole_s)
-    return stiffness * held_s + abs(damping)
+    return stiffness * _calc_age(period_s, delay_s) + abs(damping)
+
+
+def calc_passive_stiffness(
+    held_damping: float, damping: float, period_s: float, delay_s: float = 0.0
+) -> float:
+    """Returns the stiffness K up to which a sampled K and B are passive.
+
+    That of `calc_passive_damping`, solved for K. Zero where B alone is not passive.
+    """
+    left = held_damping - abs(damping)
+    return max(0.0, left) / _calc_age(period_s, delay_s)
 
 
 def calc_stable_stiffness(
@@ -121,3 +128,10 @@ def calc_returnable_energy(
     """
     elastic = sum(load**2 / (2.0 * k) for load, k in springs if k > 0.0)
     return elastic + 0.5 * tool_mass_kg * _FASTEST_HAND_M_PER_S**2 + lift_J
+
+
+def _calc_age(period_s: float, delay_s: float) -> float:
+    """Returns how old a sample counts for passivity, s."""
+    # A delay of whole periods may be a round-off above them.
+    next_whole_s = math.ceil(delay_s / period_s - 1e-9) * period_s
+    return 0.5 * (period_s + delay_s + next_whole_s)

@@ -105,8 +105,8 @@ def test_the_margins_are_those_of_the_loop(rate_hz, delay_s):
     assert calc_radius(m, b, 0, K, B, T, 1.05 * free.largest_delay_s) > 1
 
 
-@pytest.mark.parametrize("tool_mass", np.geomspace(1e-3, 100.0, 11))
-@pytest.mark.parametrize("contact", [0.0, 300.0, 1e6])
+@pytest.mark.parametrize("tool_mass", np.geomspace(1e-3, 100.0, 6))
+@pytest.mark.parametrize("contact", [0.0, 1e5])
 def test_a_tool_that_gives_way_is_no_worse_than_a_rigid_one(tool_mass, contact):
     """The tool's step is implicit: w⁺ from K (x - p - T w⁺) + B (v - w⁺) - k p⁺."""
     T = 1e-3

@@ -6,6 +6,7 @@ from scipy.linalg import expm
 
 from drake_haptics.passivity_bounds import (
     calc_passive_damping,
+    calc_passive_stiffness,
     calc_quantized_stiffness,
     calc_returnable_energy,
     calc_sampled_damping,
@@ -66,6 +67,14 @@ def test_passive_damping_with_a_delay_is_enough(K, B, delay_ticks):
     assert needed <= bound * (1 + 1e-6)
     if B <= 0:
         assert needed == pytest.approx(bound, rel=1e-5)
+
+
+@pytest.mark.parametrize("delay_s", [0.0, 0.3e-3, 1e-3, 2.6e-3])
+@pytest.mark.parametrize("B", [-1.5, 0.0, 1.5])
+def test_passive_stiffness_needs_all_of_the_damping(delay_s, B):
+    K = calc_passive_stiffness(2.0, B, T, delay_s)
+    assert calc_passive_damping(K, B, T, delay_s) == pytest.approx(2.0)
+    assert calc_passive_stiffness(1.0, B, T, delay_s) == (0.0 if B else K / 2)
 
 
 @pytest.mark.parametrize("delay_s", [0.0, 0.3e-3, 1e-3, 2.6e-3])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from drake_haptics.analysis.exact_boundary import calc_boundary_peak
@@ -16,6 +16,7 @@ from drake_haptics.analysis.sampled_wall import (
 )
 from drake_haptics.passivity_bounds import (
     calc_passive_damping,
+    calc_passive_stiffness,
     calc_stable_stiffness,
 )
 
@@ -96,7 +97,7 @@ class AxisDesign:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers, words and lists only."""
-        return asdict(self) | {"margins": [asdict(margin) for margin in self.margins]}
+        return asdict(self) | {"margins": [asdict(margins) for margins in self.margins]}
 
 
 def design_axis(
@@ -221,15 +222,15 @@ def _limit_stiffness(
         )
     }
     for name, wall in walls.items():
-        more = SampledWall(**{**vars(wall), "wall_damping": margin * B})
+        more = replace(wall, wall_damping=margin * B)
         limits[f"stability in the grip '{name}' (exact eigenvalues)"] = (
             min(calc_largest_stiffness(wall), calc_largest_stiffness(more)) / margin
         )
     if device.rated_stiffness is not None:
         limits["the rated stiffness of the device"] = device.rated_stiffness
     if passive_damping is not None:
-        limits["passivity in the hand"] = (passive_damping - B) / calc_passive_damping(
-            1.0, 0.0, T, t_d
+        limits["passivity in the hand"] = calc_passive_stiffness(
+            passive_damping, B, T, t_d
         )
     return limits
 
@@ -242,7 +243,7 @@ def _least(limits: Mapping[str, float]) -> tuple[float, str]:
 def _calc_margins(
     name: str, wall: SampledWall, stiffness: float, required: float
 ) -> GripMargins:
-    chosen = SampledWall(**{**vars(wall), "stiffness": stiffness})
+    chosen = replace(wall, stiffness=stiffness)
     held = wall.damping + wall.hand_damping
     return GripMargins(
         grip=name,

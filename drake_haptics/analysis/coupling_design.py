@@ -14,11 +14,12 @@ from drake_haptics.analysis.axis_design import (
     AxisHand,
     design_axis,
 )
+from drake_haptics.analysis.coupling_plot import plot_axis_design
 from drake_haptics.coupling_check import HeldHandle
 from drake_haptics.device_preset import DevicePreset, load_device_preset
 from drake_haptics.held_handle import calc_held_handle
 from drake_haptics.scene import Coupling
-from drake_haptics.systems.hand_grip import HAND_GRIPS
+from drake_haptics.systems.hand_grip import HAND_GRIPS, HandGrip
 from drake_haptics.systems.simulated_arm import make_arm_plant
 
 if TYPE_CHECKING:
@@ -76,9 +77,6 @@ class CouplingDesign:
         Returns:
             The axes of the translation.
         """
-        # Drawing is long and needs nothing of what designing does.
-        from drake_haptics.analysis.coupling_plot import plot_axis_design
-
         rotation = self.rotation
         if axes is None:
             from matplotlib import pyplot
@@ -157,12 +155,7 @@ def suggest_coupling(
             preset.max_stiffness_N_per_m if preset else None,
             preset.max_damping_Ns_per_m if preset else None,
         ),
-        {
-            name: AxisHand(g.mass_kg, g.damping_Ns_per_m, g.stiffness_N_per_m)
-            if g
-            else AxisHand()
-            for name, g in HAND_GRIPS.items()
-        },
+        {name: _translation_of(grip) for name, grip in HAND_GRIPS.items()},
         period_s,
         delay_s,
         margin,
@@ -177,16 +170,7 @@ def suggest_coupling(
                 preset.max_rotational_stiffness_Nm_per_rad if preset else None,
                 preset.max_rotational_damping_Nms_per_rad if preset else None,
             ),
-            {
-                name: AxisHand(
-                    g.inertia_kgm2,
-                    g.rotational_damping_Nms_per_rad,
-                    g.rotational_stiffness_Nm_per_rad,
-                )
-                if g
-                else AxisHand()
-                for name, g in HAND_GRIPS.items()
-            },
+            {name: _rotation_of(grip) for name, grip in HAND_GRIPS.items()},
             period_s,
             delay_s,
             margin,
@@ -216,6 +200,22 @@ def _check(rate_hz: float, delay_s: float, margin: float, hand: str | None) -> N
         raise ValueError(f"margin must be above 1, is {margin}")
     if hand is not None and hand not in HAND_GRIPS:
         raise ValueError(f"hand: '{hand}' is none of {', '.join(HAND_GRIPS)}")
+
+
+def _translation_of(grip: HandGrip | None) -> AxisHand:
+    if grip is None:
+        return AxisHand()
+    return AxisHand(grip.mass_kg, grip.damping_Ns_per_m, grip.stiffness_N_per_m)
+
+
+def _rotation_of(grip: HandGrip | None) -> AxisHand:
+    if grip is None:
+        return AxisHand()
+    return AxisHand(
+        grip.inertia_kgm2,
+        grip.rotational_damping_Nms_per_rad,
+        grip.rotational_stiffness_Nm_per_rad,
+    )
 
 
 def _read_device(

@@ -9,7 +9,7 @@ import numpy as np
 
 from drake_haptics.analysis.axis_design import AxisDesign, AxisHand, make_wall
 from drake_haptics.analysis.sampled_wall import calc_largest_stiffness
-from drake_haptics.passivity_bounds import calc_passive_damping, calc_stable_stiffness
+from drake_haptics.passivity_bounds import calc_passive_stiffness, calc_stable_stiffness
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,19 +41,24 @@ def plot_axis_design(
     stable = [calc_largest_stiffness(replace(free, wall_damping=b)) for b in B]
     axes.fill_between(B, stable, color="C0", alpha=0.15)
     axes.plot(B, stable, color="C0", label="stable, let go (exact)")
-    law = calc_stable_stiffness(device.damping, B, period_s, delay_s)  # type: ignore[arg-type]
+    law = [calc_stable_stiffness(device.damping, b, period_s, delay_s) for b in B]
     axes.plot(B, law, "--", color="C0", lw=1.0, label="law of Gil et al.")
-    held_s = calc_passive_damping(1.0, 0.0, period_s, delay_s)
-    top = min(1.1 * max(stable), _HEADROOM * design.stiffness)
-    visible = [
-        m
+    passive = [
+        (m, calc_passive_stiffness(m.held_damping, 0.0, period_s, delay_s))
         for m in design.margins
-        if 0.02 * B[-1] < m.held_damping < B[-1] + held_s * top
     ]
-    for i, margins in enumerate(visible, start=1):
+    top = min(1.1 * max(stable), _HEADROOM * design.stiffness)
+    # Those that would be out of sight stay out of the legend.
+    visible = [
+        (margins, K)
+        for margins, K in passive
+        if margins.held_damping > 0.02 * B[-1]
+        and B[-1] / margins.held_damping + top / K > 1.0
+    ]
+    for i, (margins, K) in enumerate(visible, start=1):
         axes.plot(
             [0.0, margins.held_damping],
-            [margins.held_damping / held_s, 0.0],
+            [K, 0.0],
             ":",
             color=f"C{i + (i > 2)}",
             label=f"passive below, grip '{margins.grip}'",

@@ -13,7 +13,7 @@ from drake_haptics.analysis.sampled_wall import (
     calc_largest_delay,
     calc_largest_stiffness,
 )
-from drake_haptics.passivity_bounds import calc_passive_damping, calc_stable_stiffness
+from drake_haptics.passivity_bounds import calc_passive_stiffness, calc_stable_stiffness
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -99,8 +99,6 @@ def calc_delay_bounds(
             [calc_largest_stiffness(replace(wall, delay_s=t)) for t in delays]
         ),
         law=np.array([calc_stable_stiffness(held, B, T, t) for t in delays]),
-        passive=np.array(
-            [max(0.0, held - B) / calc_passive_damping(1.0, 0.0, T, t) for t in delays]
-        ),
+        passive=np.array([calc_passive_stiffness(held, B, T, t) for t in delays]),
         largest_delay_s=calc_largest_delay(wall),
     )

@@ -21,7 +21,7 @@ from drake_haptics.analysis.exact_boundary import (
     calc_exact_boundary,
 )
 from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
-from drake_haptics.passivity_bounds import calc_passive_damping, calc_stable_stiffness
+from drake_haptics.passivity_bounds import calc_passive_stiffness, calc_stable_stiffness
 
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "stability-theory.md"
@@ -83,7 +83,7 @@ def wall_rows() -> Iterator[list[str]]:
     for b, B, d, hand, *_ in TABLE:
         wall = make_wall(b, B, d, hand)
         held = b + wall.hand_damping
-        per_K = calc_passive_damping(1.0, 0.0, wall.period_s, wall.delay_s)
+        passive = calc_passive_stiffness(held, B, wall.period_s, wall.delay_s)
         exact = calc_largest_stiffness(wall)
         simulated = find_simulated_limit(wall, exact)
         yield [
@@ -91,7 +91,7 @@ def wall_rows() -> Iterator[list[str]]:
             f"{B:g}",
             f"{d}",
             {id(NO_HAND): "none", id(HAND): "0.2, 5, 300"}[id(hand)],
-            f"{(held - B) / per_K:.1f}" if held > B else "none",
+            f"{passive:.1f}" if passive > 0.0 else "none",
             f"{calc_stable_stiffness(held, B, wall.period_s, wall.delay_s):.1f}",
             f"{exact:.2f}",
             f"{simulated:.2f}",
