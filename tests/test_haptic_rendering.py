@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from diagram_parts import names
+from diagram_parts import names, sources
 from plant_scenes import PLANTS, PlantScene
 from pydrake.geometry import Box
 from pydrake.math import RigidTransform
@@ -109,6 +109,17 @@ def test_an_effect_adds_its_systems_and_no_others(effects, systems, ports):
     scene.start(tool=RigidTransform([0, 0, REST]))
     scene.simulator.AdvanceTo(0.1)
     assert scene.pose("tool").translation()[2] == pytest.approx(REST, abs=1e-6)
+
+
+def test_what_is_shaded_is_what_is_clustered_and_shown():
+    scene, rendering = make_scene(effects=Effects(shading=Shading()))
+    fed = sources(rendering)
+    assert fed["force_shading.contacts"] == "contact_query.contacts"
+    assert fed["contact_clustering.contacts"] == "force_shading.contacts"
+    scene.start(tool=RigidTransform([0, 0, REST]))
+    shading = rendering.GetSubsystemByName("force_shading")
+    shaded = scene.read(shading, "contacts")
+    assert scene.read(rendering, "contacts") is shaded
 
 
 def test_friction_stops_a_body_that_slides():

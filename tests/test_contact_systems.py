@@ -1,0 +1,80 @@
+"""The systems from contacts to forces, and how inputs find what they want."""
+
+import numpy as np
+import pytest
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import ConstantVectorSource
+from test_contact_query import box_core
+
+from drake_haptics.contact_systems import add_contact_systems, connect_by_name
+from drake_haptics.scene import Braking, Contact, Effects, Material
+from drake_haptics.systems.contact_query import ContactObject
+
+
+@pytest.fixture(scope="module")
+def core():
+    return box_core(0.02, 0.02, 0.02)
+
+
+def objects(core):
+    return [ContactObject(name, core, RigidTransform()) for name in ("soft", "hard")]
+
+
+def test_a_material_gives_what_the_contact_does_not(core):
+    contact = Contact(stiffness_N_per_m=100.0)
+    materials = [Material(), Material(stiffness_N_per_m=900.0)]
+    found = add_contact_systems(
+        DiagramBuilder(), core, objects(core), contact, Effects(), materials
+    )
+    assert found.penalty_force.stiffness_N_per_m == [100.0, 900.0]
+
+
+@pytest.mark.parametrize(("distance", "contacts"), [(1e-3, 0), (6e-3, 1)])
+def test_contacts_are_looked_for_as_far_as_braking_reaches(core, distance, contacts):
+    effects = Effects(braking=Braking(distance_m=distance))
+    found = add_contact_systems(
+        DiagramBuilder(),
+        core,
+        objects(core)[:1],
+        Contact(tolerance_m=2e-3),
+        effects,
+        [Material()],
+    )
+    query = found.contact_query
+    context = query.CreateDefaultContext()
+    query.get_tool_pose_input_port().FixValue(context, [1, 0, 0, 0, 0, 0, 0.025])
+    assert len(query.get_contacts_output_port().Eval(context)) == contacts
+    assert found.contact_clustering.tolerance_m == 2e-3
+
+
+def test_there_is_a_material_for_each_object(core):
+    with pytest.raises(ValueError, match="materials must be one for each of the 2"):
+        add_contact_systems(
+            DiagramBuilder(), core, objects(core), Contact(), Effects(), [Material()]
+        )
+
+
+def test_inputs_are_connected_by_their_names_once(core):
+    builder = DiagramBuilder()
+    found = add_contact_systems(
+        builder, core, objects(core), Contact(), Effects(), [Material()] * 2
+    )
+    rest, moving = (
+        builder.AddSystem(ConstantVectorSource(np.full(6, x))) for x in (0.0, 1.0)
+    )
+    force = found.penalty_force
+    clusters = found.contact_clustering.get_clusters_output_port()
+    connect_by_name(builder, force, {"V_WTool": rest.get_output_port()})
+    connect_by_name(
+        builder,
+        force,
+        {"V_WTool": moving.get_output_port(), "clusters": clusters, "other": clusters},
+    )
+    sources = {
+        port.get_name(): builder.connection_map().get((force, port.get_index()))
+        for port in map(force.get_input_port, range(force.num_input_ports()))
+    }
+    assert sources["V_WTool"][0] is rest
+    assert sources["clusters"][0] is found.contact_clustering
+    assert sources["X_WTool"] is None
