@@ -143,6 +143,28 @@ def test_processes_threads_and_one_thread_agree_bit_for_bit():
     assert np.array_equal(here[0]["inverse"], in_processes[0]["inverse"])
 
 
+def test_a_thread_that_ends_does_not_free_the_blas_of_another():
+    second_began, first_is_done = threading.Event(), threading.Event()
+
+    def compute(task):
+        if task == 0:
+            assert second_began.wait(30.0)
+            return None
+        second_began.set()
+        assert first_is_done.wait(30.0)
+        return calc_matrix_figures(1)
+
+    with ThreadPoolExecutor(2) as threads:
+        (_, figures) = run_study(
+            compute,
+            [0, 1],
+            executor=threads,
+            progress=lambda done, total: first_is_done.set() if done == 1 else None,
+        )
+    (alone,) = run_study(calc_matrix_figures, [1], executor=SERIAL)
+    assert as_bits(figures) == as_bits(alone)
+
+
 def test_no_task_can_change_another_ones():
     task = [1, 2, 3]
     assert run_study(empty_list, [task, task], executor=SERIAL) == [3, 3]
@@ -427,6 +449,26 @@ def test_what_came_back_before_the_executor_broke_is_kept(journal):
         run_study(journal, [1, 2, 3], executor=BrokenPool(2))
 
 
+def test_what_came_back_while_the_executor_broke_is_kept():
+    class Breaking(SerialExecutor):
+        """Tells of its end before it tells of a result."""
+
+        def __init__(self):
+            self.first: Future = Future()
+            self.began = False
+
+        def submit(self, fn, /, *args, **kwargs):
+            if not self.began:
+                self.began = True
+                return self.first
+            self.first.set_exception(BrokenExecutor("gone"))
+            return super().submit(fn)
+
+    with pytest.raises(StudyError, match="1 of 2 tasks are done") as caught:
+        run_study(square, [2, 3], executor=Breaking())
+    assert caught.value.results == [None, 9]
+
+
 def test_an_executor_that_cancels_is_told():
     class Cancelling(SerialExecutor):
         def submit(self, fn, /, *args, **kwargs):
@@ -514,14 +556,15 @@ def lives(pid: int) -> bool:
         return False
 
 
-def group_lives(group: int) -> bool:
+def find_living(group: int) -> set[int]:
+    """The processes of a group that run."""
     try:
         members = subprocess.run(
             ["pgrep", "-g", str(group)], capture_output=True, text=True
         ).stdout.split()
     except FileNotFoundError:
         pytest.skip("needs pgrep")
-    return any(lives(int(pid)) for pid in members)
+    return {pid for pid in map(int, members) if lives(pid)}
 
 
 def count_lines(path: Path) -> int:
@@ -536,8 +579,13 @@ def test_a_study_that_was_killed_goes_on_where_it_was(tmp_path, how):
     wait_until(lambda: count_lines(store) >= 8 and "wait" in journal.read())
     if how == signal.SIGKILL:
         driver.kill()
-    else:
-        os.killpg(driver.pid, how)
+    else:  # Ctrl-C reaches all; were one worker to take it, the pool would break
+        workers = find_living(driver.pid) - {driver.pid}
+        for pid in workers:
+            os.kill(pid, how)
+        time.sleep(0.2)
+        assert find_living(driver.pid) == {driver.pid, *workers}
+        driver.send_signal(how)
     _, stderr = driver.communicate(timeout=30)
     done = count_lines(store)
     if how == signal.SIGINT:
@@ -545,7 +593,7 @@ def test_a_study_that_was_killed_goes_on_where_it_was(tmp_path, how):
         assert "kept in" in stderr
         assert stderr.count("Traceback") == 1  # of the driver; workers are silent
     # Not one worker is left waiting, although one had a minute to go.
-    wait_until(lambda: not group_lives(driver.pid))
+    wait_until(lambda: not find_living(driver.pid))
 
     before = len(journal.read())
     kept = {json.loads(line)["task"] for line in store.read_text().splitlines()}

@@ -63,7 +63,7 @@ def test_the_edge_of_the_map_is_jurys_boundary():
 )
 def test_the_largest_stiffness_of_all_is_the_known_maximum(delay, alpha, beta):
     loop = SampledLoop(1.0, 1.0, delay=delay)
-    K = alpha * np.linspace(0.9, 1.1, 41)
+    K = alpha * np.linspace(0.95, 1.02, 15)
     B = beta * np.linspace(0.97, 1.03, 3)
 
     def edge(b: float) -> float:
@@ -76,8 +76,8 @@ def test_the_largest_stiffness_of_all_is_the_known_maximum(delay, alpha, beta):
 
 def test_physical_damping_and_a_sample_of_delay_move_the_edge_as_measured():
     # Of a mass of 0.1 kg at 1 kHz with b = 0.5: K from eigenvalues, to 0.1 N/m.
-    K = np.linspace(100.0, 2000.0, 400)
     for delay, expected in [(0, 1000.8), (1, 333.8)]:
+        K = expected * np.linspace(0.5, 1.5, 60)
         loop = SampledLoop(0.1, 1e-3, damping=0.5, delay=delay)
         found = z_width(loop, K, [0.0], executor=SERIAL)
         assert found.largest_stable_stiffness()[0] == pytest.approx(expected, abs=0.1)

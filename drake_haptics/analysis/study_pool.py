@@ -36,6 +36,20 @@ class SerialExecutor(Executor):
         return future
 
 
+class _QuietPool(ProcessPoolExecutor):
+    """Starts processes that Ctrl-C in a terminal does not reach, from the first on."""
+
+    def submit(
+        self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any
+    ) -> Future[Any]:
+        """Starts a process if none is idle; it inherits what is blocked here."""
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            return super().submit(fn, *args, **kwargs)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 @contextmanager
 def local_processes(
     function: Callable[[Any], Any], most_useful: int
@@ -57,7 +71,7 @@ def local_processes(
     _check_can_travel(function)
     context = multiprocessing.get_context("spawn")
     alive, held_open = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(
+    pool = _QuietPool(
         min(_count_cores(), most_useful),
         mp_context=context,
         initializer=_start_worker,
@@ -93,13 +107,12 @@ def explain_broken_pool() -> str:
     return (
         "a worker process died: the system may have ended it for its memory, compiled"
         " code may have crashed, or the program that starts the study has no"
-        f" {_GUARD} (stderr has the messages of the workers)"
+        f" {_GUARD} or defines its function under it (stderr has what the workers said)"
     )
 
 
 def _start_worker(alive: Connection) -> None:
-    """Prepares a new worker process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Ties a new worker process to the one that started it."""
     threading.Thread(target=_end_with, args=(alive,), daemon=True).start()
 
 
