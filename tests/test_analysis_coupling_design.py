@@ -85,6 +85,17 @@ def test_in_every_grip_twice_the_gains_are_stable(rate_hz, delay_s):
             assert calc_radius(m, b, k, f * K, g * B, T, delay_s) < 1
 
 
+@pytest.mark.parametrize("margin", [1.3, 4.0, 8.0])
+@pytest.mark.parametrize("damping", [0.0, 5.0, 60.0, 500.0])
+def test_both_gains_have_the_margin_on_any_device(margin, damping):
+    handle = HeldHandle(0.1, damping, 5e-5, 5e-4 * damping)
+    design = suggest_coupling(handle, 1000.0, margin=margin, delay_s=2e-4)
+    for axis in (design.translation, design.rotation):
+        for margins in axis.margins:
+            assert margins.stiffness >= margin * (1 - 1e-8)
+            assert margins.gain >= margin
+
+
 @pytest.mark.parametrize(("rate_hz", "delay_s"), CASES)
 def test_the_margins_are_those_of_the_loop(rate_hz, delay_s):
     design = suggest_coupling(HANDLE, rate_hz, delay_s=delay_s)
@@ -167,6 +178,11 @@ def test_passivity_in_a_hand_is_kept_where_it_is_asked_for(device, grip):
             axis.stiffness * 0.5e-3 + axis.damping
         )
         assert min(margins.stiffness, margins.gain) >= 2.0
+        # As stiff as rated, or as stability and passivity together allow.
+        bound = (axis.device.damping + axis.damping) / 0.5e-3 / 2
+        assert axis.stiffness == pytest.approx(
+            min(bound, axis.device.rated_stiffness or bound), rel=0.2
+        )
     # The check that the builder makes has nothing to say of it.
     hand = HAND_GRIPS[grip]
     held = HeldHandle(

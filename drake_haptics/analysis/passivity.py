@@ -34,6 +34,8 @@ _POINTS = 400
 # The condition is even in ω: this near to 0 it is its limit there to 1e-8 of itself,
 # and cot(ωT/2) still loses only four digits.
 _LOWEST_ANGLE = 1e-4
+# Around a pole's angle, in half widths of its resonance.
+_NEAR_POLES = np.array([-30, -10, -3, -1, -0.5, 0, 0.5, 1, 3, 10, 30])
 # As many of the highest points of the grid are refined.
 _PEAKS = 3
 
@@ -133,8 +135,8 @@ def calc_passivity(
             whose output is the force that resists, +H x.
         period_s: T, s.
         frequencies_Hz: Where to look, 0 < f <= 1/(2 T); 0 asks for the limit. If not
-            given, a grid over all, with the angles of a linear system's poles, and
-            refined at its three highest peaks.
+            given, a grid over all, dense at a linear system's poles, and refined at
+            its three highest peaks.
 
     Raises:
         ValueError: The period is not positive or not that of the system, a frequency
@@ -142,14 +144,14 @@ def calc_passivity(
     """
     if not period_s > 0.0:
         raise ValueError(f"period_s must be positive, is {period_s}")
-    transfer, pole_angles = as_transfer(H, period_s)
+    transfer, poles = as_transfer(H, period_s)
     nyquist_Hz = 0.5 / period_s
 
     def matrix_at(angle: float) -> np.ndarray:
         return _calc_required_matrix(transfer, max(angle, _LOWEST_ANGLE), period_s)
 
     if frequencies_Hz is None:
-        angles = _refine(_make_grid(pole_angles), matrix_at)
+        angles = _refine(_make_grid(poles), matrix_at)
     else:
         f = np.sort(np.asarray(frequencies_Hz, dtype=float))
         if f.size == 0 or not (f[0] >= 0.0 and f[-1] <= nyquist_Hz * (1.0 + 1e-12)):
@@ -184,11 +186,13 @@ def _calc_required_matrix(
     return period_s / 2.0 * (real - imaginary / math.tan(angle / 2.0))
 
 
-def _make_grid(pole_angles: np.ndarray) -> np.ndarray:
+def _make_grid(poles: np.ndarray) -> np.ndarray:
     """Returns angles in [0, π], close where H may change fast."""
     even = np.linspace(0.0, math.pi, _POINTS)
     slow = np.geomspace(_LOWEST_ANGLE, even[1], _POINTS // 8)
-    near = pole_angles[:, None] * np.linspace(0.97, 1.03, 13)
+    # A lightly damped pole rings in a band as wide as it is far from the circle.
+    width = np.maximum(1.0 - np.abs(poles), 1e-9)
+    near = np.abs(np.angle(poles))[:, None] + width[:, None] * _NEAR_POLES
     every = np.concatenate([even, slow, near.ravel()])
     return np.unique(every[(every == 0.0) | (every >= _LOWEST_ANGLE)].clip(0, math.pi))
 
@@ -202,12 +206,15 @@ def _refine(angles: np.ndarray, matrix_at: Callable[[float], np.ndarray]) -> np.
     values = np.array([damping_at(angle) for angle in angles])
     inner = values[1:-1]
     peaks = 1 + np.flatnonzero((inner >= values[:-2]) & (inner >= values[2:]))
+    # Searched from the grid's point: the search ends at half of the digits of what it
+    # is given.
     tops = [
-        minimize_scalar(
-            lambda angle: -damping_at(angle),
-            bounds=(angles[i - 1], angles[i + 1]),
+        angles[i]
+        + minimize_scalar(
+            lambda offset, middle=angles[i]: -damping_at(middle + offset),
+            bounds=(angles[i - 1] - angles[i], angles[i + 1] - angles[i]),
             method="bounded",
-            options={"xatol": 1e-9},
+            options={"xatol": 1e-12},
         ).x
         for i in peaks[np.argsort(values[peaks])[-_PEAKS:]]
     ]

@@ -68,10 +68,9 @@ def make_spring_damper(
 def as_transfer(
     H: TransferFunction, period_s: float
 ) -> tuple[Callable[[complex], np.ndarray], np.ndarray]:
-    """Returns H as a function that returns (m, m), and the angles of its poles.
+    """Returns H as a function that returns (m, m), and its poles.
 
-    The angles, rad per period in (0, π], are those of a linear system; a function
-    keeps its own to itself.
+    The poles are those of a linear system; a function keeps its own to itself.
 
     Raises:
         ValueError: The system is of another period, unstable or not square.
@@ -92,11 +91,10 @@ def as_transfer(
         raise ValueError(
             f"H is unstable, |z| = {np.abs(poles).max():.6g}: that is never passive"
         )
-    angles = np.abs(np.angle(poles))
     identity = np.eye(len(A))
     return (
         _square(lambda z: C @ np.linalg.solve(z * identity - A, B) + D),
-        angles[angles > 0.0],
+        poles,
     )
 
 
