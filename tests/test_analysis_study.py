@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import functools
 import hashlib
@@ -525,19 +526,31 @@ if __name__ == "__main__":
 """
 
 
-def start(program: str, *args: object, cwd: Path) -> subprocess.Popen:
-    """Starts a program in a group of its own, as a terminal does."""
-    file = cwd / "program.py"
-    file.write_text(program)
-    return subprocess.Popen(
-        [sys.executable, file, *map(str, args)],
-        cwd=cwd,
-        env={**os.environ, "PYTHONPATH": str(Path(__file__).parent)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+@pytest.fixture
+def start(tmp_path):
+    """Starts a program in a group of its own, as a terminal does, and ends it."""
+    started = []
+
+    def start(program: str, *args: object) -> subprocess.Popen:
+        file = tmp_path / "program.py"
+        file.write_text(program)
+        driver = subprocess.Popen(
+            [sys.executable, file, *map(str, args)],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(Path(__file__).parent)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        started.append(driver)
+        return driver
+
+    yield start
+    for driver in started:
+        with contextlib.suppress(ProcessLookupError):  # as it should be
+            os.killpg(driver.pid, signal.SIGKILL)
+        driver.communicate()
 
 
 def wait_until(condition, seconds: float = 30.0) -> None:
@@ -572,10 +585,10 @@ def count_lines(path: Path) -> int:
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
-def test_a_study_that_was_killed_goes_on_where_it_was(tmp_path, how):
+def test_a_study_that_was_killed_goes_on_where_it_was(start, tmp_path, how):
     store, journal = tmp_path / "store", Journal(str(tmp_path / "journal"), 0.02)
-    tasks = [*map(str, range(8)), *["wait"] * 1, *map(str, range(8, 12))]
-    driver = start(PROGRAM, journal.path, store, *tasks, cwd=tmp_path)
+    tasks = [*map(str, range(8)), "wait", *map(str, range(8, 12))]
+    driver = start(PROGRAM, journal.path, store, *tasks)
     wait_until(lambda: count_lines(store) >= 8 and "wait" in journal.read())
     if how == signal.SIGKILL:
         driver.kill()
@@ -603,9 +616,9 @@ def test_a_study_that_was_killed_goes_on_where_it_was(tmp_path, how):
     assert journal.read()[before:] == [task for task in rest if task not in kept]
 
 
-def test_a_program_without_its_guard_is_told_so(tmp_path):
+def test_a_program_without_its_guard_is_told_so(start, tmp_path):
     program = PROGRAM.replace('if __name__ == "__main__":', "if True:")
-    driver = start(program, tmp_path / "journal", tmp_path / "store", 1, cwd=tmp_path)
+    driver = start(program, tmp_path / "journal", tmp_path / "store", 1)
     _, stderr = driver.communicate(timeout=60)
     assert driver.returncode == 1
     assert "RuntimeError: a worker process imports your program" in stderr
