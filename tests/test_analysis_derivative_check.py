@@ -8,6 +8,7 @@ from pydrake.systems.primitives import Linearize
 from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics.analysis import linearize_sampled
+from drake_haptics.analysis.derivative_check import check_derivatives
 
 PERIOD = 1e-3
 
@@ -146,6 +147,21 @@ def test_noise_of_round_off_is_no_loss():
     system = Curve(lambda x: x, [1e7, 1.0])
     found = linearize_sampled(system, system.CreateDefaultContext())
     np.testing.assert_array_equal(found.A, np.eye(2))
+
+
+def check(function, jacobian):
+    size = np.shape(jacobian)[1]
+    check_derivatives(function, np.array(jacobian), np.ones(size), ["y"], ["x"] * size)
+
+
+def test_differences_are_no_finer_than_round_off():
+    check(lambda x: 1e12 + 1e-3 * x, [[1e-3]])
+
+
+def test_noise_of_an_inner_number_is_no_loss():
+    check(lambda x: (1e6 + x) - 1e6, [[1.0]])
+    with pytest.raises(ValueError, match="lost"):
+        check(lambda x: (1e6 + x) - 1e6, [[1.001]])
 
 
 def test_a_gradient_wrong_by_a_thousandth_is_found():

@@ -220,6 +220,18 @@ def test_no_fixed_point_says_how_far_it_got():
         find_equilibrium(system, system.CreateDefaultContext())
 
 
+def test_a_step_to_where_a_system_gives_up_is_shortened():
+    def give_up(x):
+        if abs(x[0]) > 6.0:
+            raise FloatingPointError("diverged")
+        return x - np.arctan(x)
+
+    # The first full step leads to x = -30.
+    system = Curve(give_up, [5.0])
+    found = find_equilibrium(system, system.CreateDefaultContext())
+    assert abs(found.context.get_discrete_state(0)[0]) < 1e-9
+
+
 def test_iterations_are_bounded():
     system = Curve(lambda x: x - np.arctan(x), [5.0])
     with pytest.raises(ValueError, match="no equilibrium after 2 iterations"):

@@ -27,7 +27,7 @@ def test_the_common_period_is_the_smallest_multiple(periods, common):
     assert find_hyperperiod(make_timings(*periods)) == pytest.approx(common, rel=1e-12)
 
 
-@pytest.mark.parametrize("period", [math.sqrt(2e-6), 0.0010000001])
+@pytest.mark.parametrize("period", [math.sqrt(2e-6), 0.001 * (1.0 + 5e-9)])
 def test_periods_without_a_common_one_are_refused(period):
     with pytest.raises(ValueError, match="no common multiple"):
         find_hyperperiod(make_timings(0.001, period))

@@ -15,6 +15,7 @@ from pydrake.systems.framework import DiagramBuilder, LeafSystem
 from pydrake.systems.primitives import LinearSystem
 from scipy.linalg import expm
 from test_analysis_derivative_check import SpringMass
+from test_analysis_sampled_preconditions import Eventful
 from wall_loop import MASS_KG, PERIOD, make_loop, make_mass
 
 from drake_haptics.analysis import linearize_sampled, monodromy
@@ -154,6 +155,31 @@ def test_a_discrete_plant_under_a_slower_controller(sampled_ports):
     found = find(control(make_plant(0.001, sampled_ports)))
     assert found.period_s == 0.002
     np.testing.assert_allclose(found.A, step @ both, rtol=1e-9, atol=1e-12)
+
+
+def test_a_plant_that_samples_its_ports_has_a_period_of_its_own():
+    plant = make_plant(0.004, sampled_ports=True)
+    found = find(plant)
+    assert found.period_s == 0.004
+    plain = make_plant(0.004)
+    np.testing.assert_allclose(found.A, find(plain).A, rtol=1e-12, atol=1e-15)
+
+
+def test_initialization_is_no_part_of_a_period():
+    found = find(Eventful("initialize", "publish"))
+    np.testing.assert_array_equal(found.A, np.diag([0.5, 1.0]))
+
+
+def test_steps_are_those_asked_for():
+    mass = make_mass()
+    context = mass.CreateDefaultContext()
+    mass.get_input_port().FixValue(context, [0.0])
+    found = monodromy(mass, context, 0.05, step_s=0.05)
+    # A third-order method on a linear system is its series up to the third power.
+    F = mass.A() * 0.05
+    series = np.eye(2) + F + F @ F / 2.0 + F @ F @ F / 6.0
+    np.testing.assert_allclose(found.A, series, atol=1e-14)
+    assert found.step_s == 0.05
 
 
 def test_a_continuous_plant_is_that_of_linearize_sampled():

@@ -8,6 +8,7 @@ from pydrake.symbolic import Variable, sin
 from pydrake.systems.analysis import DiscreteTimeApproximation
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import Linearize, LinearSystem, SymbolicVectorSystem
+from scipy.linalg import expm
 from wall_loop import MASS_KG, PERIOD, make_loop, make_mass, make_wall
 
 from drake_haptics.analysis import linearize_sampled
@@ -164,3 +165,12 @@ def test_eigenvalues_come_largest_first_and_go_to_json():
     stored = json.loads(json.dumps(found.to_dict()))
     np.testing.assert_array_equal(stored["A"], found.A)
     assert stored["eigenvalues"][0][0] == found.eigenvalues()[0].real
+
+
+def test_update_and_motion_make_the_map():
+    found = linearize(make_loop(900.0, 2.0, delay=1))
+    motion = expm(found.rates * PERIOD)
+    np.testing.assert_allclose(motion @ found.update, found.A, rtol=1e-14)
+    # The update moves nothing; the motion changes no memory.
+    np.testing.assert_array_equal(found.update[:2], np.eye(2, 5))
+    assert not found.rates[2:].any()

@@ -117,6 +117,23 @@ def test_publish_and_initialization_events_parameters_and_caches_are_fine():
     assert system.published
 
 
+def test_a_memory_that_nothing_updates_stays():
+    @TemplateSystem.define("Kept_", T_list=(float, AutoDiffXd))
+    def Kept_(T):
+        class Impl(LeafSystem_[T]):
+            def _construct(self, converter=None):
+                LeafSystem_[T].__init__(self, converter=converter)
+                self.DeclareDiscreteState(2)
+
+            def _construct_copy(self, other, converter=None):
+                Impl._construct(self, converter=converter)
+
+        return Impl
+
+    found = linearize(make(Kept_[float](), Eventful()))
+    np.testing.assert_array_equal(found.A, np.diag([1.0, 1.0, 0.5, 1.0]))
+
+
 def test_a_parameter_of_the_context_counts():
     diagram = make(Eventful())
     context = diagram.CreateDefaultContext()

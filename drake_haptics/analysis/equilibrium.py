@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,11 +10,10 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, System
 
 from drake_haptics.analysis.derivative_check import calc_sizes
-from drake_haptics.analysis.diagram_systems import find_timings
+from drake_haptics.analysis.diagram_systems import Timing, find_timings
 from drake_haptics.analysis.drake_errors import explain_drake_errors
 from drake_haptics.analysis.sampled_map import (
     SampledMap,
-    get_state,
     set_state,
 )
 from drake_haptics.analysis.sampled_preconditions import (
@@ -94,9 +94,9 @@ def find_equilibrium(
     timings = find_timings(diagram, context)
     if period_s is None:
         period_s = timings[0].period_s if timings else 1.0
-    one_period = SampledMap(diagram, context, timings)
     if settle_s:
-        one_period.x = _settle(diagram, context, one_period, settle_s)
+        context = _settle(diagram, context, timings, settle_s)
+    one_period = SampledMap(diagram, context, timings)
     search = _Search(one_period, find_state_layout(diagram), period_s)
     while search.residual > tolerance:
         if search.iterations == max_iterations or not search.step():
@@ -197,10 +197,14 @@ class _Search:
 
 
 def _settle(
-    diagram: System, context: Context, one_period: SampledMap, settle_s: float
-) -> np.ndarray:
-    """Returns the state after a simulation, of a system that time does not change."""
-    start = context.Clone()
+    diagram: System, context: Context, timings: Sequence[Timing], settle_s: float
+) -> Context:
+    """Returns the context after a simulation, at the time from before it.
+
+    Raises:
+        ValueError: The system depends on time.
+    """
+    one_period = SampledMap(diagram, context, timings)
     x, u, time_s = one_period.x, one_period.u, context.get_time()
     held = one_period.hold(x, u)
     now = one_period.calc(x, held, u).stack()
@@ -212,7 +216,8 @@ def _settle(
                 " changes with it: settle by a simulation of your own up to the time"
                 " of interest, and give its context"
             )
-    one_period.context.SetTime(time_s)
-    simulator = Simulator(diagram, start)
-    simulator.AdvanceTo(time_s + settle_s)
-    return get_state(simulator.get_context())
+    # What systems remember of the way there stays in the clone.
+    settled = context.Clone()
+    Simulator(diagram, settled).AdvanceTo(time_s + settle_s)
+    settled.SetTime(time_s)
+    return settled

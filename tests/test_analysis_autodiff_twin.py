@@ -1,0 +1,101 @@
+"""The AutoDiffXd twin of a system, and what it takes from a context."""
+
+import numpy as np
+import pytest
+from pydrake.autodiffutils import AutoDiffXd
+from pydrake.common.value import Value
+from pydrake.systems.framework import DiagramBuilder, LeafSystem_
+from pydrake.systems.scalar_conversion import TemplateSystem
+from wall_loop import PERIOD, make_mass
+
+from drake_haptics.analysis import find_equilibrium, linearize_sampled, monodromy
+from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
+
+
+@TemplateSystem.define("Remembers_", T_list=(float, AutoDiffXd))
+def Remembers_(T):
+    class Impl(LeafSystem_[T]):
+        """x⁺ = factor · x: what is remembered in doubles, a parameter in the twin."""
+
+        def _construct(self, factor, converter=None):
+            LeafSystem_[T].__init__(self, converter=converter)
+            self.factor = factor
+            self.told = []
+            self.DeclareDiscreteState(1)
+            self.parameter = self.DeclareAbstractParameter(Value(100.0))
+            self.DeclarePeriodicDiscreteUpdateEvent(PERIOD, 0.0, self._update)
+
+        def _construct_copy(self, other, converter=None):
+            Impl._construct(self, other.factor, converter=converter)
+
+        def _get_factor(self, context):
+            if T is float:
+                return self.factor
+            return context.get_abstract_parameter(self.parameter).get_value()
+
+        def _update(self, context, discrete_state):
+            x = context.get_discrete_state(0)[0]
+            discrete_state.set_value(0, np.array([self._get_factor(context) * x]))
+
+        def prepare_conversion(self, context):
+            """Writes the factor into the parameter."""
+            self.told.append(context.get_discrete_state(0)[0])
+            context.get_mutable_abstract_parameter(self.parameter).set_value(
+                self.factor
+            )
+
+    return Impl
+
+
+def make_nested():
+    inner = DiagramBuilder()
+    inner.AddNamedSystem("remembers", Remembers_[float](0.25))
+    builder = DiagramBuilder()
+    builder.AddNamedSystem("inner", inner.Build())
+    builder.AddNamedSystem("other", Remembers_[float](0.5))
+    return builder.Build()
+
+
+@pytest.mark.parametrize("analyse", [linearize_sampled, monodromy])
+def test_systems_are_told_before_they_are_converted(analyse):
+    diagram = make_nested()
+    found = analyse(diagram, diagram.CreateDefaultContext())
+    np.testing.assert_array_equal(found.A, np.diag([0.25, 0.5]))
+
+
+def test_systems_are_told_where_they_are_converted():
+    system = Remembers_[float](0.25)
+    context = system.CreateDefaultContext()
+    context.SetDiscreteState(0, [8.0])
+    found = find_equilibrium(system, context)
+    linearize_sampled(system, found.context)
+    assert system.told[0] == 8.0
+    assert abs(system.told[-1]) < 1e-9
+
+
+def test_the_users_context_is_never_told():
+    diagram = make_nested()
+    context = diagram.CreateDefaultContext()
+    context.SetDiscreteState(0, [1.0])
+    find_equilibrium(diagram, context)
+    for analyse in (linearize_sampled, monodromy):
+        analyse(diagram, diagram.CreateDefaultContext())
+    other = diagram.GetSubsystemByName("other").GetMyContextFromRoot(context)
+    assert other.get_abstract_parameter(0).get_value() == 100.0
+    assert context.get_discrete_state(0)[0] == 1.0
+
+
+def test_a_twin_follows_time_state_and_inputs():
+    mass = make_mass()
+    context = mass.CreateDefaultContext()
+    context.SetTime(3.0)
+    context.SetContinuousState([1.0, 2.0])
+    mass.get_input_port().FixValue(context, [4.0])
+    twin = AutoDiffTwin(mass)
+    twin.follow(context)
+    assert twin.context.get_time().value() == 3.0
+    rates = twin.system.EvalTimeDerivatives(twin.context).CopyToVector()
+    assert [rate.value() for rate in rates] == pytest.approx([2.0, 30.0])
+    context.SetContinuousState([0.0, 5.0])
+    twin.follow(context)
+    assert twin.context.get_continuous_state_vector()[1].value() == 5.0
