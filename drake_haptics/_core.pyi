@@ -725,6 +725,7 @@ class ClusterSet:
 
     def __copy__(self) -> object: ...
 
+@overload
 def cluster_contacts(contacts: ContactSet, delta: float, tolerance: float) -> ClusterSet:
     """
     Groups contacts nearer than `tolerance` (m) with an octree of leaf size `delta` (m) and represents each group by one contact (paper, 4.2, Eq. 1 to 5). Members weigh `tolerance` − distance.
@@ -733,6 +734,11 @@ def cluster_contacts(contacts: ContactSet, delta: float, tolerance: float) -> Cl
         ValueError: delta <= 0 or tolerance < 0.
     """
 
+@overload
+def cluster_contacts(contacts: AutoDiffContactSet, delta: float, tolerance: float) -> AutoDiffClusterSet:
+    """The same with derivatives; which contacts are together stays."""
+
+@overload
 def share_stiffness(contacts: ContactSet, tolerance: float) -> ClusterSet:
     """
     Makes each contact nearer than `tolerance` (m) a cluster of its own, and lets those along one direction share stiffness, as if they pressed into a common elastic skin: the force is a continuous function of the contacts (shared_stiffness.h).
@@ -740,6 +746,10 @@ def share_stiffness(contacts: ContactSet, tolerance: float) -> ClusterSet:
     Raises:
         ValueError: tolerance < 0.
     """
+
+@overload
+def share_stiffness(contacts: AutoDiffContactSet, tolerance: float) -> AutoDiffClusterSet:
+    """The same with derivatives; which contacts push stays."""
 
 class PenaltyWrench:
     """The wrenches of all clusters. Immutable; copies are the object itself."""
@@ -766,6 +776,7 @@ class PenaltyWrench:
 
     def __copy__(self) -> object: ...
 
+@overload
 def penalty_force(clusters: ClusterSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> PenaltyWrench:
     """
     Penalty wrenches of the clusters (paper, Eq. 6 to 10): k times the compression along the normal, plus damping while approaching; never a pull.
@@ -781,6 +792,12 @@ def penalty_force(clusters: ClusterSet, p_WTo: Annotated[NDArray[numpy.float64],
     Raises:
         ValueError: a gain is negative or not finite, or rows do not match.
         IndexError: a cluster names an object that has no row.
+    """
+
+@overload
+def penalty_force(clusters: AutoDiffClusterSet, p_WTo: AutoDiffVector, V_WTool: AutoDiffVector, p_WO: AutoDiffVector, V_WO: AutoDiffVector, stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> AutoDiffPenaltyWrench:
+    """
+    The same with derivatives; p_WO (3 m,) and V_WO (6 m,) have one object after another.
     """
 
 class CouplingGains:
@@ -884,6 +901,169 @@ def wrench_jacobian(contacts: ContactSet, clusters: ClusterSet, tolerance: float
         ValueError: a pose is not one, or rows do not match.
         IndexError: a contact names an object or a piece that is not given.
     """
+
+class AutoDiffContactSet:
+    """
+    A `ContactSet` with derivatives by D variables. Its columns are `AutoDiffVector`, those of vectors flattened by rows. Immutable; copies are the object itself.
+    """
+
+    def __len__(self) -> int: ...
+
+    @property
+    def distance(self) -> AutoDiffVector:
+        """(n,) m."""
+
+    @property
+    def nhat_BA_W(self) -> AutoDiffVector:
+        """(3 n,) unit normals."""
+
+    @property
+    def p_WCa(self) -> AutoDiffVector:
+        """(3 n,) witness points on A, m."""
+
+    @property
+    def p_WCb(self) -> AutoDiffVector:
+        """(3 n,) witness points on B, m."""
+
+    @property
+    def p_WC(self) -> AutoDiffVector:
+        """(3 n,) means of both, m."""
+
+    @property
+    def extent(self) -> AutoDiffVector:
+        """(n,) m²."""
+
+    @property
+    def flushness(self) -> AutoDiffVector:
+        """(n,)."""
+
+    @property
+    def value(self) -> ContactSet:
+        """The `ContactSet`."""
+
+    @property
+    def num_derivatives(self) -> int:
+        """D, the number of variables that derivatives are by."""
+
+    def with_variables(self, num_derivatives: int) -> AutoDiffContactSet:
+        """
+        A constant, D = 0, with derivatives by that many variables: zeros.
+
+        Raises:
+            ValueError: it has derivatives.
+        """
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
+def differentiate_contacts(contacts: ContactSet, tolerance: float, tool: Decomposition, X_WTool: AutoDiffVector, objects: Sequence[Decomposition], X_WO: Sequence[AutoDiffVector]) -> AutoDiffContactSet:
+    """
+    The answer of a query with its derivatives, while features stay (query_gradient.h).
+
+    Args:
+        contacts: as the query gave them at these poses, not shaded.
+        tolerance: of the query, m.
+        tool, objects: the bodies of the query.
+        X_WTool: (7,) pose [qw qx qy qz x y z].
+        X_WO: a (7,) pose for each object.
+
+    Raises:
+        ValueError: a pose is not one, or numbers of objects or of variables differ.
+        IndexError: a contact names an object, a piece or a feature that is not given.
+    """
+
+class AutoDiffClusterSet:
+    """
+    A `ClusterSet` with derivatives by D variables. Its columns are `AutoDiffVector`, those of vectors flattened by rows. Immutable; copies are the object itself.
+    """
+
+    def __len__(self) -> int: ...
+
+    @property
+    def distance(self) -> AutoDiffVector:
+        """(k,) m."""
+
+    @property
+    def nhat_BA_W(self) -> AutoDiffVector:
+        """(3 k,) unit normals."""
+
+    @property
+    def p_WC(self) -> AutoDiffVector:
+        """(3 k,) m."""
+
+    @property
+    def compression(self) -> AutoDiffVector:
+        """(k,) m."""
+
+    @property
+    def damping_share(self) -> AutoDiffVector:
+        """(k,)."""
+
+    @property
+    def coupling(self) -> AutoDiffVector:
+        """(k k,) derivative of `compression` by the depths."""
+
+    @property
+    def value(self) -> ClusterSet:
+        """The `ClusterSet`."""
+
+    @property
+    def num_derivatives(self) -> int:
+        """D, the number of variables that derivatives are by."""
+
+    def with_variables(self, num_derivatives: int) -> AutoDiffClusterSet:
+        """
+        A constant, D = 0, with derivatives by that many variables: zeros.
+
+        Raises:
+            ValueError: it has derivatives.
+        """
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
+class AutoDiffPenaltyWrench:
+    """
+    A `PenaltyWrench` with derivatives by D variables; rows of wrenches and forces one after another. Immutable; copies are the object itself.
+    """
+
+    @property
+    def wrench_model(self) -> AutoDiffVector:
+        """(78,) wrench on the tool at To with its linear model."""
+
+    @property
+    def F_Tool_W(self) -> AutoDiffVector:
+        """(6,) wrench on the tool at To, [N·m; N]."""
+
+    @property
+    def F_objects_W(self) -> AutoDiffVector:
+        """(6 m,) wrench on each object at its origin, [N·m; N]."""
+
+    @property
+    def f_cluster_W(self) -> AutoDiffVector:
+        """(3 k,) force of each cluster on the tool, N."""
+
+    @property
+    def value(self) -> PenaltyWrench:
+        """The `PenaltyWrench`."""
+
+    @property
+    def num_derivatives(self) -> int:
+        """D, the number of variables that derivatives are by."""
+
+    def with_variables(self, num_derivatives: int) -> AutoDiffPenaltyWrench:
+        """
+        A constant, D = 0, with derivatives by that many variables: zeros.
+
+        Raises:
+            ValueError: it has derivatives.
+        """
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
 
 class SurfaceShading:
     """

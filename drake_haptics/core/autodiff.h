@@ -15,6 +15,10 @@ namespace drake_haptics {
 using AutoDiff = Eigen::AutoDiffScalar<Eigen::VectorXd>;
 
 template <typename T>
+using VectorOf = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+template <typename T>
+using MatrixOf = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+template <typename T>
 using Vec3Of = Eigen::Matrix<T, 3, 1>;
 template <typename T>
 using Mat3Of = Eigen::Matrix<T, 3, 3>;

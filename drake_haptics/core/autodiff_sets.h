@@ -19,4 +19,19 @@ using AutoDiffContactSet = Differentiated<ContactSetOf<AutoDiff>>;
 using AutoDiffClusterSet = Differentiated<ClusterSetOf<AutoDiff>>;
 using AutoDiffPenaltyWrench = Differentiated<PenaltyWrenchOf<AutoDiff>>;
 
+/// The values alone.
+ContactSet ValuesOf(const ContactSetOf<AutoDiff>& set);
+ClusterSet ValuesOf(const ClusterSetOf<AutoDiff>& set);
+PenaltyWrench ValuesOf(const PenaltyWrenchOf<AutoDiff>& wrench);
+
+/// Replaces values by those of doubles, which are the same but for the order
+/// in which Eigen sums: what is decided further on is the same to the last bit.
+template <typename Set, typename Plain>
+void SetValues(const Plain& values, Differentiated<Set>* differentiated);
+
+/// A set without derivatives as one with derivatives that are zero.
+template <typename Set>
+Differentiated<Set> WithVariables(const Differentiated<Set>& constant,
+                                  Eigen::Index num_derivatives);
+
 }  // namespace drake_haptics

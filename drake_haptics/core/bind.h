@@ -16,6 +16,8 @@ void BindTracker(nanobind::module_& m);
 void BindForce(nanobind::module_& m);
 void BindTool(nanobind::module_& m);
 void BindJacobian(nanobind::module_& m);
+void BindAutoDiffContact(nanobind::module_& m);
+void BindAutoDiffForce(nanobind::module_& m);
 void BindShading(nanobind::module_& m);
 void BindFriction(nanobind::module_& m);
 void BindBraking(nanobind::module_& m);

@@ -17,6 +17,8 @@ NB_MODULE(_core, m) {
   drake_haptics::BindForce(m);
   drake_haptics::BindTool(m);
   drake_haptics::BindJacobian(m);
+  drake_haptics::BindAutoDiffContact(m);
+  drake_haptics::BindAutoDiffForce(m);
   drake_haptics::BindShading(m);
   drake_haptics::BindFriction(m);
   drake_haptics::BindBraking(m);

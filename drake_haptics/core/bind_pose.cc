@@ -93,7 +93,7 @@ Pose FromVector(const char* data, Py_ssize_t stride, const Source& source) {
 
 // Drake's RigidTransform is known by its interface, so that Drake need not be
 // there.
-nb::object MatrixOf(nb::handle value) {
+nb::object AsMatrix(nb::handle value) {
   if (PyObject_CheckBuffer(value.ptr()) ||
       !nb::hasattr(value, "GetAsMatrix4")) {
     return nb::borrow(value);
@@ -138,7 +138,7 @@ std::vector<Pose> ToPoses(const RealArray& array, const char* name) {
 }  // namespace
 
 Pose ToPose(nb::handle value, const char* name) {
-  const RealArray array(MatrixOf(value), name);
+  const RealArray array(AsMatrix(value), name);
   if (!IsMatrix(array) && !IsVector(array)) {
     Refuse({name},
            "must be a pose: (4, 4), (7,) [qw qx qy qz x y z] or a "
@@ -149,7 +149,7 @@ Pose ToPose(nb::handle value, const char* name) {
 }
 
 PoseSeries::PoseSeries(nb::handle value, const char* name) {
-  const RealArray array(MatrixOf(value), name);
+  const RealArray array(AsMatrix(value), name);
   at_rest_ = IsMatrix(array) || IsVector(array);
   poses_ = ToPoses(array, name);
 }

@@ -18,13 +18,14 @@ struct Placed {
   int contact;
 };
 
-Leaf LeafOf(const Contact& contact, double delta) {
+template <typename T>
+Leaf LeafOf(const ContactOf<T>& contact, double delta) {
   // Beyond this many leaves from the origin all addresses are the last one:
   // positions that far carry no digits below delta.
   constexpr double kFar = 4e18;
   Leaf leaf{contact.object};
   for (int i = 0; i < 3; ++i) {
-    const double cell = std::floor(contact.p_WC[i] / delta);
+    const double cell = std::floor(ValueOf(contact.p_WC[i]) / delta);
     leaf[i + 1] = static_cast<std::int64_t>(std::clamp(cell, -kFar, kFar));
   }
   return leaf;
@@ -68,23 +69,26 @@ std::vector<int> Join(const std::vector<Placed>& placed, std::size_t count) {
 }
 
 // Running sums of a cluster.
+template <typename T>
 struct Sums {
-  Vec3 n = Vec3::Zero(), p = Vec3::Zero();
-  double weight = 0;
-  const Contact* deepest = nullptr;
+  Vec3Of<T> n = Vec3Of<T>::Zero(), p = Vec3Of<T>::Zero();
+  T weight{0};
+  const ContactOf<T>* deepest = nullptr;
+  int count = 0;
 };
 
-Cluster Represent(const Sums& sums, int count, double tolerance) {
-  Cluster cluster;
+template <typename T>
+ClusterOf<T> Represent(const Sums<T>& sums, double tolerance) {
+  ClusterOf<T> cluster;
   cluster.distance = sums.deepest->distance;
   cluster.compression = tolerance - cluster.distance;
   cluster.damping_share = 1;
   cluster.object = sums.deepest->object;
-  cluster.num_contacts = count;
+  cluster.num_contacts = sums.count;
   cluster.p_WC = sums.p / sums.weight;
   // Opposed normals cancel.
-  const double length = sums.n.norm();
-  cluster.nhat_BA_W = length > 1e-9 * sums.weight ? Vec3(sums.n / length)
+  const T length = sums.n.norm();
+  cluster.nhat_BA_W = length > 1e-9 * sums.weight ? Vec3Of<T>(sums.n / length)
                                                   : sums.deepest->nhat_BA_W;
   return cluster;
 }
@@ -97,14 +101,13 @@ void RequireTolerance(double tolerance) {
   }
 }
 
-void ClusterContacts(const std::vector<Contact>& contacts, double delta,
-                     double tolerance, ClusterSet* out) {
+template <typename T>
+void ClusterContacts(const std::vector<ContactOf<T>>& contacts, double delta,
+                     double tolerance, ClusterSetOf<T>* out) {
   if (!std::isfinite(delta) || !(delta > 0)) {
     throw std::invalid_argument("delta must be finite and above 0 m");
   }
   RequireTolerance(tolerance);
-  out->clusters.clear();
-  out->coupling.clear();
   out->label.assign(contacts.size(), -1);
   std::vector<Placed> placed;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -116,33 +119,48 @@ void ClusterContacts(const std::vector<Contact>& contacts, double delta,
     return p.leaf != q.leaf ? p.leaf < q.leaf : p.contact < q.contact;
   });
   std::vector<int> parent = Join(placed, contacts.size());
-
-  std::vector<Sums> sums;
-  std::vector<int> counts;
+  std::int32_t count = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!(contacts[i].distance < tolerance)) continue;
     const int root = Root(&parent, static_cast<int>(i));
-    if (root == static_cast<int>(i)) {
-      out->label[i] = static_cast<std::int32_t>(sums.size());
-      sums.emplace_back();
-      counts.push_back(0);
-    } else {
-      out->label[i] = out->label[root];
-    }
-    const Contact& contact = contacts[i];
-    Sums& sum = sums[out->label[i]];
-    const double weight = tolerance - contact.distance;
+    out->label[i] = root == static_cast<int>(i) ? count++ : out->label[root];
+  }
+  RepresentClusters(contacts, tolerance, out);
+}
+
+template <typename T>
+void RepresentClusters(const std::vector<ContactOf<T>>& contacts,
+                       double tolerance, ClusterSetOf<T>* out) {
+  out->clusters.clear();
+  out->coupling.clear();
+  std::vector<Sums<T>> sums;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (out->label[i] < 0) continue;
+    const auto label = static_cast<std::size_t>(out->label[i]);
+    if (label == sums.size()) sums.emplace_back();
+    const ContactOf<T>& contact = contacts[i];
+    Sums<T>& sum = sums[label];
+    const T weight = tolerance - contact.distance;
     sum.n += weight * contact.nhat_BA_W;
     sum.p += weight * contact.p_WC;
     sum.weight += weight;
     if (sum.deepest == nullptr || contact.distance < sum.deepest->distance) {
       sum.deepest = &contact;
     }
-    ++counts[out->label[i]];
+    ++sum.count;
   }
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    out->clusters.push_back(Represent(sums[k], counts[k], tolerance));
+  for (const Sums<T>& sum : sums) {
+    out->clusters.push_back(Represent(sum, tolerance));
   }
 }
+
+template void ClusterContacts(const std::vector<Contact>&, double, double,
+                              ClusterSet*);
+template void ClusterContacts(const std::vector<ContactOf<AutoDiff>>&, double,
+                              double, ClusterSetOf<AutoDiff>*);
+template void RepresentClusters(const std::vector<Contact>&, double,
+                                ClusterSet*);
+template void RepresentClusters(const std::vector<ContactOf<AutoDiff>>&, double,
+                                ClusterSetOf<AutoDiff>*);
 
 }  // namespace drake_haptics

@@ -50,7 +50,14 @@ void RequireTolerance(double tolerance);
 /// @param tolerance the distance t below which contacts push, m; others are in
 ///     no cluster.
 /// @throws std::invalid_argument unless delta > 0 and tolerance >= 0, finite.
-void ClusterContacts(const std::vector<Contact>& contacts, double delta,
-                     double tolerance, ClusterSet* out);
+template <typename T>
+void ClusterContacts(const std::vector<ContactOf<T>>& contacts, double delta,
+                     double tolerance, ClusterSetOf<T>* out);
+
+/// Fills the clusters of contacts that are grouped by `out->label`. A change of
+/// scalar type keeps the groups, and which member is the deepest.
+template <typename T>
+void RepresentClusters(const std::vector<ContactOf<T>>& contacts,
+                       double tolerance, ClusterSetOf<T>* out);
 
 }  // namespace drake_haptics

@@ -17,32 +17,37 @@ void RequireGain(double value, const char* name) {
 }
 
 // The direction along which a unit force n at p acts on a frame, as a wrench.
-Vec6 Wrench(const Vec3& p_WC, const Vec3& n, const MovingFrame& frame) {
-  Vec6 wrench;
+template <typename T>
+Vec6Of<T> Wrench(const Vec3Of<T>& p_WC, const Vec3Of<T>& n,
+                 const MovingFrameOf<T>& frame) {
+  Vec6Of<T> wrench;
   wrench << (p_WC - frame.p_WF).cross(n), n;
   return wrench;
 }
 
-using Wrenches = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+template <typename T>
+using Wrenches = Eigen::Matrix<T, 6, Eigen::Dynamic>;
 
 // Σ k H_ij G_i G_jᵀ. Clusters of different objects have nothing in common.
-Mat6 Stiffness(const ClusterSet& set, const Wrenches& G,
-               const std::vector<ContactMaterial>& materials) {
+template <typename T>
+Mat6Of<T> Stiffness(const ClusterSetOf<T>& set, const Wrenches<T>& G,
+                    const std::vector<ContactMaterial>& materials) {
   const Eigen::Index count = G.cols();
-  Wrenches kG = G;
+  Wrenches<T> kG = G;
   for (Eigen::Index i = 0; i < count; ++i) {
     kG.col(i) *= materials[set.clusters[i].object].stiffness;
   }
   if (set.coupling.empty()) return kG * G.transpose();
-  const Eigen::Map<const Eigen::MatrixXd> H(set.coupling.data(), count, count);
+  const Eigen::Map<const MatrixOf<T>> H(set.coupling.data(), count, count);
   return kG * H * G.transpose();
 }
 
 }  // namespace
 
-PenaltyWrench ComputePenaltyWrench(
-    const ClusterSet& clusters, const MovingFrame& tool,
-    const std::vector<MovingFrame>& objects,
+template <typename T>
+PenaltyWrenchOf<T> ComputePenaltyWrench(
+    const ClusterSetOf<T>& clusters, const MovingFrameOf<T>& tool,
+    const std::vector<MovingFrameOf<T>>& objects,
     const std::vector<ContactMaterial>& materials) {
   if (materials.size() != objects.size()) {
     throw std::invalid_argument("there must be one material for each object");
@@ -51,20 +56,20 @@ PenaltyWrench ComputePenaltyWrench(
     RequireGain(material.stiffness, "stiffness");
     RequireGain(material.damping, "damping");
   }
-  PenaltyWrench result;
-  result.F_objects_W.assign(objects.size(), Vec6::Zero());
-  Wrenches wrenches(6, clusters.clusters.size());
+  PenaltyWrenchOf<T> result;
+  result.F_objects_W.assign(objects.size(), Vec6Of<T>::Zero());
+  Wrenches<T> wrenches(6, clusters.clusters.size());
   Eigen::Index next = 0;
-  for (const Cluster& cluster : clusters.clusters) {
-    const MovingFrame& object = objects.at(cluster.object);
+  for (const ClusterOf<T>& cluster : clusters.clusters) {
+    const MovingFrameOf<T>& object = objects.at(cluster.object);
     const ContactMaterial& material = materials[cluster.object];
-    const Vec6 G = Wrench(cluster.p_WC, cluster.nhat_BA_W, tool);
-    const Vec6 G_object = Wrench(cluster.p_WC, cluster.nhat_BA_W, object);
+    const Vec6Of<T> G = Wrench(cluster.p_WC, cluster.nhat_BA_W, tool);
+    const Vec6Of<T> G_object = Wrench(cluster.p_WC, cluster.nhat_BA_W, object);
     // Eq. 8, as power of a unit force: n·v at the contact, of either body.
-    const double speed = G.dot(tool.V_WF) - G_object.dot(object.V_WF);
-    const double damping = material.damping * cluster.damping_share;
-    double magnitude = material.stiffness * cluster.compression;
-    if (speed < 0) {
+    const T speed = G.dot(tool.V_WF) - G_object.dot(object.V_WF);
+    const T damping = material.damping * cluster.damping_share;
+    T magnitude = material.stiffness * cluster.compression;
+    if (speed < 0.0) {
       magnitude -= damping * speed;
       result.tool.B += damping * G * G.transpose();
     }
@@ -76,5 +81,13 @@ PenaltyWrench ComputePenaltyWrench(
   if (next > 0) result.tool.K = Stiffness(clusters, wrenches, materials);
   return result;
 }
+
+template PenaltyWrench ComputePenaltyWrench(
+    const ClusterSet&, const MovingFrame&, const std::vector<MovingFrame>&,
+    const std::vector<ContactMaterial>&);
+template PenaltyWrenchOf<AutoDiff> ComputePenaltyWrench(
+    const ClusterSetOf<AutoDiff>&, const MovingFrameOf<AutoDiff>&,
+    const std::vector<MovingFrameOf<AutoDiff>>&,
+    const std::vector<ContactMaterial>&);
 
 }  // namespace drake_haptics

@@ -45,9 +45,10 @@ using PenaltyWrench = PenaltyWrenchOf<double>;
 /// @throws std::invalid_argument for a gain below zero or not finite, or where
 ///         there are not as many materials as objects; std::out_of_range for a
 ///         cluster on an object that is not given.
-PenaltyWrench ComputePenaltyWrench(
-    const ClusterSet& clusters, const MovingFrame& tool,
-    const std::vector<MovingFrame>& objects,
+template <typename T>
+PenaltyWrenchOf<T> ComputePenaltyWrench(
+    const ClusterSetOf<T>& clusters, const MovingFrameOf<T>& tool,
+    const std::vector<MovingFrameOf<T>>& objects,
     const std::vector<ContactMaterial>& materials);
 
 }  // namespace drake_haptics

@@ -29,34 +29,37 @@ constexpr double kAlmost = 1.25;
 // Added to extents (m²), so that those of no extent are shared equally.
 constexpr double kLeastExtent = 1e-24;
 
-double Fade(double distance, double width) {
-  if (distance == 0) return 1;
-  return width > 0 ? std::max(0.0, 1 - distance / width) : 0.0;
+template <typename T>
+T Fade(const T& distance, const T& width) {
+  if (distance == 0.0) return T(1);
+  return width > 0.0 ? std::max<T>(0.0, T(1 - distance / width)) : T(0);
 }
 
 // How far a flush face or edge reaches, m: as far as an edge of its extent.
-double Reach(const Contact& contact, double tolerance) {
-  return tolerance > 0 ? contact.flushness * contact.extent /
-                             (kPressureLayerShare * tolerance)
-                       : 0.0;
+template <typename T>
+T Reach(const ContactOf<T>& contact, double tolerance) {
+  return tolerance > 0 ? T(contact.flushness * contact.extent /
+                           (kPressureLayerShare * tolerance))
+                       : T(0);
 }
 
 // In how far two contacts are parts of one constraint, 0 to 1.
-double Sameness(const Contact& a, const Contact& b, double tolerance) {
-  const double turn = std::max(0.0, 1 - a.nhat_BA_W.dot(b.nhat_BA_W));
-  if (turn >= kSameDirection) return 0;
-  const double deeper = tolerance - std::min(a.distance, b.distance);
-  const double same_depth =
-      Fade(std::abs(a.distance - b.distance), kSameDepth * deeper);
-  if (same_depth == 0) return 0;
-  const double in_one_plane =
-      Fade(turn, kSamePlane) * a.flushness * b.flushness;
-  const double in_one_place =
-      Fade(turn, kSameDirection) *
-      Fade((a.p_WC - b.p_WC).norm(),
-           tolerance + Reach(a, tolerance) + Reach(b, tolerance));
-  return std::min(1.0,
-                  kAlmost * same_depth * std::max(in_one_plane, in_one_place));
+template <typename T>
+T Sameness(const ContactOf<T>& a, const ContactOf<T>& b, double tolerance) {
+  using std::abs;
+  const T turn = std::max<T>(0.0, T(1 - a.nhat_BA_W.dot(b.nhat_BA_W)));
+  if (turn >= kSameDirection) return T(0);
+  const T deeper = tolerance - std::min(a.distance, b.distance);
+  const T same_depth =
+      Fade<T>(abs(a.distance - b.distance), kSameDepth * deeper);
+  if (same_depth == 0.0) return T(0);
+  const T in_one_plane = Fade<T>(turn, kSamePlane) * a.flushness * b.flushness;
+  const T in_one_place =
+      Fade<T>(turn, kSameDirection) *
+      Fade<T>((a.p_WC - b.p_WC).norm(),
+              tolerance + Reach(a, tolerance) + Reach(b, tolerance));
+  return std::min<T>(
+      1.0, T(kAlmost * same_depth * std::max(in_one_plane, in_one_place)));
 }
 
 // m of a contact with the given sameness to all contacts: its share of the
@@ -64,17 +67,17 @@ double Sameness(const Contact& a, const Contact& b, double tolerance) {
 // Where each is wholly the same or not at all that is its share of the whole;
 // in between it changes with the sameness by no more than one to one, however
 // different the extents.
-double Share(Eigen::Index i, const Eigen::VectorXd& extent,
-             const Eigen::VectorXd& sameness,
-             std::vector<Eigen::Index>* order) {
+template <typename T>
+T Share(Eigen::Index i, const VectorOf<T>& extent, const VectorOf<T>& sameness,
+        std::vector<Eigen::Index>* order) {
   order->clear();
   for (Eigen::Index j = 0; j < extent.size(); ++j) {
-    if (j != i && sameness[j] > 0) order->push_back(j);
+    if (j != i && sameness[j] > 0.0) order->push_back(j);
   }
   std::sort(order->begin(), order->end(), [&](Eigen::Index a, Eigen::Index b) {
     return sameness[a] > sameness[b];
   });
-  double share = 0, total = extent[i], above = 1;
+  T share{0}, total = extent[i], above{1};
   for (const Eigen::Index j : *order) {
     share += (above - sameness[j]) * extent[i] / total;
     above = sameness[j];
@@ -83,11 +86,12 @@ double Share(Eigen::Index i, const Eigen::VectorXd& extent,
   return share + above * extent[i] / total;
 }
 
-Eigen::VectorXd Shares(std::span<const Contact* const> contacts,
-                       double tolerance) {
+template <typename T>
+VectorOf<T> Shares(std::span<const ContactOf<T>* const> contacts,
+                   double tolerance) {
   const auto n = static_cast<Eigen::Index>(contacts.size());
-  Eigen::VectorXd extent(n);
-  Eigen::MatrixXd sameness(n, n);
+  VectorOf<T> extent(n);
+  MatrixOf<T> sameness(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     extent[i] = contacts[i]->extent + kLeastExtent;
     for (Eigen::Index j = 0; j < i; ++j) {
@@ -95,10 +99,10 @@ Eigen::VectorXd Shares(std::span<const Contact* const> contacts,
           Sameness(*contacts[i], *contacts[j], tolerance);
     }
   }
-  Eigen::VectorXd shares(n);
+  VectorOf<T> shares(n);
   std::vector<Eigen::Index> order;
   for (Eigen::Index i = 0; i < n; ++i) {
-    shares[i] = Share(i, extent, sameness.col(i), &order);
+    shares[i] = Share<T>(i, extent, sameness.col(i), &order);
   }
   return shares;
 }
@@ -106,27 +110,32 @@ Eigen::VectorXd Shares(std::span<const Contact* const> contacts,
 // What contacts under an angle have in common: 1 along one direction, nothing
 // from a right angle on. A Wendland function, which is positive definite on the
 // sphere (Gneiting 2013), so that C is, for any number of contacts.
-double InCommon(const Vec3& n, const Vec3& other) {
-  const double cosine = n.dot(other);
-  if (cosine <= 0) return 0;
-  const double angle =
-      std::atan2(n.cross(other).norm(), cosine) / std::numbers::pi * 2;
-  const double rest = 1 - angle;
+template <typename T>
+T InCommon(const Vec3Of<T>& n, const Vec3Of<T>& other) {
+  using std::atan2, std::sqrt;
+  const T cosine = n.dot(other);
+  if (cosine <= 0.0) return T(0);
+  const T sine_squared = n.cross(other).squaredNorm();
+  // Flat there, but the angle has no slope.
+  if (sine_squared == 0.0) return T(1);
+  const T angle = atan2(T(sqrt(sine_squared)), cosine) / std::numbers::pi * 2;
+  const T rest = 1 - angle;
   return (1 + 4 * angle) * rest * rest * rest * rest;
 }
 
 }  // namespace
 
-Eigen::MatrixXd SkinCompliance(std::span<const Contact* const> contacts,
-                               double tolerance) {
-  const Eigen::VectorXd shares = Shares(contacts, tolerance);
+template <typename T>
+MatrixOf<T> SkinCompliance(std::span<const ContactOf<T>* const> contacts,
+                           double tolerance) {
+  const VectorOf<T> shares = Shares<T>(contacts, tolerance);
   const auto n = static_cast<Eigen::Index>(contacts.size());
-  Eigen::MatrixXd C(n, n);
+  MatrixOf<T> C(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     C(i, i) = (1 - kOwnShare) + kOwnShare / shares[i];
     for (Eigen::Index j = i + 1; j < n; ++j) {
-      C(i, j) = C(j, i) = (1 - kOwnShare) * InCommon(contacts[i]->nhat_BA_W,
-                                                     contacts[j]->nhat_BA_W);
+      C(i, j) = C(j, i) = (1 - kOwnShare) * InCommon<T>(contacts[i]->nhat_BA_W,
+                                                        contacts[j]->nhat_BA_W);
     }
   }
   return C;
@@ -135,21 +144,23 @@ Eigen::MatrixXd SkinCompliance(std::span<const Contact* const> contacts,
 namespace {
 
 // Forces of the clusters from `first` on, which are those of one object.
-void Press(std::span<const Contact* const> contacts, double tolerance,
-           std::size_t first, ClusterSet* out) {
+template <typename T>
+void Press(std::span<const ContactOf<T>* const> contacts, double tolerance,
+           std::size_t first, ClusterSetOf<T>* out) {
   const std::size_t all = out->clusters.size();
-  Eigen::VectorXd depth(contacts.size());
+  VectorOf<T> depth(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     depth[i] = tolerance - contacts[i]->distance;
   }
-  const SkinForces forces =
-      SolveSkin(SkinCompliance(contacts, tolerance), depth);
+  const SkinForcesOf<T> forces =
+      SolveSkin(SkinCompliance<T>(contacts, tolerance), depth);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    Cluster& cluster = out->clusters[first + i];
+    ClusterOf<T>& cluster = out->clusters[first + i];
     cluster.compression = forces.compression[i];
     // Damping sets in over the thickness of the pressure layer.
-    cluster.damping_share = cluster.compression /
-                            std::max(depth[i], kPressureLayerShare * tolerance);
+    cluster.damping_share =
+        cluster.compression /
+        std::max<T>(depth[i], kPressureLayerShare * tolerance);
     for (std::size_t j = 0; j < contacts.size(); ++j) {
       out->coupling[(first + i) * all + first + j] = forces.coupling(i, j);
     }
@@ -158,29 +169,36 @@ void Press(std::span<const Contact* const> contacts, double tolerance,
 
 }  // namespace
 
-void ShareStiffness(const std::vector<Contact>& contacts, double tolerance,
-                    ClusterSet* out) {
+template <typename T>
+void ShareStiffness(const std::vector<ContactOf<T>>& contacts, double tolerance,
+                    ClusterSetOf<T>* out) {
   RequireTolerance(tolerance);
   out->clusters.clear();
   out->label.assign(contacts.size(), -1);
-  std::vector<const Contact*> pushing;
+  std::vector<const ContactOf<T>*> pushing;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Contact& contact = contacts[i];
+    const ContactOf<T>& contact = contacts[i];
     if (!(contact.distance < tolerance)) continue;
     out->label[i] = static_cast<std::int32_t>(out->clusters.size());
     out->clusters.push_back({contact.distance, contact.nhat_BA_W, contact.p_WC,
-                             0, 0, contact.object, 1});
+                             T(0), T(0), contact.object, 1});
     pushing.push_back(&contact);
   }
-  out->coupling.assign(pushing.size() * pushing.size(), 0.0);
+  out->coupling.assign(pushing.size() * pushing.size(), T(0));
   for (std::size_t first = 0, end; first < pushing.size(); first = end) {
     end = first;
     while (end < pushing.size() &&
            pushing[end]->object == pushing[first]->object) {
       ++end;
     }
-    Press({pushing.data() + first, end - first}, tolerance, first, out);
+    Press<T>({pushing.data() + first, end - first}, tolerance, first, out);
   }
 }
+
+template Eigen::MatrixXd SkinCompliance(std::span<const Contact* const>,
+                                        double);
+template void ShareStiffness(const std::vector<Contact>&, double, ClusterSet*);
+template void ShareStiffness(const std::vector<ContactOf<AutoDiff>>&, double,
+                             ClusterSetOf<AutoDiff>*);
 
 }  // namespace drake_haptics

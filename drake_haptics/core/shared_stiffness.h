@@ -32,11 +32,13 @@ namespace drake_haptics {
 ///   ½ λᵀw, so that it makes no energy while normals and shares stay.
 /// @param tolerance the distance t below which contacts push, m.
 /// @throws std::invalid_argument unless tolerance >= 0 and finite.
-void ShareStiffness(const std::vector<Contact>& contacts, double tolerance,
-                    ClusterSet* out);
+template <typename T>
+void ShareStiffness(const std::vector<ContactOf<T>>& contacts, double tolerance,
+                    ClusterSetOf<T>* out);
 
 /// C of contacts of one object, all nearer than `tolerance`.
-Eigen::MatrixXd SkinCompliance(std::span<const Contact* const> contacts,
-                               double tolerance);
+template <typename T>
+MatrixOf<T> SkinCompliance(std::span<const ContactOf<T>* const> contacts,
+                           double tolerance);
 
 }  // namespace drake_haptics

@@ -87,4 +87,45 @@ SkinForces SolveSkin(const Eigen::MatrixXd& C, const Eigen::VectorXd& w) {
   }
 }
 
+SkinForcesOf<AutoDiff> SolveSkin(const MatrixOf<AutoDiff>& C,
+                                 const VectorOf<AutoDiff>& w) {
+  const SkinForces forces = SolveSkin(ValuesOf(C), ValuesOf(w));
+  SkinForcesOf<AutoDiff> found{forces.compression.cast<AutoDiff>(),
+                               forces.coupling.cast<AutoDiff>()};
+  Indices chosen;
+  for (Eigen::Index i = 0; i < w.size(); ++i) {
+    if (forces.coupling(i, i) > 0) chosen.push_back(i);
+  }
+  const Eigen::MatrixXd H = forces.coupling(chosen, chosen);
+  const Eigen::VectorXd pressed = forces.compression(chosen);
+  const Eigen::Index variables = w.size() > 0 ? w[0].derivatives().size() : 0;
+  for (const Eigen::Index i : chosen) {
+    found.compression[i].derivatives().resize(variables);
+    for (const Eigen::Index j : chosen) {
+      found.coupling(i, j).derivatives().resize(variables);
+    }
+  }
+  const auto part = [](const AutoDiff& x, Eigen::Index k) {
+    return x.derivatives().size() > 0 ? x.derivatives()[k] : 0.0;
+  };
+  for (Eigen::Index k = 0; k < variables; ++k) {
+    const Eigen::MatrixXd dC =
+        C(chosen, chosen).unaryExpr([&](const AutoDiff& x) {
+          return part(x, k);
+        });
+    const Eigen::VectorXd dw =
+        w(chosen).unaryExpr([&](const AutoDiff& x) { return part(x, k); });
+    const Eigen::VectorXd by_force = H * (dw - dC * pressed);
+    const Eigen::MatrixXd by_coupling = -H * dC * H;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      found.compression[chosen[i]].derivatives()[k] = by_force[i];
+      for (std::size_t j = 0; j < chosen.size(); ++j) {
+        found.coupling(chosen[i], chosen[j]).derivatives()[k] =
+            by_coupling(i, j);
+      }
+    }
+  }
+  return found;
+}
+
 }  // namespace drake_haptics

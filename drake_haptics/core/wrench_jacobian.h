@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "cluster_gradient.h"
+#include "clustering.h"
+#include "contact.h"
 #include "decomposition.h"
 #include "penalty_force.h"
 
