@@ -3,17 +3,28 @@
 from __future__ import annotations
 
 import math
-from typing import Literal, get_args
+from typing import Literal, get_args, overload
 
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import Context, InputPort, LeafSystem, OutputPort
+from pydrake.systems.framework import Context, InputPort, OutputPort
 
-from drake_haptics._core import cluster_contacts, share_stiffness
+from drake_haptics._core import (
+    AutoDiffClusterSet,
+    AutoDiffContactSet,
+    ClusterSet,
+    ContactSet,
+    cluster_contacts,
+    share_stiffness,
+)
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 
 ClusteringMethod = Literal["shared", "octree"]
 
 
-class ContactClustering(LeafSystem):
+class ContactClustering(DifferentiableSystem):
     """Keeps many contacts from being stiffer than one.
 
     There are two methods, by name:
@@ -37,6 +48,8 @@ class ContactClustering(LeafSystem):
 
     `contacts` is a `drake_haptics.ContactSet`, `clusters` a
     `drake_haptics._core.ClusterSet`; both are immutable and in the world frame.
+    Under AutoDiffXd they are an `AutoDiffContactSet` and an `AutoDiffClusterSet` of
+    `drake_haptics._core`: which contacts are together or push stays.
     """
 
     def __init__(
@@ -91,10 +104,22 @@ class ContactClustering(LeafSystem):
         """Returns the output `clusters`."""
         return self._clusters
 
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffClusterSet:
+        """Returns the clusters with their derivatives."""
+        return self._cluster(at["contacts"])
+
     def _calc_clusters(self, context: Context, clusters: AbstractValue) -> None:
-        contacts = self._contacts.Eval(context)
-        clusters.set_value(
-            share_stiffness(contacts, self._tolerance_m)
-            if self._delta_m is None
-            else cluster_contacts(contacts, self._delta_m, self._tolerance_m)
-        )
+        clusters.set_value(self._cluster(self._contacts.Eval(context)))
+
+    @overload
+    def _cluster(self, contacts: ContactSet) -> ClusterSet: ...
+
+    @overload
+    def _cluster(self, contacts: AutoDiffContactSet) -> AutoDiffClusterSet: ...
+
+    def _cluster(
+        self, contacts: ContactSet | AutoDiffContactSet
+    ) -> ClusterSet | AutoDiffClusterSet:
+        if self._delta_m is None:
+            return share_stiffness(contacts, self._tolerance_m)
+        return cluster_contacts(contacts, self._delta_m, self._tolerance_m)

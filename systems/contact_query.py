@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import Context, InputPort, LeafSystem, OutputPort
+from pydrake.systems.framework import Context, InputPort, OutputPort
 
-from drake_haptics._core import Decomposition, SceneTracker
+from drake_haptics._core import (
+    AutoDiffContactSet,
+    AutoDiffVector,
+    Decomposition,
+    SceneTracker,
+    differentiate_contacts,
+)
+from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 from drake_haptics.systems.scratch import declare_scratch, get_scratch
 
 
@@ -28,7 +41,7 @@ class ContactObject:
     X_WO: RigidTransform | None = None
 
 
-class ContactQuery(LeafSystem):
+class ContactQuery(DifferentiableSystem):
     """Contacts between the convex pieces of the tool and of the objects.
 
     For each pair of pieces nearer than the tolerance there is one contact: signed
@@ -49,6 +62,12 @@ class ContactQuery(LeafSystem):
 
     The search starts from its last answer in the same Context (paper, 5.2). Objects
     with a pose of their own are placed once, when a Context is made.
+
+    Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`: the
+    features stay. There the answer is a function of the Context alone, found from
+    the abstract parameter `hint` (index 0): what an earlier query knew. Without one
+    the search starts anew, and can find another way out of a deep penetration; so
+    call `prepare_conversion` before the parameters are copied.
     """
 
     def __init__(
@@ -84,6 +103,7 @@ class ContactQuery(LeafSystem):
             for i, item in enumerate(objects)
             if item.X_WO is None
         }
+        self._hint = self.DeclareAbstractParameter(Value[object](None))
         self._tracker = declare_scratch(self, "tracker", self._make_tracker)
         self._contacts = self.DeclareAbstractOutputPort(
             "contacts",
@@ -103,6 +123,40 @@ class ContactQuery(LeafSystem):
     def get_contacts_output_port(self) -> OutputPort:
         """Returns the output `contacts`."""
         return self._contacts
+
+    def prepare_conversion(self, context: Context) -> None:
+        """Writes what the query knows into the parameter `hint`.
+
+        Args:
+            context: Of this system; the query of it is asked if it has not been.
+        """
+        self._contacts.Eval(context)
+        context.get_mutable_abstract_parameter(self._hint).set_value(
+            copy.deepcopy(get_scratch(self._tracker, context))
+        )
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffContactSet:
+        """Returns the contacts with their derivatives."""
+        hint = at.parameters[self._hint]
+        tracker = self._make_tracker() if hint is None else copy.deepcopy(hint)
+        X_WO = [
+            at[f"X_WO_{item.name}"]
+            if item.X_WO is None
+            else AutoDiffVector(
+                pose_to_vector(item.X_WO), np.zeros((7, at.num_derivatives))
+            )
+            for item in self._objects
+        ]
+        for i in self._X_WO:
+            tracker.set_object_pose(i, X_WO[i].value)
+        return differentiate_contacts(
+            tracker.query(at["X_WTool"].value),
+            self._tolerance_m,
+            self._tool,
+            at["X_WTool"],
+            [item.decomposition for item in self._objects],
+            X_WO,
+        )
 
     def _make_tracker(self) -> SceneTracker:
         decompositions = [item.decomposition for item in self._objects]

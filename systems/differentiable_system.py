@@ -72,6 +72,10 @@ class AutoDiffPoint:
         vectors["\0state"] = np.concatenate([np.zeros(0), *state])
         vectors["\0time"] = np.array([context.get_time()])
         self.num_derivatives = _find_num_derivatives(twin, vectors, self._inputs)
+        # What is constant upstream has no derivatives yet.
+        for name, value in self._inputs.items():
+            if value.num_derivatives < self.num_derivatives:
+                self._inputs[name] = value.with_variables(self.num_derivatives)
         for name, vector in vectors.items():
             self._inputs[name] = _to_core(vector, self.num_derivatives)
         self.state: AutoDiffVector = self._inputs.pop("\0state")

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from pydrake.systems.framework import Context, LeafSystem
 
+from drake_haptics._core import AutoDiffVector
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.differentiable_system import AutoDiffPoint
 
 
 class ObjectMotions:
@@ -48,3 +50,21 @@ class ObjectMotions:
             p_WO[i] = X_WO.Eval(context)[4:]
             V_WO[i] = V_WOi.Eval(context)
         return p_WO, V_WO
+
+    def differentiate(self, at: AutoDiffPoint) -> tuple[AutoDiffVector, AutoDiffVector]:
+        """Returns p_WO (3 m,) and V_WO (6 m,) with their derivatives."""
+        p_WO, V_WO = self._p_WO.copy(), self._V_WO.copy()
+        by_p_WO = np.zeros((*p_WO.shape, at.num_derivatives))
+        by_V_WO = np.zeros((*V_WO.shape, at.num_derivatives))
+        for i, X_WO, V_WOi in self._moving:
+            X, V = at[X_WO.get_name()], at[V_WOi.get_name()]
+            p_WO[i], by_p_WO[i] = X.value[4:], X.gradient[4:]
+            V_WO[i], by_V_WO[i] = V.value, V.gradient
+        return (
+            AutoDiffVector(
+                p_WO.ravel(), by_p_WO.reshape(p_WO.size, at.num_derivatives)
+            ),
+            AutoDiffVector(
+                V_WO.ravel(), by_V_WO.reshape(V_WO.size, at.num_derivatives)
+            ),
+        )

@@ -11,16 +11,24 @@ from pydrake.systems.framework import (
     BasicVector,
     Context,
     InputPort,
-    LeafSystem,
     OutputPort,
 )
 
-from drake_haptics._core import PenaltyWrench, penalty_force
+from drake_haptics._core import (
+    AutoDiffPenaltyWrench,
+    AutoDiffVector,
+    PenaltyWrench,
+    penalty_force,
+)
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 from drake_haptics.systems.object_motions import ObjectMotions
 
 
-class PenaltyForce(LeafSystem):
+class PenaltyForce(DifferentiableSystem):
     """Elastic force below the tolerance, with damping that never pulls.
 
     Each cluster pushes with k times its compression along n at its point, and with
@@ -55,6 +63,10 @@ class PenaltyForce(LeafSystem):
       each at its origin in the world, N·m and N.
     * `contact_wrench` is the `drake_haptics._core.PenaltyWrench` with the force of
       each cluster and the wrench on each object.
+
+    Under AutoDiffXd `clusters` is an `AutoDiffClusterSet` and `contact_wrench` an
+    `AutoDiffPenaltyWrench` of `drake_haptics._core`. K and B have derivatives of
+    their own there, by which the tool's implicit step changes.
     """
 
     def __init__(
@@ -142,6 +154,29 @@ class PenaltyForce(LeafSystem):
     def get_contact_wrench_output_port(self) -> OutputPort:
         """Returns the output `contact_wrench`."""
         return self._contact_wrench
+
+    def differentiate(
+        self, port: str, at: AutoDiffPoint
+    ) -> AutoDiffVector | AutoDiffPenaltyWrench:
+        """Returns a wrench, or all that is known of them, with derivatives."""
+        X_WTool = at["X_WTool"]
+        p_WO, V_WO = self._motions.differentiate(at)
+        wrench = penalty_force(
+            at["clusters"],
+            AutoDiffVector(X_WTool.value[4:], X_WTool.gradient[4:]),
+            at["V_WTool"],
+            p_WO,
+            V_WO,
+            self._stiffness,
+            self._damping,
+        )
+        if port == "contact_wrench":
+            return wrench
+        if port == "F_O_W":
+            F = wrench.F_objects_W
+            rows = [6 * i + k for i in self._moving for k in range(6)]
+            return AutoDiffVector(F.value[rows], F.gradient[rows])
+        return wrench.F_Tool_W if port == "F_Tool_W" else wrench.wrench_model
 
     def _calc_wrench(self, context: Context) -> PenaltyWrench:
         p_WO, V_WO = self._motions.read(context)
