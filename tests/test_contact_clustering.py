@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+from contact_state import METHODS, T, random_states
+from pydrake.autodiffutils import AutoDiffXd
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from test_contact_query import TOLERANCE, box_core, query_at
 
+from drake_haptics._core import AutoDiffClusterSet
 from drake_haptics.systems.contact_clustering import ContactClustering
 from drake_haptics.systems.contact_query import ContactObject, ContactQuery
 
@@ -29,8 +32,8 @@ def contacts():
 
 def evaluate(clustering, contacts):
     context = clustering.CreateDefaultContext()
-    clustering.get_contacts_input_port().FixValue(context, Value[object](contacts))
-    return clustering.get_clusters_output_port().Eval(context)
+    clustering.GetInputPort("contacts").FixValue(context, Value[object](contacts))
+    return clustering.GetOutputPort("clusters").Eval(context)
 
 
 def make(method):
@@ -87,3 +90,26 @@ def test_nothing_gives_nothing(contacts):
 def test_what_makes_no_sense_is_refused(arguments, complaint):
     with pytest.raises(ValueError, match=complaint):
         ContactClustering(*arguments)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_its_twin_answers_with_the_derivatives_of_the_core(method):
+    solid = box_core(0.02, 0.03, 0.02)
+    state = random_states(solid, solid, method, 1)[0]
+    contacts = state.differentiate_contacts()
+    clustering = ContactClustering(method, T, 2 * T if method == "octree" else None)
+    found = evaluate(clustering.ToScalarType[AutoDiffXd](), contacts)
+    assert isinstance(found, AutoDiffClusterSet)
+    expected = state.cluster(contacts)
+    assert expected.compression.gradient.any()
+    for name in ("nhat_BA_W", "p_WC", "compression", "damping_share", "coupling"):
+        np.testing.assert_array_equal(
+            getattr(found, name).gradient, getattr(expected, name).gradient
+        )
+
+
+def test_its_twin_refuses_contacts_without_derivatives(contacts):
+    """They would be lost without a word."""
+    twin = make("shared").ToScalarType[AutoDiffXd]()
+    with pytest.raises(ValueError, match="carries no derivatives"):
+        evaluate(twin, contacts)

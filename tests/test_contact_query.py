@@ -1,10 +1,15 @@
 """The contact query as a Drake system; the core's answers have their own tests."""
 
+import copy
+
 import numpy as np
 import pytest
 import trimesh
-from pydrake.math import RigidTransform
+from autodiff_check import check_derivatives
+from pydrake.autodiffutils import AutoDiffXd, InitializeAutoDiff
+from pydrake.math import RigidTransform, RotationMatrix
 
+from drake_haptics._core import AutoDiffContactSet
 from drake_haptics.decomposition import decompose
 from drake_haptics.mesh import Mesh
 from drake_haptics.pose_vector import pose_to_vector
@@ -108,3 +113,121 @@ def test_impossible_arguments_are_refused(tool, plate):
     twice = [ContactObject("plate", plate), ContactObject("plate", plate)]
     with pytest.raises(ValueError, match="same name"):
         ContactQuery(tool, twice, TOLERANCE)
+
+
+def make_twin(query, context):
+    """A twin at a Context, as whoever linearizes makes it."""
+    context = context.Clone()
+    query.prepare_conversion(context)
+    twin = query.ToScalarType[AutoDiffXd]()
+    of_twin = twin.CreateDefaultContext()
+    of_twin.SetTimeStateAndParametersFrom(context)
+    return twin, of_twin
+
+
+def twin_at(twin, context, q_WTool):
+    seeds = InitializeAutoDiff(q_WTool).ravel()
+    twin.GetInputPort("X_WTool").FixValue(context, seeds)
+    return twin.GetOutputPort("contacts").Eval(context)
+
+
+@pytest.fixture(scope="module")
+def tilted():
+    """A corner of the tool is the lowest."""
+    R = RotationMatrix.MakeXRotation(0.3) @ RotationMatrix.MakeYRotation(0.4)
+    return pose_to_vector(RigidTransform(R, [0.01, 0.02, 0.0245]))
+
+
+def test_its_twin_has_the_same_ports_and_a_hint(tool, plate):
+    query = ContactQuery(tool, [ContactObject("cart", plate)], TOLERANCE)
+    context = query.CreateDefaultContext()
+    assert context.num_abstract_parameters() == 1
+    assert context.get_abstract_parameter(0).get_value() is None
+    twin = query.ToScalarType[AutoDiffXd]()
+    names = [twin.get_input_port(i).get_name() for i in range(twin.num_input_ports())]
+    assert names == ["X_WTool", "X_WO_cart"]
+    assert twin.GetOutputPort("contacts").get_name() == "contacts"
+    assert twin.CreateDefaultContext().num_abstract_parameters() == 1
+
+
+def test_its_twin_answers_with_derivatives(tool, plate, tilted):
+    query = ContactQuery(
+        tool, [ContactObject("plate", plate, RigidTransform())], TOLERANCE
+    )
+    context = query.CreateDefaultContext()
+    port = query.get_tool_pose_input_port()
+    port.FixValue(context, tilted)
+    expected = query.get_contacts_output_port().Eval(context)
+    assert len(expected) == 1
+    contacts = twin_at(*make_twin(query, context), tilted)
+    assert isinstance(contacts, AutoDiffContactSet)
+    assert contacts.num_derivatives == 7
+    np.testing.assert_array_equal(contacts.value.feature_A, expected.feature_A)
+
+    def column(name):
+        def at(q_WTool):
+            port.FixValue(context, q_WTool)
+            return getattr(query.get_contacts_output_port().Eval(context), name)
+
+        return at
+
+    for name in ("distance", "nhat_BA_W", "p_WCa", "p_WCb", "p_WC"):
+        gradient = getattr(contacts, name)
+        check_derivatives(column(name), gradient, tilted, step=1e-5, tolerance=1e-8)
+
+
+def pressed_through(tool, sheet):
+    """A tool pressed into a thin sheet, beyond its middle, and the query."""
+    query = ContactQuery(
+        tool, [ContactObject("sheet", sheet, RigidTransform())], TOLERANCE
+    )
+    context = query.CreateDefaultContext()
+    for z in np.linspace(0.012, -0.004, 40):
+        contacts = query_at(query, context, z)
+    return query, context, contacts
+
+
+def test_its_twin_knows_what_the_query_learnt(tool):
+    """The way out of a thin sheet is the way in, which the pose alone cannot tell."""
+    query, context, expected = pressed_through(tool, box_core(0.2, 0.2, 1e-3))
+    assert expected.nhat_BA_W[0, 2] == pytest.approx(1.0)
+    twin, of_twin = make_twin(query, context)
+    q_WTool = at_height(-0.004)
+    np.testing.assert_allclose(
+        twin_at(twin, of_twin, q_WTool).value.distance, expected.distance, atol=1e-12
+    )
+    # Without the hint it starts anew, and leaves by the nearer side.
+    anew = twin_at(twin, twin.CreateDefaultContext(), q_WTool).value
+    assert anew.nhat_BA_W[0, 2] == pytest.approx(-1.0)
+
+
+def test_its_twin_is_a_function_of_its_context(tool):
+    """Other poses between, and it answers as before."""
+    query, context, _ = pressed_through(tool, box_core(0.2, 0.2, 1e-3))
+    twin, of_twin = make_twin(query, context)
+    first = twin_at(twin, of_twin, at_height(-0.004))
+    assert len(twin_at(twin, of_twin, at_height(1.0))) == 0
+    assert twin_at(twin, of_twin, at_height(-0.0041)).num_derivatives == 7
+    again = twin_at(twin, of_twin, at_height(-0.004))
+    np.testing.assert_array_equal(again.p_WC.value, first.p_WC.value)
+    np.testing.assert_array_equal(again.p_WC.gradient, first.p_WC.gradient)
+
+
+def test_preparing_a_conversion_leaves_the_query_as_it_is(tool, plate):
+    query = ContactQuery(
+        tool, [ContactObject("plate", plate, RigidTransform())], TOLERANCE
+    )
+    context = query.CreateDefaultContext()
+    query_at(query, context, 0.0195)
+    clone = context.Clone()
+    query.prepare_conversion(clone)
+    assert context.get_abstract_parameter(0).get_value() is None
+    hint = clone.get_abstract_parameter(0).get_value()
+    kept = copy.deepcopy(hint)
+    for z in (0.0195, 0.0197, 0.5):
+        np.testing.assert_array_equal(
+            query_at(query, clone, z).distance, query_at(query, context, z).distance
+        )
+    # Nor does the query go on with what the hint is.
+    q_WTool = at_height(0.0196)
+    np.testing.assert_array_equal(hint.query(q_WTool).p_WC, kept.query(q_WTool).p_WC)

@@ -6,90 +6,24 @@ features, or other contacts push, there is no derivative to compare with.
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from contact_samples import box
-from press_tools import MODELS
+from contact_state import KV, METHODS, K, State, T, random_states
 from scipy.spatial.transform import Rotation
-from touching_poses import touching_pose
+from test_core_autodiff_contact import shipped
 
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import load_mesh
 
-T = 2e-3
 STEP = 2e-7
-METHODS = ("octree", "shared")
 FAR = np.array([0.3, -0.2, 0.5])
 
 
-@dataclass(frozen=True)
-class State:
-    """Where all is and how it moves: a tool and two objects that overlap.
-
-    Attributes:
-        tracker: Knows the contacts near this state.
-        method: Of clustering.
-        q: (3, 7) poses of the tool and the objects.
-        V: (3, 6) their spatial velocities.
-    """
-
-    bodies: tuple[_core.Decomposition, ...]
-    tracker: _core.SceneTracker
-    method: str
-    q: np.ndarray
-    V: np.ndarray
-
-    def contacts(self) -> _core.ContactSet:
-        """What the query answers here."""
-        tracker = copy.deepcopy(self.tracker)
-        for i, q in enumerate(self.q[1:]):
-            tracker.set_object_pose(i, q)
-        return tracker.query(self.q[0])
-
-    def clusters(self, contacts: _core.ContactSet) -> _core.ClusterSet:
-        """Of contacts here."""
-        if self.method == "octree":
-            return _core.cluster_contacts(contacts, 2 * T, T)
-        return _core.share_stiffness(contacts, T)
-
-    def displaced(self, body: int, by: np.ndarray) -> State:
-        """With one body turned and moved by a displacement (6,)."""
-        q = self.q.copy()
-        R = Rotation.from_rotvec(by[:3]) * Rotation.from_quat(q[body, [1, 2, 3, 0]])
-        x, y, z, w = R.as_quat()
-        q[body] = [w, x, y, z, *(q[body, 4:] + by[3:])]
-        return replace(self, q=q)
-
-    def faster(self, body: int, by: np.ndarray) -> State:
-        """With another velocity (6,) added to a body's."""
-        V = self.V.copy()
-        V[body] += by
-        return replace(self, V=V)
-
-
-K, KV = np.array([1000.0, 600.0]), np.array([3.0, 5.0])
-
-
-def features(state: State) -> list[object]:
-    """All that must stay for the derivative to exist."""
-    contacts = state.contacts()
-    clusters = state.clusters(contacts)
-    pieces = [contacts.object_index, contacts.piece_A, contacts.piece_B]
-    columns = [*pieces, contacts.feature_A, contacts.feature_B, contacts.status]
-    rows = np.column_stack(columns).tolist()
-    return [rows, clusters.label.tolist(), (clusters.compression > 0).tolist()]
-
-
 def wrench(state: State) -> np.ndarray:
-    clusters = state.clusters(state.contacts())
-    return _core.penalty_force(
-        clusters, state.q[0, 4:], state.V[0], state.q[1:, 4:], state.V[1:], K, KV
-    ).F_Tool_W
+    return state.wrench().F_Tool_W
 
 
 def jacobian(state: State) -> _core.WrenchJacobian:
@@ -97,7 +31,7 @@ def jacobian(state: State) -> _core.WrenchJacobian:
     tool, *objects = state.bodies
     return _core.wrench_jacobian(
         contacts,
-        state.clusters(contacts),
+        state.cluster(contacts),
         T,
         tool,
         state.q[0],
@@ -117,7 +51,7 @@ def differences(
     columns = []
     for e in np.eye(6):
         ahead, behind = move(step * e), move(-step * e)
-        if not features(ahead) == features(behind) == features(state):
+        if not ahead.features() == behind.features() == state.features():
             return None
         columns.append((wrench(ahead) - wrench(behind)) / (2 * step))
     return np.array(columns).T
@@ -125,10 +59,6 @@ def differences(
 
 def error(found: np.ndarray, expected: np.ndarray) -> float:
     return float(np.abs(found - expected).max() / np.abs(expected).max())
-
-
-def shipped(name: str) -> _core.Decomposition:
-    return decompose(load_mesh(MODELS / f"{name}.obj", scale=1.0)).core
 
 
 @pytest.fixture(scope="module")
@@ -139,27 +69,6 @@ def pairs() -> dict[str, tuple[_core.Decomposition, _core.Decomposition]]:
         "peg in torus": (shipped("peg"), shipped("torus")),
         "cup on block": (shipped("cup"), shipped("block")),
     }
-
-
-def states(
-    pair: tuple[_core.Decomposition, _core.Decomposition], method: str, count: int
-) -> list[State]:
-    """Random touches, a second object a little beside the first."""
-    rng = np.random.default_rng(0)
-    tool, solid = pair
-    found = []
-    while len(found) < count:
-        q = touching_pose(rng, tool, solid, T)
-        beside = np.array([1, 0, 0, 0, *rng.uniform(-T, T, 3)])
-        q = np.stack([q, [1.0, 0, 0, 0, 0, 0, 0], beside])
-        tracker = _core.SceneTracker(tool, [solid, solid], T)
-        tracker.set_object_pose(1, beside)
-        tracker.query(q[0])
-        V = 0.1 * rng.normal(size=(3, 6))
-        state = State((tool, solid, solid), tracker, method, q, V)
-        if (state.contacts().distance < T).any():
-            found.append(state)
-    return found
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -174,7 +83,7 @@ def test_by_the_pose_of_the_tool(pairs, name: str, method: str) -> None:
     1 / distance.
     """
     errors = []
-    for state in states(pairs[name], method, 40):
+    for state in random_states(*pairs[name], method, 40):
         move = differences(state, lambda by, s=state: s.displaced(0, by), STEP)
         if move is not None:
             errors.append(error(jacobian(state).by_X_WTool, move))
@@ -190,7 +99,7 @@ def test_by_the_pose_of_the_tool(pairs, name: str, method: str) -> None:
 def test_by_the_pose_of_an_object(pairs, method: str, body: int) -> None:
     """Far from the world's origin too."""
     checked = 0
-    for near in states(pairs["spoon in cup"], method, 15):
+    for near in random_states(*pairs["spoon in cup"], method, 15):
         far = near.q.copy()
         far[:, 4:] += FAR
         for state in (near, replace(near, q=far)):
@@ -206,7 +115,7 @@ def test_by_the_pose_of_an_object(pairs, method: str, body: int) -> None:
 @pytest.mark.parametrize("method", METHODS)
 def test_by_the_velocities(pairs, method: str) -> None:
     """The force is linear in them where no contact turns from approach to departure."""
-    for state in states(pairs["peg in torus"], method, 15):
+    for state in random_states(*pairs["peg in torus"], method, 15):
         found = jacobian(state)
         for body in range(3):
             move = differences(state, lambda by, s=state, b=body: s.faster(b, by), 1e-6)
@@ -215,7 +124,7 @@ def test_by_the_velocities(pairs, method: str) -> None:
         # The wrench model's B is minus that by the tool's velocity.
         contacts = state.contacts()
         model = _core.penalty_force(
-            state.clusters(contacts),
+            state.cluster(contacts),
             state.q[0, 4:],
             state.V[0],
             state.q[1:, 4:],
@@ -241,7 +150,7 @@ def test_one_vertex_on_a_face_is_the_frozen_model_and_what_turns() -> None:
     contacts = state.contacts()
     found = _core.wrench_jacobian(
         contacts,
-        state.clusters(contacts),
+        state.cluster(contacts),
         T,
         tool,
         q[0],
@@ -322,7 +231,7 @@ def test_nothing_near_changes_nothing(pairs) -> None:
 
 
 def test_what_does_not_belong_together_is_refused(pairs) -> None:
-    state = states(pairs["box on box"], "shared", 1)[0]
+    state = random_states(*pairs["box on box"], "shared", 1)[0]
     contacts = state.contacts()
     tool, *objects = state.bodies
     rest = (tool, state.q[0], state.V[0], objects, state.q[1:], state.V[1:], K, KV)
@@ -330,8 +239,8 @@ def test_what_does_not_belong_together_is_refused(pairs) -> None:
     if len(contacts) == len(nothing):
         pytest.skip("no contacts")
     with pytest.raises(ValueError, match="clusters must be those of the contacts"):
-        _core.wrench_jacobian(contacts, state.clusters(nothing), T, *rest)
-    clusters = state.clusters(contacts)
+        _core.wrench_jacobian(contacts, state.cluster(nothing), T, *rest)
+    clusters = state.cluster(contacts)
     with pytest.raises(ValueError, match="one row"):
         _core.wrench_jacobian(contacts, clusters, T, *rest[:-1], KV[:1])
     with pytest.raises(ValueError, match="X_WO"):
@@ -344,7 +253,7 @@ def test_other_bodies_than_the_query_had_are_refused(pairs) -> None:
     """Pieces, and features of pieces, that are not there."""
     state = next(
         s
-        for s in states(pairs["spoon in cup"], "shared", 20)
+        for s in random_states(*pairs["spoon in cup"], "shared", 20)
         if s.contacts().piece_B.max() > 0
     )
     contacts = state.contacts()
@@ -356,7 +265,7 @@ def test_other_bodies_than_the_query_had_are_refused(pairs) -> None:
         with pytest.raises(IndexError):
             _core.wrench_jacobian(
                 contacts,
-                state.clusters(contacts),
+                state.cluster(contacts),
                 T,
                 tool,
                 state.q[0],
@@ -367,14 +276,14 @@ def test_other_bodies_than_the_query_had_are_refused(pairs) -> None:
     # A peg has more edges than a box, on the one piece that both are.
     peg = next(
         s
-        for s in states(pairs["peg in torus"], "shared", 40)
+        for s in random_states(*pairs["peg in torus"], "shared", 40)
         if s.contacts().feature_A[:, 1].max() > 11
     )
     contacts = peg.contacts()
     with pytest.raises(IndexError, match="feature"):
         _core.wrench_jacobian(
             contacts,
-            peg.clusters(contacts),
+            peg.cluster(contacts),
             T,
             small,
             peg.q[0],

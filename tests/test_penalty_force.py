@@ -2,11 +2,15 @@
 
 import numpy as np
 import pytest
+from autodiff_check import REACH, derivative_errors
+from contact_chain_diagram import ContactChain
+from contact_state import METHODS, keeps_features, random_states
+from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from test_contact_query import TOLERANCE, at_height, box_core, query_at
 
-from drake_haptics._core import cluster_contacts
+from drake_haptics._core import AutoDiffPenaltyWrench, cluster_contacts
 from drake_haptics.systems.contact_query import ContactObject, ContactQuery
 from drake_haptics.systems.penalty_force import PenaltyForce
 
@@ -135,3 +139,105 @@ def test_bad_gains_are_refused_by_name(plate, name, gains):
     good = {"stiffness_N_per_m": [K], "damping_Ns_per_m": [B]}
     with pytest.raises(ValueError, match=name):
         PenaltyForce(objects, **(good | {name: gains}))
+
+
+OUTPUTS = ("wrench_model", "F_Tool_W", "F_O_W")
+
+
+@pytest.fixture(scope="module")
+def states():
+    tool, solid = box_core(0.02, 0.03, 0.01), box_core(0.03, 0.02, 0.02)
+    return {method: random_states(tool, solid, method, 7) for method in METHODS}
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("moving", [(True, True), (False, True)])
+def test_a_diagram_from_poses_to_forces_has_its_derivatives(states, method, moving):
+    """By all poses and velocities that have ports, each query asked anew."""
+    checked = 0
+    for state in states[method]:
+        if not keeps_features(state, REACH * 1e-7):
+            continue
+        chain = ContactChain(state, moving)
+        x = chain.variables(state)
+        for output in OUTPUTS:
+            found = chain.differentiate(output, x)
+            np.testing.assert_allclose(
+                found.value, chain.evaluate(output, x), atol=1e-9
+            )
+            errors = derivative_errors(
+                lambda x, o=output, c=chain: c.evaluate(o, x),
+                found,
+                x,
+                1e-7,
+                {output: slice(None)},
+            )
+            assert errors.get(output, 0.0) < 1e-6
+            checked += len(errors)
+    assert checked >= 15
+
+
+def test_every_input_reaches_the_wrench(states):
+    """No derivative is lost at a port: all of the tool's count, and what it touches."""
+    reached = np.zeros(39, dtype=bool)
+    for state in states["shared"]:
+        chain = ContactChain(state, (True, True))
+        found = chain.differentiate("F_Tool_W", chain.variables(state))
+        reached |= found.gradient.any(axis=0)
+    # But the lengths of quaternions; of the objects, at the identity, real parts.
+    assert np.flatnonzero(~reached).tolist() == [13, 26]
+
+
+def test_velocities_alone_may_be_what_is_asked_by(states):
+    """Then clusters are constants, whose derivatives are zero: not missing."""
+    state = next(s for s in states["shared"] if s.wrench().wrench_model[42:].any())
+    chain = ContactChain(state, (False, False))
+    twin = chain.diagram.ToScalarType[AutoDiffXd]()
+    context = twin.CreateDefaultContext()
+    chain.query.prepare_conversion(
+        chain.query.GetMyMutableContextFromRoot(chain.context)
+    )
+    context.SetTimeStateAndParametersFrom(chain.context)
+    q_WTool = np.array([AutoDiffXd(entry) for entry in state.q[0]])
+    twin.GetInputPort("X_WTool").FixValue(context, q_WTool)
+    twin.GetInputPort("V_WTool").FixValue(
+        context, InitializeAutoDiff(state.V[0]).ravel()
+    )
+    model = twin.GetOutputPort("wrench_model").Eval(context)
+    B = np.array([entry.value() for entry in model[42:]]).reshape(6, 6)
+    assert B.any()
+    np.testing.assert_allclose(ExtractGradient(model[:6]), -B, atol=1e-12)
+
+
+def test_its_twin_gives_all_that_is_known_of_wrenches(states):
+    state = states["shared"][0]
+    force = PenaltyForce(
+        [ContactObject(name, state.bodies[1]) for name in "ab"], [1e3, 600], [3, 5]
+    ).ToScalarType[AutoDiffXd]()
+    context = force.CreateDefaultContext()
+    clusters = state.cluster(state.differentiate_contacts())
+    force.GetInputPort("clusters").FixValue(context, Value[object](clusters))
+    seeds = InitializeAutoDiff(state.x).reshape(3, 13)
+    for name, row in zip(("Tool", "O_a", "O_b"), seeds, strict=True):
+        force.GetInputPort(f"X_W{name}").FixValue(context, row[:7])
+        force.GetInputPort(f"V_W{name}").FixValue(context, row[7:])
+    found = force.GetOutputPort("contact_wrench").Eval(context)
+    assert isinstance(found, AutoDiffPenaltyWrench)
+    expected = state.differentiate_wrench()
+    for name in ("wrench_model", "F_objects_W", "f_cluster_W"):
+        np.testing.assert_array_equal(
+            getattr(found, name).gradient, getattr(expected, name).gradient
+        )
+
+
+def test_its_twin_refuses_clusters_without_derivatives(plate, clusters):
+    force = PenaltyForce(
+        [ContactObject("plate", plate, RigidTransform())], [K], [B]
+    ).ToScalarType[AutoDiffXd]()
+    context = force.CreateDefaultContext()
+    force.GetInputPort("clusters").FixValue(context, Value[object](clusters))
+    pose = InitializeAutoDiff(at_height(HEIGHT)).ravel()
+    force.GetInputPort("X_WTool").FixValue(context, pose)
+    force.GetInputPort("V_WTool").FixValue(context, pose[:6])
+    with pytest.raises(ValueError, match="carries no derivatives"):
+        force.GetOutputPort("wrench_model").Eval(context)

@@ -1,0 +1,104 @@
+"""The contact query, clustering and force as a Drake diagram, and its twin."""
+
+from __future__ import annotations
+
+import numpy as np
+from contact_state import KV, K, State, T
+from pydrake.autodiffutils import (
+    AutoDiffXd,
+    ExtractGradient,
+    ExtractValue,
+    InitializeAutoDiff,
+)
+from pydrake.systems.framework import DiagramBuilder
+
+from drake_haptics._core import AutoDiffVector
+from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.systems.contact_clustering import ContactClustering
+from drake_haptics.systems.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.penalty_force import PenaltyForce
+
+
+class ContactChain:
+    """From poses and velocities to wrenches, around a state.
+
+    Attributes:
+        diagram: Its inputs are X_WTool, V_WTool, X_WO_<i> and V_WO_<i>, its outputs
+            those of `PenaltyForce` that are vectors.
+        context: At the state.
+    """
+
+    def __init__(self, state: State, moving: tuple[bool, ...]):
+        """Builds it.
+
+        Args:
+            state: At which the diagram's context is.
+            moving: Whether each object has ports; the others rest where they are.
+        """
+        objects = [
+            ContactObject(str(i), body, None if moves else vector_to_pose(q))
+            for i, (body, q, moves) in enumerate(
+                zip(state.bodies[1:], state.q[1:], moving, strict=True)
+            )
+        ]
+        gains = K[: len(objects)], KV[: len(objects)]
+        builder = DiagramBuilder()
+        query = ContactQuery(state.bodies[0], objects, T)
+        delta = 2 * T if state.method == "octree" else None
+        self.query = builder.AddNamedSystem("contact_query", query)
+        clustering = ContactClustering(state.method, T, delta)
+        builder.AddNamedSystem("contact_clustering", clustering)
+        force = builder.AddNamedSystem("penalty_force", PenaltyForce(objects, *gains))
+        builder.Connect(
+            query.get_contacts_output_port(), clustering.get_contacts_input_port()
+        )
+        builder.Connect(
+            clustering.get_clusters_output_port(), force.get_clusters_input_port()
+        )
+        inputs: dict[str, int] = {}
+        for system in (force, query):
+            for i in range(system.num_input_ports()):
+                port = system.get_input_port(i)
+                name = port.get_name()
+                if name in inputs:
+                    builder.ConnectInput(inputs[name], port)
+                elif name != "clusters":
+                    inputs[name] = builder.ExportInput(port, name)
+        for name in ("wrench_model", "F_Tool_W", "F_O_W"):
+            if force.HasOutputPort(name):
+                builder.ExportOutput(force.GetOutputPort(name), name)
+        self.diagram = builder.Build()
+        self._moving = [0, *(1 + i for i, moves in enumerate(moving) if moves)]
+        self.context = self.diagram.CreateDefaultContext()
+        self._fix(self.diagram, self.context, self.variables(state))
+        # The query learns what is near as that of the state did.
+        self.diagram.get_output_port(0).Eval(self.context)
+
+    def variables(self, state: State) -> np.ndarray:
+        """Pose and velocity (13) of each body that moves."""
+        return np.hstack([state.q, state.V])[self._moving].ravel()
+
+    def evaluate(self, output: str, x: np.ndarray) -> np.ndarray:
+        """An output at other variables, by the query that knows this state."""
+        context = self.context.Clone()
+        self._fix(self.diagram, context, x)
+        return self.diagram.GetOutputPort(output).Eval(context)
+
+    def differentiate(self, output: str, x: np.ndarray) -> AutoDiffVector:
+        """The same with its derivatives by the variables."""
+        context = self.context.Clone()
+        self._fix(self.diagram, context, x)
+        self.query.prepare_conversion(self.query.GetMyMutableContextFromRoot(context))
+        twin = self.diagram.ToScalarType[AutoDiffXd]()
+        of_twin = twin.CreateDefaultContext()
+        of_twin.SetTimeStateAndParametersFrom(context)
+        self._fix(twin, of_twin, InitializeAutoDiff(x).ravel())
+        answer = twin.GetOutputPort(output).Eval(of_twin)
+        return AutoDiffVector(ExtractValue(answer).ravel(), ExtractGradient(answer))
+
+    def _fix(self, system, context, x: np.ndarray) -> None:
+        for row, body in enumerate(self._moving):
+            name = "Tool" if body == 0 else f"O_{body - 1}"
+            of_body = x[13 * row : 13 * row + 13]
+            system.GetInputPort(f"X_W{name}").FixValue(context, of_body[:7])
+            system.GetInputPort(f"V_W{name}").FixValue(context, of_body[7:])
