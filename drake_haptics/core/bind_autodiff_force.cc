@@ -38,7 +38,8 @@ void BindClusters(nb::module_& m) {
           H = Eigen::Map<const MatrixOf<AutoDiff>>(s.set.coupling.data(), count,
                                                    count);
         }
-        return ToAutoDiffVector(H.reshaped(), s.num_derivatives);
+        return ToAutoDiffVector(H.reshaped<Eigen::RowMajor>(),
+                                s.num_derivatives);
       },
       "(k k,) derivative of `compression` by the depths.");
   DefDifferentiated(&set, "The `ClusterSet`.");
