@@ -26,6 +26,23 @@ def differentiate(function, x, step):
     return np.column_stack(columns)
 
 
+def differentiate_to_one_side(function, x, step):
+    """Returns the Jacobian by differences of third order towards the step's sign."""
+    x = np.asarray(x, dtype=float)
+    here = function(x)
+    columns = [
+        (
+            -11 * here
+            + 18 * function(x + step * axis)
+            - 9 * function(x + 2 * step * axis)
+            + 2 * function(x + 3 * step * axis)
+        )
+        / (6 * step)
+        for axis in np.eye(len(x))
+    ]
+    return np.column_stack(columns)
+
+
 class _Side:
     """A system, or its twin, as a function of one vector."""
 

@@ -1,0 +1,109 @@
+"""Tabulates how well the derivatives of whole scenes agree with differences.
+
+python tests/characterization/loop_gradient_table.py --write
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from loop_gradients import LoopGradients, build_scene, calc_gradients, contact_states
+
+from drake_haptics.analysis.diagram_systems import walk_leaves
+
+PAGE = Path(__file__).parents[2] / "docs" / "gradients.md"
+BEGIN = "<!-- loops: written by tests/characterization/loop_gradient_table.py -->\n"
+END = "<!-- end of loops -->\n"
+SCENES = (
+    "can_box",
+    "cup_spoon",
+    "hammer_block",
+    "rubbed_sphere",
+    "sphere_pen",
+    "torus_peg",
+)
+NUM_STATES = 12
+UNTIL_S = 3.0
+TITLES = (
+    "scene",
+    "systems",
+    "numbers of state",
+    "columns compared",
+    "at a kink",
+    "update: median",
+    "largest",
+    "rates: median",
+    "largest",
+)
+
+
+def rows() -> Iterator[tuple[str, ...]]:
+    """A line for each scene, of all its states together."""
+    yield TITLES
+    for name in SCENES:
+        loop = build_scene(name)
+        found = [
+            calc_gradients(loop, context)
+            for context in contact_states(loop, NUM_STATES, UNTIL_S)
+        ]
+        kinks = sum(int(gradients.is_kink.sum()) for gradients in found)
+        columns = sum(gradients.is_kink.size for gradients in found)
+        yield (
+            name,
+            f"{len(list(walk_leaves(loop.diagram)))}",
+            f"{found[0].is_kink.size}",
+            f"{columns - kinks}",
+            f"{kinks}",
+            *_tell_errors(found, slice(None, found[0].num_updated)),
+            *_tell_errors(found, slice(found[0].num_updated, None)),
+        )
+
+
+def _tell_errors(found: list[LoopGradients], part: slice) -> tuple[str, str]:
+    """Returns the median and the largest error of some rows, in all states.
+
+    The median is that of what depends on anything at all.
+    """
+    errors, expected = (
+        np.concatenate([values(gradients)[part].ravel() for gradients in found])
+        for values in (lambda g: g.errors, lambda g: g.expected)
+    )
+    told = ~np.isnan(expected)
+    depends = told & (expected != 0.0)
+    return f"{np.median(errors[depends]):.0e}", f"{errors[told].max():.0e}"
+
+
+def with_table(page: str) -> str:
+    """Returns the page with the table of now.
+
+    Raises:
+        ValueError: a mark is missing.
+    """
+    lines = ["| " + " | ".join(cells) + " |" for cells in rows()]
+    lines.insert(1, "|" + "---|" * len(TITLES))
+    table = "\n".join(lines) + "\n"
+    print(table)
+    start = page.index(BEGIN) + len(BEGIN)
+    return page[:start] + f"\n{table}\n" + page[page.index(END) :]
+
+
+def main() -> None:
+    """Prints the table, and writes the page if asked to."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    write = parser.parse_args().write
+    page = with_table(PAGE.read_text(encoding="utf-8"))
+    if write:
+        PAGE.write_text(page, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
