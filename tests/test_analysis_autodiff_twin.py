@@ -5,6 +5,7 @@ import pytest
 from pydrake.autodiffutils import AutoDiffXd
 from pydrake.common.value import Value
 from pydrake.systems.framework import DiagramBuilder, LeafSystem_
+from pydrake.systems.primitives import LinearSystem
 from pydrake.systems.scalar_conversion import TemplateSystem
 from wall_loop import PERIOD, make_mass
 
@@ -65,10 +66,17 @@ def test_systems_are_told_before_they_are_converted(analyse):
 
 def test_systems_are_told_where_they_are_converted():
     system = Remembers_[float](0.25)
-    context = system.CreateDefaultContext()
+    builder = DiagramBuilder()
+    builder.AddNamedSystem("remembers", system)
+    # With a motion there is a state after the update, too.
+    builder.AddNamedSystem("decay", LinearSystem([[-1.0]], *3 * [np.zeros((1, 1))]))
+    builder.ExportInput(builder.GetSystems()[1].get_input_port(), "u")
+    diagram = builder.Build()
+    context = diagram.CreateDefaultContext()
+    diagram.get_input_port().FixValue(context, [0.0])
     context.SetDiscreteState(0, [8.0])
-    found = find_equilibrium(system, context)
-    linearize_sampled(system, found.context)
+    found = find_equilibrium(diagram, context)
+    linearize_sampled(diagram, found.context)
     assert system.told[0] == 8.0
     assert abs(system.told[-1]) < 1e-9
 

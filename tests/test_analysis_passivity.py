@@ -54,9 +54,9 @@ RADIUS, ANGLE = 0.999999, 0.7123456
 
 
 def resonant(z):
-    """A spring behind a filter that rings sharply between the points of any grid."""
+    """A spring and damper, and what rings sharply between the points of any grid."""
     pole = RADIUS * np.exp(1j * ANGLE)
-    return 50.0 + 1e-5 / ((z - pole) * (z - pole.conjugate()))
+    return 50.0 + 3e3 * (1 - 1 / z) + 1e-2 / ((z - pole) * (z - pole.conjugate()))
 
 
 def test_any_law_gives_the_published_condition():
@@ -67,8 +67,10 @@ def test_any_law_gives_the_published_condition():
 
 
 def test_a_linear_system_is_refined_at_its_sharpest_peak():
-    A = np.array([[2 * RADIUS * np.cos(ANGLE), -(RADIUS**2)], [1.0, 0.0]])
-    matrices = A, np.array([[1.0], [0.0]]), np.array([[0.0, 1e-5]]), np.array([[50.0]])
+    A = np.zeros((3, 3))
+    A[:2, :2] = [[2 * RADIUS * np.cos(ANGLE), -(RADIUS**2)], [1.0, 0.0]]
+    B, C = np.array([[1.0], [0.0], [1.0]]), np.array([[0.0, 1e-2, -3e3]])
+    matrices = A, B, C, np.array([[50.0 + 3e3]])
     found = calc_passivity(LinearSystem(*matrices, T), T)
     # By brute force, close around the peak.
     f = (ANGLE + np.linspace(-2e-5, 2e-5, 40001)) / (2 * np.pi * T)
