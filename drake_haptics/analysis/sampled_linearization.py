@@ -33,6 +33,10 @@ from drake_haptics.analysis.sampled_preconditions import (
 )
 from drake_haptics.analysis.state_layout import find_state_layout
 
+# How far beside the equilibrium derivatives are checked, relative to a state's size
+# or 1: more than the steps of the differences.
+_BESIDE = 3e-5
+
 _Port = TypeVar("_Port", InputPort, OutputPort)
 
 
@@ -119,17 +123,8 @@ def linearize_sampled(
     values = one_period.calc(x, held, u)
     change = np.concatenate([period * values.rates, values.update - x[n_c:]])
     residual = check_return(x, change, names, tolerance)
-    jacobian = one_period.differentiate(x, held, u)
-    n, outputs = len(x), [f"y[{i}]" for i in range(len(values.output))]
-    check_derivatives(
-        lambda step: one_period.calc(
-            x + step[:n], held + step[:n], u + step[n:]
-        ).stack(),
-        jacobian.stack(),
-        calc_sizes(np.concatenate([x, u])),
-        [*names[n_c:], *names[:n_c], *outputs],
-        [*names, *(f"u[{i}]" for i in range(len(u)))],
-    )
+    _check_nearby(one_period, names, [f"y[{i}]" for i in range(len(values.output))])
+    n, jacobian = len(x), one_period.differentiate(x, held, u)
     update, rates = _extend(jacobian, n_c, n)
     A_B = expm(rates * period) @ update
     return SampledLinearization(
@@ -144,6 +139,30 @@ def linearize_sampled(
         state=x,
         quaternions=layout.quaternions,
         equilibrium_residual=residual,
+    )
+
+
+def _check_nearby(
+    one_period: SampledMap, names: tuple[str, ...], outputs: list[str]
+) -> None:
+    """Compares derivatives with differences a little beside the state.
+
+    Equilibria are special: what is at rest, flush or symmetric is often on a kink,
+    where differences to both sides see both slopes. Beside it there is one.
+    """
+    x, n, n_c = one_period.x, len(one_period.x), one_period.num_continuous
+    point = np.concatenate([x, one_period.u])
+    sizes = calc_sizes(point)
+    point += _BESIDE * sizes * np.random.default_rng(1).uniform(-1.0, 1.0, len(point))
+    held = one_period.hold(point[:n], point[n:])
+    check_derivatives(
+        lambda step: one_period.calc(
+            point[:n] + step[:n], held + step[:n], point[n:] + step[n:]
+        ).stack(),
+        one_period.differentiate(point[:n], held, point[n:]).stack(),
+        sizes,
+        [*names[n_c:], *names[:n_c], *outputs],
+        [*names, *(f"u[{i}]" for i in range(len(point) - n))],
     )
 
 

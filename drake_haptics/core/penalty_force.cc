@@ -42,6 +42,23 @@ Mat6Of<T> Stiffness(const ClusterSetOf<T>& set, const Wrenches<T>& G,
   return kG * H * G.transpose();
 }
 
+// Slower than this, m/s, surfaces rest.
+constexpr double kAtRest = 1e-9;
+
+// What a damper sees that works on approach only. At rest it works in half of
+// every small motion, and what is linear there is the mean of both halves.
+template <typename T>
+struct Approach {
+  double engaged;  // in how far it works
+  T speed;         // at most 0
+
+  explicit Approach(const T& v) {
+    const double value = ValueOf(v);
+    engaged = std::abs(value) < kAtRest ? 0.5 : value < 0 ? 1.0 : 0.0;
+    speed = engaged * v + (std::min(value, 0.0) - engaged * value);
+  }
+};
+
 }  // namespace
 
 template <typename T>
@@ -68,11 +85,10 @@ PenaltyWrenchOf<T> ComputePenaltyWrench(
     // Eq. 8, as power of a unit force: n·v at the contact, of either body.
     const T speed = G.dot(tool.V_WF) - G_object.dot(object.V_WF);
     const T damping = material.damping * cluster.damping_share;
-    T magnitude = material.stiffness * cluster.compression;
-    if (speed < 0.0) {
-      magnitude -= damping * speed;
-      result.tool.B += damping * G * G.transpose();
-    }
+    const Approach<T> approach(speed);
+    const T magnitude =
+        material.stiffness * cluster.compression - damping * approach.speed;
+    result.tool.B += approach.engaged * damping * G * G.transpose();
     wrenches.col(next++) = G;
     result.tool.F += magnitude * G;
     result.F_objects_W[cluster.object] -= magnitude * G_object;

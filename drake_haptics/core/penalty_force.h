@@ -35,11 +35,11 @@ using PenaltyWrench = PenaltyWrenchOf<double>;
 
 /// Sums the penalty wrenches of the clusters (paper, Eq. 6 to 10): at each an
 /// elastic force, k times its compression, along n, and k_v |v| times its
-/// damping share more while the surfaces approach. The force never pulls.
-/// Normals, positions and shares are frozen in the stiffness
-/// K = Σ k H_ij G_i G_jᵀ with G = [r × n; n] and H the set's coupling: the
-/// terms that turn with the normal are left out, which keeps K positive
-/// semidefinite.
+/// damping share more while the surfaces approach. The force never pulls. At
+/// rest, on the edge of that, the derivative by the velocity is the mean of
+/// both sides. Normals, positions and shares are frozen in the stiffness K = Σ
+/// k H_ij G_i G_jᵀ with G = [r × n; n] and H the set's coupling: the terms that
+/// turn with the normal are left out, which keeps K positive semidefinite.
 /// @param objects one frame for each object that the clusters name.
 /// @param materials one for each object.
 /// @throws std::invalid_argument for a gain below zero or not finite, or where
