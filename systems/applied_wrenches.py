@@ -18,6 +18,18 @@ from pydrake.systems.scalar_conversion import TemplateSystem
 @TemplateSystem.define("AppliedWrenches_", T_list=(float, AutoDiffXd))
 def AppliedWrenches_(T: type) -> type:
     """Defines `AppliedWrenches` for one scalar type."""
+    # Looked up once: that takes longer than all the rest.
+    AppliedForce, SpatialForce = ExternallyAppliedSpatialForce_[T], SpatialForce_[T]
+    # Not left to the default, which is not a number for AutoDiffXd.
+    p_BoBo_B = np.array([T(0.0)] * 3)
+
+    def make_force(body: BodyIndex, F_Bo_W: Any) -> Any:
+        """Returns a wrench (6) on a body at its origin as what the plant takes."""
+        force = AppliedForce()
+        force.body_index = body
+        force.p_BoBq_B = p_BoBo_B
+        force.F_Bq_W = SpatialForce(F_Bo_W)
+        return force
 
     class Impl(LeafSystem_[T]):
         """Sums wrenches on the tool and on objects, each at its body's origin.
@@ -71,7 +83,7 @@ def AppliedWrenches_(T: type) -> type:
             ]
             self.DeclareAbstractOutputPort(
                 "applied_spatial_force",
-                lambda: AbstractValue.Make([ExternallyAppliedSpatialForce_[T]()]),
+                lambda: AbstractValue.Make([AppliedForce()]),
                 self._calc_forces,
                 {self.all_input_ports_ticket()},
             )
@@ -90,21 +102,12 @@ def AppliedWrenches_(T: type) -> type:
             ]
             forces.set_value(
                 [
-                    _make_force(T, body, F_Bo_W)
+                    make_force(body, F_Bo_W)
                     for body, F_Bo_W in zip(self._bodies, wrenches, strict=True)
                 ]
             )
 
     return Impl
-
-
-def _make_force(T: type, body: BodyIndex, F_Bo_W: Any) -> Any:
-    """Returns a wrench (6) on a body at its origin as what the plant takes."""
-    force = ExternallyAppliedSpatialForce_[T]()
-    force.body_index = body
-    force.p_BoBq_B = np.array([T(0.0)] * 3)
-    force.F_Bq_W = SpatialForce_[T](F_Bo_W)
-    return force
 
 
 AppliedWrenches = AppliedWrenches_[None]
