@@ -172,7 +172,11 @@ def test_a_gradient_wrong_by_a_thousandth_is_found():
     linearize_sampled(close, close.CreateDefaultContext())
 
 
-def test_a_kink_is_said():
-    system = Curve(lambda x: np.maximum(x, 0.0), [0.0])
-    with pytest.raises(ValueError, match="not smooth here"):
-        linearize_sampled(system, system.CreateDefaultContext())
+def test_a_kink_is_no_loss_but_is_named():
+    system = Curve(lambda x: np.array([max(x[0], 0.0 * x[0]), 0.5 * x[1]]), [0.0, 0.0])
+    found = linearize_sampled(system, system.CreateDefaultContext())
+    assert found.kinks == ("xd[0]",)
+    assert found.A[0, 0] in (0.0, 1.0)
+    beside = system.CreateDefaultContext()
+    beside.SetDiscreteState(0, [1e-3, 0.0])
+    assert linearize_sampled(system, beside).kinks == ()

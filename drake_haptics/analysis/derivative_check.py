@@ -11,6 +11,9 @@ import numpy as np
 _STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
 # Lost derivatives disagree by their own size; smooth functions agree to 1e-6.
 _TOLERANCE = 1e-4
+# How far beside a point derivatives are checked, relative to a coordinate's size: more
+# than the steps that matter.
+_BESIDE = 3e-5
 # Differences of values cannot be finer than this.
 _ROUND_OFF = 16.0 * np.finfo(float).eps
 
@@ -37,17 +40,11 @@ def check_derivatives(
     Raises:
         ValueError: They disagree; names rows and columns.
     """
-    rng = np.random.default_rng(20)
-    # No coordinate is left out by a step that happens to be small.
-    direction = rng.uniform(0.5, 1.0, len(sizes)) * rng.choice([-1.0, 1.0], len(sizes))
-    wrong = _find_wrong_rows(function, jacobian, sizes * direction)
+    wrong = find_wrong_rows(function, jacobian, sizes)
     if not wrong.any():
         return
     columns = np.array(
-        [
-            (wrong & _find_wrong_rows(function, jacobian, axis)).any()
-            for axis in np.diag(sizes)
-        ]
+        [(wrong & _compare(function, jacobian, axis)).any() for axis in np.diag(sizes)]
     )
     raise ValueError(
         "derivatives are lost, or the system is not smooth here: how"
@@ -58,12 +55,34 @@ def check_derivatives(
     )
 
 
+def find_wrong_rows(
+    function: Callable[[np.ndarray], np.ndarray],
+    jacobian: np.ndarray,
+    sizes: np.ndarray,
+) -> np.ndarray:
+    """Returns which rows disagree with differences, (p,); arguments as above."""
+    rng = np.random.default_rng(20)
+    # No coordinate is left out by a step that happens to be small.
+    direction = rng.uniform(0.5, 1.0, len(sizes)) * rng.choice([-1.0, 1.0], len(sizes))
+    return _compare(function, jacobian, sizes * direction)
+
+
+def move_beside(point: np.ndarray) -> np.ndarray:
+    """Returns a point (n,) a little beside another.
+
+    Equilibria are special: what is at rest, flush or symmetric is often on a kink,
+    where differences to both sides see both slopes. Beside it there is one.
+    """
+    shift = np.random.default_rng(1).uniform(-1.0, 1.0, len(point))
+    return point + _BESIDE * calc_sizes(point) * shift
+
+
 def calc_sizes(x: np.ndarray) -> np.ndarray:
     """Returns the size of each coordinate, at least 1."""
     return np.maximum(np.abs(x), 1.0)
 
 
-def _find_wrong_rows(
+def _compare(
     function: Callable[[np.ndarray], np.ndarray],
     jacobian: np.ndarray,
     direction: np.ndarray,

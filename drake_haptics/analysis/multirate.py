@@ -16,7 +16,11 @@ from pydrake.systems.analysis import (
 from pydrake.systems.framework import Context, System
 
 from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
-from drake_haptics.analysis.derivative_check import calc_sizes, check_derivatives
+from drake_haptics.analysis.derivative_check import (
+    calc_sizes,
+    check_derivatives,
+    move_beside,
+)
 from drake_haptics.analysis.diagram_systems import Timing, find_timings, walk_leaves
 from drake_haptics.analysis.drake_errors import explain_drake_errors
 from drake_haptics.analysis.hyperperiod import find_hyperperiod, snap_to_update
@@ -96,20 +100,28 @@ def monodromy(
     layout = find_state_layout(diagram)
 
     twin = AutoDiffTwin(diagram)
-    twin.follow(context.Clone())
-    seeds = InitializeAutoDiff(x).ravel()
-    final = _simulate(
-        AutoDiffXd, twin.system, twin.context, seeds, (start, end), step_s
-    )
-    A = extract_gradient(final, len(x))
-    values = ExtractValue(final.reshape(-1, 1)).ravel()
-    residual = check_return(x, values - x, layout.names, tolerance)
+
+    def differentiate(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Returns the state after a hyperperiod, and its derivative."""
+        clone = context.Clone()
+        set_state(clone, x)
+        twin.follow(clone)
+        seeds = InitializeAutoDiff(x).ravel()
+        final = _simulate(
+            AutoDiffXd, twin.system, twin.context.Clone(), seeds, (start, end), step_s
+        )
+        values = ExtractValue(final.reshape(-1, 1)).ravel()
+        return values, extract_gradient(final, len(x))
+
+    returned, A = differentiate(x)
+    residual = check_return(x, returned - x, layout.names, tolerance)
+    beside = move_beside(x)
     check_derivatives(
         lambda step: _simulate(
-            float, diagram, context.Clone(), x + step, (start, end), step_s
+            float, diagram, context.Clone(), beside + step, (start, end), step_s
         ),
-        A,
-        calc_sizes(x),
+        differentiate(beside)[1],
+        calc_sizes(beside),
         layout.names,
         layout.names,
     )

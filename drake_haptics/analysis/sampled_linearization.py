@@ -6,6 +6,7 @@ haptic loop is neither: a device moves continuously, and its controller samples 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -20,7 +21,12 @@ from pydrake.systems.framework import (
 from pydrake.systems.primitives import LinearSystem
 from scipy.linalg import expm
 
-from drake_haptics.analysis.derivative_check import calc_sizes, check_derivatives
+from drake_haptics.analysis.derivative_check import (
+    calc_sizes,
+    check_derivatives,
+    find_wrong_rows,
+    move_beside,
+)
 from drake_haptics.analysis.diagram_systems import find_timings
 from drake_haptics.analysis.drake_errors import explain_drake_errors
 from drake_haptics.analysis.period_map import PeriodMap, check_return
@@ -32,10 +38,6 @@ from drake_haptics.analysis.sampled_preconditions import (
     find_period,
 )
 from drake_haptics.analysis.state_layout import find_state_layout
-
-# How far beside the equilibrium derivatives are checked, relative to a state's size
-# or 1: more than the steps of the differences.
-_BESIDE = 3e-5
 
 _Port = TypeVar("_Port", InputPort, OutputPort)
 
@@ -51,6 +53,9 @@ class SampledLinearization(PeriodMap):
         update: (n, n) the discrete update alone, x_c unchanged.
         rates: (n, n) of the motion after it, zero in the rows of x_d:
             A = exp(T rates) update.
+        kinks: Names of the states and outputs whose change has another slope to each
+            side of the equilibrium, as where a contact just opens or rests without
+            speed: theirs is the one that AutoDiffXd takes.
     """
 
     B: np.ndarray
@@ -58,6 +63,7 @@ class SampledLinearization(PeriodMap):
     D: np.ndarray
     update: np.ndarray
     rates: np.ndarray
+    kinks: tuple[str, ...]
 
     def to_linear_system(self) -> LinearSystem:
         """Returns Drake's discrete-time system of the same matrices and period."""
@@ -123,8 +129,15 @@ def linearize_sampled(
     values = one_period.calc(x, held, u)
     change = np.concatenate([period * values.rates, values.update - x[n_c:]])
     residual = check_return(x, change, names, tolerance)
-    _check_nearby(one_period, names, [f"y[{i}]" for i in range(len(values.output))])
+    outputs = [f"y[{i}]" for i in range(len(values.output))]
+    _check_nearby(one_period, names, outputs)
     n, jacobian = len(x), one_period.differentiate(x, held, u)
+    kinks = find_wrong_rows(
+        _step_from(one_period, np.concatenate([x, u]), held),
+        jacobian.stack(),
+        calc_sizes(np.concatenate([x, u])),
+    )
+    rows = [*names[n_c:], *names[:n_c], *outputs]
     update, rates = _extend(jacobian, n_c, n)
     A_B = expm(rates * period) @ update
     return SampledLinearization(
@@ -139,31 +152,37 @@ def linearize_sampled(
         state=x,
         quaternions=layout.quaternions,
         equilibrium_residual=residual,
+        kinks=tuple(name for name, kink in zip(rows, kinks, strict=True) if kink),
     )
 
 
 def _check_nearby(
     one_period: SampledMap, names: tuple[str, ...], outputs: list[str]
 ) -> None:
-    """Compares derivatives with differences a little beside the state.
-
-    Equilibria are special: what is at rest, flush or symmetric is often on a kink,
-    where differences to both sides see both slopes. Beside it there is one.
-    """
-    x, n, n_c = one_period.x, len(one_period.x), one_period.num_continuous
-    point = np.concatenate([x, one_period.u])
-    sizes = calc_sizes(point)
-    point += _BESIDE * sizes * np.random.default_rng(1).uniform(-1.0, 1.0, len(point))
+    """Compares derivatives with differences a little beside the state."""
+    n, n_c = len(one_period.x), one_period.num_continuous
+    point = move_beside(np.concatenate([one_period.x, one_period.u]))
     held = one_period.hold(point[:n], point[n:])
     check_derivatives(
-        lambda step: one_period.calc(
-            point[:n] + step[:n], held + step[:n], point[n:] + step[n:]
-        ).stack(),
+        _step_from(one_period, point, held),
         one_period.differentiate(point[:n], held, point[n:]).stack(),
-        sizes,
+        calc_sizes(point),
         [*names[n_c:], *names[:n_c], *outputs],
         [*names, *(f"u[{i}]" for i in range(len(point) - n))],
     )
+
+
+def _step_from(
+    one_period: SampledMap, point: np.ndarray, held: np.ndarray
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Returns the values as a function of a step from a point [x; u]."""
+    x, u = np.split(point, [len(held)])
+
+    def function(step: np.ndarray) -> np.ndarray:
+        step_x, step_u = np.split(step, [len(held)])
+        return one_period.calc(x + step_x, held + step_x, u + step_u).stack()
+
+    return function
 
 
 def _extend(jacobian: SampledValues, n_c: int, n: int) -> tuple[np.ndarray, np.ndarray]:

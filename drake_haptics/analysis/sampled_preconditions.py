@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from pydrake.autodiffutils import AutoDiffXd
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.analysis import (
     InitializeParams,
@@ -44,7 +45,7 @@ def check_conversion(system: System) -> None:
         {
             f"{calc_path(system, leaf)} ({type(leaf).__name__})"
             for leaf in walk_leaves(system)
-            if leaf.ToAutoDiffXdMaybe() is None
+            if not leaf.get_system_scalar_converter().IsConvertible[AutoDiffXd, float]()
         }
     )
     if lacking:
