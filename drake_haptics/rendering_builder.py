@@ -206,5 +206,6 @@ def _describe_own_contact(tool: RigidBody, others: Sequence[str]) -> list[str]:
     return [
         f"Drake's own contact still acts between {tool.name()!r} and"
         f" {', '.join(map(repr, others))}, which are not rendered: name them in"
-        " environment, or exclude them with a collision filter"
+        " environment, render them by another call, or exclude them with a collision"
+        " filter"
     ]

@@ -122,9 +122,10 @@ def test_what_is_shaded_is_what_is_clustered_and_shown():
     assert scene.read(rendering, "contacts") is shaded
 
 
-def test_friction_stops_a_body_that_slides():
+@pytest.mark.parametrize("config", PLANTS.values(), ids=PLANTS)
+def test_friction_stops_a_body_that_slides(config):
     def slide(effects):
-        scene, _ = make_scene(effects=effects)
+        scene, _ = make_scene(effects=effects, config=config)
         scene.start(tool=RigidTransform([0, 0, REST]))
         scene.plant.SetVelocities(scene.context, [0, 0, 0, 0.2, 0, 0])
         scene.simulator.AdvanceTo(0.3)
@@ -135,6 +136,44 @@ def test_friction_stops_a_body_that_slides():
     expected = 0.2**2 / (2 * 0.3 * G)
     found = slide(Effects(friction=Friction(coefficient=0.3)))
     assert found == pytest.approx(expected, abs=1e-3)
+
+
+@pytest.mark.filterwarnings("ignore:Drake's own contact")
+def test_one_tool_may_meet_bodies_in_two_ways():
+    """With friction what stands still, without it what moves."""
+    scene = PlantScene()
+    scene.add("tool", CUBE, mass=MASS)
+    scene.add("cart", CUBE)
+    scene.add_slab()
+    scene.finalize()
+    rubbed, plain = (
+        AddHapticRendering(
+            scene.builder,
+            scene.plant,
+            scene.scene_graph,
+            "tool",
+            environment=[body],
+            contact=CONTACT,
+            effects=effects,
+            name=f"on_{body}",
+        )
+        for body, effects in [
+            ("slab", Effects(friction=Friction())),
+            ("cart", Effects()),
+        ]
+    )
+    gap = CONTACT.tolerance_m - 1e-3
+    scene.start(
+        tool=RigidTransform([0, 0, REST]),
+        cart=RigidTransform([2 * HALF + gap, 0, 0.5]),
+    )
+    near = RigidTransform([2 * HALF + gap, 0, REST])
+    cart = scene.plant.GetBodyByName("cart")
+    scene.plant.SetFloatingBaseBodyPoseInWorldFrame(scene.context, cart, near)
+    scene.simulator.AdvanceTo(1e-3)
+    assert scene.read(plain, "F_Tool_W")[3] < -0.9
+    assert scene.velocity("cart")[3] == pytest.approx(1.0 / 0.1 * 1e-3, rel=1e-6)
+    assert scene.read(rubbed, "F_Tool_W")[5] == pytest.approx(MASS * G, rel=1e-3)
 
 
 def test_braking_takes_the_speed_that_it_says():
