@@ -2,7 +2,11 @@
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import PrismaticJoint, SpatialInertia
+from pydrake.multibody.tree import (
+    PrismaticJoint,
+    QuaternionFloatingJoint,
+    SpatialInertia,
+)
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import LinearSystem
 from wall_loop import make_mass, make_wall
@@ -66,6 +70,16 @@ def test_quaternions_are_where_a_new_context_has_ones():
     for places in layout.quaternions:
         np.testing.assert_array_equal(x[list(places)], [1.0, 0.0, 0.0, 0.0])
         assert [layout.names[i][-3:] for i in places] == ["_qw", "_qx", "_qy", "_qz"]
+
+
+def test_a_joint_of_the_users_own_has_a_quaternion_too():
+    plant = MultibodyPlant(0.0)
+    inertia = SpatialInertia.SolidSphereWithMass(1.0, 0.1)
+    first, second = (plant.AddRigidBody(name, inertia) for name in ("a", "b"))
+    joint = QuaternionFloatingJoint("any", first.body_frame(), second.body_frame())
+    plant.AddJoint(joint)
+    plant.Finalize()
+    assert len(find_state_layout(plant).quaternions) == 2
 
 
 def test_a_system_alone_has_no_path():

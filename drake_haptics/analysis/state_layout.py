@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import QuaternionFloatingJoint
 from pydrake.systems.framework import Context, System
 
 from drake_haptics.analysis.diagram_systems import calc_path, walk_leaves
@@ -66,10 +67,10 @@ def _list_plant_names(leaf: System) -> list[str]:
 
 def _shift_quaternions(plant: MultibodyPlant, start: int) -> list[tuple[int, ...]]:
     """Returns where a plant's quaternions are, if its state begins at start."""
-    bodies = [plant.get_body(index) for index in plant.GetFloatingBaseBodies()]
+    joints = [plant.get_joint(index) for index in plant.GetJointIndices()]
     starts = [
-        start + body.floating_positions_start()
-        for body in bodies
-        if body.has_quaternion_dofs()
+        start + joint.position_start()
+        for joint in joints
+        if isinstance(joint, QuaternionFloatingJoint)
     ]
     return [tuple(range(first, first + 4)) for first in sorted(starts)]
