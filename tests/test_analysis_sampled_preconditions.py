@@ -48,6 +48,11 @@ def Eventful_(T):
                 "unrestricted": lambda: self.DeclarePeriodicUnrestrictedUpdateEvent(
                     3.0, 0.0, self._keep
                 ),
+                "unrestricted offset": lambda: (
+                    self.DeclarePeriodicUnrestrictedUpdateEvent(
+                        3.0, 0.5 * PERIOD, self._keep
+                    )
+                ),
                 "unrestricted step": lambda: self.DeclarePerStepUnrestrictedUpdateEvent(
                     self._keep
                 ),
@@ -102,6 +107,7 @@ def linearize(diagram, **options):
         (["step"], "discrete update runs at every step"),
         (["unrestricted"], "unrestricted update.*Look among wall"),
         (["unrestricted step"], "unrestricted update"),
+        (["unrestricted offset"], "unrestricted update"),
         (["abstract state"], "wall has abstract state"),
     ],
 )

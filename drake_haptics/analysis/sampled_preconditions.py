@@ -104,7 +104,8 @@ def check_events(system: System, context: Context, period_s: float) -> None:
 
     pydrake does not list a system's events, so a clone is simulated from time 0, when
     every periodic event without an offset is due, for two parts of a period, in which
-    none is; Drake's own counters tell what ran. Publish events run too.
+    none is; Drake's own counters tell what ran. Publish events run too. An unrestricted
+    update that has an offset of more than that is not seen.
 
     Args:
         system: A system whose periodic discrete updates have one period, no offset.
@@ -118,15 +119,15 @@ def check_events(system: System, context: Context, period_s: float) -> None:
     ResetIntegratorFromFlags(simulator, "explicit_euler", period_s)
     simulator.Initialize(InitializeParams(suppress_initialization_events=True))
     simulator.AdvancePendingEvents()
+    before = simulator.get_num_discrete_updates()
+    simulator.AdvanceTo(period_s / 3.0)
+    simulator.AdvanceTo(period_s / 1.5)
     if simulator.get_num_unrestricted_updates():
         raise ValueError(
             "an unrestricted update, which may change any state and has no derivative,"
             " would be ignored: declare a discrete update instead, or keep the system"
             f" outside the diagram. {_say_suspects(system)}"
         )
-    before = simulator.get_num_discrete_updates()
-    simulator.AdvanceTo(period_s / 3.0)
-    simulator.AdvanceTo(period_s / 1.5)
     if simulator.get_num_discrete_updates() != before:
         raise ValueError(
             "a discrete update runs at every step, so that its effect depends on the"
