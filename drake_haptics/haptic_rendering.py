@@ -23,6 +23,7 @@ from drake_haptics.scene import Contact, Coupling, Effects, Material
 from drake_haptics.systems.applied_wrenches import AppliedWrenches
 from drake_haptics.systems.body_motions import BodyMotions
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.friction_reaction import FrictionReaction
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
@@ -165,6 +166,11 @@ class HapticRendering(Diagram):
             ports["contacts"] = added.shading.get_contacts_output_port()
         if added.friction is not None:
             ports["friction_force"] = added.friction.get_friction_force_output_port()
+            if moving:
+                reaction = builder.AddNamedSystem(
+                    "friction_reaction", FrictionReaction(contact_objects)
+                )
+                on_objects["friction"] = reaction.get_object_wrenches_output_port()
         if added.passivity is not None:
             ports |= _name_outputs(added.passivity)
         elif coupling is not None:
@@ -230,13 +236,12 @@ def _check_effects(
             " before your own"
         )
     moving = [item.name for item in objects if item.X_WB is None]
-    for name in _FORCES:
-        if moving and getattr(effects, name) is not None:
-            raise ValueError(
-                f"effects.{name}: gives no reaction on bodies that move, such as"
-                f" {moving[0]!r}; render those by an AddHapticRendering of their own,"
-                f" without {name}"
-            )
+    if moving and effects.braking is not None:
+        raise ValueError(
+            f"effects.braking: gives no reaction on bodies that move, such as"
+            f" {moving[0]!r}; render those by an AddHapticRendering of their own,"
+            " without braking"
+        )
 
 
 def _name_outputs(system: System) -> dict[str, OutputPort]:
