@@ -6,29 +6,14 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import (
-    Diagram,
-    DiagramBuilder,
-    InputPort,
-    OutputPort,
-    System,
-)
-from pydrake.systems.primitives import Demultiplexer
+from pydrake.systems.framework import Diagram, InputPort, OutputPort
 
 from drake_haptics import _core
-from drake_haptics.builder_effects import EffectSite, add_effects, find_springs
-from drake_haptics.contact_systems import add_contact_systems, connect_by_name
+from drake_haptics.contact_systems import connect_by_name
 from drake_haptics.rendered_bodies import RenderedBody
+from drake_haptics.rendering_wiring import RenderingWiring
 from drake_haptics.scene import Contact, Coupling, Effects, Material
-from drake_haptics.systems.applied_wrenches import AppliedWrenches
-from drake_haptics.systems.body_motions import BodyMotions
-from drake_haptics.systems.contact_query import ContactObject
-from drake_haptics.systems.friction_reaction import FrictionReaction
 from drake_haptics.systems.haptic_device import HapticDevice
-from drake_haptics.systems.virtual_coupling import VirtualCoupling
-
-# Effects that push the tool, each with a wrench model of its own.
-_FORCES = ("friction", "braking")
 
 
 class HapticRendering(Diagram):
@@ -110,86 +95,17 @@ class HapticRendering(Diagram):
         _check_effects(objects, effects, coupling, device)
         self._tool = tool
         self._objects = tuple(objects)
-        moving = {item.name: item.index for item in objects if item.X_WB is None}
-        contact_objects = [
-            ContactObject(item.name, item.pieces, item.X_WB) for item in objects
-        ]
-        builder = DiagramBuilder()
-        motions = builder.AddNamedSystem(
-            "body_motions", BodyMotions(tool.index, moving)
-        )
-        _export_inputs(builder, motions)
-        found = add_contact_systems(
-            builder, tool.pieces, contact_objects, contact, effects, materials
-        )
-        force = found.penalty_force
-        # By the names of the inputs that they feed, and of the outputs of this diagram.
-        ports = {
-            **_name_outputs(motions),
-            "contacts": found.contact_query.get_contacts_output_port(),
-            "clusters": found.contact_clustering.get_clusters_output_port(),
-            "contact_wrench": force.get_contact_wrench_output_port(),
-            "F_Tool_W": force.get_tool_wrench_output_port(),
-        }
-        on_tool = {"contact": ports["F_Tool_W"]}
-        on_objects = {}
-        springs = []
-        if moving:
-            on_objects["contact"] = force.get_object_wrenches_output_port()
-            ports["F_O_W"] = on_objects["contact"]
+        wiring = RenderingWiring(tool, objects)
+        wiring.add_contact(contact, effects, materials)
         if coupling is not None:
-            gains = _core.CouplingGains(**asdict(coupling))
-            spring = _add_coupling(builder, gains, X_HT, device, ports)
-            on_tool["coupling"] = _split_wrench(builder, spring)
-            if device is not None:
-                springs = find_springs(device, gains, min(force.stiffness_N_per_m))
-        added = add_effects(
-            EffectSite(
-                effects=effects,
-                builder=builder,
-                sources=ports,
-                tool=tool.pieces,
-                tool_mass_kg=tool.body.default_mass(),
-                p_TTcm=tool.body.default_com().tolist(),
-                objects=contact_objects,
-                materials=materials,
-                period_s=period_s,
-                springs=springs,
-            )
-        )
-        for name in _FORCES:
-            if (system := getattr(added, name)) is not None:
-                on_tool[name] = _split_wrench(
-                    builder, system.get_wrench_model_output_port()
-                )
-        if added.shading is not None:
-            ports["contacts"] = added.shading.get_contacts_output_port()
-        if added.friction is not None:
-            ports["friction_force"] = added.friction.get_friction_force_output_port()
-            if moving:
-                reaction = builder.AddNamedSystem(
-                    "friction_reaction", FrictionReaction(contact_objects)
-                )
-                on_objects["friction"] = reaction.get_object_wrenches_output_port()
-        if added.passivity is not None:
-            ports |= _name_outputs(added.passivity)
-        elif coupling is not None:
-            ports["F_display"] = ports["F_asked"]
-        ports.pop("F_asked", None)
-        applied = builder.AddNamedSystem(
-            "applied_wrenches",
-            AppliedWrenches(
-                tool.index, list(on_tool), list(moving.values()), list(on_objects)
-            ),
-        )
-        named = {f"F_Tool_W_{name}": port for name, port in on_tool.items()}
-        named |= {f"F_O_W_{name}": port for name, port in on_objects.items()}
-        for system in builder.GetSystems():
-            connect_by_name(builder, system, ports | named)
-        ports["applied_spatial_force"] = applied.get_output_port()
-        for name, port in ports.items():
-            builder.ExportOutput(port, name)
-        builder.BuildInto(self)
+            wiring.add_coupling(_core.CouplingGains(**asdict(coupling)), X_HT, device)
+        wiring.add_effects(effects, materials, period_s)
+        wiring.add_applied_wrenches()
+        for system in wiring.builder.GetSystems():
+            connect_by_name(wiring.builder, system, wiring.sources)
+        for name, port in wiring.outputs.items():
+            wiring.builder.ExportOutput(port, name)
+        wiring.builder.BuildInto(self)
 
     @property
     def tool(self) -> RenderedBody:
@@ -242,50 +158,3 @@ def _check_effects(
             f" {moving[0]!r}; render those by an AddHapticRendering of their own,"
             " without braking"
         )
-
-
-def _name_outputs(system: System) -> dict[str, OutputPort]:
-    """Returns the outputs of a system by their names."""
-    ports = map(system.get_output_port, range(system.num_output_ports()))
-    return {port.get_name(): port for port in ports}
-
-
-def _export_inputs(builder: DiagramBuilder, system: System) -> None:
-    """Exports all inputs of a system by their names."""
-    for port in map(system.get_input_port, range(system.num_input_ports())):
-        builder.ExportInput(port, port.get_name())
-
-
-def _split_wrench(builder: DiagramBuilder, wrench_model: OutputPort) -> OutputPort:
-    """Returns the wrench (6) of a wrench model (78) as a port of its own."""
-    system = builder.AddNamedSystem(
-        f"{wrench_model.get_system().get_name()}_wrench", Demultiplexer([6, 72])
-    )
-    builder.Connect(wrench_model, system.get_input_port())
-    return system.get_output_port(0)
-
-
-def _add_coupling(
-    builder: DiagramBuilder,
-    gains: _core.CouplingGains,
-    X_HT: RigidTransform,
-    device: HapticDevice | None,
-    ports: dict[str, OutputPort],
-) -> OutputPort:
-    """Adds the coupling, the device if it is inside, and their ports to `ports`.
-
-    Returns:
-        The wrench model on the tool.
-    """
-    coupling = builder.AddNamedSystem("virtual_coupling", VirtualCoupling(gains, X_HT))
-    ports["F_asked"] = coupling.get_display_wrench_output_port()
-    if device is None:
-        for port in (
-            coupling.get_handle_pose_input_port(),
-            coupling.get_handle_velocity_input_port(),
-        ):
-            builder.ExportInput(port, port.get_name())
-    else:
-        builder.AddNamedSystem("device", device)
-        ports |= _name_outputs(device)
-    return coupling.get_wrench_model_output_port()
