@@ -15,7 +15,8 @@ from pydrake.systems.framework import Context
 from twin_check import differentiate, differentiate_to_one_side
 
 from drake_haptics.analysis.diagram_systems import find_timings
-from drake_haptics.analysis.sampled_map import SampledMap, SampledValues
+from drake_haptics.analysis.sampled_map import SampledMap, SampledValues, get_state
+from drake_haptics.analysis.state_layout import find_state_layout
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
@@ -24,11 +25,14 @@ from drake_haptics.scene_library import find_scene
 _LOOK_S = 0.01
 # Of the differences, in m, rad, m/s, rad/s, N or N·m: a smaller one where there is a
 # kink within the larger one.
-_STEPS = (1e-6, 1e-7)
+_STEPS = (1e-6, 1e-7, 1e-8)
 # Differences to either side agree this well, relative to the size of their row, and so
 # do those of a step and of its double, unless there is a kink at the state or within
 # the steps.
 _SMOOTH = 1e-6
+# Of a row, in units of the state: what is smaller, such as a grip that is zero but for
+# round-off, cannot be told from the rounding of the differences.
+_SMALLEST = 1e-2
 
 
 def build_scene(name: str) -> HapticDiagram:
@@ -63,22 +67,24 @@ class LoopGradients:
         values: (rows,) what is differentiated.
         found: (rows, n) by AutoDiffXd.
         expected: (rows, n) by differences; NaN in columns where these tell of a kink.
+        is_varied: (n,) which columns are compared; the others are NaN too.
         num_updated: How many rows are of the update.
     """
 
     values: np.ndarray
     found: np.ndarray
     expected: np.ndarray
+    is_varied: np.ndarray
     num_updated: int
 
     @property
     def is_kink(self) -> np.ndarray:
         """Which columns (n,) have no derivative that differences could tell."""
-        return np.isnan(self.expected).any(axis=0)
+        return self.is_varied & np.isnan(self.expected).any(axis=0)
 
     @property
     def errors(self) -> np.ndarray:
-        """Differences (rows, n) relative to the size of their row, NaN at a kink.
+        """Differences (rows, n) relative to the size of their row, or NaN.
 
         That is its largest derivative, or its value, as of the real part of a
         quaternion near 1, which hardly changes.
@@ -101,11 +107,30 @@ def calc_gradients(loop: HapticDiagram, context: Context) -> LoopGradients:
     n, values = len(x), _stack(one_period.calc(x, held, u))
     found = one_period.differentiate(x, held, u)
     expected = np.full((len(values), n), np.nan)
+    is_varied = _find_varied(loop, context)
     for step in _STEPS:
-        left = np.flatnonzero(np.isnan(expected).any(axis=0))
+        left = np.flatnonzero(is_varied & np.isnan(expected).any(axis=0))
         if len(left):
             expected[:, left] = _differentiate(move, np.eye(n)[left], step)
-    return LoopGradients(values, _stack(found), expected, len(found.update))
+    return LoopGradients(values, _stack(found), expected, is_varied, len(found.update))
+
+
+def _find_varied(loop: HapticDiagram, context: Context) -> np.ndarray:
+    """Returns which numbers of the state mean something now.
+
+    Empty slots of friction's memory do not: what is written there is no contact.
+    """
+    is_varied = np.ones(len(get_state(context)), dtype=bool)
+    friction = loop.loop.effects.friction
+    if friction is None:
+        return is_varied
+    own = friction.GetMyContextFromRoot(context)
+    memory = own.get_discrete_state_vector().value()
+    names = find_state_layout(loop.diagram).names
+    start = names.index(f"{friction.get_name()}/xd[0]")
+    first_empty = start + np.flatnonzero(memory)[-1] + 1
+    is_varied[first_empty : start + len(memory)] = False
+    return is_varied
 
 
 def _differentiate(
@@ -127,7 +152,7 @@ def _differentiate(
 def _size_rows(values: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
     """Returns the size (rows, 1) of each row."""
     largest = np.maximum(np.abs(jacobian).max(axis=1), np.abs(values))
-    return np.where(largest > 0.0, largest, 1.0)[:, np.newaxis]
+    return np.maximum(largest, _SMALLEST)[:, np.newaxis]
 
 
 def _stack(values: SampledValues) -> np.ndarray:

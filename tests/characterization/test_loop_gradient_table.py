@@ -1,0 +1,38 @@
+"""The page on the derivatives of whole loops: what it claims, and that it is so."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+import loop_gradient_table
+from loop_gradient_table import MARK, PAGE, SCENES, TITLES, with_table
+
+
+def rows_of(page):
+    lines = [line for line in page.splitlines() if line.startswith("| ")]
+    cells = [line.strip("| ").split(" | ") for line in lines]
+    assert tuple(cells[0]) == TITLES
+    return {row[0]: row for row in cells[1:]}
+
+
+def test_the_page_has_every_scene_within_its_target():
+    rows = rows_of(PAGE.read_text(encoding="utf-8"))
+    assert tuple(rows) == SCENES
+    for name, row in rows.items():
+        compared, kinks = int(row[3]), int(row[4])
+        assert kinks < 0.1 * (compared + kinks), name
+        assert max(map(float, row[5:])) < 1e-6, name
+
+
+def test_a_line_is_what_the_program_finds(monkeypatch):
+    monkeypatch.setattr(loop_gradient_table, "SCENES", ("sphere_pen",))
+    monkeypatch.setattr(loop_gradient_table, "NUM_STATES", 2)
+    monkeypatch.setattr(loop_gradient_table, "UNTIL_S", 0.8)
+    page = with_table(f"before {MARK} old {MARK} after")
+    assert page.startswith("before ") and page.endswith(" after")
+    assert "old" not in page
+    row = rows_of(page)["sphere_pen"]
+    assert row[1:5] == ["12", "32", "64", "0"]
+    assert 0.0 < float(row[5]) < float(row[6]) == pytest.approx(0.0, abs=1e-6)
