@@ -153,7 +153,8 @@ class DifferentiableSystem(_Convertible):
 
         Returns:
             An `AutoDiffVector`; of an abstract output, a value that carries
-            derivatives.
+            derivatives: it has `num_derivatives`, and `with_variables` where that
+            can be zero.
         """
         raise NotImplementedError(f"{type(self).__name__} has no derivatives of {port}")
 

@@ -28,6 +28,14 @@ class Gradients:
         self.vector = vector
         self.num_derivatives = vector.gradient.shape[1]
 
+    def with_variables(self, num_derivatives):
+        """Returns a constant with derivatives, which are zero."""
+        assert self.num_derivatives == 0
+        size = len(self.vector.value)
+        return Gradients(
+            AutoDiffVector(self.vector.value, np.zeros((size, num_derivatives)))
+        )
+
     def __deepcopy__(self, memo):
         """Shares it: it never changes."""
         return self
@@ -201,6 +209,33 @@ def test_abstract_values_carry_their_derivatives_along(twin):
     twin.GetInputPort("w").FixValue(context, Value[object](Gradients(vector)))
     answer = twin.GetOutputPort("double_w").Eval(context)
     np.testing.assert_array_equal(answer.vector.gradient, [[6.0, 8.0]])
+
+
+def test_an_abstract_value_that_is_constant_gets_the_variables_of_the_others(twin):
+    context = twin.CreateDefaultContext()
+    context.SetDiscreteState(1, SEED[:1])
+    vector = AutoDiffVector(np.array([1.0]), np.zeros((1, 0)))
+    twin.GetInputPort("w").FixValue(context, Value[object](Gradients(vector)))
+    answer = twin.GetOutputPort("double_w").Eval(context)
+    np.testing.assert_array_equal(answer.vector.gradient, np.zeros((1, 3)))
+
+
+def test_outputs_follow_input_state_and_time(twin):
+    """What was calculated before is not kept."""
+    context = twin.CreateDefaultContext()
+
+    def outputs():
+        y, b = (twin.GetOutputPort(name).Eval(context) for name in ("y", "b"))
+        return y[0].value(), b[0].value()
+
+    twin.GetInputPort("u").FixValue(context, SEED)
+    before = outputs()
+    context.SetTime(2.0)
+    assert outputs() == pytest.approx((before[0] + 2.0, before[1]))
+    context.SetDiscreteState(1, [AutoDiffXd(6.0)])
+    assert outputs() == pytest.approx((before[0] + 2.0, 6.0))
+    twin.GetInputPort("u").FixValue(context, 2.0 * SEED)
+    assert outputs() == pytest.approx((2.0 * before[0] + 2.0, 6.0))
 
 
 def test_a_plain_value_in_an_abstract_port_is_an_error_and_no_zero(twin):
