@@ -67,8 +67,8 @@ class PassivityControl(Diagram):
     The state is one discrete group (8), [balance; X_WH at the last tick], updated
     every period from 0 s on.
 
-    Derivatives are those of the branch taken: at a balance of 0 of the side on which
-    nothing is damped, with all of the damping or at the full reserve of that bound.
+    Derivatives are those of the branch taken: nothing is damped, a share, or with all
+    of the damping; the balance is below the reserve or kept at it.
     """
 
     def __init__(

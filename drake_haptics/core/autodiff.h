@@ -97,7 +97,8 @@ AutoDiffVector ToAutoDiffVector(const Eigen::MatrixBase<Derived>& scalars,
   AutoDiffVector vector{ValuesOf(scalars),
                         Eigen::MatrixXd::Zero(scalars.size(), num_derivatives)};
   for (Eigen::Index i = 0; i < scalars.size(); ++i) {
-    const Eigen::VectorXd& gradient = scalars[i].derivatives();
+    const AutoDiff& scalar = scalars[i];  // a copy where that is an expression
+    const Eigen::VectorXd& gradient = scalar.derivatives();
     if (gradient.size() > 0) vector.gradient.row(i) = gradient.transpose();
   }
   return vector;

@@ -47,7 +47,7 @@ Vec6Of<T> LimitEnergy(const Eigen::Matrix<T, 6, 1>& F_asked, const T& balance,
   if (!(ValueOf(largest) > 0 && std::isfinite(ValueOf(largest)))) {
     return F_asked;
   }
-  const T share = std::min(T(1.0), T(-balance / largest));
+  const T share = std::min(T(1.0), T(T(-balance) / largest));
   return F_asked - share * braking;
 }
 
