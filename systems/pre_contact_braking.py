@@ -9,16 +9,19 @@ from pydrake.systems.framework import (
     BasicVector,
     Context,
     InputPort,
-    LeafSystem,
     OutputPort,
 )
 
-from drake_haptics._core import BrakingGains, pre_contact_braking
+from drake_haptics._core import AutoDiffVector, BrakingGains, pre_contact_braking
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 from drake_haptics.systems.object_motions import ObjectMotions
 
 
-class PreContactBraking(LeafSystem):
+class PreContactBraking(DifferentiableSystem):
     """Viscous force against the approach of surfaces that do not touch yet.
 
     At each contact with 0 < d < D, D the braking's distance, the tool is pushed with
@@ -50,6 +53,11 @@ class PreContactBraking(LeafSystem):
 
     `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
     documents it. K is zero: the braking changes with the pose only as the speed does.
+
+    Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`.
+    Derivatives are complete: profile, shares and normals change with the pose. Where a
+    contact begins or ends to brake (no approach, d = 0, d = D) they are those of a
+    contact that does not.
     """
 
     def __init__(
@@ -106,6 +114,17 @@ class PreContactBraking(LeafSystem):
     def get_wrench_model_output_port(self) -> OutputPort:
         """Returns the output `wrench_model`."""
         return self._wrench_model
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the wrench model with its derivatives."""
+        X_WTool = at["X_WTool"]
+        return pre_contact_braking(
+            at["contacts"],
+            AutoDiffVector(X_WTool.value[4:], X_WTool.gradient[4:]),
+            at["V_WTool"],
+            *self._motions.differentiate(at),
+            self._gains,
+        )
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
         p_WO, V_WO = self._motions.read(context)

@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from effect_chain import make_chain
+from friction_bodies import burr
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from test_contact_query import at_height, box_core, query_at
+from twin_check import check_twin
 
 from drake_haptics._core import RigidToolDynamics
 from drake_haptics.systems.contact_query import ContactObject, ContactQuery
@@ -135,6 +138,47 @@ def test_a_slow_tool_stops_before_it_touches(cube, plate):
     d, v = approach(cube, plate, speed, mass, period, 500)
     assert d.min() > 0
     assert abs(v[-1]) < 1e-4
+
+
+def near(rng, angle, way):
+    """A pose [qw qx qy qz x y z] near the world's, its quaternion of any length."""
+    q = np.concatenate([[1.0], angle * rng.normal(size=3), way * rng.normal(size=3)])
+    q[:4] *= rng.uniform(0.5, 2.0)
+    return q
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_its_twin_has_the_derivatives_of_poses_and_velocities(seed):
+    """Spikes in all directions before plates, both moving."""
+    rng = np.random.default_rng(seed)
+    tool, body = burr(rng, 9)
+    cart = [ContactObject("cart", body)]
+    jacobian = check_twin(
+        make_chain(tool, cart, D, braking=make_braking(cart)),
+        {
+            "X_WTool": near(rng, 0.01, 1e-3),
+            "X_WO_cart": near(rng, 0.01, 1e-3),
+            "V_WTool": rng.normal(size=6),
+            "V_WO_cart": rng.normal(size=6),
+        },
+        step=1e-6,
+        rtol=1e-6,
+    )
+    by_each = np.split(np.abs(jacobian[:6]), [7, 14, 20, 26], axis=1)
+    assert all(part.max() > 0.1 for part in by_each[:4])
+
+
+def test_contacts_without_derivatives_are_refused(cube, plate):
+    objects = [ContactObject("plate", plate, RigidTransform())]
+    query, braking = ContactQuery(cube, objects, D), make_braking(objects)
+    contacts = query_at(query, query.CreateDefaultContext(), TOUCH + 0.25 * D)
+    twin = braking.ToAutoDiffXd()
+    context = twin.CreateDefaultContext()
+    twin.GetInputPort("contacts").FixValue(context, Value[object](contacts))
+    twin.GetInputPort("X_WTool").FixValue(context, at_height(TOUCH))
+    twin.GetInputPort("V_WTool").FixValue(context, DOWN)
+    with pytest.raises(ValueError, match="ContactSet, which carries no derivatives"):
+        twin.GetOutputPort("wrench_model").Eval(context)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "autodiff_sets.h"
 #include "bind.h"
 #include "braking.h"
 
@@ -26,6 +27,30 @@ WrenchModelVector Brake(const ContactSet& contacts, const Vec3& p_WTo,
   }
   return ToVector(ComputeBraking<double>(contacts.contacts, {p_WTo, V_WTool},
                                          objects, gains));
+}
+
+AutoDiffVector DifferentiateBraking(const AutoDiffContactSet& contacts,
+                                    const AutoDiffVector& p_WTo,
+                                    const AutoDiffVector& V_WTool,
+                                    const AutoDiffVector& p_WO,
+                                    const AutoDiffVector& V_WO,
+                                    const BrakingGains& gains) {
+  const Eigen::Index count = p_WO.size() / 3;
+  if (p_WO.size() != 3 * count || V_WO.size() != 6 * count) {
+    throw std::invalid_argument(
+        "p_WO and V_WO must have 3 and 6 numbers for each object");
+  }
+  std::vector<MovingFrameOf<AutoDiff>> objects(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (int k = 0; k < 3; ++k) objects[i].p_WF[k] = p_WO(3 * i + k);
+    for (int k = 0; k < 6; ++k) objects[i].V_WF[k] = V_WO(6 * i + k);
+  }
+  return ToAutoDiffVector(
+      ToVector(ComputeBraking<AutoDiff>(
+          contacts.set.contacts,
+          {ToScalars<3>(p_WTo, "p_WTo"), ToScalars<6>(V_WTool, "V_WTool")},
+          objects, gains)),
+      contacts.num_derivatives);
 }
 
 }  // namespace
@@ -65,6 +90,11 @@ void BindBraking(nb::module_& m) {
       "Raises:\n"
       "    ValueError: rows do not match.\n"
       "    IndexError: a contact names an object that has no row.");
+  m.def("pre_contact_braking", &DifferentiateBraking, nb::arg("contacts"),
+        nb::arg("p_WTo"), nb::arg("V_WTool"), nb::arg("p_WO"), nb::arg("V_WO"),
+        nb::arg("gains"),
+        "The same with derivatives; p_WO (3 m,) and V_WO (6 m,) have one "
+        "object after another.");
 }
 
 }  // namespace drake_haptics

@@ -21,7 +21,7 @@ constexpr double kRounding = 0.1;  // ρ
 template <typename T>
 T Weight(const ContactOf<T>& contact, const BrakingGains& gains) {
   const T s = contact.distance / gains.distance;
-  const T w = ValueOf(s) > 0 && ValueOf(s) < 1 ? T(4 * s * (1 - s)) : T(0);
+  const T w = ValueOf(s) > 0 && ValueOf(s) < 1 ? T(4 * s * T(1 - s)) : T(0);
   return w * w;
 }
 
@@ -68,7 +68,8 @@ class Shares {
     const Vec4Of<T> x =
         inverse_.Solve(ValuesOf(m), ValueOf(W)).template cast<T>();
     const Vec4Of<T> Ax = sum_ * x + T(kRounding * W) * x;
-    return (1 + kRounding) * W * T(2 * m.dot(x) - x.dot(Ax));
+    const T leverage = T(2 * m.dot(x)) - x.dot(Ax);
+    return T((1 + kRounding) * W) * leverage;
   }
 
  private:
@@ -128,7 +129,7 @@ WrenchModelOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
         SpeedAlong<T>(n, contact.p_WC, objects.at(contact.object)) -
         SpeedAlong<T>(n, contact.p_WC, tool);
     if (!(ValueOf(approach) > 0)) continue;
-    const T damping = gains.damping * sqrt(W) * shares(n, W);
+    const T damping = T(gains.damping * sqrt(W)) * shares(n, W);
     Vec6Of<T> G;
     G << Vec3Of<T>(contact.p_WC - tool.p_WF).cross(n), n;
     model.F += T(damping * approach) * G;
