@@ -11,18 +11,26 @@ from pydrake.systems.framework import (
     Context,
     DiscreteValues,
     InputPort,
-    LeafSystem,
     OutputPort,
     ValueProducer,
 )
 
-from drake_haptics._core import FrictionStep, StickSlipModel
+from drake_haptics._core import (
+    AutoDiffFrictionStep,
+    AutoDiffVector,
+    FrictionStep,
+    StickSlipModel,
+)
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 
 _NOTHING_MOVES = np.zeros(0)
 
 
-class StickSlipFriction(LeafSystem):
+class StickSlipFriction(DifferentiableSystem):
     """Friction of the clusters, after Hayward and Armstrong (2000; paper, 4.4.2).
 
     Each contact has an adhesion point and is drawn back to it by a force that grows
@@ -60,6 +68,12 @@ class StickSlipFriction(LeafSystem):
     moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z_W (3), load (N), grip]: the
     poses and the strongest contacts of the last tick, updated every period from 0 s
     on. A slot without a load is empty.
+
+    Under AutoDiffXd `clusters`, `contact_wrench` and `friction_force` are an
+    `AutoDiffClusterSet`, an `AutoDiffPenaltyWrench` and an `AutoDiffFrictionStep` of
+    `drake_haptics._core`. Derivatives are those of the branch taken: of each contact as
+    it sticks or slides now, and of its grip as it wears or is restored. At no
+    displacement, where the length of z has a kink, that length does not change.
     """
 
     def __init__(
@@ -150,6 +164,29 @@ class StickSlipFriction(LeafSystem):
     def get_friction_force_output_port(self) -> OutputPort:
         """Returns the output `friction_force`."""
         return self._friction_force
+
+    def differentiate(
+        self, port: str, at: AutoDiffPoint
+    ) -> AutoDiffVector | AutoDiffFrictionStep:
+        """Returns the wrench model or the step with its derivatives."""
+        step = self._differentiate_step(at)
+        return step.wrench_model if port == "wrench_model" else step
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the next state with its derivatives."""
+        return self._differentiate_step(at).next_state
+
+    def _differentiate_step(self, at: AutoDiffPoint) -> AutoDiffFrictionStep:
+        poses = [at[port.get_name()] for port in self._X_WO]
+        q_WO = AutoDiffVector(
+            np.concatenate([_NOTHING_MOVES, *(q.value for q in poses)]),
+            np.vstack(
+                [np.zeros((0, at.num_derivatives)), *(q.gradient for q in poses)]
+            ),
+        )
+        return self._model.step(
+            at.state, at["clusters"], at["contact_wrench"], at["X_WTool"], q_WO
+        )
 
     def _calc_step(self, context: Context, step: AbstractValue) -> None:
         poses = [port.Eval(context) for port in self._X_WO]

@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 from contact_samples import box
+from effect_chain import make_chain
+from friction_bodies import sled
 from pydrake.common.value import Value
-from pydrake.math import RigidTransform
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import LogVectorOutput
+from twin_check import check_twin
 
 from drake_haptics._core import (
     RigidToolDynamics,
@@ -233,3 +236,78 @@ def test_arguments_out_of_bounds_are_refused(change, message):
     good = {"period_s": PERIOD, "coefficient": [MU], "break_away_m": BREAK_AWAY}
     with pytest.raises(ValueError, match=message):
         StickSlipFriction([fixed()], **(good | change))
+
+
+SLOTS, SLOT_SIZE = 32, 12
+
+
+def on_a_cart(rng, way):
+    """Four feet on a slope that moves, a tick after they stood: chain, inputs, state.
+
+    The second tick has moved them by `way` along the slope, m.
+    """
+    tips = np.array([[2, 2, 0], [2, -2, 0], [-2, 2, 0], [-2, -2, 0]]) * 1e-2
+    tips += rng.uniform(-1, 1, size=(4, 3)) * [5e-3, 5e-3, 3e-5]
+    cart = [ContactObject("cart", FLOOR)]
+    chain = make_chain(sled(tips), cart, TOLERANCE, friction=make(cart))
+    # Slope and pose of the world, so that no entry is small by symmetry.
+    X_WS = RigidTransform(RollPitchYaw(rng.uniform(-1, 1, 3)), rng.normal(size=3) / 10)
+    inputs = {
+        "X_WTool": pose_to_vector(X_WS @ RigidTransform([0, 0, 4e-4])),
+        "X_WO_cart": pose_to_vector(X_WS),
+        "V_WTool": 0.1 * rng.normal(size=6),
+        "V_WO_cart": 0.1 * rng.normal(size=6),
+    }
+    context = chain.CreateDefaultContext()
+    for name, value in inputs.items():
+        chain.GetInputPort(name).FixValue(context, value)
+    state = chain.EvalUniquePeriodicDiscreteUpdate(context).get_vector().CopyToVector()
+    angle = rng.uniform(0, 6)
+    aside = way * np.array([np.cos(angle), np.sin(angle), 0.0])
+    # Some feet are pressed harder, others less: with neither there is a kink.
+    turn = RotationMatrix(RollPitchYaw(4e-4, 3e-4, 1e-3))
+    now = RigidTransform(turn, 0.7 * aside + [0, 0, 4e-4])
+    inputs["X_WTool"] = pose_to_vector(X_WS @ now)
+    inputs["X_WO_cart"] = pose_to_vector(X_WS @ RigidTransform(-0.3 * aside))
+    return chain, inputs, state
+
+
+def empty_slots(state):
+    """Entries of the state that hold no number: empty slots, and names of objects."""
+    slots = 14 + SLOT_SIZE * np.arange(SLOTS)
+    empty = slots[state[slots + 10] == 0.0]
+    return np.concatenate([slots, (empty[:, None] + np.arange(1, SLOT_SIZE)).ravel()])
+
+
+@pytest.mark.parametrize("seed", [1, 3, 4])
+@pytest.mark.parametrize(
+    ("way", "slides", "grips"),
+    [(3e-5, False, True), (1.6e-4, True, True), (6e-4, True, False)],
+    ids=["sticks", "begins to slide", "slides"],
+)
+def test_its_twin_has_all_derivatives_as_it_sticks_and_slides(seed, way, slides, grips):
+    chain, inputs, state = on_a_cart(np.random.default_rng(seed), way)
+    jacobian = check_twin(
+        chain,
+        inputs,
+        state=state,
+        constants=empty_slots(state),
+        step=3e-7,
+        rtol=1e-6,
+        floor=0.1,  # a grip that is worn down does not change
+    )
+    context = chain.CreateDefaultContext()
+    for name, value in inputs.items():
+        chain.GetInputPort(name).FixValue(context, value)
+    context.SetDiscreteState(state)
+    friction = chain.GetSubsystemByName("friction")
+    step = friction.get_friction_force_output_port().Eval(
+        friction.GetMyContextFromRoot(context)
+    )
+    assert len(step.sliding) == 4
+    assert (step.sliding == slides).all()
+    grip = step.next_state[14 + 11 :: SLOT_SIZE][:4]
+    assert (grip > 1e-9).any() == grips
+    of_friction = jacobian[78:84]
+    assert np.abs(of_friction[:, :14]).max() > 1.0
+    assert np.abs(of_friction[:, 26:]).max() > 0.1

@@ -90,7 +90,16 @@ class _Side:
 
 
 def check_twin(
-    system, inputs, *, continuous=(), state=(), time_s=0.0, step=1e-4, rtol=1e-9
+    system,
+    inputs,
+    *,
+    continuous=(),
+    state=(),
+    constants=(),
+    time_s=0.0,
+    step=1e-4,
+    rtol=1e-9,
+    floor=1e-3,
 ):
     """Checks values and all derivatives of a system's twin at a point.
 
@@ -99,26 +108,31 @@ def check_twin(
         inputs: Vector by name of the input.
         continuous: Its continuous state.
         state: Its discrete state, all groups.
+        constants: Entries of the state that are not varied.
         time_s: s.
         step: Of the differences.
         rtol: Largest error of an entry, relative to the largest derivative of its
             row, or to the row's value.
+        floor: Rows smaller than this count as if they were this large.
 
     Returns:
-        The Jacobian.
+        The Jacobian, by inputs, states and time; zeros by what is not varied.
     """
     sizes = {name: len(vector) for name, vector in inputs.items()}
     z = np.concatenate([*inputs.values(), continuous, state, [time_s]])
+    varied = np.ones(len(z))
+    varied[len(z) - 1 - len(state) + np.asarray(constants, dtype=int)] = 0.0
+    seed = np.diag(varied)
     original = _Side(system, sizes)
-    found = _Side(system.ToAutoDiffXd(), sizes)(InitializeAutoDiff(z).ravel())
+    found = _Side(system.ToAutoDiffXd(), sizes)(InitializeAutoDiff(z, seed).ravel())
     value = original(z)
     np.testing.assert_allclose(
         ExtractValue(found).ravel(), value, rtol=1e-12, atol=1e-12
     )
     jacobian = ExtractGradient(found)
-    expected = differentiate(original, z, step)
+    expected = differentiate(lambda x: original(z + varied * (x - z)), z, step)
     scale = np.maximum(np.abs(expected).max(axis=1), np.abs(value))
-    error = np.abs(jacobian - expected) / np.maximum(scale, 1e-3)[:, None]
+    error = np.abs(jacobian - expected) / np.maximum(scale, floor)[:, None]
     assert np.isfinite(error).all()
     assert error.max() < rtol, (
         f"derivatives are off by {error.max():.1e} of their row, at (row, column)"

@@ -57,8 +57,17 @@ void ZipWrenches(A& a, B& b, const F& f) {
   ZipNumbers(a.tool.F, b.tool.F, f);
   ZipNumbers(a.tool.K, b.tool.K, f);
   ZipNumbers(a.tool.B, b.tool.B, f);
-  ZipItems(a.F_objects_W, b.F_objects_W, f);
   ZipItems(a.f_cluster_W, b.f_cluster_W, f);
+  if constexpr (requires { a.F_objects_W; }) {
+    ZipItems(a.F_objects_W, b.F_objects_W, f);
+  }
+}
+
+template <typename A, typename B, typename F>
+void ZipFriction(A& a, B& b, const F& f) {
+  ZipWrenches(a, b, f);
+  f(a.stored, b.stored);
+  ZipItems(a.next_state, b.next_state, f);
 }
 
 template <typename A, typename B, typename F>
@@ -67,6 +76,8 @@ void Zip(A& a, B& b, const F& f) {
     ZipContacts(a, b, f);
   } else if constexpr (requires { a.clusters; }) {
     ZipClusters(a, b, f);
+  } else if constexpr (requires { a.next_state; }) {
+    ZipFriction(a, b, f);
   } else {
     ZipWrenches(a, b, f);
   }
@@ -114,6 +125,15 @@ PenaltyWrench ValuesOf(const PenaltyWrenchOf<AutoDiff>& wrench) {
   return values;
 }
 
+FrictionStep ValuesOf(const FrictionStepOf<AutoDiff>& step) {
+  FrictionStep values;
+  values.sliding = step.sliding;
+  values.f_cluster_W.resize(step.f_cluster_W.size());
+  values.next_state.resize(step.next_state.size());
+  Zip(step, values, CopyValue);
+  return values;
+}
+
 template <typename Set, typename Plain>
 void SetValues(const Plain& values, Differentiated<Set>* differentiated) {
   Zip(differentiated->set, values,
@@ -130,13 +150,17 @@ Differentiated<Set> WithVariables(const Differentiated<Set>& constant,
   return extended;
 }
 
+template void SetValues(const ContactSet&, AutoDiffContactSet*);
 template void SetValues(const ClusterSet&, AutoDiffClusterSet*);
 template void SetValues(const PenaltyWrench&, AutoDiffPenaltyWrench*);
+template void SetValues(const FrictionStep&, AutoDiffFrictionStep*);
 template AutoDiffContactSet WithVariables(const AutoDiffContactSet&,
                                           Eigen::Index);
 template AutoDiffClusterSet WithVariables(const AutoDiffClusterSet&,
                                           Eigen::Index);
 template AutoDiffPenaltyWrench WithVariables(const AutoDiffPenaltyWrench&,
                                              Eigen::Index);
+template AutoDiffFrictionStep WithVariables(const AutoDiffFrictionStep&,
+                                            Eigen::Index);
 
 }  // namespace drake_haptics

@@ -3,6 +3,7 @@
 #include "autodiff.h"
 #include "clustering.h"
 #include "contact.h"
+#include "friction.h"
 #include "penalty_force.h"
 
 namespace drake_haptics {
@@ -18,11 +19,13 @@ struct Differentiated {
 using AutoDiffContactSet = Differentiated<ContactSetOf<AutoDiff>>;
 using AutoDiffClusterSet = Differentiated<ClusterSetOf<AutoDiff>>;
 using AutoDiffPenaltyWrench = Differentiated<PenaltyWrenchOf<AutoDiff>>;
+using AutoDiffFrictionStep = Differentiated<FrictionStepOf<AutoDiff>>;
 
 /// The values alone.
 ContactSet ValuesOf(const ContactSetOf<AutoDiff>& set);
 ClusterSet ValuesOf(const ClusterSetOf<AutoDiff>& set);
 PenaltyWrench ValuesOf(const PenaltyWrenchOf<AutoDiff>& wrench);
+FrictionStep ValuesOf(const FrictionStepOf<AutoDiff>& step);
 
 /// Replaces values by those of doubles, which are the same but for the order
 /// in which Eigen sums: what is decided further on is the same to the last bit.

@@ -1,11 +1,13 @@
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/vector.h>
 
+#include <span>
 #include <stdexcept>
 #include <string>
 
 #include "bind.h"
 #include "bind_array.h"
+#include "bind_autodiff_set.h"
 #include "bind_columns.h"
 #include "friction.h"
 #include "penalty_force.h"
@@ -18,35 +20,84 @@ namespace {
 using Numbers =
     nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
-void RequireSize(const Numbers& array, int size, const char* name) {
-  if (static_cast<int>(array.shape(0)) != size) {
+template <typename T>
+void RequireSize(std::span<const T> numbers, int size, const char* name) {
+  if (std::ssize(numbers) != size) {
     throw std::invalid_argument(std::string(name) + " must have " +
                                 std::to_string(size) + " numbers, has " +
-                                std::to_string(array.shape(0)));
+                                std::to_string(numbers.size()));
   }
 }
 
-FrictionStep CheckedStep(const StickSlipModel& model, const Numbers& state,
-                         const ClusterSet& clusters,
-                         const PenaltyWrench& contact_wrench,
-                         const PoseVector& q_WTool, const Numbers& q_WO) {
+template <typename T>
+FrictionStepOf<T> CheckedStep(const StickSlipModel& model,
+                              std::span<const T> state,
+                              const ClusterSetOf<T>& clusters,
+                              const PenaltyWrenchOf<T>& contact_wrench,
+                              const Eigen::Matrix<T, 7, 1>& q_WTool,
+                              std::span<const T> q_WO) {
   RequireSize(state, model.state_size(), "state");
   RequireSize(q_WO, 7 * model.num_moving(), "q_WO");
   if (clusters.clusters.size() != contact_wrench.f_cluster_W.size()) {
     throw std::invalid_argument(
         "contact_wrench must have one force for each cluster");
   }
-  std::vector<double> normal_forces;
+  std::vector<T> normal_forces;
   normal_forces.reserve(clusters.clusters.size());
   for (std::size_t c = 0; c < clusters.clusters.size(); ++c) {
     if (clusters.clusters[c].object >= model.num_objects()) {
       throw std::invalid_argument(
           "a cluster names an object that has no coefficient");
     }
-    normal_forces.push_back(contact_wrench.f_cluster_W[c].norm());
+    normal_forces.push_back(LengthOf(contact_wrench.f_cluster_W[c]));
   }
   return model.Step(state.data(), clusters.clusters, normal_forces, q_WTool,
                     q_WO.data());
+}
+
+FrictionStep Step(const StickSlipModel& model, const Numbers& state,
+                  const ClusterSet& clusters,
+                  const PenaltyWrench& contact_wrench,
+                  const PoseVector& q_WTool, const Numbers& q_WO) {
+  return CheckedStep<double>(model, {state.data(), state.shape(0)}, clusters,
+                             contact_wrench, q_WTool,
+                             {q_WO.data(), q_WO.shape(0)});
+}
+
+std::vector<AutoDiff> ToList(const AutoDiffVector& vector) {
+  std::vector<AutoDiff> list;
+  for (Eigen::Index i = 0; i < vector.size(); ++i) list.push_back(vector(i));
+  return list;
+}
+
+std::span<const double> ToSpan(const Eigen::VectorXd& values) {
+  return {values.data(), static_cast<std::size_t>(values.size())};
+}
+
+AutoDiffFrictionStep DifferentiateStep(
+    const StickSlipModel& model, const AutoDiffVector& state,
+    const AutoDiffClusterSet& clusters,
+    const AutoDiffPenaltyWrench& contact_wrench, const AutoDiffVector& q_WTool,
+    const AutoDiffVector& q_WO) {
+  const Eigen::Index num_derivatives =
+      CommonNumDerivatives(state, q_WTool, q_WO);
+  if (clusters.num_derivatives != num_derivatives ||
+      contact_wrench.num_derivatives != num_derivatives) {
+    throw std::invalid_argument(
+        "clusters and contact_wrench must have derivatives by the variables of "
+        "the state");
+  }
+  AutoDiffFrictionStep step{
+      CheckedStep<AutoDiff>(model, ToList(state), clusters.set,
+                            contact_wrench.set,
+                            ToScalars<7>(q_WTool, "q_WTool"), ToList(q_WO)),
+      num_derivatives};
+  SetValues(
+      CheckedStep<double>(model, ToSpan(state.value), ValuesOf(clusters.set),
+                          ValuesOf(contact_wrench.set), q_WTool.value,
+                          ToSpan(q_WO.value)),
+      &step);
+  return step;
 }
 
 void BindFrictionStep(nb::module_& m) {
@@ -76,6 +127,50 @@ void BindFrictionStep(nb::module_& m) {
   DefNumbers<&FrictionStep::next_state>(
       &step, "next_state", "(n,) what the next tick's step starts from.");
   DefFrozenCopy(&step);
+}
+
+// Vectors one after another.
+Eigen::Map<const VectorOf<AutoDiff>> Flat(
+    const std::vector<Vec3Of<AutoDiff>>& vectors) {
+  return {vectors.empty() ? nullptr : vectors.front().data(),
+          3 * std::ssize(vectors)};
+}
+
+void BindAutoDiffStep(nb::module_& m) {
+  using Step = AutoDiffFrictionStep;
+  nb::class_<Step> step(
+      m, "AutoDiffFrictionStep",
+      "A `FrictionStep` with derivatives by D variables. Immutable; copies are "
+      "the object itself.");
+  step.def_prop_ro(
+      "wrench_model",
+      [](const Step& s) {
+        return ToAutoDiffVector(ToVector(s.set.tool), s.num_derivatives);
+      },
+      "(78,) wrench on the tool at To with its linear model.");
+  step.def_prop_ro(
+      "f_cluster_W",
+      [](const Step& s) {
+        return ToAutoDiffVector(Flat(s.set.f_cluster_W), s.num_derivatives);
+      },
+      "(3 k,) force of each cluster on the tool, N.");
+  step.def_prop_ro(
+      "stored_J",
+      [](const Step& s) {
+        return ToAutoDiffVector(VectorOf<AutoDiff>{{s.set.stored}},
+                                s.num_derivatives);
+      },
+      "(1,) elastic energy of the contacts, J.");
+  step.def_prop_ro(
+      "next_state",
+      [](const Step& s) {
+        return ToAutoDiffVector(
+            Eigen::Map<const VectorOf<AutoDiff>>(s.set.next_state.data(),
+                                                 s.set.next_state.size()),
+            s.num_derivatives);
+      },
+      "(n,) what the next tick's step starts from.");
+  DefDifferentiated(&step, "The `FrictionStep`.");
 }
 
 void BindStickSlipModel(nb::module_& m) {
@@ -109,7 +204,7 @@ void BindStickSlipModel(nb::module_& m) {
           "    ValueError: a coefficient is negative, the ratio below 1, or a "
           "length not above 0.")
       .def_prop_ro("state_size", &StickSlipModel::state_size, "n.")
-      .def("step", &CheckedStep, nb::arg("state"), nb::arg("clusters"),
+      .def("step", &Step, nb::arg("state"), nb::arg("clusters"),
            nb::arg("contact_wrench"), nb::arg("q_WTool"), nb::arg("q_WO"),
            "Friction now, and the state for the next tick.\n\n"
            "Args:\n"
@@ -122,13 +217,18 @@ void BindStickSlipModel(nb::module_& m) {
            "other.\n\n"
            "Raises:\n"
            "    ValueError: a size does not match, or a cluster names an "
-           "object that has no coefficient.");
+           "object that has no coefficient.")
+      .def("step", &DifferentiateStep, nb::arg("state"), nb::arg("clusters"),
+           nb::arg("contact_wrench"), nb::arg("q_WTool"), nb::arg("q_WO"),
+           "The same with derivatives: those of each contact as it sticks or "
+           "slides, and with the neighbours it has.");
 }
 
 }  // namespace
 
 void BindFriction(nb::module_& m) {
   BindFrictionStep(m);
+  BindAutoDiffStep(m);
   BindStickSlipModel(m);
 }
 

@@ -62,10 +62,10 @@ Rubbing<T> FindRubbing(const std::vector<ClusterOf<T>>& clusters,
     rubbing.normal_force[k] = normal_forces[c];
     if (all) continue;
     const int object = clusters[c].object;
-    rubbing.normal_force[k] *=
-        sum(
-            object, [](int i) { return i; }, num_clusters) /
+    const T of_all = sum(object, [](int i) { return i; }, num_clusters);
+    const T of_chosen =
         sum(object, [&](int i) { return rubbing.cluster[i]; }, rubbing.size);
+    rubbing.normal_force[k] *= T(of_all / of_chosen);
   }
   return rubbing;
 }
@@ -161,7 +161,7 @@ FrictionStepOf<T> StickSlipModel::Step(
     AddAt<T>(now[k].p_WC - q_WTool.template tail<3>(), force, &step.tool);
     step.f_cluster_W[c] = force.f_W;
     step.sliding[c] = force.sliding;
-    step.stored -= 0.5 * force.f_W.dot(now[k].z_W);
+    step.stored -= T(0.5 * force.f_W.dot(now[k].z_W));
   }
 
   step.next_state.resize(state_size(), T(0.0));

@@ -17,7 +17,7 @@ Mat3Of<T> StiffnessAhead(const T& k, const T& limit, const Vec3Of<T>& z,
   const Vec3Of<T> e = z_ahead / length;
   const T along = e.dot(u);
   const T secant =
-      along > 0.0 ? std::clamp(T((limit - k * e.dot(z)) / along), T(0.0), k)
+      along > 0.0 ? std::clamp(T(T(limit - T(k * e.dot(z))) / along), T(0.0), k)
                   : T(0.0);
   const T turning = limit / length;
   return turning * in_plane + T(secant - turning) * e * e.transpose();
@@ -34,7 +34,7 @@ FrictionForceOf<T> ApplyStickSlip(const T& normal_force, double coefficient,
   const T k = static_coefficient * contact->load / parameters.break_away;
   const T sliding_limit = coefficient * normal_force;
   const T extra = (static_coefficient - coefficient) * normal_force;
-  T limit = sliding_limit + contact->grip * extra;
+  T limit = sliding_limit + T(contact->grip * extra);
 
   FrictionForceOf<T> force;
   const T length = LengthOf(contact->z_W);
@@ -43,14 +43,14 @@ FrictionForceOf<T> ApplyStickSlip(const T& normal_force, double coefficient,
     // The slip s at which k (|z| − s) meets a limit that falls with s. The
     // limit falls more slowly than the spring, since load >= N.
     const T wear = extra / parameters.break_away;
-    T slip = (k * length - limit) / (k - wear);
+    T slip = T(T(k * length) - limit) / T(k - wear);
     contact->grip -= slip / parameters.break_away;
     if (contact->grip < 0.0) {
-      slip = length - sliding_limit / k;
+      slip = length - T(sliding_limit / k);
       contact->grip = T(0.0);
     }
-    limit = sliding_limit + contact->grip * extra;
-    contact->z_W *= T((length - slip) / length);
+    limit = sliding_limit + T(contact->grip * extra);
+    contact->z_W *= T(T(length - slip) / length);
   }
   force.f_W = -k * contact->z_W;
   force.K_W =

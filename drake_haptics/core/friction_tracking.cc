@@ -17,9 +17,9 @@ struct Adhesion {
   T load_grip;
 
   void Add(const Adhesion& other, const T& share) {
-    load += share * other.load;
+    load += T(share * other.load);
     load_z += share * other.load_z;
-    load_grip += share * other.load_grip;
+    load_grip += T(share * other.load_grip);
   }
 };
 
@@ -30,7 +30,7 @@ using Adhesions = std::array<Adhesion<T>, kCapacity>;
 template <typename T>
 T SquaredDistance(const Vec3Of<T>& p1, const Vec3Of<T>& n1, const Vec3Of<T>& p2,
                   const Vec3Of<T>& n2, double reach) {
-  return (p1 - p2).squaredNorm() / (reach * reach) + (n1 - n2).squaredNorm();
+  return T((p1 - p2).squaredNorm() / (reach * reach)) + (n1 - n2).squaredNorm();
 }
 
 template <typename T>
@@ -55,7 +55,7 @@ void Distribute(const CarriedContactsOf<T>& last,
           now[j].object != old.object
               ? T(0.0)
               : T(now[j].load /
-                  (kSamePlace + FourthPower(last.items[i], now[j], reach)));
+                  T(kSamePlace + FourthPower(last.items[i], now[j], reach)));
       sum += weights[j];
     }
     const Adhesion<T> whole{old.load, old.load * old.z_W, old.load * old.grip};
@@ -102,7 +102,7 @@ void Balance(const AdhesiveContactsOf<T>& now, double reach,
   for_each_pair([&](int from, int to, const T& part) {
     const T surplus = excesses[from];
     const T lack = -excesses[to];
-    const T load = part * surplus * lack /
+    const T load = T(T(part * surplus) * lack) /
                    std::max({wanted[from], given[to], surplus, lack});
     const T share = load / before[from].load;
     (*adhesions)[to].Add(before[from], share);
@@ -155,7 +155,7 @@ void HandOnAdhesion(const CarriedContactsOf<T>& last, double reach,
     // parallel transport.
     const Vec3Of<T> z = has.load_z / whole;
     contact.z_W = z - contact.nhat_BA_W.dot(z) * contact.nhat_BA_W;
-    contact.grip = (has.load_grip + whole - has.load) / whole;
+    contact.grip = T(T(has.load_grip + whole) - has.load) / whole;
     contact.load = std::min(whole, T(2 * normal_force));
   }
 }
