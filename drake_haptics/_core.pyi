@@ -1093,6 +1093,7 @@ class ContactShading:
             ValueError: an object is None.
         """
 
+    @overload
     def shade(self, contacts: ContactSet, q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')]) -> ContactSet:
         """
         The contacts with shaded normals; all else is as it was.
@@ -1106,6 +1107,10 @@ class ContactShading:
             ValueError: not a pose, or not one for each object.
             IndexError: a contact names an object, piece or feature that does not exist.
         """
+
+    @overload
+    def shade(self, contacts: AutoDiffContactSet, q_WTool: AutoDiffVector, q_WO: AutoDiffVector) -> AutoDiffContactSet:
+        """The same with derivatives; q_WO (7 m,) has one object after another."""
 
 class FrictionStep:
     """
@@ -1138,6 +1143,47 @@ class FrictionStep:
 
     def __copy__(self) -> object: ...
 
+class AutoDiffFrictionStep:
+    """
+    A `FrictionStep` with derivatives by D variables. Immutable; copies are the object itself.
+    """
+
+    @property
+    def wrench_model(self) -> AutoDiffVector:
+        """(78,) wrench on the tool at To with its linear model."""
+
+    @property
+    def f_cluster_W(self) -> AutoDiffVector:
+        """(3 k,) force of each cluster on the tool, N."""
+
+    @property
+    def stored_J(self) -> AutoDiffVector:
+        """(1,) elastic energy of the contacts, J."""
+
+    @property
+    def next_state(self) -> AutoDiffVector:
+        """(n,) what the next tick's step starts from."""
+
+    @property
+    def value(self) -> FrictionStep:
+        """The `FrictionStep`."""
+
+    @property
+    def num_derivatives(self) -> int:
+        """D, the number of variables that derivatives are by."""
+
+    def with_variables(self, num_derivatives: int) -> AutoDiffFrictionStep:
+        """
+        A constant, D = 0, with derivatives by that many variables: zeros.
+
+        Raises:
+            ValueError: it has derivatives.
+        """
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
 class StickSlipModel:
     """
     Stick-slip friction after Hayward and Armstrong (2000) of a tool on objects, at the representative contacts of clusters. Immutable: its state, (n,), goes in and comes out. It is [X_WTool (7); X_WO (7) of each object that moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z (3), load, grip], the poses and the contacts of the last tick. A slot without a load is empty.
@@ -1160,6 +1206,7 @@ class StickSlipModel:
     def state_size(self) -> int:
         """n."""
 
+    @overload
     def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], clusters: ClusterSet, contact_wrench: PenaltyWrench, q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> FrictionStep:
         """
         Friction now, and the state for the next tick.
@@ -1175,6 +1222,12 @@ class StickSlipModel:
             ValueError: a size does not match, or a cluster names an object that has no coefficient.
         """
 
+    @overload
+    def step(self, state: AutoDiffVector, clusters: AutoDiffClusterSet, contact_wrench: AutoDiffPenaltyWrench, q_WTool: AutoDiffVector, q_WO: AutoDiffVector) -> AutoDiffFrictionStep:
+        """
+        The same with derivatives: those of each contact as it sticks or slides, and with the neighbours it has.
+        """
+
 class BrakingGains:
     """Viscous braking before surfaces touch."""
 
@@ -1188,6 +1241,7 @@ class BrakingGains:
             ValueError: b < 0, D <= 0, or one of them is not finite.
         """
 
+@overload
 def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], gains: BrakingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
     """
     Braking of the approach of surfaces that do not touch yet (McNeely, Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s w v along its normal, v the speed of approach, w = 4 (d/D)(1 − d/D), s its share among contacts with like normals (braking.h). Never a pull.
@@ -1204,6 +1258,12 @@ def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.flo
     Raises:
         ValueError: rows do not match.
         IndexError: a contact names an object that has no row.
+    """
+
+@overload
+def pre_contact_braking(contacts: AutoDiffContactSet, p_WTo: AutoDiffVector, V_WTool: AutoDiffVector, p_WO: AutoDiffVector, V_WO: AutoDiffVector, gains: BrakingGains) -> AutoDiffVector:
+    """
+    The same with derivatives; p_WO (3 m,) and V_WO (6 m,) have one object after another.
     """
 
 @overload

@@ -6,14 +6,24 @@ from collections.abc import Sequence
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import Context, InputPort, LeafSystem, OutputPort
+from pydrake.systems.framework import Context, InputPort, OutputPort
 
-from drake_haptics._core import ContactShading, Decomposition, SurfaceShading
+from drake_haptics._core import (
+    AutoDiffContactSet,
+    AutoDiffVector,
+    ContactShading,
+    Decomposition,
+    SurfaceShading,
+)
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
 
 
-class ForceShading(LeafSystem):
+class ForceShading(DifferentiableSystem):
     """Normals interpolated over the triangles under the witness points.
 
     The direction of the force follows the smooth surface that a mesh stands for
@@ -37,6 +47,11 @@ class ForceShading(LeafSystem):
     Pieces of a decomposition that were not made from triangles (methods "hull" and
     "coacd") keep the normals of their facets. A shaded force is not the gradient of
     any energy: see the documentation for what a closed path can gain.
+
+    Under AutoDiffXd both `contacts` are a `drake_haptics._core.AutoDiffContactSet`.
+    Derivatives of the normals are complete: as they turn with the bodies and with the
+    place on the triangle. At an edge between triangles they are those of the triangle
+    that the witness point is taken to be on.
     """
 
     def __init__(
@@ -112,6 +127,21 @@ class ForceShading(LeafSystem):
     def get_contacts_output_port(self) -> OutputPort:
         """Returns the output `contacts`."""
         return self._shaded_contacts
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffContactSet:
+        """Returns the shaded contacts with their derivatives."""
+        q_WO = self._q_WO.copy()
+        by_q_WO = np.zeros((*q_WO.shape, at.num_derivatives))
+        for i, input_port in self._X_WO.items():
+            X_WO = at[input_port.get_name()]
+            q_WO[i], by_q_WO[i] = X_WO.value, X_WO.gradient
+        return self._shading.shade(
+            at["contacts"],
+            at["X_WTool"],
+            AutoDiffVector(
+                q_WO.ravel(), by_q_WO.reshape(q_WO.size, at.num_derivatives)
+            ),
+        )
 
     def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
         q_WO = self._q_WO

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 import trimesh
+from effect_chain import make_chain
 from pydrake.common.value import Value
-from pydrake.math import RigidTransform
+from pydrake.math import RigidTransform, RotationMatrix
 from test_contact_query import TOLERANCE, box_core
+from twin_check import check_twin
 
 from drake_haptics._core import SceneTracker
 from drake_haptics.decomposition import decompose
@@ -95,6 +97,40 @@ def test_an_object_that_is_not_shaded_keeps_its_facets(tool, ball):
     )
     shaded = shade(shading, context, contacts, X_WTool)
     np.testing.assert_array_equal(shaded.nhat_BA_W, contacts.nhat_BA_W)
+
+
+@pytest.mark.parametrize("moves", [False, True])
+def test_its_twin_turns_the_force_with_place_and_poses(tool, ball, moves):
+    """The way of the tool turns the normal: with facets it would not."""
+    X_WO = RigidTransform(RotationMatrix.MakeXRotation(0.3), [0.3, -0.1, 0.5])
+    turn = RotationMatrix.MakeYRotation(0.2)
+    X_WTool = RigidTransform(
+        turn, X_WO.translation() + (RADIUS - 1e-4) * (X_WO.rotation() @ OUT)
+    )
+    item = ContactObject("ball", ball, None if moves else X_WO)
+    inputs = {
+        "X_WTool": pose_to_vector(X_WTool),
+        "V_WTool": np.array([0.1, 0.2, -0.3, 0.01, -0.02, 0.03]),
+    }
+    if moves:
+        inputs["X_WO_ball"] = 1.0 * pose_to_vector(X_WO)
+        inputs["V_WO_ball"] = np.array([-0.3, 0.1, 0.2, 0.02, 0.03, -0.01])
+    shadings = [make_shading(tool, [item], [smooth])[0] for smooth in (True, False)]
+    shaded, faceted = (
+        check_twin(
+            make_chain(tool, [item], TOLERANCE, shading=shading),
+            inputs,
+            step=1e-6,
+            rtol=1e-6,
+        )
+        for shading in shadings
+    )
+    across = np.eye(3) - np.outer(OUT, OUT)
+    across = X_WO.rotation().matrix() @ across @ X_WO.rotation().matrix().T
+    by_way = [across @ J[3:6, 4:7] @ across for J in (shaded, faceted)]
+    # A force f that stays normal to a sphere turns by f / r on its way; the facet's
+    # stays, and its length changes with the way along what the facet is off the sphere.
+    assert np.linalg.norm(by_way[0] - by_way[1]) > 0.1 * np.linalg.norm(by_way[1])
 
 
 @pytest.mark.parametrize("angle", [-1.0, 180.5, float("nan")])

@@ -2,6 +2,9 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <stdexcept>
+
+#include "autodiff_sets.h"
 #include "bind.h"
 #include "force_shading.h"
 #include "rotation.h"
@@ -20,7 +23,39 @@ ContactSet Shade(const ContactShading& self, ContactSet contacts,
   for (Eigen::Index i = 0; i < q_WO.rows(); ++i) {
     X_WO.push_back(PoseFromVector(q_WO.row(i).transpose(), "q_WO"));
   }
-  self.Shade(PoseFromVector(q_WTool, "q_WTool"), X_WO, &contacts);
+  self.Shade<double>(PoseFromVector(q_WTool, "q_WTool"), X_WO, &contacts);
+  return contacts;
+}
+
+// Pose i of several, one after another.
+PoseOf<AutoDiff> ToPose(const AutoDiffVector& poses, Eigen::Index i,
+                        const char* what) {
+  PoseVectorOf<AutoDiff> q;
+  for (int k = 0; k < 7; ++k) q[k] = poses(7 * i + k);
+  PoseFromVector(ValuesOf(q), what);  // refuses what is none
+  return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
+}
+
+AutoDiffContactSet DifferentiateShade(const ContactShading& self,
+                                      AutoDiffContactSet contacts,
+                                      const AutoDiffVector& q_WTool,
+                                      const AutoDiffVector& q_WO) {
+  if (q_WTool.size() != 7 || q_WO.size() % 7 != 0) {
+    throw std::invalid_argument("poses must have 7 numbers each");
+  }
+  if (CommonNumDerivatives(q_WTool, q_WO) != contacts.num_derivatives) {
+    throw std::invalid_argument(
+        "poses must have derivatives by the variables of the contacts");
+  }
+  std::vector<PoseOf<AutoDiff>> X_WO;
+  for (Eigen::Index i = 0; i < q_WO.size() / 7; ++i) {
+    X_WO.push_back(ToPose(q_WO, i, "q_WO"));
+  }
+  const Rows7 values = q_WO.value.reshaped<Eigen::RowMajor>(X_WO.size(), 7);
+  const ContactSet shaded =
+      Shade(self, ValuesOf(contacts.set), q_WTool.value, values);
+  self.Shade<AutoDiff>(ToPose(q_WTool, 0, "q_WTool"), X_WO, &contacts.set);
+  SetValues(shaded, &contacts);
   return contacts;
 }
 
@@ -66,7 +101,11 @@ void BindShading(nb::module_& m) {
            "Raises:\n"
            "    ValueError: not a pose, or not one for each object.\n"
            "    IndexError: a contact names an object, piece or feature that "
-           "does not exist.");
+           "does not exist.")
+      .def("shade", &DifferentiateShade, nb::arg("contacts"),
+           nb::arg("q_WTool"), nb::arg("q_WO"),
+           "The same with derivatives; q_WO (7 m,) has one object after "
+           "another.");
 }
 
 }  // namespace drake_haptics

@@ -91,35 +91,45 @@ std::vector<int> FacetsOfTriangles(const Decomposition& mesh,
   return facets;
 }
 
-NearestInTriangle FindNearestInTriangle(const std::array<Vec3, 3>& corners,
-                                        const Vec3& p) {
+template <typename T>
+NearestInTriangleOf<T> FindNearestInTriangle(const std::array<Vec3, 3>& corners,
+                                             const Eigen::Matrix<T, 3, 1>& p) {
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double scale = 1 / normal.squaredNorm();
-  NearestInTriangle nearest;
+  NearestInTriangleOf<T> nearest;
   for (int k = 0; k < 3; ++k) {
     const Vec3& q = corners[(k + 1) % 3];
     const Vec3& r = corners[(k + 2) % 3];
-    nearest.weights[k] = scale * normal.dot((r - q).cross(p - q));
+    const Vec3Of<T> side = (r - q).template cast<T>();
+    const Vec3Of<T> offset = p - q.template cast<T>();
+    nearest.weights[k] =
+        scale * normal.template cast<T>().dot(side.cross(offset));
   }
-  const std::array<double, 3> inside = nearest.weights;
-  if (inside[0] >= 0 && inside[1] >= 0 && inside[2] >= 0) return nearest;
+  const std::array<T, 3> inside = nearest.weights;
+  if (inside[0] >= 0.0 && inside[1] >= 0.0 && inside[2] >= 0.0) return nearest;
   // Beyond one or two sides: the nearest point is on one of them.
-  nearest.squared_distance = kInfinity;
+  nearest.squared_distance = T(kInfinity);
   for (int k = 0; k < 3; ++k) {
-    if (inside[k] >= 0) continue;
+    if (inside[k] >= 0.0) continue;
     const int from = (k + 1) % 3, to = (k + 2) % 3;
     const Vec3 along = corners[to] - corners[from];
-    const Vec3 offset = p - corners[from];
-    const double share =
-        std::clamp(offset.dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const double squared = (offset - share * along).squaredNorm();
+    const Vec3Of<T> offset = p - corners[from].template cast<T>();
+    const T projection = offset.dot(along.template cast<T>());
+    const T share =
+        std::clamp(T(projection / along.squaredNorm()), T(0.0), T(1.0));
+    const T squared = (offset - share * along.template cast<T>()).squaredNorm();
     if (squared >= nearest.squared_distance) continue;
     nearest.squared_distance = squared;
-    nearest.weights = {};
+    nearest.weights.fill(T(0.0));
     nearest.weights[from] = 1 - share;
     nearest.weights[to] = share;
   }
   return nearest;
 }
+
+template NearestInTriangleOf<double> FindNearestInTriangle(
+    const std::array<Vec3, 3>&, const Vec3&);
+template NearestInTriangleOf<AutoDiff> FindNearestInTriangle(
+    const std::array<Vec3, 3>&, const Vec3Of<AutoDiff>&);
 
 }  // namespace drake_haptics

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "autodiff.h"
 #include "decomposition.h"
 #include "polytope.h"
 #include "types.h"
@@ -35,16 +36,18 @@ std::vector<int> FacetsOfTriangles(const Decomposition& mesh,
                                    std::span<const int> triangles);
 
 /// The point of a triangle that is nearest to a given one.
-struct NearestInTriangle {
+template <typename T>
+struct NearestInTriangleOf {
   /// Barycentric coordinates: at least 0, and 1 in sum.
-  std::array<double, 3> weights;
-  double squared_distance = 0;  ///< m²; zero if it projects into the triangle
+  std::array<T, 3> weights;
+  T squared_distance{0};  ///< m²; zero if it projects into the triangle
 };
 
 /// @param corners of a triangle with an area, m.
 /// @param p in the plane of the triangle or near to it: what it is above the
 ///        plane does not count.
-NearestInTriangle FindNearestInTriangle(const std::array<Vec3, 3>& corners,
-                                        const Vec3& p);
+template <typename T>
+NearestInTriangleOf<T> FindNearestInTriangle(const std::array<Vec3, 3>& corners,
+                                             const Eigen::Matrix<T, 3, 1>& p);
 
 }  // namespace drake_haptics

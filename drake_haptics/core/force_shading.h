@@ -46,8 +46,9 @@ class ContactShading {
   /// @throws std::invalid_argument unless there is one pose for each object,
   ///         std::out_of_range for a contact on an object, piece or feature
   ///         that does not exist.
-  void Shade(const Pose& X_WTool, std::span<const Pose> X_WO,
-             ContactSet* contacts) const;
+  template <typename T>
+  void Shade(const PoseOf<T>& X_WTool, std::span<const PoseOf<T>> X_WO,
+             ContactSetOf<T>* contacts) const;
 
  private:
   std::shared_ptr<const SurfaceShading> tool_;

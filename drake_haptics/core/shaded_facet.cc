@@ -50,32 +50,42 @@ ShadedFacet::ShadedFacet(const Vec3& normal,
       tree_(MakeTree(triangles_)),
       reach_(kReach * size) {}
 
-ShadedCorner ShadedFacet::Interpolate(const Vec3& p) const {
-  if (triangles_.empty()) return {normal_, Mat3::Zero()};
+template <typename T>
+ShadedCornerOf<T> ShadedFacet::Interpolate(
+    const Eigen::Matrix<T, 3, 1>& p) const {
+  if (triangles_.empty()) {
+    return {normal_.template cast<T>(), Mat3Of<T>::Zero()};
+  }
+  const Vec3 place = ValuesOf(p);
   const ShadedTriangle* best = nullptr;
-  NearestInTriangle nearest;
-  nearest.squared_distance = std::numeric_limits<double>::infinity();
+  NearestInTriangleOf<T> nearest;
+  nearest.squared_distance = T(std::numeric_limits<double>::infinity());
   const auto is_under = [&](const ShadedTriangle& triangle) {
-    const auto found = FindNearestInTriangle(triangle.points, p);
+    const auto found = FindNearestInTriangle<T>(triangle.points, p);
     if (!best || found.squared_distance < nearest.squared_distance) {
       best = &triangle;
       nearest = found;
     }
-    return found.squared_distance == 0;
+    return found.squared_distance == 0.0;
   };
   const Vec3 reach = Vec3::Constant(reach_);
-  tree_.AnyOverlap({p - reach, p + reach},
+  tree_.AnyOverlap({place - reach, place + reach},
                    [&](int i) { return is_under(triangles_[i]); });
   // Few, or off the facet.
   if (nearest.squared_distance > reach_ * reach_) {
     std::any_of(triangles_.begin(), triangles_.end(), is_under);
   }
-  ShadedCorner sum;
+  ShadedCornerOf<T> sum;
   for (int k = 0; k < 3; ++k) {
-    sum.normal += nearest.weights[k] * best->corners[k].normal;
-    sum.curvature += nearest.weights[k] * best->corners[k].curvature;
+    const ShadedCorner& corner = best->corners[k];
+    sum.normal += nearest.weights[k] * corner.normal.template cast<T>();
+    sum.curvature += nearest.weights[k] * corner.curvature.template cast<T>();
   }
   return sum;
 }
+
+template ShadedCorner ShadedFacet::Interpolate(const Vec3&) const;
+template ShadedCornerOf<AutoDiff> ShadedFacet::Interpolate(
+    const Vec3Of<AutoDiff>&) const;
 
 }  // namespace drake_haptics

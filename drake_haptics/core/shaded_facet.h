@@ -29,7 +29,8 @@ class ShadedFacet {
 
   /// Normal, not unit, and curvature at a point of the facet (m), or at the
   /// nearest one of its triangles.
-  ShadedCorner Interpolate(const Vec3& p) const;
+  template <typename T>
+  ShadedCornerOf<T> Interpolate(const Eigen::Matrix<T, 3, 1>& p) const;
 
  private:
   Vec3 normal_;

@@ -27,8 +27,14 @@ std::vector<std::vector<int>> TrianglesOfPieces(const Decomposition& mesh) {
   return triangles;
 }
 
-double Angle(const Vec3& u, const Vec3& v) {
-  return std::atan2(u.cross(v).norm(), u.dot(v));
+// Has no slope at zero.
+template <typename T>
+T Angle(const Vec3Of<T>& u, const Vec3Of<T>& v) {
+  using std::atan2;
+  const T sine = LengthOf(Vec3Of<T>(u.cross(v)));
+  const T cosine = u.dot(v);
+  if (ValueOf(sine) == 0) return T(atan2(0.0, ValueOf(cosine)));
+  return atan2(sine, cosine);
 }
 
 // The facet of a piece whose normal is nearest to a direction.
@@ -103,32 +109,44 @@ SurfaceShading::SurfaceShading(
   }
 }
 
-SheetNormal SurfaceShading::Find(int piece, Feature feature, const Vec3& p,
-                                 const Vec3& n) const {
+template <typename T>
+SheetNormalOf<T> SurfaceShading::Find(int piece, Feature feature,
+                                      const Eigen::Matrix<T, 3, 1>& p,
+                                      const Eigen::Matrix<T, 3, 1>& n) const {
   const PieceSurface& surface = surfaces_.at(piece);
   const Polytope& polytope = decomposition_->pieces[piece];
   RequireFeature(polytope, feature);
-  const int facet = FacetAt(polytope, feature, n);
+  const int facet = FacetAt(polytope, feature, ValuesOf(n));
   const bool is_face = feature.kind() == FeatureKind::kFacet;
-  if (facet < 0) return {Vec3::Zero(), Mat3::Zero(), is_face ? 0.0 : 1.0};
-  const Vec3& facet_normal = surface.facets[facet].normal();
+  if (facet < 0) {
+    return {Vec3Of<T>::Zero(), Mat3Of<T>::Zero(), T(is_face ? 0.0 : 1.0)};
+  }
+  const Vec3Of<T> facet_normal =
+      surface.facets[facet].normal().template cast<T>();
   const auto& is_smooth = feature.kind() == FeatureKind::kVertex
                               ? surface.smooth_vertex
                               : surface.smooth_edge;
   // The face beside a crease keeps what shading adds to its own normal, less as
   // the contact's normal leaves it: over a sharp edge the geometry has the say.
-  double sharpness = 0;
+  T sharpness(0.0);
   if (!is_face && !is_smooth[feature.index()]) {
-    const double angle = Angle(facet_normal, n);
-    if (angle >= flush_angle_) return {Vec3::Zero(), Mat3::Zero(), 1};
+    const T angle = Angle<T>(facet_normal, n);
+    if (angle >= flush_angle_) {
+      return {Vec3Of<T>::Zero(), Mat3Of<T>::Zero(), T(1.0)};
+    }
     sharpness = angle / flush_angle_;
   }
-  const ShadedCorner shaded = surface.facets[facet].Interpolate(p);
+  const ShadedCornerOf<T> shaded = surface.facets[facet].Interpolate(p);
   const bool is_between_faces = !is_face && is_smooth[feature.index()];
-  const Vec3& geometric = is_between_faces ? n : facet_normal;
-  return {(1 - sharpness) * (shaded.normal - geometric), shaded.curvature,
+  const Vec3Of<T>& geometric = is_between_faces ? n : facet_normal;
+  return {T(1 - sharpness) * (shaded.normal - geometric), shaded.curvature,
           sharpness};
 }
+
+template SheetNormalOf<double> SurfaceShading::Find(int, Feature, const Vec3&,
+                                                    const Vec3&) const;
+template SheetNormalOf<AutoDiff> SurfaceShading::Find(
+    int, Feature, const Vec3Of<AutoDiff>&, const Vec3Of<AutoDiff>&) const;
 
 SurfaceShading::PieceSurface SurfaceShading::MakeSurface(
     const Polytope& piece, std::span<const int> triangles,

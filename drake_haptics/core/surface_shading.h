@@ -11,16 +11,17 @@
 namespace drake_haptics {
 
 /// What the shaded surface of one body says about the normal of a contact.
-struct SheetNormal {
+template <typename T>
+struct SheetNormalOf {
   /// What to add to the contact's unit normal out of this body to get the
   /// normal interpolated over the triangle under the witness point. The sum is
   /// not unit: over the chords of a sphere, interpolated normals are as much
   /// too short as the chord is inside it.
-  Vec3 turn = Vec3::Zero();
-  Mat3 curvature = Mat3::Zero();  ///< see ShadedCorner
+  Vec3Of<T> turn = Vec3Of<T>::Zero();
+  Mat3Of<T> curvature = Mat3Of<T>::Zero();  ///< see ShadedCornerOf
   /// 1 at a crease, where the body has no normal of its own, falling to 0 where
   /// a face beside the crease lies flush with the contact.
-  double sharpness = 0;
+  T sharpness{0};
 };
 
 /// The surface of a decomposed mesh with the normals that force shading
@@ -37,8 +38,10 @@ class SurfaceShading {
   ///        the feature, the nearest point of one counts.
   /// @param n unit normal of the contact, out of this body.
   /// @throws std::out_of_range if there is no such piece or feature.
-  SheetNormal Find(int piece, Feature feature, const Vec3& p,
-                   const Vec3& n) const;
+  template <typename T>
+  SheetNormalOf<T> Find(int piece, Feature feature,
+                        const Eigen::Matrix<T, 3, 1>& p,
+                        const Eigen::Matrix<T, 3, 1>& n) const;
 
   /// A length of the size of a piece, m, above zero.
   double SizeOf(int piece) const { return surfaces_.at(piece).size; }

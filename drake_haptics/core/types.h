@@ -14,16 +14,20 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// Pose X_AB of a frame B in a frame A: p_A = R p_B + p. R is a rotation.
-struct Pose {
-  Mat3 R = Mat3::Identity();
-  Vec3 p = Vec3::Zero();
+template <typename T>
+struct PoseOf {
+  Eigen::Matrix<T, 3, 3> R = Eigen::Matrix<T, 3, 3>::Identity();
+  Eigen::Matrix<T, 3, 1> p = Eigen::Matrix<T, 3, 1>::Zero();
 
-  Vec3 operator*(const Vec3& point) const { return R * point + p; }
-  Pose operator*(const Pose& other) const {
+  Eigen::Matrix<T, 3, 1> operator*(const Eigen::Matrix<T, 3, 1>& point) const {
+    return R * point + p;
+  }
+  PoseOf operator*(const PoseOf& other) const {
     return {R * other.R, R * other.p + p};
   }
-  Pose inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
+  PoseOf inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
 };
+using Pose = PoseOf<double>;
 
 /// X_AB from poses in the world: the difference of the origins is formed first,
 /// so that a scene far from the world's origin loses no precision.

@@ -5,19 +5,22 @@
 #include <span>
 #include <vector>
 
+#include "autodiff.h"
 #include "decomposition.h"
 #include "types.h"
 
 namespace drake_haptics {
 
 /// A corner of a triangle as shading sees it.
-struct ShadedCorner {
-  Vec3 normal = Vec3::Zero();  ///< unit; zero on a triangle without area
+template <typename T>
+struct ShadedCornerOf {
+  Vec3Of<T> normal = Vec3Of<T>::Zero();  ///< unit; zero if without area
   /// How the interpolated normal changes over the surface, 1/m: it turns by
   /// curvature · v on the way v. Symmetric; positive where the surface is
   /// convex. That of a sphere is (I − n nᵀ) / radius.
-  Mat3 curvature = Mat3::Zero();
+  Mat3Of<T> curvature = Mat3Of<T>::Zero();
 };
+using ShadedCorner = ShadedCornerOf<double>;
 
 /// The normals of a mesh for Gouraud shading.
 struct VertexNormals {
