@@ -72,8 +72,10 @@ class StickSlipFriction(DifferentiableSystem):
     Under AutoDiffXd `clusters`, `contact_wrench` and `friction_force` are an
     `AutoDiffClusterSet`, an `AutoDiffPenaltyWrench` and an `AutoDiffFrictionStep` of
     `drake_haptics._core`. Derivatives are those of the branch taken: of each contact as
-    it sticks or slides now, and of its grip as it wears or is restored. At no
-    displacement, where the length of z has a kink, that length does not change.
+    it sticks or slides now, of its grip as it wears or is restored, and of its load,
+    which is kept where the normal force N falls and follows where N grows; the force
+    is smooth there, K and the grip have a kink. At no displacement, where the length of
+    z has a kink, that length does not change.
     """
 
     def __init__(
