@@ -91,7 +91,7 @@ def derivative_errors(
     for name, rows in blocks.items():
         # What is smaller cannot be told from the rounding of the differences.
         value = np.abs(answer.value[rows]).max(initial=0.0)
-        floor = 8 * np.finfo(float).eps * value / (step * tolerance)
+        floor = 64 * np.finfo(float).eps * value / (step * tolerance)
         largest = max(np.abs(sixth[rows]).max(initial=0.0), floor, 1e-300)
         if (
             np.abs(fourth[rows] - sixth[rows]).max(initial=0.0)

@@ -7,6 +7,7 @@ query anew at each displaced pose.
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -167,12 +168,23 @@ def random_states(
     *,
     num_objects: int = 2,
     seed: int = 0,
+    touch: Callable[..., np.ndarray] = touching_pose,
 ) -> list[State]:
-    """Random touches; a second object is a little beside the first."""
+    """Random touches; a second object is a little beside the first.
+
+    Args:
+        tool: What is moved there.
+        solid: Every object.
+        method: Of clustering.
+        count: How many.
+        num_objects: One or two.
+        seed: Of what is random.
+        touch: Gives a pose (7,) of the tool at which it may touch.
+    """
     rng = np.random.default_rng(seed)
     found = []
     while len(found) < count:
-        q = touching_pose(rng, tool, solid, T)
+        q = touch(rng, tool, solid, T)
         beside = np.array([1, 0, 0, 0, *rng.uniform(-T, T, 3)])
         q = np.stack([q, IDENTITY, beside][: 1 + num_objects])
         tracker = _core.SceneTracker(tool, [solid] * num_objects, T)

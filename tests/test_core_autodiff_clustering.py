@@ -14,6 +14,7 @@ from test_core_autodiff_contact import shipped
 
 from drake_haptics import _core
 
+# Where contacts tie, the differences around the kink settle in first order only.
 STEP = 1e-7
 COLUMNS = (
     "distance",

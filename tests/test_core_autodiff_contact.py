@@ -23,7 +23,7 @@ from drake_haptics._core import AutoDiffVector
 from drake_haptics.decomposition import decompose
 from drake_haptics.mesh import load_mesh
 
-STEP = 1e-7
+STEP = 5e-7
 COLUMNS = ("distance", "nhat_BA_W", "p_WCa", "p_WCb", "p_WC", "extent", "flushness")
 
 

@@ -19,7 +19,7 @@ from test_core_autodiff_contact import shipped
 
 from drake_haptics import _core
 
-STEP = 1e-7
+STEP = 5e-7
 COLUMNS = ("wrench_model", "F_Tool_W", "F_objects_W", "f_cluster_W")
 # Rows of the wrench model that have one unit: force, and K, B by halves.
 _MATRIX = np.arange(36).reshape(6, 6)

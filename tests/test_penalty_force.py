@@ -141,6 +141,7 @@ def test_bad_gains_are_refused_by_name(plate, name, gains):
         PenaltyForce(objects, **(good | {name: gains}))
 
 
+STEP = 5e-7
 OUTPUTS = ("wrench_model", "F_Tool_W", "F_O_W")
 
 
@@ -156,7 +157,7 @@ def test_a_diagram_from_poses_to_forces_has_its_derivatives(states, method, movi
     """By all poses and velocities that have ports, each query asked anew."""
     checked = 0
     for state in states[method]:
-        if not keeps_features(state, REACH * 1e-7):
+        if not keeps_features(state, REACH * STEP):
             continue
         chain = ContactChain(state, moving)
         x = chain.variables(state)
@@ -169,7 +170,7 @@ def test_a_diagram_from_poses_to_forces_has_its_derivatives(states, method, movi
                 lambda x, o=output, c=chain: c.evaluate(o, x),
                 found,
                 x,
-                1e-7,
+                STEP,
                 {output: slice(None)},
             )
             assert errors.get(output, 0.0) < 1e-6

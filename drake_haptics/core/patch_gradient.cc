@@ -1,6 +1,7 @@
 #include "patch_gradient.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "contact_patch.h"
 #include "rotation.h"
@@ -10,6 +11,8 @@ namespace {
 
 // Step of the differences, as a share of the layer.
 constexpr double kStepShare = 1e-4;
+// Of fourth order: weights of one step and of two.
+constexpr double kNear = 2.0 / 3, kFar = -1.0 / 12;
 
 }  // namespace
 
@@ -40,14 +43,19 @@ void DifferentiatePatch(const PosedPieces& pieces, const Contact& contact,
   const double step = kStepShare * layer;
   const double arm = std::max(of_features.p.norm(), layer);
   witness->p = *patch_at(Vec6::Zero()).center;
+  Mat36 motion = Mat36::Zero();
   for (int k = 0; k < 6; ++k) {
     const double by = k < 3 ? step / arm : step;
-    const PressurePatch ahead = patch_at(by * Vec6::Unit(k));
-    const PressurePatch behind = patch_at(-by * Vec6::Unit(k));
-    gradient->extent[k] = (ahead.extent - behind.extent) / (2 * by);
-    gradient->flushness[k] = (ahead.flushness - behind.flushness) / (2 * by);
-    witness->motion.col(k) = (*ahead.center - *behind.center) / (2 * by);
+    for (const int times : {-2, -1, 1, 2}) {
+      const PressurePatch patch = patch_at(times * by * Vec6::Unit(k));
+      const double weight =
+          (std::abs(times) == 1 ? kNear : kFar) * (times > 0 ? 1 : -1) / by;
+      gradient->extent[k] += weight * patch.extent;
+      gradient->flushness[k] += weight * patch.flushness;
+      motion.col(k) += weight * (*patch.center - witness->p);
+    }
   }
+  witness->motion = motion;
 }
 
 }  // namespace drake_haptics

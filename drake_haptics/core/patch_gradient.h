@@ -12,9 +12,9 @@ struct MovingWitness {
 
 /// Puts the derivatives of a pressure patch (contact_patch.h) into `gradient`:
 /// extent and flushness; `witness` becomes the centre of pressure. The patch is
-/// a blend of clipped polygons, and is evaluated at displacements of 1e-4 of
-/// its layer to both sides, along the tangent of the contact's motion: the
-/// relative error is about 1e-8.
+/// a blend of clipped polygons, and is evaluated at displacements of 1e-4 and
+/// 2e-4 of its layer to both sides, along the tangent of the contact's motion:
+/// the relative error is about 1e-9.
 /// @param witness A's witness point of the features.
 /// @param gradient distance and normal are those of the features.
 void DifferentiatePatch(const PosedPieces& pieces, const Contact& contact,
