@@ -29,6 +29,7 @@ FrictionStep ValuesOf(const FrictionStepOf<AutoDiff>& step);
 
 /// Replaces values by those of doubles, which are the same but for the order
 /// in which Eigen sums: what is decided further on is the same to the last bit.
+/// Constants get derivatives that are zero, so that all numbers have as many.
 template <typename Set, typename Plain>
 void SetValues(const Plain& values, Differentiated<Set>* differentiated);
 

@@ -86,8 +86,8 @@ PenaltyWrenchOf<T> ComputePenaltyWrench(
     const T speed = G.dot(tool.V_WF) - G_object.dot(object.V_WF);
     const T damping = material.damping * cluster.damping_share;
     const Approach<T> approach(speed);
-    const T magnitude =
-        material.stiffness * cluster.compression - damping * approach.speed;
+    T magnitude = material.stiffness * cluster.compression;
+    magnitude -= damping * approach.speed;
     result.tool.B += approach.engaged * damping * G * G.transpose();
     wrenches.col(next++) = G;
     result.tool.F += magnitude * G;

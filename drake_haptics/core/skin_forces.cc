@@ -90,21 +90,18 @@ SkinForces SolveSkin(const Eigen::MatrixXd& C, const Eigen::VectorXd& w) {
 SkinForcesOf<AutoDiff> SolveSkin(const MatrixOf<AutoDiff>& C,
                                  const VectorOf<AutoDiff>& w) {
   const SkinForces forces = SolveSkin(ValuesOf(C), ValuesOf(w));
-  SkinForcesOf<AutoDiff> found{forces.compression.cast<AutoDiff>(),
-                               forces.coupling.cast<AutoDiff>()};
+  const Eigen::Index variables = w.size() > 0 ? w[0].derivatives().size() : 0;
+  const auto with_variables = [&](double value) {
+    return AutoDiff(value, Eigen::VectorXd::Zero(variables));
+  };
+  SkinForcesOf<AutoDiff> found{forces.compression.unaryExpr(with_variables),
+                               forces.coupling.unaryExpr(with_variables)};
   Indices chosen;
   for (Eigen::Index i = 0; i < w.size(); ++i) {
     if (forces.coupling(i, i) > 0) chosen.push_back(i);
   }
   const Eigen::MatrixXd H = forces.coupling(chosen, chosen);
   const Eigen::VectorXd pressed = forces.compression(chosen);
-  const Eigen::Index variables = w.size() > 0 ? w[0].derivatives().size() : 0;
-  for (const Eigen::Index i : chosen) {
-    found.compression[i].derivatives().resize(variables);
-    for (const Eigen::Index j : chosen) {
-      found.coupling(i, j).derivatives().resize(variables);
-    }
-  }
   const auto part = [](const AutoDiff& x, Eigen::Index k) {
     return x.derivatives().size() > 0 ? x.derivatives()[k] : 0.0;
   };
