@@ -6,6 +6,7 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import LeafSystem
 from test_contact_query import box_core
 
+from drake_haptics._core import AutoDiffVector
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.object_motions import ObjectMotions
 
@@ -41,3 +42,22 @@ def test_an_object_that_moves_is_read_in_its_place(core):
         p_WO, V_WO = system.motions.read(context)
         np.testing.assert_array_equal(p_WO, [[1.0, 2.0, 3.0], [x, 0, 0]])
         np.testing.assert_array_equal(V_WO, [np.zeros(6), [0, 0, 1, x, 0, 0]])
+
+
+class Point(dict):
+    """Inputs by name, with derivatives by four variables."""
+
+    num_derivatives = 4
+
+
+def test_only_what_moves_has_derivatives(core):
+    table = ContactObject("table", core, RigidTransform([1.0, 2.0, 3.0]))
+    system = Asking([table, ContactObject("cart", core)])
+    rng = np.random.default_rng(0)
+    X_WO = AutoDiffVector(np.array([1.0, 0, 0, 0, 4, 5, 6]), rng.normal(size=(7, 4)))
+    V_WO = AutoDiffVector(rng.normal(size=6), rng.normal(size=(6, 4)))
+    p, V = system.motions.differentiate(Point(X_WO_cart=X_WO, V_WO_cart=V_WO))
+    np.testing.assert_array_equal(p.value, [1, 2, 3, 4, 5, 6])
+    np.testing.assert_array_equal(V.value, [*np.zeros(6), *V_WO.value])
+    np.testing.assert_array_equal(p.gradient, [*np.zeros((3, 4)), *X_WO.gradient[4:]])
+    np.testing.assert_array_equal(V.gradient, [*np.zeros((6, 4)), *V_WO.gradient])
