@@ -37,12 +37,16 @@ class HeldHandle:
         damping_Ns_per_m: Physical damping, N·s/m.
         inertia_kgm2: The least about any axis, kg·m².
         rotational_damping_Nms_per_rad: N·m·s/rad.
+        stiffness_N_per_m: Of the hand's spring, N/m.
+        rotational_stiffness_Nm_per_rad: N·m/rad.
     """
 
     mass_kg: float
     damping_Ns_per_m: float
     inertia_kgm2: float
     rotational_damping_Nms_per_rad: float
+    stiffness_N_per_m: float = 0.0
+    rotational_stiffness_Nm_per_rad: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -31,62 +31,86 @@ def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
 def calc_scene_handle(
     scene: Scene, device: HapticDevice, root: Context | None = None
 ) -> HeldHandle:
-    """Returns what a scene's simulated device in its hand is at the handle.
+    """Returns what a scene's simulated device in its hand is where it holds the tool.
 
     Args:
-        scene: Names preset and grip.
+        scene: Names preset, grip and grasp.
         device: What `make_simulated_device` returned for it.
         root: Where the arm stands; at its default angles if not given.
     """
     plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
     handle = plant.GetBodyByName(load_device_preset(scene.device.preset).handle_link)
-    context = None if root is None else plant.GetMyContextFromRoot(root)
-    return calc_held_handle(plant, handle, HAND_GRIPS[scene.hand.grip], context)
+    return calc_held_handle(
+        plant,
+        handle,
+        HAND_GRIPS[scene.hand.grip],
+        p_HQ=np.array(scene.tool.grasp.position_m),
+        context=None if root is None else plant.GetMyContextFromRoot(root),
+    )
 
 
 def calc_held_handle(
     plant: MultibodyPlant,
     handle: RigidBody,
     grip: HandGrip | None,
+    *,
+    p_HQ: np.ndarray | None = None,
     context: Context | None = None,
 ) -> HeldHandle:
-    """Calculates the least inertia and damping at the handle.
+    """Calculates the least inertia, damping and stiffness at a point of the handle.
 
-    Where all joints are free, a force at the handle meets the apparent inertia
-    (J M⁻¹ Jᵀ)⁻¹, and in the same way the damping of the joints. The least of it in any
-    direction is the worst case for a coupling.
+    Where all joints are free, a force at the point meets the apparent inertia
+    (J M⁻¹ Jᵀ)⁻¹, and in the same way damping and stiffness of joints and hand. The
+    least of it in any direction is the worst case for a coupling. Far from the hand all
+    of it is less: the handle turns.
 
     Args:
         plant: The arm, its hand welded to it.
-        handle: The body that is held.
-        grip: Its damping counts; None where the arm is free.
+        handle: The body that is held at its origin.
+        grip: Its spring and damper count; None where the arm is free.
+        p_HQ: The point, (3,), m: where a coupling pulls. The origin if not given.
         context: The plant's; at the default angles if not given.
     """
     context = context or plant.CreateDefaultContext()
-    J_WH = plant.CalcJacobianSpatialVelocity(
+    J_WH = _calc_jacobian(plant, handle, context, np.zeros(3))
+    J_WQ = _calc_jacobian(plant, handle, context, np.zeros(3) if p_HQ is None else p_HQ)
+    joints = [plant.get_joint(i) for i in plant.GetJointIndices()]
+    damping = np.diag(np.concatenate([j.default_damping_vector() for j in joints]))
+    stiffness = np.zeros_like(damping)
+    if grip is not None:
+        dampers = [grip.rotational_damping_Nms_per_rad] * 3
+        springs = [grip.rotational_stiffness_Nm_per_rad] * 3
+        dampers += [grip.damping_Ns_per_m] * 3
+        springs += [grip.stiffness_N_per_m] * 3
+        damping += J_WH.T @ np.diag(dampers) @ J_WH
+        stiffness += J_WH.T @ np.diag(springs) @ J_WH
+    M = plant.CalcMassMatrix(context)
+    return HeldHandle(
+        mass_kg=_calc_least(J_WQ[3:], M),
+        damping_Ns_per_m=_calc_least(J_WQ[3:], damping),
+        inertia_kgm2=_calc_least(J_WQ[:3], M),
+        rotational_damping_Nms_per_rad=_calc_least(J_WQ[:3], damping),
+        stiffness_N_per_m=_calc_least(J_WQ[3:], stiffness),
+        rotational_stiffness_Nm_per_rad=_calc_least(J_WQ[:3], stiffness),
+    )
+
+
+def _calc_jacobian(
+    plant: MultibodyPlant, handle: RigidBody, context: Context, p_HQ: np.ndarray
+) -> np.ndarray:
+    """Returns J (6, n): spatial velocity of the handle at Q in the world, by joints."""
+    return plant.CalcJacobianSpatialVelocity(
         context,
         JacobianWrtVariable.kV,
         handle.body_frame(),
-        np.zeros(3),
+        p_HQ,
         plant.world_frame(),
         plant.world_frame(),
     )
-    M = plant.CalcMassMatrix(context)
-    joints = [plant.get_joint(i) for i in plant.GetJointIndices()]
-    damping = np.concatenate([joint.default_damping_vector() for joint in joints])
 
-    def least(J: np.ndarray, joint_space: np.ndarray) -> float:
-        return float(1.0 / np.linalg.norm(J @ np.linalg.solve(joint_space, J.T), 2))
 
-    def least_damping(J: np.ndarray) -> float:
-        # A joint that nothing damps leaves some direction undamped.
-        return least(J, np.diag(damping)) if damping.all() else 0.0
-
-    return HeldHandle(
-        mass_kg=least(J_WH[3:], M),
-        damping_Ns_per_m=least_damping(J_WH[3:])
-        + (grip.damping_Ns_per_m if grip else 0.0),
-        inertia_kgm2=least(J_WH[:3], M),
-        rotational_damping_Nms_per_rad=least_damping(J_WH[:3])
-        + (grip.rotational_damping_Nms_per_rad if grip else 0.0),
-    )
+def _calc_least(J: np.ndarray, of_joints: np.ndarray) -> float:
+    """Returns the least of (J X⁻¹ Jᵀ)⁻¹ in any direction; 0 where X leaves one free."""
+    if np.linalg.matrix_rank(of_joints, hermitian=True) < len(of_joints):
+        return 0.0
+    return float(1.0 / np.linalg.norm(J @ np.linalg.solve(of_joints, J.T), 2))
