@@ -92,6 +92,9 @@ class DisplayForceHold(Diagram):
         return self.GetOutputPort("status")
 
 
+_STATE_NAMES = "tau_x tau_y tau_z f_x f_y f_z status".split()
+
+
 class _LimitedSample(DifferentiableSystem):
     """The state of a `DisplayForceHold`, and its update."""
 
@@ -133,6 +136,10 @@ class _LimitedSample(DifferentiableSystem):
                 part = asked.value[rows]
                 gradient[rows] = _limit_slope(part, largest) @ asked.gradient[rows]
         return AutoDiffVector(np.array(self._show(asked.value)), gradient)
+
+    def list_state_names(self) -> list[str]:
+        """Returns a name for each number of the state."""
+        return list(_STATE_NAMES)
 
 
 def _limit(vector: list[float], largest: float) -> tuple[list[float], bool]:

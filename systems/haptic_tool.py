@@ -106,6 +106,9 @@ class HapticTool(Diagram):
         return self.GetOutputPort("V_WTool")
 
 
+_STATE_NAMES = "qw qx qy qz x y z wx wy wz vx vy vz".split()
+
+
 class _ImplicitStep(DifferentiableSystem):
     """The state of a `HapticTool`, and its update."""
 
@@ -158,3 +161,7 @@ class _ImplicitStep(DifferentiableSystem):
             ),
         )
         return self._dynamics.step(at.state, wrench_model, self._period_s)
+
+    def list_state_names(self) -> list[str]:
+        """Returns a name for each number of the state."""
+        return list(_STATE_NAMES)

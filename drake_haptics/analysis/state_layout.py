@@ -16,9 +16,10 @@ class StateLayout:
     """Names and constraints of a state.
 
     Attributes:
-        names: (n,). A `MultibodyPlant` names its own coordinates, as "plant/tool_x";
-            others are "path/xc[0]" for continuous ones and "path/xd[0]" for discrete
-            ones ("path/xd1[0]" for the first of the second group).
+        names: (n,). A `MultibodyPlant` names its own coordinates, as "plant/tool_x",
+            and so does a system with a method `list_state_names()`; others are
+            "path/xc[0]" for continuous ones and "path/xd[0]" for discrete ones
+            ("path/xd1[0]" for the first of the second group).
         quaternions: Positions in the state of the four numbers of each unit
             quaternion of a `MultibodyPlant`.
     """
@@ -37,10 +38,11 @@ def find_state_layout(root: System) -> StateLayout:
         for leaf in walk_leaves(root):
             sizes = _list_sizes(kind, leaf.GetMyContextFromRoot(context))
             prefix = "" if leaf is root else f"{calc_path(root, leaf)}/"
-            own = _list_plant_names(leaf)
+            own = _list_own_names(leaf)
             for i, size in enumerate(sizes):
                 if own and size == len(own):
-                    quaternions += _shift_quaternions(leaf, len(names))
+                    if isinstance(leaf, MultibodyPlant):
+                        quaternions += _shift_quaternions(leaf, len(names))
                     names += [prefix + name for name in own]
                 else:
                     names += [f"{prefix}{kind}{i or ''}[{j}]" for j in range(size)]
@@ -55,8 +57,10 @@ def _list_sizes(kind: str, context: Context) -> list[int]:
     return [context.get_discrete_state(i).size() for i in groups]
 
 
-def _list_plant_names(leaf: System) -> list[str]:
-    """Returns the names of a plant's positions and velocities, short if unique."""
+def _list_own_names(leaf: System) -> list[str]:
+    """Returns the names that a system has for its state, a plant's short if unique."""
+    if hasattr(leaf, "list_state_names"):
+        return leaf.list_state_names()
     if not isinstance(leaf, MultibodyPlant):
         return []
     names = list(leaf.GetStateNames(add_model_instance_prefix=False))
