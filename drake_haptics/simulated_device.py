@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydrake.math import RigidTransform
 
-from drake_haptics.device_preset import DevicePreset, load_device_preset
+from drake_haptics.device_preset import load_device_preset
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.scene import HandPath as ScenePath
 from drake_haptics.scene import Pose, Scene, SceneError
@@ -52,7 +52,7 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
             f"hand.grip: '{scene.hand.grip}' is none of {', '.join(HAND_GRIPS)}"
         )
     X_TH = scene.tool.grasp.to_rigid_transform().inverse()
-    X_WB = _place_base(device.base, preset, path, X_TH)
+    X_WB = place_base(scene, path)
     try:
         arm = SimulatedArm(
             preset.model_path,
@@ -74,10 +74,18 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
     )
 
 
-def _place_base(
-    base: Pose | None, preset: DevicePreset, path: HandPath, X_TH: RigidTransform
-) -> RigidTransform:
-    """Returns X_WB and checks that the handle's path is in the workspace."""
+def place_base(scene: Scene, path: HandPath) -> RigidTransform:
+    """Returns X_WB, where the base of a scene's device stands.
+
+    Args:
+        scene: Names the device and, if it does, the place.
+        path: Where the hand wants the tool.
+
+    Raises:
+        SceneError: The handle's path leaves the workspace.
+    """
+    preset = load_device_preset(scene.device.preset)
+    base, X_TH = scene.device.base, scene.tool.grasp.to_rigid_transform().inverse()
     times = np.linspace(0.0, path.duration_s, _PATH_SAMPLES)
     p_WH = np.array(
         [(vector_to_pose(path.calc(t)[0]) @ X_TH).translation() for t in times]

@@ -27,13 +27,17 @@ class RunError(RuntimeError):
         self.statistics = statistics
 
 
-def make_simulator(haptic: HapticDiagram) -> Simulator:
-    """Returns a simulator at time 0 that integrates one step per tick.
+def make_simulator(haptic: HapticDiagram, context: Context | None = None) -> Simulator:
+    """Returns a simulator that integrates one step per tick.
 
     The step is fixed and of second order: the stiffest motion of a shipped arm in
     a shipped grip is slow against a tick (tests/test_simulation.py).
+
+    Args:
+        haptic: What `BuildHapticDiagram` returned.
+        context: Where to start; becomes the simulator's. At time 0 if not given.
     """
-    simulator = Simulator(haptic.diagram)
+    simulator = Simulator(haptic.diagram, context)
     ResetIntegratorFromFlags(simulator, "runge_kutta2", haptic.period_s)
     simulator.get_mutable_integrator().set_fixed_step_mode(True)
     return simulator

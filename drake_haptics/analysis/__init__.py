@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from drake_haptics.analysis.axis_design import AxisDesign, GripMargins
     from drake_haptics.analysis.coupling_design import CouplingDesign, suggest_coupling
     from drake_haptics.analysis.delay_bounds import DelayBounds, calc_delay_bounds
+    from drake_haptics.analysis.delay_margin import calc_delay_margin
     from drake_haptics.analysis.drake_errors import explain_drake_errors
     from drake_haptics.analysis.equilibrium import Equilibrium, find_equilibrium
     from drake_haptics.analysis.exact_boundary import (
@@ -20,6 +21,17 @@ if TYPE_CHECKING:
         calc_boundary_peak,
         calc_exact_alpha,
         calc_exact_boundary,
+    )
+    from drake_haptics.analysis.felt_impedance import FeltImpedance, calc_felt_impedance
+    from drake_haptics.analysis.held_loop import (
+        CouplingGrowth,
+        HeldLoop,
+        analyse_held_scene,
+    )
+    from drake_haptics.analysis.held_scene import (
+        HeldScene,
+        find_firmest_contact,
+        hold_scene,
     )
     from drake_haptics.analysis.mode_plot import plot_poles
     from drake_haptics.analysis.modes import Mode, ModeKind, find_modes
@@ -39,6 +51,17 @@ if TYPE_CHECKING:
         calc_largest_delay,
         calc_largest_stiffness,
     )
+    from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
+    from drake_haptics.analysis.simulated_growth import measure_growth
+    from drake_haptics.analysis.stability_limit import (
+        StabilityLimit,
+        calc_growth,
+        find_stability_limit,
+    )
+    from drake_haptics.analysis.stiffness_limits import (
+        StiffnessLimits,
+        find_stiffness_limits,
+    )
     from drake_haptics.analysis.study import run_study
     from drake_haptics.analysis.study_error import StudyError
     from drake_haptics.analysis.study_pool import SerialExecutor
@@ -51,11 +74,15 @@ __all__ = [
     "AxisDesign",
     "BoundaryPoint",
     "CouplingDesign",
+    "CouplingGrowth",
     "DelayBounds",
     "Equilibrium",
     "ExactBoundary",
+    "FeltImpedance",
     "GripMargins",
     "HeldBounds",
+    "HeldLoop",
+    "HeldScene",
     "Mode",
     "ModeKind",
     "Monodromy",
@@ -63,24 +90,37 @@ __all__ = [
     "QuantizationBounds",
     "SampledLinearization",
     "SampledWall",
+    "SceneStability",
     "SerialExecutor",
+    "StabilityLimit",
+    "StiffnessLimits",
     "StudyError",
     "StudyProgress",
     "ZWidth",
+    "analyse_held_scene",
+    "analyse_scene",
     "calc_boundary_peak",
     "calc_delay_bounds",
+    "calc_delay_margin",
     "calc_exact_alpha",
     "calc_exact_boundary",
+    "calc_felt_impedance",
     "calc_gain_margin",
+    "calc_growth",
     "calc_largest_delay",
     "calc_largest_stiffness",
     "calc_passivity",
     "calc_quantization_bounds",
     "explain_drake_errors",
     "find_equilibrium",
+    "find_firmest_contact",
     "find_modes",
+    "find_stability_limit",
+    "find_stiffness_limits",
+    "hold_scene",
     "linearize_sampled",
     "make_spring_damper",
+    "measure_growth",
     "monodromy",
     "plot_poles",
     "run_study",
@@ -92,11 +132,15 @@ _MODULE_OF = {
     "AxisDesign": "axis_design",
     "BoundaryPoint": "exact_boundary",
     "CouplingDesign": "coupling_design",
+    "CouplingGrowth": "held_loop",
     "DelayBounds": "delay_bounds",
     "Equilibrium": "equilibrium",
     "ExactBoundary": "exact_boundary",
+    "FeltImpedance": "felt_impedance",
     "GripMargins": "axis_design",
     "HeldBounds": "z_width_plot",
+    "HeldLoop": "held_loop",
+    "HeldScene": "held_scene",
     "Mode": "modes",
     "ModeKind": "modes",
     "Monodromy": "multirate",
@@ -104,24 +148,37 @@ _MODULE_OF = {
     "QuantizationBounds": "quantization",
     "SampledLinearization": "sampled_linearization",
     "SampledWall": "sampled_wall",
+    "SceneStability": "scene_stability",
     "SerialExecutor": "study_pool",
+    "StabilityLimit": "stability_limit",
+    "StiffnessLimits": "stiffness_limits",
     "StudyError": "study_error",
     "StudyProgress": "study_progress",
     "ZWidth": "z_width_map",
+    "analyse_held_scene": "held_loop",
+    "analyse_scene": "scene_stability",
     "calc_boundary_peak": "exact_boundary",
     "calc_delay_bounds": "delay_bounds",
+    "calc_delay_margin": "delay_margin",
     "calc_exact_alpha": "exact_boundary",
     "calc_exact_boundary": "exact_boundary",
+    "calc_felt_impedance": "felt_impedance",
     "calc_gain_margin": "sampled_wall",
+    "calc_growth": "stability_limit",
     "calc_largest_delay": "sampled_wall",
     "calc_largest_stiffness": "sampled_wall",
     "calc_passivity": "passivity",
     "calc_quantization_bounds": "quantization",
     "explain_drake_errors": "drake_errors",
     "find_equilibrium": "equilibrium",
+    "find_firmest_contact": "held_scene",
     "find_modes": "modes",
+    "find_stability_limit": "stability_limit",
+    "find_stiffness_limits": "stiffness_limits",
+    "hold_scene": "held_scene",
     "linearize_sampled": "sampled_linearization",
     "make_spring_damper": "transfer_function",
+    "measure_growth": "simulated_growth",
     "monodromy": "multirate",
     "plot_poles": "mode_plot",
     "run_study": "study",

@@ -10,7 +10,8 @@ from drake_haptics.analysis.stability_limit import calc_growth
 
 # Delays are tried so far apart, in periods or as a share, before the edge is bisected.
 _STEP, _STEP_SHARE = 0.25, 0.2
-_LONGEST = 50.0
+# The longest that is tried, in periods.
+LONGEST_DELAY = 50.0
 _TOLERANCE = 1e-4
 
 
@@ -27,7 +28,7 @@ def calc_delay_margin(loop: HeldLoop) -> float:
     if _calc_growth(loop, high) >= 1.0:
         return 0.0
     while _calc_growth(loop, high) < 1.0:
-        if high >= _LONGEST:
+        if high >= LONGEST_DELAY:
             return np.inf
         low, high = high, high + max(_STEP, _STEP_SHARE * high)
     while high - low > _TOLERANCE:

@@ -25,6 +25,10 @@ _COMMANDS = {
         "drake_haptics.cli.decompose",
         "Cut the surface of a mesh into convex pieces.",
     ),
+    "stability": (
+        "drake_haptics.cli.stability",
+        "Say how stable a scene is and how stiff its coupling could be.",
+    ),
     "bench": (
         "drake_haptics.cli.bench",
         "Measure the contact query on this machine, beside other libraries.",

@@ -1,0 +1,139 @@
+"""What a device feels of a virtual scene: its impedance at the handle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import JacobianWrtVariable
+from pydrake.systems.framework import Context
+
+from drake_haptics.analysis.delay_margin import find_shown_wrench
+from drake_haptics.analysis.held_loop import HeldLoop
+from drake_haptics.device_preset import load_device_preset
+from drake_haptics.systems.hand_grip import HAND_GRIPS
+
+
+@dataclass(frozen=True)
+class FeltImpedance:
+    """The wrench that resists displacements of the handle, as a discrete system.
+
+    Input: displacement (6,) of the handle, [rotation vector (rad); translation (m)]
+    about its origin, sampled. Output: the wrench (6,) [N·m; N] against it. The velocity
+    that the coupling damps is the backward difference of the displacements, as from
+    encoders.
+
+    A force that is no gradient drives a hand that moves in circles, however slowly, and
+    no damper makes it passive: at frequency ω it would take K_c/ω. Penalty forces of
+    meshes are such, a little, since the normal does not turn just as the depth changes.
+    That part of the stiffness is kept apart, and so is what looks like it only because
+    rotations do not commute (a torque of the world turns with nothing).
+
+    Attributes:
+        A: (n, n).
+        B: (n, 6).
+        C: (6, n).
+        D: (6, 6), without `curl` and the torque's own part.
+        period_s: T, s.
+        curl: (6, 6) antisymmetric part of the stiffness at standstill.
+        handle_damping: (6, 6) damping of the device's joints and of the hand, at the
+            handle, N·m·s/rad and N·s/m.
+    """
+
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    D: np.ndarray
+    period_s: float
+    curl: np.ndarray
+    handle_damping: np.ndarray
+
+
+def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
+    """Opens a loop at the handle.
+
+    Args:
+        loop: Of a scene with a simulated device.
+
+    Raises:
+        ValueError: The arm is singular there.
+    """
+    linear = loop.linearization
+    n_c = loop.context.num_continuous_states()
+    n_q = n_c // 2
+    J_WH, joint_damping = _read_arm(loop)
+    try:
+        per_displacement = np.linalg.inv(J_WH)
+    except np.linalg.LinAlgError as error:
+        raise ValueError(
+            "the arm is singular where it is held: hold the scene at another time"
+        ) from error
+    T = linear.period_s
+    # Discrete rows of A are the update itself: nothing of them moves in between.
+    update = linear.A[n_c:]
+    by_displacement = (update[:, :n_q] + update[:, n_q:n_c] / T) @ per_displacement
+    by_last = -update[:, n_q:n_c] / T @ per_displacement
+    shown = find_shown_wrench(linear.state_names[n_c:])
+    # The state ends with the last displacement.
+    A = np.block([[update[:, n_c:], by_last], [np.zeros((6, len(update) + 6))]])
+    B = np.vstack([by_displacement, np.eye(6)])
+    C, D = -A[shown], -B[shown]
+    antisymmetric = _calc_antisymmetric_stiffness(A, B, C, D)
+    torque = linear.state[n_c:][shown][:3]
+    grip = HAND_GRIPS[loop.haptic.scene.hand.grip]
+    of_hand = np.zeros(6)
+    if grip is not None:
+        of_hand[:3] = grip.rotational_damping_Nms_per_rad
+        of_hand[3:] = grip.damping_Ns_per_m
+    return FeltImpedance(
+        A=A,
+        B=B,
+        C=C,
+        D=D - antisymmetric,
+        period_s=T,
+        curl=antisymmetric - _calc_torque_part(torque),
+        handle_damping=per_displacement.T @ np.diag(joint_damping) @ per_displacement
+        + np.diag(of_hand),
+    )
+
+
+def _read_arm(loop: HeldLoop) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the handle's Jacobian (6, 6) and the damping of the joints (6,)."""
+    arm = loop.haptic.loop.device.GetSubsystemByName("simulated_arm")
+    plant: MultibodyPlant = arm.GetSubsystemByName("arm")
+    context: Context = plant.GetMyContextFromRoot(loop.context)
+    preset = load_device_preset(loop.haptic.scene.device.preset)
+    handle = plant.GetBodyByName(preset.handle_link)
+    J_WH = plant.CalcJacobianSpatialVelocity(
+        context,
+        JacobianWrtVariable.kV,
+        handle.body_frame(),
+        np.zeros(3),
+        plant.world_frame(),
+        plant.world_frame(),
+    )
+    joints = [plant.get_joint(i) for i in plant.GetJointIndices()]
+    return J_WH, np.concatenate([joint.default_damping_vector() for joint in joints])
+
+
+def _calc_antisymmetric_stiffness(
+    A: np.ndarray, B: np.ndarray, C: np.ndarray, D: np.ndarray
+) -> np.ndarray:
+    """Returns the antisymmetric part of H(1), the stiffness at standstill (6, 6)."""
+    # Where friction sticks I - A is singular, but its displacement is determined.
+    settled = np.linalg.lstsq(np.eye(len(A)) - A, B, rcond=1e-10)[0]
+    stiffness = C @ settled + D
+    return (stiffness - stiffness.T) / 2.0
+
+
+def _calc_torque_part(torque: np.ndarray) -> np.ndarray:
+    """Returns what a torque adds to the stiffness, since rotations do not commute.
+
+    At the rotation vector θ a potential's torque is -∂U + ½ θ × τ to first order: the
+    inverse left Jacobian of SO(3), transposed.
+    """
+    x, y, z = torque / 2.0
+    part = np.zeros((6, 6))
+    part[:3, :3] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
+    return part

@@ -1,0 +1,223 @@
+"""A scene whose hand stops on its way and holds still, to be analysed there."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.systems.framework import Context
+
+from drake_haptics.analysis.equilibrium import find_equilibrium
+from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.scene import Coupling, HandPath, Pose, Scene, Waypoint
+from drake_haptics.scene_check import SceneWarning
+from drake_haptics.simulated_device import make_hand_path, place_base
+from drake_haptics.simulation import RunError, make_simulator, run
+
+# A hand comes to a stop in no less than this.
+_SHORTEST_STOP_S = 0.05
+# Places that are tried for the tool to rest at, and how far they are apart in time.
+_MOST_PLACES = 6
+_APART_S = 0.05
+# A loop that is to settle but is not stable is tried with a softer coupling.
+_MOST_SOFTENINGS = 8
+# A tool that moves no faster, m/s and rad/s, has settled.
+_SETTLED_SPEED = 5e-3
+
+
+@dataclass(frozen=True)
+class HeldScene:
+    """A scene that stands still, its hand holding the tool at a place on its path.
+
+    Attributes:
+        scene: Its path ends there.
+        time_s: When the hand stops, s.
+        context: Of a diagram of the scene, at rest.
+        X_WT: Pose of the tool at rest.
+        F_Tool_W: What the coupling does to the tool there (6,), [N·m; N], at its origin
+            in the world.
+    """
+
+    scene: Scene
+    time_s: float
+    context: Context
+    X_WT: RigidTransform
+    F_Tool_W: np.ndarray
+
+
+def find_firmest_contact(scene: Scene) -> float:
+    """Returns the time at which the tool is pressed most along the hand's path, s.
+
+    One lap of the path is simulated. Where the tool touches nothing that is the time
+    at which it is nearest to something; where nothing is near, the path's end.
+
+    Raises:
+        drake_haptics.simulation.RunError: The scene diverges before it touches.
+    """
+    return _find_firm_places(scene)[0]
+
+
+def hold_scene(
+    scene: Scene,
+    time_s: float | None = None,
+    *,
+    settle_s: float = 1.0,
+    progress: Callable[[str, float], None] | None = None,
+) -> HeldScene:
+    """Stops a scene's hand on its path and lets the tool come to rest.
+
+    The way there is simulated as in a run, so that the tool touches from where it
+    came. Where the scene's own coupling does not settle, softer ones are tried for
+    the way; `HeldScene.build` has the scene's own.
+
+    Args:
+        scene: What to hold.
+        time_s: When the hand stops, s, on a periodic path of its first lap. If not
+            given, at the firmest contact at which the tool comes to rest: on a ridge
+            between two facets it may rock from one to the other for ever.
+        settle_s: How long the tool is given to come to rest, s.
+        progress: Called with what is done and its share in [0, 1].
+
+    Raises:
+        ValueError: The time is not on the path, or the tool does not come to rest.
+        SceneError: The scene cannot be built.
+    """
+    report = progress or (lambda what, share: None)
+    report("looking for the firmest contact", 0.0)
+    places = _find_firm_places(scene) if time_s is None else [time_s]
+    coupling = scene.coupling
+    for softening in range(_MOST_SOFTENINGS + 1):
+        for place in places:
+            report(f"stopping the hand at {place:.3f} s", softening / _MOST_SOFTENINGS)
+            held = stop_hand(scene, place)
+            found = _settle(replace(held, coupling=coupling), place + settle_s)
+            if found is not None:
+                return HeldScene(held, place, *found)
+        coupling = _soften(coupling)
+    raise ValueError(
+        f"the tool does not come to rest within {settle_s:g} s after the hand stops at"
+        f" {', '.join(f'{place:.3f}' for place in places)} s, even with a coupling"
+        f" {2**_MOST_SOFTENINGS} times softer: give another time or a longer settle_s,"
+        " or lower contact.stiffness_N_per_m"
+    )
+
+
+def _find_firm_places(scene: Scene) -> list[float]:
+    """Returns times at which the tool is pressed, the firmest first."""
+    haptic = build_quietly(scene)
+    force = haptic.loop.penalty_force
+    query = haptic.loop.contact_query
+    pressed: list[tuple[float, float]] = []
+
+    def note(root: Context) -> None:
+        wrench = force.get_tool_wrench_output_port().Eval(
+            force.GetMyContextFromRoot(root)
+        )
+        firmness = float(np.linalg.norm(wrench[3:]))
+        if firmness == 0.0:
+            contacts = query.get_contacts_output_port().Eval(
+                query.GetMyContextFromRoot(root)
+            )
+            firmness = -min(contacts.distance.tolist(), default=math.inf)
+        pressed.append((firmness, root.get_time()))
+
+    duration_s = make_hand_path(scene.hand.path).duration_s
+    try:
+        run(haptic, duration_s, on_tick=note)
+    except RunError:
+        if not any(firmness > 0.0 for firmness, _ in pressed):
+            raise
+    places: list[float] = []
+    for firmness, place in sorted(pressed, reverse=True):
+        far = all(abs(place - other) >= _APART_S for other in places)
+        if far and len(places) < _MOST_PLACES and math.isfinite(firmness):
+            places.append(min(place, duration_s))
+    return places or [duration_s]
+
+
+def stop_hand(scene: Scene, time_s: float) -> Scene:
+    """Returns a scene whose hand goes along its path and stops at a time.
+
+    Args:
+        scene: The device's base stays where it is in this one.
+        time_s: Not after the path's end, s.
+
+    Raises:
+        ValueError: The time is not on the path.
+    """
+    path = make_hand_path(scene.hand.path)
+    if not 0.0 <= time_s <= path.duration_s + 1e-9:
+        raise ValueError(
+            f"time_s must be on the hand's path, from 0 to {path.duration_s:g} s, is"
+            f" {time_s:g}"
+        )
+    stop = to_scene_pose(vector_to_pose(path.calc(time_s)[0]))
+    waypoints = [
+        waypoint
+        for waypoint in scene.hand.path.waypoints
+        if waypoint.time_s <= time_s - _SHORTEST_STOP_S
+    ]
+    if waypoints:
+        waypoints.append(Waypoint(time_s, stop.position_m, stop.rpy_deg))
+    else:
+        waypoints = [Waypoint(0.0, stop.position_m, stop.rpy_deg)]
+    return replace(
+        scene,
+        device=replace(scene.device, base=to_scene_pose(place_base(scene, path))),
+        hand=replace(scene.hand, path=HandPath(periodic=False, waypoints=waypoints)),
+    )
+
+
+def _settle(
+    scene: Scene, until_s: float
+) -> tuple[Context, RigidTransform, np.ndarray] | None:
+    """Returns where a scene's tool rests, or None where it does not in the end."""
+    haptic = build_quietly(scene)
+    simulator = make_simulator(haptic)
+    try:
+        simulator.AdvanceTo(until_s)
+    except FloatingPointError:
+        return None
+    tool, coupling = haptic.loop.haptic_tool, haptic.loop.virtual_coupling
+    context = simulator.get_context()
+    velocity = tool.get_velocity_output_port().Eval(tool.GetMyContextFromRoot(context))
+    # NaN is not below either.
+    if not np.abs(velocity).max() < _SETTLED_SPEED:
+        return None
+    try:
+        context = find_equilibrium(haptic.diagram, context).context
+    except ValueError:
+        return None
+    pose = tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(context))
+    model = coupling.get_wrench_model_output_port().Eval(
+        coupling.GetMyContextFromRoot(context)
+    )
+    return context, vector_to_pose(pose), np.array(model[:6])
+
+
+def _soften(coupling: Coupling) -> Coupling:
+    """Returns half the gains."""
+    return Coupling(
+        coupling.stiffness_N_per_m / 2.0,
+        coupling.damping_Ns_per_m / 2.0,
+        coupling.rotational_stiffness_Nm_per_rad / 2.0,
+        coupling.rotational_damping_Nms_per_rad / 2.0,
+    )
+
+
+def build_quietly(scene: Scene) -> HapticDiagram:
+    """Builds a scene; whether its coupling is stable is what is looked for."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SceneWarning)
+        return BuildHapticDiagram(scene)
+
+
+def to_scene_pose(X_WF: RigidTransform) -> Pose:
+    """Returns a pose as scenes have it."""
+    rpy_deg = np.rad2deg(RollPitchYaw(X_WF.rotation()).vector())
+    return Pose(X_WF.translation().tolist(), rpy_deg.tolist())

@@ -1,0 +1,236 @@
+"""All that can be said about a scene's stability where its tool is held in contact."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import asdict, dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from drake_haptics.analysis.delay_margin import calc_delay_margin
+from drake_haptics.analysis.felt_impedance import calc_felt_impedance
+from drake_haptics.analysis.held_loop import (
+    CouplingGrowth,
+    HeldLoop,
+    analyse_held_scene,
+)
+from drake_haptics.analysis.held_scene import HeldScene, hold_scene
+from drake_haptics.analysis.modes import Mode, find_modes
+from drake_haptics.analysis.passivity import Passivity, calc_passivity
+from drake_haptics.analysis.sampled_linearization import SampledLinearization
+from drake_haptics.analysis.stiffness_limits import (
+    Against,
+    Kind,
+    StiffnessLimits,
+    find_stiffness_limits,
+    none_unless_finite,
+)
+from drake_haptics.analysis.z_width_map import ZWidth, z_width
+from drake_haptics.coupling_check import HeldHandle
+from drake_haptics.held_handle import calc_scene_handle, check_scene_coupling
+from drake_haptics.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Progress = Callable[[str, float], None]
+
+# The map reaches from this share of a gain's largest value to that value.
+_LOWEST_SHARE = 0.02
+# The map goes beyond the larger of the limit and the formula by this factor.
+_BEYOND = 1.5
+
+
+@dataclass(frozen=True)
+class SceneStability:
+    """How stable a scene's loop is with its device in its hand, at one place.
+
+    Attributes:
+        scene: The scene, its hand stopped.
+        time_s: When the hand stopped on its path, s.
+        handle: Inertia and damping of device and hand where they are.
+        num_contacts: That push, at rest.
+        contact_force_N: On the tool, at rest, N.
+        growth: Of the fastest growing motion in a tick; stable below 1.
+        linearization: Of one tick.
+        modes: All motions, fastest growing first.
+        delay_margin_s: Further delay at which the loop becomes unstable, s.
+        limits: Of the coupling's stiffness in translation and in rotation, in this
+            contact and against a rigid wall; without those that the coupling does
+            not have.
+        felt: What damping makes passive what the device feels, over frequency.
+        damping_usage: How much of the damping of device and hand that is, at each
+            frequency of `felt`: passive where it is at most 1.
+        broken_bounds: Sentences of `check_coupling`.
+        map: Growth over stiffness and damping of translation; None if not asked for.
+    """
+
+    scene: Scene
+    time_s: float
+    handle: HeldHandle
+    num_contacts: int
+    contact_force_N: float
+    growth: float
+    linearization: SampledLinearization
+    modes: tuple[Mode, ...]
+    delay_margin_s: float
+    limits: tuple[StiffnessLimits, ...]
+    felt: Passivity
+    damping_usage: np.ndarray
+    broken_bounds: tuple[str, ...]
+    map: ZWidth | None
+
+    @property
+    def period_s(self) -> float:
+        """The tick, s."""
+        return 1.0 / self.scene.device.rate_hz
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether every motion dies out."""
+        return self.growth < 1.0
+
+    @property
+    def is_passive(self) -> bool:
+        """Whether no hand, however it holds, can be driven into motion."""
+        return bool(self.damping_usage.max() <= 1.0)
+
+    def plot(self) -> Figure:
+        """Draws map, poles, passivity and limits on one sheet."""
+        from drake_haptics.analysis.stability_sheet import draw_sheet
+
+        return draw_sheet(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns all of it, ready for JSON."""
+        return {
+            "description": self.scene.description,
+            "device": self.scene.device.preset,
+            "grip": self.scene.hand.grip,
+            "coupling": asdict(self.scene.coupling),
+            "period_s": self.period_s,
+            "time_s": self.time_s,
+            "handle": asdict(self.handle),
+            "num_contacts": self.num_contacts,
+            "contact_force_N": self.contact_force_N,
+            "growth": self.growth,
+            "is_stable": self.is_stable,
+            "is_passive": self.is_passive,
+            "delay_margin_s": none_unless_finite(self.delay_margin_s),
+            "limits": [limit.to_dict() for limit in self.limits],
+            "linearization": self.linearization.to_dict(),
+            "modes": [mode.to_dict() for mode in self.modes],
+            "passivity": self.felt.to_dict()
+            | {"damping_usage": self.damping_usage.tolist()},
+            "broken_bounds": list(self.broken_bounds),
+            "map": None if self.map is None else self.map.to_dict(),
+        }
+
+
+def analyse_scene(
+    scene: Scene,
+    time_s: float | None = None,
+    *,
+    map_size: int = 20,
+    executor: Executor | None = None,
+    store: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+) -> SceneStability:
+    """Analyses the stability of a scene where its tool is held in contact.
+
+    Args:
+        scene: With a simulated device and hand.
+        time_s: When the hand stops on its path, s; at the firmest contact if not
+            given.
+        map_size: Stiffnesses and dampings of the map, each; 0 for no map.
+        executor: Computes the map, see `run_study`.
+        store: Keeps the map's results, see `run_study`.
+        progress: Called with what is done and its share, in [0, 1].
+
+    Raises:
+        ValueError: The tool does not come to rest, or there is no equilibrium.
+        SceneError: The scene cannot be built.
+    """
+    report = progress or (lambda what, share: None)
+    held = hold_scene(scene, time_s, progress=progress)
+    loop = analyse_held_scene(held)
+    felt = calc_felt_impedance(loop)
+    passivity = calc_passivity(felt, felt.period_s)
+    limits = _find_limits(held, report)
+    map_ = None
+    if map_size > 0:
+        map_ = z_width(
+            CouplingGrowth(scene, held.time_s),
+            *_choose_grid(held.scene, limits, map_size),
+            executor=executor,
+            store=store,
+            progress=lambda done, total: report("map", done / total),
+        )
+    device = loop.haptic.loop.device
+    contacts, force_N = _read_contact(loop)
+    return SceneStability(
+        scene=held.scene,
+        time_s=held.time_s,
+        handle=calc_scene_handle(held.scene, device, loop.context),
+        num_contacts=contacts,
+        contact_force_N=force_N,
+        growth=loop.growth,
+        linearization=loop.linearization,
+        modes=find_modes(loop.linearization),
+        delay_margin_s=calc_delay_margin(loop),
+        limits=limits,
+        felt=passivity,
+        damping_usage=passivity.calc_usage(felt.handle_damping),
+        broken_bounds=tuple(check_scene_coupling(held.scene, device)),
+        map=map_,
+    )
+
+
+def _find_limits(held: HeldScene, report: Progress) -> tuple[StiffnessLimits, ...]:
+    """Returns the limits of the stiffnesses that the coupling has, contact first."""
+    coupling = held.scene.coupling
+    kinds: list[Kind] = []
+    if coupling.stiffness_N_per_m > 0.0:
+        kinds.append("translation")
+    if coupling.rotational_stiffness_Nm_per_rad > 0.0:
+        kinds.append("rotation")
+    cases: tuple[Against, ...] = ("this contact", "a rigid wall")
+    return tuple(
+        find_stiffness_limits(
+            held, kind, against, partial(report, f"limit of {kind} against {against}")
+        )
+        for against in cases
+        for kind in kinds
+    )
+
+
+def _choose_grid(
+    scene: Scene, limits: tuple[StiffnessLimits, ...], size: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns stiffnesses (N/m) and dampings (N·s/m) around what is stable."""
+    coupling = scene.coupling
+    found = [
+        value
+        for limit in limits
+        if limit.kind == "translation"
+        for value in (limit.eigenvalue, limit.stiffness)
+        if np.isfinite(value)
+    ]
+    highest = _BEYOND * max(found, default=1000.0)
+    lowest = min(_LOWEST_SHARE * highest, 0.5 * coupling.stiffness_N_per_m)
+    most = 4.0 * max(coupling.damping_Ns_per_m, 1.0)
+    return np.geomspace(lowest, highest, size), np.linspace(0.0, most, size)
+
+
+def _read_contact(loop: HeldLoop) -> tuple[int, float]:
+    """Returns how many contacts push and the force (N) on the tool."""
+    force = loop.haptic.loop.penalty_force
+    wrench = force.get_contact_wrench_output_port().Eval(
+        force.GetMyContextFromRoot(loop.context)
+    )
+    pushing = np.linalg.norm(wrench.f_cluster_W, axis=1) > 0.0
+    return int(pushing.sum()), float(np.linalg.norm(wrench.F_Tool_W[3:]))

@@ -1,0 +1,210 @@
+"""How stiff a scene's coupling may be: by eigenvalues, by simulation, by formula."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Literal
+
+from scipy.optimize import brentq
+
+from drake_haptics.analysis.aimed_hand import build_aimed
+from drake_haptics.analysis.held_loop import HeldLoop, analyse_held_scene
+from drake_haptics.analysis.held_scene import HeldScene
+from drake_haptics.analysis.modes import find_modes
+from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
+from drake_haptics.analysis.stability_limit import find_stability_limit
+from drake_haptics.coupling_check import HeldHandle
+from drake_haptics.held_handle import calc_scene_handle
+from drake_haptics.passivity_bounds import calc_stable_stiffness
+from drake_haptics.scene import Coupling
+
+Kind = Literal["translation", "rotation"]
+Against = Literal["this contact", "a rigid wall"]
+
+# Of a coupling, by kind: stiffness and damping.
+_GAINS = {
+    "translation": ("stiffness_N_per_m", "damping_Ns_per_m"),
+    "rotation": ("rotational_stiffness_Nm_per_rad", "rotational_damping_Nms_per_rad"),
+}
+# A tool of this mass, kg, is held still by whatever it touches.
+_IMMOVABLE_KG = 1e15
+# Stiffnesses are tried within this factor of the scene's.
+_RANGE = 1e4
+# Simulations are compared with eigenvalues within this share of the limit.
+_NEAR = 0.1
+
+
+@dataclass(frozen=True)
+class StiffnessLimits:
+    """The largest stable stiffness of a coupling, its other gains as in the scene.
+
+    All in N/m for translation and N·m/rad for rotation.
+
+    Attributes:
+        kind: Of which stiffness.
+        against: What the tool touches: the contact in which it is held, which gives
+            way; or a wall that holds it still, the worst that a device can feel.
+        stiffness: The scene's.
+        damping: The scene's, N·s/m or N·m·s/rad.
+        eigenvalue: Where an eigenvalue of one tick reaches magnitude 1; infinite
+            where none does up to 10⁴ times the scene's.
+        simulated: Where a small disturbance no longer dies out in simulation; NaN
+            where there is nothing to compare.
+        one_axis: The exact limit of one axis with the least inertia and damping that
+            device and hand have in any direction where they hold the tool, against a
+            rigid wall (`SampledWall`).
+        formula: (b + B) / (T/2) of the same axis (Gil et al. 2004).
+        limited_by: The motion that starts to grow there, in words.
+    """
+
+    kind: Kind
+    against: Against
+    stiffness: float
+    damping: float
+    eigenvalue: float
+    simulated: float
+    one_axis: float
+    formula: float
+    limited_by: str
+
+    @property
+    def unit(self) -> str:
+        """Of all stiffnesses."""
+        return "N/m" if self.kind == "translation" else "N·m/rad"
+
+    @property
+    def gain_margin(self) -> float:
+        """By what the scene's stiffness could be multiplied."""
+        return self.eigenvalue / self.stiffness
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns the fields and the margin, None for what is not finite."""
+        figures = asdict(self) | {"unit": self.unit, "gain_margin": self.gain_margin}
+        return {
+            name: none_unless_finite(value) if isinstance(value, float) else value
+            for name, value in figures.items()
+        }
+
+
+def find_stiffness_limits(
+    held: HeldScene,
+    kind: Kind,
+    against: Against = "this contact",
+    progress: Callable[[float], None] | None = None,
+) -> StiffnessLimits:
+    """Finds the largest stable stiffness of a held scene's coupling in three ways.
+
+    Args:
+        held: The scene, with the gains that stay.
+        kind: Which stiffness is raised.
+        against: What the tool touches.
+        progress: Called with the share done, in [0, 1].
+
+    Raises:
+        ValueError: The scene's coupling has no such stiffness.
+    """
+    report = progress or (lambda share: None)
+    stiffness_name, damping_name = _GAINS[kind]
+    stiffness = getattr(held.scene.coupling, stiffness_name)
+    damping = getattr(held.scene.coupling, damping_name)
+    if not stiffness > 0.0:
+        raise ValueError(f"coupling.{stiffness_name} must be above 0, is {stiffness}")
+    if against == "a rigid wall":
+        held = _hold_still(held)
+    done = 0
+
+    def analyse(value: float) -> HeldLoop:
+        nonlocal done
+        done += 1
+        report(1.0 - 0.9**done)
+        return analyse_held_scene(held, _replace(held, stiffness_name, value))
+
+    def growth(value: float) -> float:
+        try:
+            return analyse(value).growth
+        except ValueError:
+            return math.nan
+
+    limit = find_stability_limit(
+        growth, stiffness, lowest=stiffness / _RANGE, highest=stiffness * _RANGE
+    ).value
+    simulated, words = math.nan, "nothing in the range that was searched"
+    if 0.0 < limit < math.inf:
+        simulated = _find_simulated(
+            lambda value: analyse(value).measure_growth(), limit
+        )
+        words = find_modes(analyse(limit).linearization)[0].describe()
+    haptic, context = build_aimed(held)
+    handle = calc_scene_handle(held.scene, haptic.loop.device, context)
+    wall = _make_wall(held, kind, handle, damping)
+    report(1.0)
+    return StiffnessLimits(
+        kind=kind,
+        against=against,
+        stiffness=stiffness,
+        damping=damping,
+        eigenvalue=limit,
+        simulated=simulated,
+        one_axis=calc_largest_stiffness(wall),
+        formula=calc_stable_stiffness(wall.damping, damping, wall.period_s),
+        limited_by=words,
+    )
+
+
+def _hold_still(held: HeldScene) -> HeldScene:
+    """Returns a held scene whose tool nothing moves."""
+    scene = held.scene
+    still = replace(
+        scene,
+        tool=replace(scene.tool, mass_kg=_IMMOVABLE_KG),
+        effects=replace(scene.effects, gravity=None),
+    )
+    return replace(held, scene=still)
+
+
+def _find_simulated(growth: Callable[[float], float], near: float) -> float:
+    """Returns where simulated growth passes 1, or NaN if it does not near a value."""
+
+    def excess(logarithm: float) -> float:
+        return growth(math.exp(logarithm)) - 1.0
+
+    low, high = math.log(near * (1.0 - _NEAR)), math.log(near * (1.0 + _NEAR))
+    try:
+        return math.exp(brentq(excess, low, high, xtol=1e-4))
+    except ValueError:  # No change of sign, or nothing to be seen.
+        return math.nan
+
+
+def _replace(held: HeldScene, name: str, value: float) -> Coupling:
+    return replace(held.scene.coupling, **{name: value})
+
+
+def _make_wall(
+    held: HeldScene, kind: Kind, handle: HeldHandle, damping: float
+) -> SampledWall:
+    """Returns the coupling as a wall on one axis of what holds the tool."""
+    period_s = 1.0 / held.scene.device.rate_hz
+    if kind == "translation":
+        return SampledWall(
+            mass=handle.mass_kg,
+            damping=handle.damping_Ns_per_m,
+            period_s=period_s,
+            wall_damping=damping,
+            hand_stiffness=handle.stiffness_N_per_m,
+            true_velocity=True,
+        )
+    return SampledWall(
+        mass=handle.inertia_kgm2,
+        damping=handle.rotational_damping_Nms_per_rad,
+        period_s=period_s,
+        wall_damping=damping,
+        hand_stiffness=handle.rotational_stiffness_Nm_per_rad,
+        true_velocity=True,
+    )
+
+
+def none_unless_finite(value: float) -> float | None:
+    """Returns a number that JSON can hold, or None."""
+    return value if math.isfinite(value) else None

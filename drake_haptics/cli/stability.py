@@ -1,0 +1,135 @@
+"""`drake-haptics stability`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
+from drake_haptics.analysis.stability_page import (
+    describe_delay,
+    describe_situation,
+    describe_verdict,
+    write_stability_page,
+)
+from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.errors import UserError
+from drake_haptics.scene import Scene, load_scene
+from drake_haptics.scene_library import find_scene
+
+
+@click.command()
+@click.argument("scene")
+@click.option(
+    "--at",
+    "time_s",
+    type=click.FloatRange(0),
+    metavar="S",
+    help="Stop the hand at this time of its path.  [default: at the firmest contact]",
+)
+@click.option(
+    "--map",
+    "map_size",
+    type=click.IntRange(0),
+    default=20,
+    show_default=True,
+    help="Stiffnesses and dampings of the map, each; 0 for no map.",
+)
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE",
+    help="The page; its picture is written beside it.  [default: SCENE-stability.html]",
+)
+@click.option(
+    "--store",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE",
+    help="Keep the map's results here, and go on from them.",
+)
+@json_option
+def stability(
+    scene: str,
+    time_s: float | None,
+    map_size: int,
+    out: Path | None,
+    store: Path | None,
+    json_file: str | None,
+) -> None:
+    """Say how stable a scene is, and how stiff its coupling could be.
+
+    SCENE is the name of a shipped scene (see `drake-haptics scenes`) or a scene
+    file. The hand stops on its path, the tool rests in contact, and the loop of
+    device, hand, coupling, tool and contact is linearized there. Writes one page with
+    the poles, the margins, the largest stable stiffness by eigenvalue, by simulation
+    and by formula, and a map over the coupling's stiffness and damping.
+    """
+    chosen = load_scene(find_scene(scene))
+    path = out or Path(f"{Path(scene).stem}-stability.html")
+    if not path.absolute().parent.is_dir():
+        raise UserError(f"--out: there is no folder {path.parent}")
+    try:
+        result = _with_progress(chosen, time_s, map_size, store)
+    except ValueError as error:
+        raise UserError(str(error)) from error
+    except KeyboardInterrupt as stop:
+        # What a study was asked to keep is kept; its words say how to go on.
+        raise click.ClickException(str(stop) or "stopped") from stop
+    write_stability_page(result, Path(scene).stem, path)
+    if json_file is not None:
+        write_json(result.to_dict(), json_file)
+    if json_file != "-":
+        _print(result, path)
+
+
+def _with_progress(
+    scene: Scene, time_s: float | None, map_size: int, store: Path | None
+) -> SceneStability:
+    console = Console(stderr=True)
+    columns = (BarColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as bar:
+        task = bar.add_task("", total=1.0)
+
+        def show(what: str, share: float) -> None:
+            bar.update(task, description=what, completed=share)
+
+        return analyse_scene(
+            scene, time_s, map_size=map_size, store=store, progress=show
+        )
+
+
+def _print(result: SceneStability, path: Path) -> None:
+    console = Console(highlight=False)
+    console.print(f"[bold]{describe_verdict(result)}[/]")
+    console.print(describe_situation(result), style="dim")
+    table = Table(box=None)
+    headings = ["largest stable stiffness", "scene", "eigenvalue", "simulation"]
+    for heading in [*headings, "one axis", "formula"]:
+        table.add_column(heading, justify="right" if table.columns else "left")
+    for limit in result.limits:
+        values = (
+            limit.stiffness,
+            limit.eigenvalue,
+            limit.simulated,
+            limit.one_axis,
+            limit.formula,
+        )
+        cells = [f"{value:.5g}" for value in values]
+        name = f"{limit.kind} against {limit.against}, {limit.unit}"
+        table.add_row(name, *cells)
+    console.print(table)
+    for limit in result.limits:
+        console.print(
+            f"{limit.kind} against {limit.against} is limited by: {limit.limited_by}",
+            style="dim",
+        )
+    console.print(f"further delay that is stable: {describe_delay(result)}")
+    console.print(
+        f"Wrote [bold]{path}[/] and {path.with_suffix('.png')}.", soft_wrap=True
+    )

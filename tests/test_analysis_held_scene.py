@@ -1,0 +1,98 @@
+"""A scene whose hand stops, and whose tool comes to rest where it is pressed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from drake_haptics.analysis.held_scene import (
+    find_firmest_contact,
+    hold_scene,
+    stop_hand,
+)
+from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.scene import Coupling, load_scene
+from drake_haptics.scene_library import find_scene
+from drake_haptics.simulated_device import make_hand_path, place_base
+
+
+@pytest.fixture(scope="module")
+def hammer():
+    return load_scene(find_scene("hammer_block"))
+
+
+@pytest.fixture(scope="module")
+def held(hammer):
+    return hold_scene(hammer)
+
+
+@pytest.mark.parametrize("time_s", [0.0, 0.02, 0.35, 1.2, 3.5])
+def test_the_hand_stops_where_its_path_is_at_that_time(hammer, time_s):
+    path = make_hand_path(hammer.hand.path)
+    stopped = make_hand_path(stop_hand(hammer, time_s).hand.path)
+    expected = vector_to_pose(path.calc(time_s)[0])
+    for later_s in (0.0, 0.1, 10.0):
+        pose, velocity = stopped.calc(time_s + later_s)
+        assert vector_to_pose(pose).IsNearlyEqualTo(expected, 1e-12)
+        np.testing.assert_allclose(velocity, 0.0, atol=1e-12)
+
+
+def test_the_device_stays_where_it_was(hammer):
+    before = place_base(hammer, make_hand_path(hammer.hand.path))
+    scene = stop_hand(hammer, 0.3)
+    after = place_base(scene, make_hand_path(scene.hand.path))
+    assert after.IsNearlyEqualTo(before, 1e-12)
+
+
+@pytest.mark.parametrize("time_s", [-0.1, 3.6, np.nan])
+def test_a_time_off_the_path_is_refused(hammer, time_s):
+    with pytest.raises(ValueError, match=r"on the hand's path, from 0 to 3\.5 s"):
+        stop_hand(hammer, time_s)
+
+
+def test_the_firmest_contact_is_when_the_hand_aims_deepest(hammer):
+    # The lowest waypoints are at 0.35, 1.05 and 1.75 s; the arm lags behind the hand.
+    time_s = find_firmest_contact(hammer)
+    assert min(abs(time_s - lowest) for lowest in (0.35, 1.05, 1.75)) < 0.06
+
+
+def test_a_path_in_free_space_has_a_nearest_place(hammer):
+    lifted = [
+        replace(
+            w, position_m=[w.position_m[0], w.position_m[1], w.position_m[2] + 0.05]
+        )
+        for w in hammer.hand.path.waypoints
+    ]
+    path = replace(hammer.hand.path, waypoints=lifted)
+    scene = replace(hammer, hand=replace(hammer.hand, path=path))
+    assert 0.0 <= find_firmest_contact(scene) <= 3.6
+
+
+def test_the_tool_rests_in_contact(held):
+    haptic, context = held.build()
+    tool, force = haptic.loop.haptic_tool, haptic.loop.penalty_force
+    velocity = tool.get_velocity_output_port().Eval(tool.GetMyContextFromRoot(context))
+    assert np.abs(velocity).max() < 1e-3
+    wrench = force.get_tool_wrench_output_port().Eval(
+        force.GetMyContextFromRoot(context)
+    )
+    assert np.linalg.norm(wrench[3:]) > 1.0
+
+
+def test_other_gains_start_from_the_same_place(held):
+    _, context = held.build()
+    haptic, other = held.build(Coupling(stiffness_N_per_m=1234.0))
+    assert haptic.scene.coupling.stiffness_N_per_m == 1234.0
+    np.testing.assert_array_equal(
+        other.get_continuous_state_vector().CopyToVector(),
+        context.get_continuous_state_vector().CopyToVector(),
+    )
+
+
+def test_a_scene_with_an_unstable_coupling_is_held_all_the_same(hammer):
+    wild = replace(hammer, coupling=Coupling(stiffness_N_per_m=2e5))
+    found = hold_scene(wild, 0.35)
+    haptic, context = found.build()
+    assert haptic.scene.coupling.stiffness_N_per_m == 2e5
+    state = context.get_continuous_state_vector().CopyToVector()
+    assert np.isfinite(state).all() and np.abs(state).max() < 10.0
