@@ -21,7 +21,14 @@ from drake_haptics.simulation import RunError
 
 # The installed command, beside the interpreter.
 COMMAND = Path(sys.executable).with_name("drake-haptics")
-SCENES = ["cup_spoon", "hammer_block", "rubbed_sphere", "sphere_pen", "torus_peg"]
+SCENES = [
+    "can_box",
+    "cup_spoon",
+    "hammer_block",
+    "rubbed_sphere",
+    "sphere_pen",
+    "torus_peg",
+]
 
 
 def invoke(*arguments):

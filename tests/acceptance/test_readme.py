@@ -34,6 +34,8 @@ def test_command_runs(line, tmp_path, monkeypatch):
             arguments += ["--duration", "0.3"]
         if "--headless" not in arguments:
             arguments.append("--headless")
+    if arguments[0] == "stability":
+        arguments += ["--map", "0"]
     result = CliRunner().invoke(main, arguments)
     assert result.exit_code == 0, result.output
     for option in ("--record", "--json"):
