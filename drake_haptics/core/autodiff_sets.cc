@@ -117,6 +117,10 @@ ClusterSet ValuesOf(const ClusterSetOf<AutoDiff>& set) {
   return values;
 }
 
+MovingFrame ValuesOf(const MovingFrameOf<AutoDiff>& frame) {
+  return {ValuesOf(frame.p_WF), ValuesOf(frame.V_WF)};
+}
+
 PenaltyWrench ValuesOf(const PenaltyWrenchOf<AutoDiff>& wrench) {
   PenaltyWrench values;
   values.F_objects_W.resize(wrench.F_objects_W.size());

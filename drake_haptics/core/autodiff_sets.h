@@ -24,6 +24,7 @@ using AutoDiffFrictionStep = Differentiated<FrictionStepOf<AutoDiff>>;
 /// The values alone.
 ContactSet ValuesOf(const ContactSetOf<AutoDiff>& set);
 ClusterSet ValuesOf(const ClusterSetOf<AutoDiff>& set);
+MovingFrame ValuesOf(const MovingFrameOf<AutoDiff>& frame);
 PenaltyWrench ValuesOf(const PenaltyWrenchOf<AutoDiff>& wrench);
 FrictionStep ValuesOf(const FrictionStepOf<AutoDiff>& step);
 

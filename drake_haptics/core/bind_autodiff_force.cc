@@ -94,12 +94,6 @@ MovingFrameOf<AutoDiff> FrameOf(const AutoDiffVector& p_WF,
   return frame;
 }
 
-MovingFrame ValuesOf(const MovingFrameOf<AutoDiff>& frame) {
-  return {drake_haptics::ValuesOf(frame.p_WF),
-          drake_haptics::ValuesOf(frame.V_WF)};
-}
-using drake_haptics::ValuesOf;
-
 AutoDiffPenaltyWrench Compute(const AutoDiffClusterSet& clusters,
                               const AutoDiffVector& p_WTo,
                               const AutoDiffVector& V_WTool,
