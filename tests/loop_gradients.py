@@ -107,7 +107,7 @@ def calc_gradients(loop: HapticDiagram, context: Context) -> LoopGradients:
     n, values = len(x), _stack(one_period.calc(x, held, u))
     found = one_period.differentiate(x, held, u)
     expected = np.full((len(values), n), np.nan)
-    is_varied = _find_varied(loop, context)
+    is_varied = find_varied(loop, context)
     for step in _STEPS:
         left = np.flatnonzero(is_varied & np.isnan(expected).any(axis=0))
         if len(left):
@@ -115,7 +115,7 @@ def calc_gradients(loop: HapticDiagram, context: Context) -> LoopGradients:
     return LoopGradients(values, _stack(found), expected, is_varied, len(found.update))
 
 
-def _find_varied(loop: HapticDiagram, context: Context) -> np.ndarray:
+def find_varied(loop: HapticDiagram, context: Context) -> np.ndarray:
     """Returns which numbers of the state mean something now.
 
     Empty slots of friction's memory do not: what is written there is no contact.

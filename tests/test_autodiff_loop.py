@@ -4,23 +4,27 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from loop_gradients import build_scene, calc_gradients, contact_states
+from loop_gradients import build_scene, calc_gradients, contact_states, find_varied
 from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator, Simulator_
+from twin_check import differentiate
 
 from drake_haptics._core import AutoDiffVector
 from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
 from drake_haptics.analysis.diagram_systems import walk_leaves
 from drake_haptics.analysis.sampled_map import get_state, set_state
+from drake_haptics.analysis.state_layout import find_state_layout
 from drake_haptics.systems.penalty_force import PenaltyForce
 
-# Each with the time up to which it is simulated for states in contact, s.
+# Each with the time up to which it is simulated for states in contact, s. The rubbed
+# sphere has every effect.
 SCENES = {
     "can_box": 1.7,
     "cup_spoon": 1.0,
-    "torus_peg": 1.1,
     "hammer_block": 0.6,
+    "rubbed_sphere": 2.4,
     "sphere_pen": 0.8,
+    "torus_peg": 1.1,
 }
 
 
@@ -45,24 +49,28 @@ def test_derivatives_of_a_period_in_contact_are_those_of_doubles(run):
     for context in run.states:
         gradients = calc_gradients(run.loop, context)
         # A peg that comes down straight presses equally to both sides.
-        assert gradients.is_kink.mean() < 0.1
+        assert gradients.is_kink.sum() < 0.1 * gradients.is_varied.sum()
         assert np.nanmax(gradients.errors) < 1e-6
         # Only the memory of a limit is what no state changes.
-        assert (~np.nan_to_num(gradients.expected).any(axis=1)).sum() == 1
+        assert np.nan_to_num(gradients.expected).any(axis=1).sum() >= 31
 
 
 def test_derivatives_that_a_system_loses_would_be_seen(run, monkeypatch):
     right = PenaltyForce.differentiate
+    names = find_state_layout(run.loop.diagram).names
+    column = names.index("haptic_tool/step/xd[12]")
 
     def forgetful(self, port, at):
-        """Forgets how the wrench changes with the last of all variables."""
+        """Forgets how the wrench changes with the tool's speed along z."""
         answer = right(self, port, at)
+        if port != "wrench_model":
+            return answer
         gradient = answer.gradient.copy()
-        gradient[:, -1] = 0.0
+        gradient[:, column] = 0.0
         return AutoDiffVector(answer.value, gradient)
 
     monkeypatch.setattr(PenaltyForce, "differentiate", forgetful)
-    assert calc_gradients(run.loop, run.states[0]).errors[:, -1].max() > 1e-5
+    assert calc_gradients(run.loop, run.states[0]).errors[:, column].max() > 1e-5
 
 
 def test_a_simulation_of_the_twin_has_the_derivatives_of_a_simulation(run):
@@ -83,13 +91,14 @@ def test_a_simulation_of_the_twin_has_the_derivatives_of_a_simulation(run):
         return simulate(Simulator(diagram, context.Clone()), float, start)
 
     direction = np.random.default_rng(3).normal(size=len(x))
+    direction *= find_varied(run.loop, context)
     seed = InitializeAutoDiff(x, direction[:, np.newaxis]).ravel()
     found = simulate(
         Simulator_[AutoDiffXd](twin.system, twin.context), AutoDiffXd, seed
     )
     slope = ExtractGradient(found).ravel()
-    h = 1e-7
-    expected = (go(x + h * direction) - go(x - h * direction)) / (2 * h)
+    along = differentiate(lambda s: go(x + s[0] * direction), [0.0], 1e-8)
+    expected = along.ravel()
     np.testing.assert_allclose(
         slope, expected, rtol=1e-5, atol=1e-6 * np.abs(expected).max()
     )
