@@ -58,7 +58,7 @@ def test_derivatives_of_a_period_in_contact_are_those_of_doubles(run):
 def test_derivatives_that_a_system_loses_would_be_seen(run, monkeypatch):
     right = PenaltyForce.differentiate
     names = find_state_layout(run.loop.diagram).names
-    column = names.index("haptic_tool/step/xd[12]")
+    column = names.index("haptic_tool/step/vz")
 
     def forgetful(self, port, at):
         """Forgets how the wrench changes with the tool's speed along z."""

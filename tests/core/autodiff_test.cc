@@ -10,6 +10,7 @@
 
 #include "check.h"
 #include "held_arm.h"
+#include "penalty_force.h"
 #include "rigid_tool.h"
 #include "rotation.h"
 
@@ -137,6 +138,29 @@ void ConstantsMix() {
   CHECK((V.gradient * Vec6::Constant(0.1)).isApprox(V.value, 1e-12));
 }
 
+/// A cluster that others relieve wholly, beside one that pushes.
+void WhatPushesNothingMixes() {
+  const auto variables = ToScalars<6>(Variables<6>(Vec6::Constant(-0.1)), "V");
+  ClusterOf<AutoDiff> cluster;
+  cluster.distance = variables[0];
+  cluster.nhat_BA_W =
+      Vec3Of<AutoDiff>(variables[0], variables[1], variables[2]);
+  cluster.p_WC = cluster.nhat_BA_W;
+  ClusterSetOf<AutoDiff> set;
+  set.clusters = {cluster, cluster};
+  set.clusters[1].compression = variables[3];
+  set.clusters[1].damping_share = variables[4];
+  set.coupling = {AutoDiff(0), AutoDiff(0), AutoDiff(0), variables[5]};
+  MovingFrameOf<AutoDiff> tool, object;
+  tool.V_WF = -variables;
+  object.V_WF = variables;
+  const auto wrench =
+      ComputePenaltyWrench<AutoDiff>(set, tool, {object}, {{100.0, 2.0}});
+  const AutoDiffVector F = ToAutoDiffVector(wrench.tool.F, 6);
+  CHECK(F.value.norm() > 0 && F.gradient.norm() > 0);
+  CHECK(ToAutoDiffVector(wrench.tool.K.col(5), 6).gradient.norm() > 0);
+}
+
 void LengthsMustAgree() {
   const AutoDiffVector two = Variables<2>({1, 2});
   const AutoDiffVector three = Variables<3>({1, 2, 3});
@@ -154,6 +178,7 @@ int main() {
   drake_haptics::HalfATurnHasFiniteSlope();
   drake_haptics::ArmsHaveTheirSlope();
   drake_haptics::ConstantsMix();
+  drake_haptics::WhatPushesNothingMixes();
   drake_haptics::LengthsMustAgree();
   return drake_haptics::FailedChecks() > 0;
 }
