@@ -174,39 +174,53 @@ std::shared_ptr<const SurfaceShading> MakeShading(double crease_angle) {
       crease_angle);
 }
 
-/// Of faces, edges and vertices, smooth and sharp, near and deep.
+struct Touch {
+  std::shared_ptr<const SurfaceShading> tool, object;
+  std::array<std::int32_t, 2> feature_A, feature_B;
+  double distance;
+  Vec3 n;  // about the normal
+};
+
+void CheckShadedNormal(const Touch& touch) {
+  const ContactShading shading(touch.tool, {touch.object});
+  CheckSlope(
+      [&](const auto& x) {
+        using T = typename std::decay_t<decltype(x)>::Scalar;
+        ContactSetOf<T> set;
+        ContactOf<T>& contact = set.contacts.emplace_back();
+        contact.distance = touch.distance + 0.1 * x[0];
+        contact.nhat_BA_W =
+            (touch.n.cast<T>() + 0.01 * Part<3>(x, 0)).normalized();
+        contact.p_WCa = Part<3>(x, 3);
+        contact.p_WCb = Part<3>(x, 6);
+        contact.feature_A = touch.feature_A;
+        contact.feature_B = touch.feature_B;
+        std::vector<PoseOf<T>> X(2);
+        for (int i = 0; i < 2; ++i) {
+          const PoseVectorOf<T> q =
+              PoseVector::Unit(0).cast<T>() + 0.02 * Part<7>(x, 9 + 2 * i);
+          X[i] = {QuaternionOf(q).toRotationMatrix(), q.template tail<3>()};
+        }
+        shading.Shade<T>(X[0], std::span<const PoseOf<T>>(&X[1], 1), &set);
+        return VectorOf<T>(contact.nhat_BA_W);
+      },
+      Sample(18));
+}
+
+/// Of faces, edges and vertices, smooth and sharp, near and deep; and of sharp
+/// ones beside a face that lies nearly flush.
 void ShadedNormalsHaveTheirSlope() {
   const auto smooth = MakeShading(2.5), sharp = MakeShading(0.5);
   const std::array<std::int32_t, 2> facet{2, 1}, edge{1, 3}, vertex{0, 2};
-  for (const auto& [tool, object, feature_A, feature_B, distance] :
-       {std::tuple(smooth, smooth, vertex, facet, 1e-3),
-        {smooth, smooth, edge, edge, -1e-1},
-        {smooth, sharp, facet, vertex, -2.0},
-        {sharp, smooth, vertex, facet, 0.5},
-        {sharp, smooth, facet, edge, -0.2}}) {
-    const ContactShading shading(tool, {object});
-    CheckSlope(
-        [&](const auto& x) {
-          using T = typename std::decay_t<decltype(x)>::Scalar;
-          ContactSetOf<T> set;
-          ContactOf<T>& contact = set.contacts.emplace_back();
-          contact.distance = distance + 0.1 * x[0];
-          contact.nhat_BA_W =
-              (Vec3(0.3, 0.2, 1).template cast<T>() + 0.1 * Part<3>(x, 0))
-                  .normalized();
-          contact.p_WCa = Part<3>(x, 3);
-          contact.p_WCb = Part<3>(x, 6);
-          contact.feature_A = feature_A;
-          contact.feature_B = feature_B;
-          std::vector<PoseOf<T>> X(2);
-          for (int i = 0; i < 2; ++i) {
-            const PoseVectorOf<T> q = Part<7>(x, 9 + 2 * i);
-            X[i] = {QuaternionOf(q).toRotationMatrix(), q.template tail<3>()};
-          }
-          shading.Shade<T>(X[0], std::span<const PoseOf<T>>(&X[1], 1), &set);
-          return VectorOf<T>(contact.nhat_BA_W);
-        },
-        Sample(18));
+  const Vec3 oblique(0.3, 0.2, 1), flush(0.02, 0.01, -1);
+  CheckShadedNormal({smooth, smooth, vertex, facet, 1e-3, oblique});
+  CheckShadedNormal({smooth, smooth, edge, edge, -1e-1, oblique});
+  CheckShadedNormal({smooth, sharp, facet, vertex, -2.0, oblique});
+  CheckShadedNormal({sharp, smooth, vertex, facet, 0.5, oblique});
+  CheckShadedNormal({sharp, smooth, facet, edge, -0.2, oblique});
+  for (const int k : {0, 1, 2, 3, 4}) {
+    CheckShadedNormal({smooth, sharp, facet, {0, k}, -0.1, flush});
+    CheckShadedNormal({smooth, sharp, edge, {1, k}, 0.2, flush});
   }
 }
 
