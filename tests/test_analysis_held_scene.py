@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from drake_haptics.analysis.aimed_hand import build_aimed
 from drake_haptics.analysis.held_scene import (
+    build_quietly,
     find_firmest_contact,
     hold_scene,
     stop_hand,
@@ -69,30 +71,31 @@ def test_a_path_in_free_space_has_a_nearest_place(hammer):
 
 
 def test_the_tool_rests_in_contact(held):
-    haptic, context = held.build()
+    haptic = build_quietly(held.scene)
     tool, force = haptic.loop.haptic_tool, haptic.loop.penalty_force
+    context = haptic.diagram.CreateDefaultContext()
+    context.SetTimeStateAndParametersFrom(held.context)
     velocity = tool.get_velocity_output_port().Eval(tool.GetMyContextFromRoot(context))
-    assert np.abs(velocity).max() < 1e-3
-    wrench = force.get_tool_wrench_output_port().Eval(
+    assert np.abs(velocity).max() < 1e-9
+    pushed = force.get_tool_wrench_output_port().Eval(
         force.GetMyContextFromRoot(context)
     )
-    assert np.linalg.norm(wrench[3:]) > 1.0
-
-
-def test_other_gains_start_from_the_same_place(held):
-    _, context = held.build()
-    haptic, other = held.build(Coupling(stiffness_N_per_m=1234.0))
-    assert haptic.scene.coupling.stiffness_N_per_m == 1234.0
-    np.testing.assert_array_equal(
-        other.get_continuous_state_vector().CopyToVector(),
-        context.get_continuous_state_vector().CopyToVector(),
-    )
+    assert np.linalg.norm(pushed[3:]) > 1.0
+    # Without gravity on the tool the coupling holds it against the contact alone.
+    np.testing.assert_allclose(held.F_Tool_W, -pushed, atol=1e-6)
+    pose = tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(context))
+    assert vector_to_pose(pose).IsExactlyEqualTo(held.X_WT)
 
 
 def test_a_scene_with_an_unstable_coupling_is_held_all_the_same(hammer):
     wild = replace(hammer, coupling=Coupling(stiffness_N_per_m=2e5))
-    found = hold_scene(wild, 0.35)
-    haptic, context = found.build()
-    assert haptic.scene.coupling.stiffness_N_per_m == 2e5
+    held = hold_scene(wild, 0.35)
+    haptic, context = build_aimed(held)
+    assert haptic.scene.coupling == wild.coupling
     state = context.get_continuous_state_vector().CopyToVector()
     assert np.isfinite(state).all() and np.abs(state).max() < 10.0
+
+
+def test_a_tool_that_cannot_come_to_rest_in_time_is_an_error(hammer):
+    with pytest.raises(ValueError, match=r"within 0\.001 s after .* at 0\.350 s"):
+        hold_scene(hammer, 0.35, settle_s=1e-3)

@@ -73,7 +73,7 @@ def hold_scene(
 
     The way there is simulated as in a run, so that the tool touches from where it
     came. Where the scene's own coupling does not settle, softer ones are tried for
-    the way; `HeldScene.build` has the scene's own.
+    the way; `drake_haptics.analysis.aimed_hand.build_aimed` gives it its own again.
 
     Args:
         scene: What to hold.
