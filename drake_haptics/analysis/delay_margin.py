@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.linalg import expm
+from scipy.optimize import brentq
 
 from drake_haptics.analysis.held_loop import HeldLoop
 from drake_haptics.analysis.stability_limit import calc_growth
+from drake_haptics.analysis.study_chunk import one_blas_thread
 
-# Delays are tried so far apart, in periods or as a share, before the edge is bisected.
+# Delays are tried so far apart, in periods or as a share, before the edge is
+# closed in on.
 _STEP, _STEP_SHARE = 0.25, 0.2
 # The longest that is tried, in periods.
 LONGEST_DELAY = 50.0
@@ -24,25 +27,21 @@ def calc_delay_margin(loop: HeldLoop) -> float:
     Args:
         loop: At its equilibrium.
     """
-    low = high = 0.0
-    if _calc_growth(loop, high) >= 1.0:
-        return 0.0
-    while _calc_growth(loop, high) < 1.0:
-        if high >= LONGEST_DELAY:
-            return np.inf
-        low, high = high, high + max(_STEP, _STEP_SHARE * high)
-    while high - low > _TOLERANCE:
-        middle = (low + high) / 2.0
-        if _calc_growth(loop, middle) < 1.0:
-            low = middle
-        else:
-            high = middle
-    return loop.linearization.period_s * (low + high) / 2.0
 
+    def excess(delay: float) -> float:
+        return calc_growth(np.linalg.eigvals(make_delayed_map(loop, delay))) - 1.0
 
-def _calc_growth(loop: HeldLoop, delay: float) -> float:
-    """Returns the growth per period with the wrench so many periods later."""
-    return calc_growth(np.linalg.eigvals(make_delayed_map(loop, delay)))
+    # These matrices are too small to share between threads, which then only wait.
+    with one_blas_thread():
+        low = high = 0.0
+        if excess(high) >= 0.0:
+            return 0.0
+        while excess(high) < 0.0:
+            if high >= LONGEST_DELAY:
+                return np.inf
+            step = max(_STEP, _STEP_SHARE * high)
+            low, high = high, min(high + step, LONGEST_DELAY)
+        return loop.linearization.period_s * brentq(excess, low, high, xtol=_TOLERANCE)
 
 
 def make_delayed_map(loop: HeldLoop, delay: float) -> np.ndarray:

@@ -29,6 +29,7 @@ from drake_haptics.analysis.stiffness_limits import (
     find_stiffness_limits,
     none_unless_finite,
 )
+from drake_haptics.analysis.study_chunk import one_blas_thread
 from drake_haptics.analysis.z_width_map import ZWidth, z_width
 from drake_haptics.coupling_check import HeldHandle
 from drake_haptics.held_handle import calc_scene_handle, check_scene_coupling
@@ -41,7 +42,7 @@ Progress = Callable[[str, float], None]
 
 # The map reaches from this share of a gain's largest value to that value.
 _LOWEST_SHARE = 0.02
-# The map goes beyond the larger of the limit and the formula by this factor.
+# The map goes beyond the largest limit, and the scene's own gain, by this factor.
 _BEYOND = 1.5
 
 
@@ -146,21 +147,28 @@ def analyse_scene(
         scene: With a simulated device and hand.
         time_s: When the hand stops on its path, s; at the firmest contact if not
             given.
-        map_size: Stiffnesses and dampings of the map, each; 0 for no map.
+        map_size: Stiffnesses and dampings of the map, each, at least 2; 0 for no map.
         executor: Computes the map, see `run_study`.
         store: Keeps the map's results, see `run_study`.
         progress: Called with what is done and its share, in [0, 1].
 
     Raises:
-        ValueError: The tool does not come to rest, or there is no equilibrium.
+        ValueError: The tool does not come to rest, or there is no equilibrium, or
+            `map_size` is 1 or negative.
         SceneError: The scene cannot be built.
+        drake_haptics.simulation.RunError: It diverges before the tool touches.
     """
+    if map_size < 0 or map_size == 1:
+        raise ValueError(f"map_size must be 0 or at least 2, is {map_size}")
     report = progress or (lambda what, share: None)
-    held = hold_scene(scene, time_s, progress=progress)
-    loop = analyse_held_scene(held)
-    felt = calc_felt_impedance(loop)
-    passivity = calc_passivity(felt, felt.period_s)
-    limits = _find_limits(held, report)
+    # The matrices are too small to share between threads, which then only wait.
+    with one_blas_thread():
+        held = hold_scene(scene, time_s, progress=progress)
+        loop = analyse_held_scene(held)
+        felt = calc_felt_impedance(loop)
+        passivity = calc_passivity(felt, felt.period_s)
+        limits = _find_limits(held, report)
+        delay_margin_s = calc_delay_margin(loop)
     map_ = None
     if map_size > 0:
         map_ = z_width(
@@ -181,7 +189,7 @@ def analyse_scene(
         growth=loop.growth,
         linearization=loop.linearization,
         modes=find_modes(loop.linearization),
-        delay_margin_s=calc_delay_margin(loop),
+        delay_margin_s=delay_margin_s,
         limits=limits,
         felt=passivity,
         damping_usage=passivity.calc_usage(felt.handle_damping),

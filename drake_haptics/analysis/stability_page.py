@@ -12,7 +12,9 @@ from pathlib import Path
 from string import Template
 
 from drake_haptics.analysis.delay_margin import LONGEST_DELAY
+from drake_haptics.analysis.motion_words import describe_motion, shorten_paths
 from drake_haptics.analysis.scene_stability import SceneStability
+from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
 
 _SLOWEST_SHOWN = 12
 _DPI = 110
@@ -28,8 +30,10 @@ def write_stability_page(stability: SceneStability, name: str, path: Path) -> No
         path: Of the HTML file; the picture has the suffix `.png` instead.
 
     Raises:
+        ValueError: The path has the picture's suffix.
         OSError: A file cannot be written.
     """
+    check_page_path(path)
     picture = io.BytesIO()
     stability.plot().savefig(picture, format="png", dpi=_DPI)
     path.with_suffix(".png").write_bytes(picture.getvalue())
@@ -43,10 +47,24 @@ def write_stability_page(stability: SceneStability, name: str, path: Path) -> No
         sheet=base64.b64encode(picture.getvalue()).decode(),
         limits=_make_limits(stability),
         margins=_make_margins(stability),
+        gains=_make_gains(stability),
         modes=_make_modes(stability),
         warnings=_make_warnings(stability),
     )
     path.write_text(page, encoding="utf-8")
+
+
+def check_page_path(path: Path) -> None:
+    """Checks that page and picture are two files.
+
+    Raises:
+        ValueError: The path has the picture's suffix.
+    """
+    if path.suffix == ".png":
+        raise ValueError(
+            f"the page must not be called {path.name}: its picture will be. Give a"
+            " name that ends with .html"
+        )
 
 
 def describe_verdict(stability: SceneStability) -> str:
@@ -54,33 +72,53 @@ def describe_verdict(stability: SceneStability) -> str:
     if not stability.is_stable:
         return (
             f"Unstable: a disturbance grows by {_percent(stability.growth - 1.0)} in"
-            f" each tick. {stability.modes[0].describe()}"
+            f" each tick: {describe_motion(stability.modes[0])}."
         )
-    room = min((limit.gain_margin for limit in stability.limits), default=math.inf)
-    first = "Stable"
-    if math.isfinite(room):
-        first += f"; the coupling could be {room:.3g} times as stiff"
     if stability.is_passive:
-        return f"{first}. Passive: no hand can be driven into vibration."
+        second = "Passive: no hand can be driven into vibration."
+    else:
+        second = (
+            f"Not passive: {_percent(float(stability.damping_usage.max()))} of the"
+            " damping of device and hand would be needed, so that some other hand may"
+            " be driven into vibration."
+        )
+    return f"Stable{_describe_room(stability.limits)}. {second}"
+
+
+def _describe_room(limits: tuple[StiffnessLimits, ...]) -> str:
+    """Says how far the nearest limit is, if there is one."""
+    nearest = min(limits, key=lambda limit: limit.gain_margin, default=None)
+    if nearest is None or math.isinf(nearest.gain_margin):
+        return ""
+    which = f"the coupling's stiffness of {nearest.kind}"
+    if nearest.gain_margin >= 1.0:
+        return (
+            f"; {which} could be {nearest.gain_margin:.3g} times as large, against"
+            f" {nearest.against}"
+        )
     return (
-        f"{first}. Not passive: {_percent(float(stability.damping_usage.max()))} of the"
-        " damping of device and hand would be needed, so that some other hand may"
-        " be driven into vibration."
+        f" in this contact; but against {nearest.against} {which} would be stable only"
+        f" at less than {nearest.gain_margin:.3g} of what it is"
     )
 
 
 def describe_situation(stability: SceneStability) -> str:
     """Says what was analysed."""
     scene, handle = stability.scene, stability.handle
+    grip = scene.hand.grip
+    held = "without a hand" if grip == "none" else f"in a {grip} grip"
     contacts = stability.num_contacts
+    if contacts == 0:
+        touch = "the tool touches nothing"
+    else:
+        push = "contact pushes" if contacts == 1 else "contacts push"
+        touch = f"{contacts} {push} the tool with {stability.contact_force_N:.2f} N"
     return (
-        f"{scene.device.preset} in a {scene.hand.grip} grip at"
-        f" {scene.device.rate_hz:g} Hz; the hand stops at {stability.time_s:.3f} s of"
-        f" its path, where {contacts} contact{'' if contacts == 1 else 's'} push"
-        f"{'es' if contacts == 1 else ''} the tool with"
-        f" {stability.contact_force_N:.2f} N. Where it is held, device and hand move"
-        f" like {1e3 * handle.mass_kg:.0f} g and {1e6 * handle.inertia_kgm2:.0f} kg·mm²"
-        f" at least, and are damped by {handle.damping_Ns_per_m:.3g} N·s/m and"
+        f"{scene.device.preset} {held} at {scene.device.rate_hz:g} Hz; the hand stops"
+        f" at {stability.time_s:.3f} s of its path, where {touch}. Where it is held,"
+        f" device and hand move like {1e3 * handle.mass_kg:.0f} g and"
+        f" {1e6 * handle.inertia_kgm2:.0f} kg·mm² at least, and are damped by"
+        f" {handle.damping_Ns_per_m:.3g} N·s/m and"
         f" {1e3 * handle.rotational_damping_Nms_per_rad:.3g} mN·m·s/rad at least."
     )
 
@@ -100,23 +138,16 @@ def _choose_class(stability: SceneStability) -> str:
 
 
 def _make_limits(stability: SceneStability) -> str:
-    header = [
-        "",
-        "scene",
-        "eigenvalue",
-        "simulation",
-        "one axis",
-        "formula",
-        "what limits it",
-    ]
+    header = ["", "scene", "eigenvalue", "simulation", "one axis", "formula"]
+    header.append("what limits it")
     rows = [
         [
-            f"{limit.kind} against {limit.against}, {limit.unit}",
-            _number(limit.stiffness),
-            _number(limit.eigenvalue),
-            _number(limit.simulated),
-            _number(limit.one_axis),
-            _number(limit.formula),
+            f"{limit.kind}, {limit.against}, {limit.unit}",
+            format_limit(limit.stiffness),
+            format_limit(limit.eigenvalue),
+            format_limit(limit.simulated),
+            format_limit(limit.one_axis),
+            format_limit(limit.formula),
             limit.limited_by,
         ]
         for limit in stability.limits
@@ -127,21 +158,62 @@ def _make_limits(stability: SceneStability) -> str:
 def _make_margins(stability: SceneStability) -> str:
     rows = [
         [
-            f"stiffness of {limit.kind} against {limit.against}",
+            f"stiffness of {limit.kind}, {limit.against}",
             _times(limit.gain_margin),
         ]
         for limit in stability.limits
     ]
     rows.append(["further delay", describe_delay(stability)])
-    usage = float(stability.damping_usage.max())
-    rows.append(["damping that passivity needs, of what there is", _percent(usage)])
+    worst = int(stability.damping_usage.argmax())
+    rows.append(
+        [
+            "damping that passivity needs, of what there is",
+            f"{_percent(float(stability.damping_usage[worst]))} at"
+            f" {stability.felt.frequencies_Hz[worst]:.3g} Hz",
+        ]
+    )
     rows.append(["growth per tick", f"{stability.growth:.6f}"])
     return _make_table(["", "margin"], rows)
 
 
+def _make_gains(stability: SceneStability) -> str:
+    coupling, handle = stability.scene.coupling, stability.handle
+    rows = [
+        (
+            "coupling: stiffness, N/m and N·m/rad",
+            coupling.stiffness_N_per_m,
+            coupling.rotational_stiffness_Nm_per_rad,
+        ),
+        (
+            "coupling: damping, N·s/m and N·m·s/rad",
+            coupling.damping_Ns_per_m,
+            coupling.rotational_damping_Nms_per_rad,
+        ),
+        (
+            "device and hand: least mass, kg and kg·m²",
+            handle.mass_kg,
+            handle.inertia_kgm2,
+        ),
+        (
+            "device and hand: least damping, N·s/m and N·m·s/rad",
+            handle.damping_Ns_per_m,
+            handle.rotational_damping_Nms_per_rad,
+        ),
+        (
+            "hand: least stiffness, N/m and N·m/rad",
+            handle.stiffness_N_per_m,
+            handle.rotational_stiffness_Nm_per_rad,
+        ),
+    ]
+    return _make_table(
+        ["", "translation", "rotation"],
+        [[what, f"{one:.5g}", f"{other:.5g}"] for what, one, other in rows],
+    )
+
+
 def _make_modes(stability: SceneStability) -> str:
     rows = [
-        [f"{abs(mode.eigenvalue):.6f}", mode.describe()]
+        [f"{abs(mode.eigenvalue):.6f}", shorten_paths(mode.describe())]
         for mode in stability.modes[:_SLOWEST_SHOWN]
     ]
     return _make_table(["|z|", f"the slowest {len(rows)} to die out"], rows)
@@ -167,14 +239,8 @@ def _make_cell(text: str) -> str:
     return f"<td{kind}>{html.escape(text)}</td>"
 
 
-def _number(value: float) -> str:
-    if math.isnan(value):
-        return "not seen"
-    return f"{value:.5g}" if math.isfinite(value) else "no limit found"
-
-
 def _times(factor: float) -> str:
-    return f"{factor:.3g} times" if math.isfinite(factor) else "no limit found"
+    return f"{factor:.3g} times" if math.isfinite(factor) else "none found"
 
 
 def _percent(share: float) -> str:

@@ -8,14 +8,16 @@ import numpy as np
 
 from drake_haptics.analysis.mode_plot import plot_poles
 from drake_haptics.analysis.scene_stability import SceneStability
-from drake_haptics.analysis.stiffness_limits import StiffnessLimits
+from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
 from drake_haptics.analysis.z_width_plot import HeldBounds
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SIZE_INCH = (13.0, 9.5)
+_SIZE_INCH = (13.0, 10.0)
+# Bars begin here, as a multiple of the scene's stiffness.
+_LEAST_SHOWN = 0.3
 
 
 def draw_sheet(stability: SceneStability) -> Figure:
@@ -23,62 +25,71 @@ def draw_sheet(stability: SceneStability) -> Figure:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=_SIZE_INCH, layout="constrained")
-    (top_left, top_right), (low_left, low_right) = figure.subplots(2, 2)
     if stability.map is None:
-        top_left.set_axis_off()
+        panels = figure.subplot_mosaic([["poles", "usage"], ["limits", "limits"]])
     else:
+        panels = figure.subplot_mosaic([["map", "poles"], ["usage", "limits"]])
         coupling = stability.scene.coupling
         stability.map.plot(
-            top_left,
+            panels["map"],
             bounds=HeldBounds(stability.handle.damping_Ns_per_m, stability.period_s),
             gains=(coupling.stiffness_N_per_m, coupling.damping_Ns_per_m),
         )
-        top_left.set_title("which couplings are stable in this contact")
-    plot_poles(stability.linearization, top_right)
-    _plot_usage(stability, low_left)
-    _plot_limits(stability.limits, low_right)
+        panels["map"].set_title("which couplings are stable in this contact")
+    plot_poles(stability.linearization, panels["poles"])
+    _plot_usage(stability, panels["usage"])
+    _plot_limits(stability.limits, panels["limits"])
     figure.suptitle(stability.scene.description)
     return figure
 
 
 def _plot_usage(stability: SceneStability, axes: Axes) -> None:
     """Draws how much damping passivity needs of what there is, over frequency."""
-    axes.plot(stability.felt.frequencies_Hz, stability.damping_usage)
+    axes.plot(stability.felt.frequencies_Hz, stability.damping_usage, label="needed")
     axes.axhline(1.0, color="C3", ls="--", label="device and hand have")
     axes.set_xlim(0.0, stability.felt.frequencies_Hz[-1])
-    axes.set_ylim(bottom=min(0.0, float(stability.damping_usage.min())))
+    most = max(1.0, float(stability.damping_usage.max()))
+    axes.set_ylim(min(0.0, float(stability.damping_usage.min())), 1.2 * most)
     axes.set_xlabel("frequency, Hz")
-    axes.set_ylabel("damping needed, of what there is")
+    axes.set_ylabel("damping, of what there is")
     axes.set_title("passive for every hand where below the line (Colgate, Schenkel)")
-    axes.legend(loc="lower left")
+    # Above the higher of the two lines there is always room.
+    axes.legend(loc="upper left", ncols=2)
 
 
 def _plot_limits(limits: tuple[StiffnessLimits, ...], axes: Axes) -> None:
     """Draws the limits found in each way, as multiples of the scene's stiffness."""
-    names = {
-        "eigenvalue": "eigenvalue of this loop",
-        "simulated": "simulation of this loop",
-        "one_axis": "one axis, exact",
-        "formula": "one axis, (b + B) / (T/2)",
+    ways = {
+        "eigenvalue": "eigenvalue",
+        "simulated": "simulation",
+        "one_axis": "one axis, rigid wall, exact",
+        "formula": "one axis, rigid wall, (b + B) / (T/2)",
     }
-    height = 0.8 / max(len(limits), 1)
-    rows = np.arange(len(names))
-    for i, limit in enumerate(limits):
-        values = np.array([getattr(limit, name) for name in names])
-        shown = np.where(np.isfinite(values), values / limit.stiffness, np.nan)
-        bars = axes.barh(
-            rows + i * height, shown, height, label=f"{limit.kind}, {limit.against}"
-        )
-        labels = [
-            f" {value:.4g} {limit.unit}" if np.isfinite(value) else " none found"
-            for value in values
+    height = 0.8 / len(ways)
+    rows = np.arange(len(limits))
+    longest = 1.0
+    for i, (field, label) in enumerate(ways.items()):
+        values = [getattr(limit, field) for limit in limits]
+        shown = [
+            value / limit.stiffness if np.isfinite(value) else np.nan
+            for value, limit in zip(values, limits, strict=True)
         ]
-        axes.bar_label(bars, labels, fontsize=8)
+        longest = max([longest, *(share for share in shown if np.isfinite(share))])
+        bars = axes.barh(rows + i * height, shown, height, label=label)
+        numbers = [
+            f" {format_limit(value)} {limit.unit if np.isfinite(value) else ''}"
+            for value, limit in zip(values, limits, strict=True)
+        ]
+        axes.bar_label(bars, numbers, fontsize=8)
     axes.axvline(1.0, color="black", ls=":", label="the scene's stiffness")
-    axes.set_yticks(rows + height * (len(limits) - 1) / 2.0, list(names.values()))
+    axes.set_yticks(
+        rows + height * (len(ways) - 1) / 2.0,
+        [f"{limit.kind},\n{limit.against}" for limit in limits],
+    )
     axes.invert_yaxis()
     axes.set_xscale("log")
-    axes.margins(x=0.25)
+    # The labels beyond the bars take as much as three bars of ten.
+    axes.set_xlim(_LEAST_SHOWN, longest * (longest / _LEAST_SHOWN) ** 0.4)
     axes.set_xlabel("stiffness of the coupling, times the scene's")
     axes.set_title("largest stable stiffness")
-    axes.legend(loc="lower right")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.4, -0.14), ncols=2, fontsize=8)

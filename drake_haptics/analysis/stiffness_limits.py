@@ -13,6 +13,7 @@ from drake_haptics.analysis.aimed_hand import build_aimed
 from drake_haptics.analysis.held_loop import HeldLoop, analyse_held_scene
 from drake_haptics.analysis.held_scene import HeldScene
 from drake_haptics.analysis.modes import find_modes
+from drake_haptics.analysis.motion_words import describe_motion
 from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
 from drake_haptics.analysis.stability_limit import find_stability_limit
 from drake_haptics.coupling_check import HeldHandle
@@ -49,14 +50,15 @@ class StiffnessLimits:
         stiffness: The scene's.
         damping: The scene's, N·s/m or N·m·s/rad.
         eigenvalue: Where an eigenvalue of one tick reaches magnitude 1; infinite
-            where none does up to 10⁴ times the scene's.
+            where none does up to 10⁴ times the scene's; 0 where already 10⁻⁴ of the
+            scene's is unstable.
         simulated: Where a small disturbance no longer dies out in simulation; NaN
             where there is nothing to compare.
         one_axis: The exact limit of one axis with the least inertia and damping that
             device and hand have in any direction where they hold the tool, against a
             rigid wall (`SampledWall`).
         formula: (b + B) / (T/2) of the same axis (Gil et al. 2004).
-        limited_by: The motion that starts to grow there, in words.
+        limited_by: The motion that starts to grow there: its frequency and what moves.
     """
 
     kind: Kind
@@ -135,7 +137,7 @@ def find_stiffness_limits(
         simulated = _find_simulated(
             lambda value: analyse(value).measure_growth(), limit
         )
-        words = find_modes(analyse(limit).linearization)[0].describe()
+        words = describe_motion(find_modes(analyse(limit).linearization)[0])
     haptic, context = build_aimed(held)
     handle = calc_scene_handle(held.scene, haptic.loop.device, context)
     wall = _make_wall(held, kind, handle, damping)
@@ -208,3 +210,13 @@ def _make_wall(
 def none_unless_finite(value: float) -> float | None:
     """Returns a number that JSON can hold, or None."""
     return value if math.isfinite(value) else None
+
+
+def format_limit(value: float) -> str:
+    """Returns a limit with five digits, or in words where there is none."""
+    if math.isnan(value):
+        return "not seen"
+    if math.isinf(value):
+        return "none found"
+    # Seven, so that no limit of interest is written with an exponent.
+    return f"{float(f'{value:.5g}'):.7g}" if value > 0.0 else "none is stable"

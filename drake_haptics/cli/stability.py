@@ -11,15 +11,19 @@ from rich.table import Table
 
 from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
 from drake_haptics.analysis.stability_page import (
+    check_page_path,
     describe_delay,
     describe_situation,
     describe_verdict,
     write_stability_page,
 )
+from drake_haptics.analysis.stiffness_limits import format_limit
+from drake_haptics.analysis.study import StudyError
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.errors import UserError
 from drake_haptics.scene import Scene, load_scene
 from drake_haptics.scene_library import find_scene
+from drake_haptics.simulation import RunError
 
 
 @click.command()
@@ -37,7 +41,7 @@ from drake_haptics.scene_library import find_scene
     type=click.IntRange(0),
     default=20,
     show_default=True,
-    help="Stiffnesses and dampings of the map, each; 0 for no map.",
+    help="Stiffnesses and dampings of the map, each; 0 for no map, else at least 2.",
 )
 @click.option(
     "--out",
@@ -73,8 +77,9 @@ def stability(
     if not path.absolute().parent.is_dir():
         raise UserError(f"--out: there is no folder {path.parent}")
     try:
+        check_page_path(path)
         result = _with_progress(chosen, time_s, map_size, store)
-    except ValueError as error:
+    except (ValueError, RunError, StudyError) as error:
         raise UserError(str(error)) from error
     except KeyboardInterrupt as stop:
         # What a study was asked to keep is kept; its words say how to go on.
@@ -108,7 +113,7 @@ def _print(result: SceneStability, path: Path) -> None:
     console = Console(highlight=False)
     console.print(f"[bold]{describe_verdict(result)}[/]")
     console.print(describe_situation(result), style="dim")
-    table = Table(box=None)
+    table = Table(box=None, padding=(0, 1), pad_edge=False)
     headings = ["largest stable stiffness", "scene", "eigenvalue", "simulation"]
     for heading in [*headings, "one axis", "formula"]:
         table.add_column(heading, justify="right" if table.columns else "left")
@@ -120,13 +125,14 @@ def _print(result: SceneStability, path: Path) -> None:
             limit.one_axis,
             limit.formula,
         )
-        cells = [f"{value:.5g}" for value in values]
-        name = f"{limit.kind} against {limit.against}, {limit.unit}"
-        table.add_row(name, *cells)
+        # Short enough for a terminal of 80 columns.
+        against = limit.against.rpartition(" ")[2]
+        name = f"{limit.kind}, {against}, {limit.unit}"
+        table.add_row(name, *map(format_limit, values))
     console.print(table)
     for limit in result.limits:
         console.print(
-            f"{limit.kind} against {limit.against} is limited by: {limit.limited_by}",
+            f"{limit.kind}, {limit.against}: what grows first: {limit.limited_by}",
             style="dim",
         )
     console.print(f"further delay that is stable: {describe_delay(result)}")
