@@ -2,10 +2,11 @@
 
     python examples/peg_stability_study.py [FILE]
 
-Each point of the map over stiffness and damping of the coupling is computed in a
-process of its own choosing and kept in FILE. Interrupt it and start it again: what is
-done is not done again. Pass `executor=distributed.Client(...).get_executor()` to
-`z_width`, and the same study runs on a Dask cluster (docs/studies.md).
+The peg of `torus_peg`, made rigid and held with two fingers, leans on the hole. Each
+point of the map over stiffness and damping of the coupling is computed in one of
+several processes and kept in FILE. Interrupt it and start it again: what is done is
+not done again. Pass `executor=distributed.Client(...).get_executor()` to `z_width`,
+and the same study runs on a Dask cluster (docs/studies.md).
 """
 
 import sys
@@ -15,22 +16,25 @@ from tempfile import gettempdir
 import numpy as np
 
 from drake_haptics import find_scene, load_scene
-from drake_haptics.analysis import CouplingGrowth, find_firmest_contact, z_width
+from drake_haptics.analysis import CouplingGrowth, StudyProgress, hold_scene, z_width
 
 
 def main(store: Path) -> None:
     """Computes the map and prints the largest stable stiffness of each damping."""
     scene = load_scene(find_scene("torus_peg"))
-    time_s = find_firmest_contact(scene)
-    print(f"The peg is pressed most at {time_s:.3f} s; results are kept in {store}")
-    width = z_width(
-        CouplingGrowth(scene, time_s),
-        stiffness=np.linspace(2e3, 6e4, 8),
-        damping=np.linspace(0.0, 6.0, 3),
-        store=store,
-        progress=lambda done, total: print(f"\r{done} of {total}", end=""),
-    )
-    print("\ndamping N·s/m   stable up to N/m")
+    scene.contact.stiffness_N_per_m = 1e5
+    scene.hand.grip = "light"
+    time_s = hold_scene(scene).time_s
+    print(f"The hand stops at {time_s:.3f} s. Results are kept in {store}")
+    with StudyProgress("stiffness and damping") as progress:
+        width = z_width(
+            CouplingGrowth(scene, time_s),
+            stiffness=np.geomspace(2e3, 3.2e4, 9),
+            damping=[0.0, 2.0, 4.0],
+            store=store,
+            progress=progress,
+        )
+    print("damping N·s/m   stable up to N/m")
     for damping, stiffness in zip(
         width.damping, width.largest_stable_stiffness(), strict=True
     ):

@@ -1,36 +1,121 @@
-"""Every example runs."""
+"""Every example runs, and what it prints agrees with what is known otherwise."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-ARGUMENTS = {"cup_and_spoon.py": ["0.5"]}
+NAMES = sorted(path.name for path in EXAMPLES.glob("*.py"))
 
 
-@pytest.mark.parametrize("name", sorted(path.name for path in EXAMPLES.glob("*.py")))
-def test_example_runs(name):
-    process = subprocess.run(
-        [sys.executable, EXAMPLES / name, *ARGUMENTS.get(name, [])],
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    assert process.returncode == 0, process.stderr
-    assert process.stderr == ""
-    assert "N" in process.stdout
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """Runs an example once and returns what it prints."""
+    store = tmp_path_factory.mktemp("study") / "study.jsonl"
+    arguments = {
+        "cup_and_spoon.py": ["0.5"],
+        "peg_stability_study.py": [str(store)],
+    }
+    printed = {}
+
+    def run_once(name):
+        if name not in printed:
+            process = subprocess.run(
+                [sys.executable, EXAMPLES / name, *arguments.get(name, [])],
+                capture_output=True,
+                text=True,
+                timeout=180,
+            )
+            assert process.returncode == 0, process.stderr
+            assert process.stderr == ""
+            printed[name] = process.stdout
+        return printed[name]
+
+    return run_once
 
 
-def test_a_softer_wall_is_penetrated_deeper():
-    process = subprocess.run(
-        [sys.executable, EXAMPLES / "softer_wall.py"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    rows = [line.split() for line in process.stdout.splitlines()[1:]]
+@pytest.mark.parametrize("name", NAMES)
+def test_example_runs(name, run):
+    assert "N" in run(name)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_example_is_short(name):
+    assert len((EXAMPLES / name).read_text(encoding="utf-8").splitlines()) < 100
+
+
+def test_a_softer_wall_is_penetrated_deeper(run):
+    rows = [line.split() for line in run("softer_wall.py").splitlines()[1:]]
     depths = [float(row[2]) for row in rows]
     assert depths[0] < depths[1] < depths[2]
     assert depths[1] < 0.5 < depths[2]
+
+
+def numbers(pattern, text):
+    """Returns the groups of each match as numbers."""
+    return np.array(re.findall(pattern, text), dtype=float)
+
+
+def test_the_arms_pen_leans_on_the_inside_of_the_ring(run):
+    printed = run("arm_holding_a_tool.py")
+    (free, pressed) = numbers(
+        r"\((\S+), (\S+), (\S+)\) mm, pushed with (\S+) N", printed
+    )
+    np.testing.assert_array_equal(free, [0.0, 0.0, -30.0, 0.0])
+    # A hole of radius 22 mm, a pen of 4.5 mm, contact from 2 mm on at 5 N/mm.
+    distance_mm, force_N = np.linalg.norm(pressed[:2]), pressed[3]
+    assert distance_mm == pytest.approx(22.0 - 4.5 - 2.0 + force_N / 5.0, abs=0.1)
+    assert force_N > 1.0
+
+
+def test_the_arms_lift_swings_as_a_mass_on_a_spring_and_damper(run):
+    """50 g, 200 N/m and 5 N·s/m; contact sideways has no part in it."""
+    lift = numbers(
+        r"(\S+) Hz, damped (\S+) % of critical, dies out in (\S+) s; .*lift_x",
+        run("arm_holding_a_tool.py"),
+    )
+    m, k, d = 0.05, 200.0, 5.0
+    expected = [
+        np.sqrt(k / m - (d / (2 * m)) ** 2) / (2 * np.pi),
+        100 * d / (2 * np.sqrt(k * m)),
+        -np.log(0.02) * 2 * m / d,
+    ]
+    assert len(lift) == 2
+    # The plant takes steps of 1 ms, of first order.
+    np.testing.assert_allclose(lift, [expected, expected], rtol=0.06)
+
+
+def test_contact_makes_the_arm_swing_faster(run):
+    free, pressed = run("arm_holding_a_tool.py").split("Shoulder turned")
+    fastest = [numbers(r"(\S+) Hz", part).max() for part in (free, pressed)]
+    assert fastest[1] > 2 * fastest[0]
+
+
+def test_the_designed_coupling_is_within_the_law_and_stable(run):
+    printed = run("design_a_coupling.py")
+    ((stiffness, damping),) = numbers(
+        r"designed coupling, (\S+) N/m and (\S+) N·s/m", printed
+    )
+    assert stiffness <= 800.0
+    # Half of (b + B)/(T/2), as if the device had no damping of its own.
+    assert 0 < stiffness <= damping / 5e-4 / 2
+    growth = numbers(r"multiplied by (\S+) in each tick", printed)
+    assert growth.shape == (2,)
+    assert (0.9 < growth).all()
+    assert (growth < 1.0).all()
+
+
+def test_the_studys_limits_rise_with_damping_above_those_of_a_rigid_wall(run):
+    rows = numbers(r"(?m)^ +(\d+\.\d) +(\d+)$", run("peg_stability_study.py"))
+    damping, stiffness = rows.T
+    np.testing.assert_array_equal(damping, [0.0, 2.0, 4.0])
+    assert (np.diff(stiffness) > 0).all()
+    # (b + B)/(T/2) with the hand's damping b of 1 N·s/m holds for a tool that does not
+    # move; this one is of 80 g and gives way.
+    law = (1.0 + damping) / 5e-4
+    assert (stiffness > law).all()
+    assert (stiffness < 4 * law).all()
