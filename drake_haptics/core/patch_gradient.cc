@@ -41,7 +41,9 @@ void DifferentiatePatch(const PosedPieces& pieces, const Contact& contact,
     return patch;
   };
   const double step = kStepShare * layer;
-  const double arm = std::max(of_features.p.norm(), layer);
+  // A turn moves the outline of a piece, however near to To it is.
+  const double arm = std::max(
+      {of_features.p.norm(), pieces.A.radius + pieces.B.radius, layer});
   witness->p = *patch_at(Vec6::Zero()).center;
   Mat36 motion = Mat36::Zero();
   for (int k = 0; k < 6; ++k) {
