@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
@@ -93,8 +93,6 @@ class PenaltyForce(DifferentiableSystem):
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
         self._motions = ObjectMotions(self, objects)
-        # Each port calls the core, which takes less time than to share one answer:
-        # in a loop without a viewer only the first one is asked.
         from_inputs = {self.all_input_ports_ticket()}
         self._wrench_model = self.DeclareVectorOutputPort(
             "wrench_model", 78, self._calc_wrench_model, from_inputs
@@ -112,6 +110,12 @@ class PenaltyForce(DifferentiableSystem):
             Value[object],
             self._calc_contact_wrench,
             from_inputs,
+        )
+        # Where objects move, their reaction is asked for beside the wrench on the tool:
+        # the ports share the answer that `contact_wrench` keeps. Elsewhere one of them
+        # is asked, and to call the core takes less time.
+        self._eval_wrench: Callable[[Context], PenaltyWrench] = (
+            self._contact_wrench.Eval if self._moving else self._calc_wrench
         )
 
     @property
@@ -191,13 +195,13 @@ class PenaltyForce(DifferentiableSystem):
         )
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._calc_wrench(context).wrench_model)
+        output.SetFromVector(self._eval_wrench(context).wrench_model)
 
     def _calc_F_Tool_W(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._calc_wrench(context).F_Tool_W)
+        output.SetFromVector(self._eval_wrench(context).F_Tool_W)
 
     def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
-        wrench = self._calc_wrench(context)
+        wrench = self._eval_wrench(context)
         output.SetFromVector(wrench.F_objects_W[self._moving].ravel())
 
     def _calc_contact_wrench(self, context: Context, output: AbstractValue) -> None:

@@ -10,7 +10,11 @@ from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from test_contact_query import TOLERANCE, at_height, box_core, query_at
 
-from drake_haptics._core import AutoDiffPenaltyWrench, cluster_contacts
+from drake_haptics._core import (
+    AutoDiffPenaltyWrench,
+    cluster_contacts,
+    penalty_force,
+)
 from drake_haptics.systems.contact_query import ContactObject, ContactQuery
 from drake_haptics.systems.penalty_force import PenaltyForce
 
@@ -85,6 +89,27 @@ def test_objects_that_move_feel_the_reaction(plate, clusters):
     np.testing.assert_allclose(
         F_O_W[:3], np.cross(clusters.p_WC[0] - p_WO, f), atol=1e-9
     )
+
+
+def test_tool_and_objects_share_one_answer(plate, clusters, monkeypatch):
+    force, context = make_force([ContactObject("cart", plate)])
+    fix(force, context, clusters)
+    force.get_object_pose_input_port("cart").FixValue(context, at_height(0.0))
+    force.get_object_velocity_input_port("cart").FixValue(context, AT_REST)
+    calls = []
+    monkeypatch.setattr(
+        "drake_haptics.systems.penalty_force.penalty_force",
+        lambda *inputs: calls.append(0) or penalty_force(*inputs),
+    )
+    first = force.get_tool_wrench_output_port().Eval(context).copy()
+    force.get_object_wrenches_output_port().Eval(context)
+    force.get_wrench_model_output_port().Eval(context)
+    assert len(calls) == 1
+    # Until an input changes.
+    force.get_tool_velocity_input_port().FixValue(context, [0, 0, 0, 0, 0, -0.1])
+    later = force.get_tool_wrench_output_port().Eval(context)
+    assert later[5] == pytest.approx(first[5] + 0.1 * B)
+    assert len(calls) == 2
 
 
 def test_nothing_that_moves_has_no_reaction(plate):
