@@ -1242,7 +1242,7 @@ class BrakingGains:
         """
 
 @overload
-def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], gains: BrakingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
+def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], gains: BrakingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
     """
     Braking of the approach of surfaces that do not touch yet (McNeely, Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s w v along its normal, v the speed of approach, w = 4 (d/D)(1 − d/D), s its share among contacts with like normals (braking.h). Never a pull.
 
@@ -1253,7 +1253,7 @@ def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.flo
         V_WO: (m, 6) their spatial velocities.
 
     Returns:
-        (78,) wrench model on the tool at To in W: [F (6); K (36), zero; B (36, by rows)], rotational first.
+        (78 + 6 m,) wrench model on the tool at To in W: [F (6); K (36), zero; B (36, by rows)], rotational first; then the wrench on each object at its origin in W, N·m and N.
 
     Raises:
         ValueError: rows do not match.

@@ -92,7 +92,7 @@ class HapticRendering(Diagram):
                 lacks what it needs.
         """
         super().__init__()
-        _check_effects(objects, effects, coupling, device)
+        _check_effects(effects, coupling, device)
         self._tool = tool
         self._objects = tuple(objects)
         wiring = RenderingWiring(tool, objects)
@@ -131,7 +131,6 @@ class HapticRendering(Diagram):
 
 
 def _check_effects(
-    objects: Sequence[RenderedBody],
     effects: Effects,
     coupling: Coupling | None,
     device: HapticDevice | None,
@@ -150,11 +149,4 @@ def _check_effects(
         raise ValueError(
             "effects.passivity: is of a device; give device=, or put a PassivityControl"
             " before your own"
-        )
-    moving = [item.name for item in objects if item.X_WB is None]
-    if moving and effects.braking is not None:
-        raise ValueError(
-            f"effects.braking: gives no reaction on bodies that move, such as"
-            f" {moving[0]!r}; render those by an AddHapticRendering of their own,"
-            " without braking"
         )

@@ -139,6 +139,9 @@ class RenderingWiring:
         for name in _FORCES:
             if (system := getattr(added, name)) is not None:
                 self._push_tool(name, system.get_wrench_model_output_port())
+        if added.braking is not None and self._moving:
+            wrenches = added.braking.get_object_wrenches_output_port()
+            self._on_objects["braking"] = wrenches
         if added.shading is not None:
             self.outputs["contacts"] = added.shading.get_contacts_output_port()
         if added.friction is not None:

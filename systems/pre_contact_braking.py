@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from pydrake.common.value import Value
+import numpy as np
+from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import (
     BasicVector,
     Context,
     InputPort,
     OutputPort,
+    ValueProducer,
 )
 
 from drake_haptics._core import AutoDiffVector, BrakingGains, pre_contact_braking
@@ -46,6 +48,7 @@ class PreContactBraking(DifferentiableSystem):
         - V_WO_<name of each object that moves>
         output_ports:
         - wrench_model
+        - F_O_W (with objects that move)
 
     `contacts` is a `drake_haptics.ContactSet`; contacts must have been looked for up
     to D at least. Poses are [qw qx qy qz x y z], m. `V_WTool` and `V_WO_<name>` are
@@ -53,6 +56,8 @@ class PreContactBraking(DifferentiableSystem):
 
     `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
     documents it. K is zero: the braking changes with the pose only as the speed does.
+    `F_O_W` (6 for each object that moves) is the reaction: wrenches [τ; f] on those
+    objects, each at its origin in the world, N·m and N.
 
     Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`.
     Derivatives are complete: profile, shares and normals change with the pose. Where a
@@ -84,12 +89,31 @@ class PreContactBraking(DifferentiableSystem):
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
         self._motions = ObjectMotions(self, objects)
+        from_inputs = {self.all_input_ports_ticket()}
         self._wrench_model = self.DeclareVectorOutputPort(
-            "wrench_model",
-            78,
-            self._calc_wrench_model,
-            {self.all_input_ports_ticket()},
+            "wrench_model", 78, self._calc_wrench_model, from_inputs
         )
+        # Rows of the objects that move, in what the core returns.
+        self._moving = [
+            78 + 6 * i + k
+            for i, item in enumerate(objects)
+            if item.X_WO is None
+            for k in range(6)
+        ]
+        self._eval_wrenches: Callable[[Context], np.ndarray] = self._calc_wrenches
+        if self._moving:
+            self.DeclareVectorOutputPort(
+                "F_O_W", len(self._moving), self._calc_F_O_W, from_inputs
+            )
+            # The reaction is asked for beside the wrench on the tool.
+            shared = self.DeclareCacheEntry(
+                description="wrenches",
+                value_producer=ValueProducer(
+                    allocate=lambda: Value[object](), calc=self._keep_wrenches
+                ),
+                prerequisites_of_calc=from_inputs,
+            )
+            self._eval_wrenches = shared.Eval
 
     def get_contacts_input_port(self) -> InputPort:
         """Returns the input `contacts`."""
@@ -115,26 +139,40 @@ class PreContactBraking(DifferentiableSystem):
         """Returns the output `wrench_model`."""
         return self._wrench_model
 
+    def get_object_wrenches_output_port(self) -> OutputPort:
+        """Returns the output `F_O_W`; there is none if no object moves."""
+        return self.GetOutputPort("F_O_W")
+
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
-        """Returns the wrench model with its derivatives."""
+        """Returns the wrench model, or the reaction, with its derivatives."""
         X_WTool = at["X_WTool"]
-        return pre_contact_braking(
+        wrenches = pre_contact_braking(
             at["contacts"],
             AutoDiffVector(X_WTool.value[4:], X_WTool.gradient[4:]),
             at["V_WTool"],
             *self._motions.differentiate(at),
             self._gains,
         )
+        rows = self._moving if port == "F_O_W" else slice(78)
+        return AutoDiffVector(wrenches.value[rows], wrenches.gradient[rows])
+
+    def _calc_wrenches(self, context: Context) -> np.ndarray:
+        """Returns the wrench model (78,) and the wrench (6) on each object."""
+        p_WO, V_WO = self._motions.read(context)
+        return pre_contact_braking(
+            self._contacts.Eval(context),
+            self._X_WTool.Eval(context)[4:],
+            self._V_WTool.Eval(context),
+            p_WO,
+            V_WO,
+            self._gains,
+        )
+
+    def _keep_wrenches(self, context: Context, value: AbstractValue) -> None:
+        value.set_value(self._calc_wrenches(context))
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
-        p_WO, V_WO = self._motions.read(context)
-        output.SetFromVector(
-            pre_contact_braking(
-                self._contacts.Eval(context),
-                self._X_WTool.Eval(context)[4:],
-                self._V_WTool.Eval(context),
-                p_WO,
-                V_WO,
-                self._gains,
-            )
-        )
+        output.SetFromVector(self._eval_wrenches(context)[:78])
+
+    def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._eval_wrenches(context)[self._moving])

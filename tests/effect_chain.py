@@ -40,8 +40,8 @@ def make_chain(
     """Returns the query and what follows it.
 
     Its inputs are poses and velocities by the names that they have in the systems, its
-    outputs `<system>.wrench_model` of braking alone, or of the penalty force and, if
-    there is friction, of friction.
+    outputs `<system>.wrench_model`, of braking alone, then with its `F_O_W`, or of the
+    penalty force and, if there is friction, of friction.
     """
     systems: dict[str, System] = {"query": ContactQuery(tool, objects, tolerance_m)}
     if shading:
@@ -76,4 +76,6 @@ def make_chain(
         if system.HasOutputPort("wrench_model"):
             output = system.GetOutputPort("wrench_model")
             builder.ExportOutput(output, f"{name}.wrench_model")
+        if name == "braking" and system.HasOutputPort("F_O_W"):
+            builder.ExportOutput(system.GetOutputPort("F_O_W"), "braking.F_O_W")
     return builder.Build()

@@ -54,7 +54,7 @@ def brake(
         contacts, np.asarray(p_WTo, float), V, np.zeros((count, 3)), V_O, gains
     )
     assert not model[6:42].any()
-    return model[:6], model[42:].reshape(6, 6)
+    return model[:6], model[42:78].reshape(6, 6)
 
 
 def plain(
@@ -94,6 +94,35 @@ def test_the_wrench_agrees_with_the_formula(seed: int) -> None:
     F, _ = brake(contacts, V, V_O, p_WTo=p_WTo)
     np.testing.assert_allclose(F, plain(contacts, p_WTo, V, V_O), atol=1e-12)
     assert np.linalg.norm(F) > 0.1
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_each_object_gets_the_reaction_of_its_own_contacts(seed: int) -> None:
+    """Of each object alone, the tool gets the opposite about the same point."""
+    rng = np.random.default_rng(seed)
+    count = 5
+    contacts = slabs_around(rng.normal(size=(count, 3)), rng.uniform(0, D, count))
+    p_WTo, p_WO = rng.normal(size=3), rng.normal(size=(count, 3))
+    V = rng.normal(size=6)
+
+    def wrenches(V_O: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        all_of_them = _core.pre_contact_braking(contacts, p_WTo, V, p_WO, V_O, GAINS)
+        return all_of_them[:6], all_of_them[78:].reshape(count, 6)
+
+    def about_origin(F: np.ndarray, p: np.ndarray) -> np.ndarray:
+        return np.concatenate([F[:3] + np.cross(p, F[3:]), F[3:]])
+
+    # An object that flees along its normals is not braked.
+    for i in range(count):
+        V_O = np.zeros((count, 6))
+        V_O[:, 3:] = -100.0 * contacts.nhat_BA_W[np.argsort(contacts.object_index)]
+        V_O[i] = rng.normal(size=6) - V_O[i]
+        F, F_O = wrenches(V_O)
+        assert np.linalg.norm(F) > 0.1
+        np.testing.assert_allclose(
+            about_origin(F_O[i], p_WO[i]), -about_origin(F, p_WTo), atol=1e-9
+        )
+        assert not np.delete(F_O, i, axis=0).any()
 
 
 @pytest.mark.parametrize("near", [-0.1, 0.0, 0.01, 0.25, 0.5, 0.9, 0.99, 1.0, 1.1])

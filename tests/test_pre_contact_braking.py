@@ -11,7 +11,7 @@ from pydrake.systems.framework import DiagramBuilder
 from test_contact_query import at_height, box_core, query_at
 from twin_check import check_twin
 
-from drake_haptics._core import RigidToolDynamics
+from drake_haptics._core import RigidToolDynamics, pre_contact_braking
 from drake_haptics.systems.contact_query import ContactObject, ContactQuery
 from drake_haptics.systems.haptic_tool import HapticTool
 from drake_haptics.systems.pre_contact_braking import PreContactBraking
@@ -40,8 +40,9 @@ def test_topology(plate):
     count = braking.num_input_ports()
     names = [braking.get_input_port(i).get_name() for i in range(count)]
     assert names == ["contacts", "X_WTool", "V_WTool", "X_WO_cart", "V_WO_cart"]
-    assert braking.num_output_ports() == 1
+    assert braking.num_output_ports() == 2
     assert braking.GetOutputPort("wrench_model").size() == 78
+    assert braking.GetOutputPort("F_O_W").size() == 6
     assert braking.CreateDefaultContext().num_total_states() == 0
 
 
@@ -79,6 +80,43 @@ def test_only_the_motion_between_the_two_counts(cube, plate):
         velocity.FixValue(context, speed * DOWN)
         model = braking.get_wrench_model_output_port().Eval(context)
         assert model[5] == pytest.approx(force, abs=1e-12)
+
+
+def test_nothing_that_moves_has_no_reaction(plate):
+    braking = make_braking([ContactObject("plate", plate, RigidTransform())])
+    assert not braking.HasOutputPort("F_O_W")
+
+
+def test_what_moves_is_pushed_on_and_what_does_not_has_no_place(
+    cube, plate, monkeypatch
+):
+    """A plate below stands still, a cart above moves; only the cart has a wrench."""
+    objects = [
+        ContactObject("plate", plate, RigidTransform()),
+        ContactObject("cart", plate),
+    ]
+    query, braking = ContactQuery(cube, objects, D), make_braking(objects)
+    query_context = query.CreateDefaultContext()
+    above = 2 * TOUCH + D
+    X_WCart = at_height(above)
+    X_WCart[4] = 0.03
+    query.get_object_pose_input_port("cart").FixValue(query_context, X_WCart)
+    contacts = query_at(query, query_context, TOUCH + 0.5 * D)
+    context = fixed(braking, contacts, TOUCH + 0.5 * D, -0.2 * DOWN)
+    braking.get_object_pose_input_port("cart").FixValue(context, X_WCart)
+    braking.get_object_velocity_input_port("cart").FixValue(context, np.zeros(6))
+    calls = []
+    monkeypatch.setattr(
+        "drake_haptics.systems.pre_contact_braking.pre_contact_braking",
+        lambda *inputs: calls.append(0) or pre_contact_braking(*inputs),
+    )
+    F = braking.get_wrench_model_output_port().Eval(context)[:6]
+    F_O_W = braking.get_object_wrenches_output_port().Eval(context)
+    np.testing.assert_allclose(F[3:], [0, 0, -0.2 * B], atol=1e-9)
+    np.testing.assert_allclose(F_O_W[3:], [0, 0, 0.2 * B], atol=1e-9)
+    assert len(calls) == 1
+    # About the cart's origin, 30 mm beside the middle of the tool.
+    np.testing.assert_allclose(F_O_W[:3], [0, 0.03 * 0.2 * B, 0], atol=1e-9)
 
 
 def approach(cube, plate, speed, mass, period, ticks):
@@ -166,6 +204,8 @@ def test_its_twin_has_the_derivatives_of_poses_and_velocities(seed):
     )
     by_each = np.split(np.abs(jacobian[:6]), [7, 14, 20, 26], axis=1)
     assert all(part.max() > 0.1 for part in by_each[:4])
+    # The reaction's force is the opposite, whatever changes.
+    np.testing.assert_allclose(jacobian[81:84], -jacobian[3:6], rtol=0, atol=1e-9)
 
 
 def test_contacts_without_derivatives_are_refused(cube, plate):

@@ -99,6 +99,15 @@ T SpeedAlong(const Vec3Of<T>& n, const Vec3Of<T>& p_WC,
                frame.V_WF.template head<3>().cross(r));
 }
 
+// [r × n; n] of a point of a moving frame.
+template <typename T>
+Vec6Of<T> Lever(const Vec3Of<T>& n, const Vec3Of<T>& p_WC,
+                const MovingFrameOf<T>& frame) {
+  Vec6Of<T> G;
+  G << Vec3Of<T>(p_WC - frame.p_WF).cross(n), n;
+  return G;
+}
+
 }  // namespace
 
 void RequirePossible(const BrakingGains& gains) {
@@ -107,10 +116,22 @@ void RequirePossible(const BrakingGains& gains) {
 }
 
 template <typename T>
-WrenchModelOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
-                                const MovingFrameOf<T>& tool,
-                                const std::vector<MovingFrameOf<T>>& objects,
-                                const BrakingGains& gains) {
+VectorOf<T> ToVector(const BrakingWrenchOf<T>& wrench) {
+  VectorOf<T> all(kWrenchModelSize + 6 * wrench.F_objects_W.size());
+  all.template head<kWrenchModelSize>() = ToVector(wrench.tool);
+  Eigen::Index start = kWrenchModelSize;
+  for (const Vec6Of<T>& F : wrench.F_objects_W) {
+    all.template segment<6>(start) = F;
+    start += 6;
+  }
+  return all;
+}
+
+template <typename T>
+BrakingWrenchOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
+                                  const MovingFrameOf<T>& tool,
+                                  const std::vector<MovingFrameOf<T>>& objects,
+                                  const BrakingGains& gains) {
   using std::sqrt;
   Mat4Of<T> sum = Mat4Of<T>::Zero();
   for (const ContactOf<T>& contact : contacts) {
@@ -118,31 +139,36 @@ WrenchModelOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
     const Vec4Of<T> m = Lift<T>(contact.nhat_BA_W);
     if (ValueOf(W) > 0) sum.noalias() += W * m * m.transpose();
   }
-  WrenchModelOf<T> model;
-  if (ValueOf(sum.trace()) == 0) return model;
+  BrakingWrenchOf<T> wrench;
+  wrench.F_objects_W.assign(objects.size(), Vec6Of<T>::Zero());
+  if (ValueOf(sum.trace()) == 0) return wrench;
   const Shares<T> shares(sum);
   for (const ContactOf<T>& contact : contacts) {
     const T W = Weight(contact, gains);
     if (ValueOf(W) == 0) continue;
     const Vec3Of<T>& n = contact.nhat_BA_W;
-    const T approach =
-        SpeedAlong<T>(n, contact.p_WC, objects.at(contact.object)) -
-        SpeedAlong<T>(n, contact.p_WC, tool);
+    const MovingFrameOf<T>& object = objects.at(contact.object);
+    const T approach = SpeedAlong<T>(n, contact.p_WC, object) -
+                       SpeedAlong<T>(n, contact.p_WC, tool);
     if (!(ValueOf(approach) > 0)) continue;
     const T damping = T(gains.damping * sqrt(W)) * shares(n, W);
-    Vec6Of<T> G;
-    G << Vec3Of<T>(contact.p_WC - tool.p_WF).cross(n), n;
-    model.F += T(damping * approach) * G;
-    model.B.noalias() += damping * G * G.transpose();
+    const T force = damping * approach;
+    const Vec6Of<T> G = Lever<T>(n, contact.p_WC, tool);
+    wrench.tool.F += force * G;
+    wrench.tool.B.noalias() += damping * G * G.transpose();
+    wrench.F_objects_W[contact.object] -=
+        force * Lever<T>(n, contact.p_WC, object);
   }
-  return model;
+  return wrench;
 }
 
-template WrenchModel ComputeBraking(const std::vector<Contact>&,
-                                    const MovingFrame&,
-                                    const std::vector<MovingFrame>&,
-                                    const BrakingGains&);
-template WrenchModelOf<AutoDiff> ComputeBraking(
+template VectorOf<double> ToVector(const BrakingWrenchOf<double>&);
+template VectorOf<AutoDiff> ToVector(const BrakingWrenchOf<AutoDiff>&);
+template BrakingWrenchOf<double> ComputeBraking(const std::vector<Contact>&,
+                                                const MovingFrame&,
+                                                const std::vector<MovingFrame>&,
+                                                const BrakingGains&);
+template BrakingWrenchOf<AutoDiff> ComputeBraking(
     const std::vector<ContactOf<AutoDiff>>&, const MovingFrameOf<AutoDiff>&,
     const std::vector<MovingFrameOf<AutoDiff>>&, const BrakingGains&);
 

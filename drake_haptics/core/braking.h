@@ -18,6 +18,18 @@ struct BrakingGains {
 ///         distance above 0, both finite.
 void RequirePossible(const BrakingGains& gains);
 
+/// The wrenches of the braking.
+template <typename T>
+struct BrakingWrenchOf {
+  WrenchModelOf<T> tool;  ///< on the tool at To
+  /// On each object at its origin, the reaction of the same forces.
+  std::vector<Vec6Of<T>> F_objects_W;
+};
+
+/// The tool's wrench model, then the objects' wrenches one after another.
+template <typename T>
+VectorOf<T> ToVector(const BrakingWrenchOf<T>& wrench);
+
 /// Brakes the approach of surfaces that do not touch yet, as McNeely,
 /// Puterbaugh and Troy (1999) do: at each contact with 0 < d < D whose
 /// surfaces approach with the speed v a force b s w v along its normal, never a
@@ -41,9 +53,9 @@ void RequirePossible(const BrakingGains& gains);
 /// @param objects one frame for each object that the contacts name.
 /// @throws std::out_of_range for a contact with an object that is not given.
 template <typename T>
-WrenchModelOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
-                                const MovingFrameOf<T>& tool,
-                                const std::vector<MovingFrameOf<T>>& objects,
-                                const BrakingGains& gains);
+BrakingWrenchOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
+                                  const MovingFrameOf<T>& tool,
+                                  const std::vector<MovingFrameOf<T>>& objects,
+                                  const BrakingGains& gains);
 
 }  // namespace drake_haptics

@@ -114,9 +114,8 @@ void BrakingHasItsSlope() {
         const MovingFrameOf<T> tool{Part<3>(x, 8), approach + Part<6>(x, 5)};
         const std::vector<MovingFrameOf<T>> objects{
             {Part<3>(x, 3), Part<6>(x, 9)}};
-        const WrenchModelOf<T> model =
-            ComputeBraking(MakeContacts<T>(x), tool, objects, {8, 4e-3});
-        return VectorOf<T>(ToVector(model));
+        return ToVector(
+            ComputeBraking(MakeContacts<T>(x), tool, objects, {8, 4e-3}));
       },
       Sample(15));
 }
