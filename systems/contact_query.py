@@ -60,14 +60,15 @@ class ContactQuery(DifferentiableSystem):
     `X_WTool` and `X_WO_<name>` are poses [qw qx qy qz x y z] in the world, m.
     `contacts` is a `drake_haptics.ContactSet`, immutable.
 
-    The search starts from its last answer in the same Context (paper, 5.2). Objects
-    with a pose of their own are placed once, when a Context is made.
+    The search starts from its last answer in the same Context (paper, 5.2), and first
+    from the abstract parameter `hint` (index 0): what a query of another Context knew.
+    Without one it starts anew, and can find another way out of a deep penetration; so
+    call `prepare_conversion` before the parameters are copied. Objects with a pose of
+    their own are placed once for each Context.
 
     Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`: the
-    features stay. There the answer is a function of the Context alone, found from
-    the abstract parameter `hint` (index 0): what an earlier query knew. Without one
-    the search starts anew, and can find another way out of a deep penetration; so
-    call `prepare_conversion` before the parameters are copied.
+    features stay. There every answer starts from the hint, and is a function of the
+    Context alone.
     """
 
     def __init__(
@@ -104,7 +105,7 @@ class ContactQuery(DifferentiableSystem):
             if item.X_WO is None
         }
         self._hint = self.DeclareAbstractParameter(Value[object](None))
-        self._tracker = declare_scratch(self, "tracker", self._make_tracker)
+        self._memory = declare_scratch(self, "memory", _Memory)
         self._contacts = self.DeclareAbstractOutputPort(
             "contacts",
             Value[object],
@@ -132,13 +133,12 @@ class ContactQuery(DifferentiableSystem):
         """
         self._contacts.Eval(context)
         context.get_mutable_abstract_parameter(self._hint).set_value(
-            copy.deepcopy(get_scratch(self._tracker, context))
+            copy.deepcopy(get_scratch(self._memory, context).tracker)
         )
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffContactSet:
         """Returns the contacts with their derivatives."""
-        hint = at.parameters[self._hint]
-        tracker = self._make_tracker() if hint is None else copy.deepcopy(hint)
+        tracker = self._make_tracker(at.parameters[self._hint])
         X_WO = [
             at[f"X_WO_{item.name}"]
             if item.X_WO is None
@@ -158,7 +158,9 @@ class ContactQuery(DifferentiableSystem):
             X_WO,
         )
 
-    def _make_tracker(self) -> SceneTracker:
+    def _make_tracker(self, hint: SceneTracker | None) -> SceneTracker:
+        if hint is not None:
+            return copy.deepcopy(hint)
         decompositions = [item.decomposition for item in self._objects]
         tracker = SceneTracker(self._tool, decompositions, self._tolerance_m)
         for i, item in enumerate(self._objects):
@@ -167,7 +169,18 @@ class ContactQuery(DifferentiableSystem):
         return tracker
 
     def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
-        tracker = get_scratch(self._tracker, context)
+        memory: _Memory = get_scratch(self._memory, context)
+        tracker = memory.tracker
+        if tracker is None:
+            hint = context.get_abstract_parameter(self._hint).get_value()
+            tracker = memory.tracker = self._make_tracker(hint)
         for i, port in self._X_WO.items():
             tracker.set_object_pose(i, port.Eval(context))
         contacts.set_value(tracker.query(self._X_WTool.Eval(context)))
+
+
+@dataclass
+class _Memory:
+    """What a query of a Context knows; nothing before it is first asked."""
+
+    tracker: SceneTracker | None = None

@@ -231,3 +231,19 @@ def test_preparing_a_conversion_leaves_the_query_as_it_is(tool, plate):
     # Nor does the query go on with what the hint is.
     q_WTool = at_height(0.0196)
     np.testing.assert_array_equal(hint.query(q_WTool).p_WC, kept.query(q_WTool).p_WC)
+
+
+def test_a_new_context_starts_from_the_hint(tool):
+    """As where a scene is rebuilt with other gains, its tool pressed as before."""
+    query, context, expected = pressed_through(tool, box_core(0.2, 0.2, 1e-3))
+    query.prepare_conversion(context)
+    hinted, anew = query.CreateDefaultContext(), query.CreateDefaultContext()
+    hinted.SetTimeStateAndParametersFrom(context)
+    found = query_at(query, hinted, -0.004)
+    np.testing.assert_allclose(found.distance, expected.distance, atol=1e-12)
+    assert query_at(query, anew, -0.004).nhat_BA_W[0, 2] == pytest.approx(-1.0)
+    # Two contexts of one hint know each for itself.
+    other = query.CreateDefaultContext()
+    other.SetTimeStateAndParametersFrom(context)
+    assert len(query_at(query, hinted, 1.0)) == 0
+    assert query_at(query, other, -0.004).nhat_BA_W[0, 2] == pytest.approx(1.0)
