@@ -9,7 +9,9 @@ from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
 
 _MAX_ITERATIONS = 100
 _LARGEST_STEP_RAD = 0.3
-_TOLERANCE = 1e-9  # rad and m
+# rad and m; Newton steps near the answer cost one more for the last digits, which
+# stiff springs at the handle would turn into forces.
+_TOLERANCE = 1e-12
 # Of the Jacobian with lengths in units of the arm's own: below this, some motion of
 # the handle needs ten times the joint speed of the easiest one.
 _ARM_LENGTH_M = 0.2

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw
@@ -101,8 +101,8 @@ def hold_scene(
         coupling = _soften(coupling)
     raise ValueError(
         f"the tool does not come to rest within {settle_s:g} s after the hand stops at"
-        f" {', '.join(f'{place:.3f}' for place in places)} s, even with a coupling"
-        f" {2**_MOST_SOFTENINGS} times softer: give another time or a longer settle_s,"
+        f" {', '.join(f'{place:.3f}' for place in places)} s, even with a much"
+        " softer coupling: give another time or a longer settle_s,"
         " or lower contact.stiffness_N_per_m"
     )
 
@@ -201,13 +201,15 @@ def _settle(
 
 
 def _soften(coupling: Coupling) -> Coupling:
-    """Returns half the gains."""
-    return Coupling(
-        coupling.stiffness_N_per_m / 2.0,
-        coupling.damping_Ns_per_m / 2.0,
-        coupling.rotational_stiffness_Nm_per_rad / 2.0,
-        coupling.rotational_damping_Nms_per_rad / 2.0,
-    )
+    """Returns softer gains: none above the defaults, or else half of all.
+
+    The defaults are stable on the shipped device.
+    """
+    gains, defaults = asdict(coupling), asdict(Coupling())
+    softer = {name: min(gain, defaults[name]) for name, gain in gains.items()}
+    if softer == gains:
+        softer = {name: gain / 2.0 for name, gain in gains.items()}
+    return Coupling(**softer)
 
 
 def build_quietly(scene: Scene) -> HapticDiagram:

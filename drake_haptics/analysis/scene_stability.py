@@ -54,7 +54,7 @@ class SceneStability:
         scene: The scene, its hand stopped.
         time_s: When the hand stopped on its path, s.
         handle: Inertia and damping of device and hand where they are.
-        num_contacts: That push, at rest.
+        num_contacts: That push, nearer than the tolerance, at rest.
         contact_force_N: On the tool, at rest, N.
         growth: Of the fastest growing motion in a tick; stable below 1.
         linearization: Of one tick.
@@ -236,9 +236,10 @@ def _choose_grid(
 
 def _read_contact(loop: HeldLoop) -> tuple[int, float]:
     """Returns how many contacts push and the force (N) on the tool."""
-    force = loop.haptic.loop.penalty_force
-    wrench = force.get_contact_wrench_output_port().Eval(
-        force.GetMyContextFromRoot(loop.context)
-    )
-    pushing = np.linalg.norm(wrench.f_cluster_W, axis=1) > 0.0
-    return int(pushing.sum()), float(np.linalg.norm(wrench.F_Tool_W[3:]))
+    parts, root = loop.haptic.loop, loop.context
+    query, force = parts.contact_query, parts.penalty_force
+    contacts = query.get_contacts_output_port().Eval(query.GetMyContextFromRoot(root))
+    # The force begins at the tolerance.
+    pushing = contacts.distance < loop.haptic.scene.contact.tolerance_m
+    wrench = force.get_tool_wrench_output_port().Eval(force.GetMyContextFromRoot(root))
+    return int(pushing.sum()), float(np.linalg.norm(wrench[3:]))

@@ -6,7 +6,6 @@ import base64
 import html
 import io
 import math
-from collections.abc import Iterable
 from importlib.resources import files
 from pathlib import Path
 from string import Template
@@ -18,7 +17,9 @@ from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limi
 
 _SLOWEST_SHOWN = 12
 _DPI = 110
+# Longer cells of a table are words.
 _LONGEST_NUMBER = 20
+_WORDS = ' class="words"'
 
 
 def write_stability_page(stability: SceneStability, name: str, path: Path) -> None:
@@ -226,21 +227,26 @@ def _make_warnings(stability: SceneStability) -> str:
     return f"<h2>Bounds that the coupling breaks</h2><ul>{items}</ul>"
 
 
-def _make_table(header: list[str], rows: Iterable[list[str]]) -> str:
-    """Returns a table."""
-    head = "".join(f"<th>{html.escape(cell)}</th>" for cell in header)
-    body = "".join(f"<tr>{''.join(map(_make_cell, row))}</tr>" for row in rows)
-    return f"<table><tr>{head}</tr>{body}</table>"
+def _make_table(header: list[str], rows: list[list[str]]) -> str:
+    """Returns a table; long cells are words, which do not line up like numbers."""
+    words = [
+        any(len(row[i]) > _LONGEST_NUMBER for row in rows) for i in range(len(header))
+    ]
 
+    def make_row(tag: str, cells: list[str]) -> str:
+        return "".join(
+            f"<{tag}{_WORDS if is_words else ''}>{html.escape(cell)}</{tag}>"
+            for cell, is_words in zip(cells, words, strict=True)
+        )
 
-def _make_cell(text: str) -> str:
-    """Returns a cell; long ones are words, which do not line up like numbers."""
-    kind = ' class="words"' if len(text) > _LONGEST_NUMBER else ""
-    return f"<td{kind}>{html.escape(text)}</td>"
+    body = "".join(f"<tr>{make_row('td', row)}</tr>" for row in rows)
+    return f"<table><tr>{make_row('th', header)}</tr>{body}</table>"
 
 
 def _times(factor: float) -> str:
-    return f"{factor:.3g} times" if math.isfinite(factor) else "none found"
+    return (
+        f"{float(f'{factor:.3g}'):.7g} times" if math.isfinite(factor) else "none found"
+    )
 
 
 def _percent(share: float) -> str:

@@ -36,6 +36,9 @@ def draw_sheet(stability: SceneStability) -> Figure:
             gains=(coupling.stiffness_N_per_m, coupling.damping_Ns_per_m),
         )
         panels["map"].set_title("which couplings are stable in this contact")
+        panels["map"].set_xlabel("stiffness K, N/m")
+        panels["map"].set_ylabel("damping B, N·s/m")
+        _put_legend_below(panels["map"])
     plot_poles(stability.linearization, panels["poles"])
     _plot_usage(stability, panels["usage"])
     _plot_limits(stability.limits, panels["limits"])
@@ -92,4 +95,9 @@ def _plot_limits(limits: tuple[StiffnessLimits, ...], axes: Axes) -> None:
     axes.set_xlim(_LEAST_SHOWN, longest * (longest / _LEAST_SHOWN) ** 0.4)
     axes.set_xlabel("stiffness of the coupling, times the scene's")
     axes.set_title("largest stable stiffness")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.4, -0.14), ncols=2, fontsize=8)
+    _put_legend_below(axes)
+
+
+def _put_legend_below(axes: Axes) -> None:
+    """Puts it where no data are."""
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, fontsize=8)

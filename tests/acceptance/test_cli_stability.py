@@ -1,0 +1,159 @@
+"""`drake-haptics stability` from end to end."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from held_samples import analyse_sample, make_limits
+
+from drake_haptics.analysis import scene_stability
+from drake_haptics.cli import main
+from drake_haptics.cli import stability as command
+from drake_haptics.simulation import RunError
+
+# The installed command, beside the interpreter.
+COMMAND = Path(sys.executable).with_name("drake-haptics")
+
+
+@pytest.fixture
+def invoke(monkeypatch, tmp_path):
+    """Runs the command in this process, in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return lambda *arguments: CliRunner().invoke(
+        main, ["stability", *map(str, arguments)]
+    )
+
+
+@pytest.fixture
+def sample(monkeypatch):
+    """Takes the place of the analysis, and notes what it was asked."""
+    asked = []
+
+    def analyse(scene, time_s, **settings):
+        asked.append((scene, time_s, settings))
+        return analyse_sample()
+
+    monkeypatch.setattr(command_module(), "analyse_scene", analyse)
+    return asked
+
+
+def command_module():
+    return (
+        sys.modules[command.callback.__module__]
+        if hasattr(command, "callback")
+        else command
+    )
+
+
+def test_a_scene_from_end_to_end(tmp_path):
+    process = subprocess.run(
+        [COMMAND, "stability", "sphere_pen", "--map", "0", "--json", "-"],
+        capture_output=True, text=True, cwd=tmp_path,
+    )  # fmt: skip
+    assert process.returncode == 0, process.stderr
+    assert process.stderr == ""
+    figures = json.loads(process.stdout)
+    assert figures["is_stable"] and figures["is_passive"] and figures["map"] is None
+    contact, rotation, wall, turned = figures["limits"]
+    assert contact["eigenvalue"] > wall["eigenvalue"]
+    for limit in (contact, rotation, wall, turned):
+        assert limit["simulated"] == pytest.approx(limit["eigenvalue"], rel=5e-3)
+    for limit in (wall, turned):
+        assert limit["eigenvalue"] == pytest.approx(limit["one_axis"], rel=0.1)
+        assert limit["one_axis"] == pytest.approx(limit["formula"], rel=0.1)
+    files = sorted(path.name for path in tmp_path.iterdir())
+    assert files == ["sphere_pen-stability.html", "sphere_pen-stability.png"]
+
+
+def test_the_terminal_shows_a_table_of_one_line_each(invoke, sample):
+    result = invoke("sphere_pen", "--at", 1.5, "--map", 7)
+    assert result.exit_code == 0, result.output
+    ((_, time_s, settings),) = sample
+    assert time_s == 1.5 and settings["map_size"] == 7 and settings["store"] is None
+    lines = [line.split() for line in result.stdout.splitlines()]
+    assert ["translation,", "contact,", "N/m", "800", "249070", "249070", "15863",
+            "15748"] in lines  # fmt: skip
+    assert ["translation,", "wall,", "N/m", "800", "16744", "16744", "15863",
+            "15748"] in lines  # fmt: skip
+    assert "what grows first: 56.1 Hz; mostly elbow_joint_w" in " ".join(
+        result.stdout.split()
+    )
+    assert "further delay that is stable: 12.3 ms" in result.stdout
+    assert Path("sphere_pen-stability.html").is_file()
+    assert Path("sphere_pen-stability.png").is_file()
+    assert max(map(len, result.stdout.splitlines())) <= 80
+
+
+def test_out_says_where_the_page_is_written(invoke, sample, tmp_path):
+    assert invoke("sphere_pen", "--out", tmp_path / "my.page.html").exit_code == 0
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert names == ["my.page.html", "my.page.png"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--at", "1e3"], "time_s must be on the hand's path, from 0 to"),
+        (["--at", "nan"], "time_s must be on the hand's path, from 0 to"),
+        (["--map", "1"], "map_size must be 0 or at least 2, is 1"),
+        (["--out", "page.png"], "must not be called page.png"),
+        (["--out", "nowhere/page.html"], "--out: there is no folder nowhere"),
+    ],
+)
+def test_a_mistake_is_one_line(invoke, arguments, words, tmp_path):
+    result = invoke("hammer_block", *arguments)
+    assert result.exit_code == 1
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("Error: ") and words in line
+    assert result.stdout == "" and list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (KeyboardInterrupt(), "Error: stopped"),
+        (KeyboardInterrupt("Stopped. 3 of 9 tasks are kept"), "Error: Stopped. 3 of 9"),
+        (RunError("stopped at 0.1 s: it diverged", None), "Error: stopped at 0.1 s"),
+        (ValueError("the tool does not come to rest"), "Error: the tool does not"),
+    ],
+)
+def test_what_goes_wrong_is_told_in_a_line(invoke, monkeypatch, error, words):
+    def fail(*_, **__):
+        raise error
+
+    monkeypatch.setattr(command_module(), "analyse_scene", fail)
+    result = invoke("hammer_block")
+    assert result.exit_code == 1
+    (line,) = result.stderr.splitlines()
+    assert line.startswith(words)
+
+
+def test_a_store_keeps_the_map_for_the_next_time(invoke, monkeypatch, tmp_path):
+    monkeypatch.setattr(
+        scene_stability,
+        "find_stiffness_limits",
+        lambda held, kind, against, progress: replace(
+            make_limits(2e4, against), kind=kind
+        ),
+    )
+    arguments = ["hammer_block", "--at", 1.736, "--map", 3, "--store", "map.jsonl"]
+    first = invoke(*arguments, "--json", "first.json")
+    assert first.exit_code == 0, first.output
+    kept = Path("map.jsonl").read_bytes()
+    # Nothing is computed the second time: a worker would find no such scene.
+    monkeypatch.setattr(
+        scene_stability.CouplingGrowth, "__call__", lambda *_: pytest.fail("computed")
+    )
+    second = invoke(*arguments, "--json", "second.json")
+    assert second.exit_code == 0, second.output
+    assert Path("map.jsonl").read_bytes() == kept
+    maps = [
+        json.loads(Path(name).read_text())["map"]
+        for name in ("first.json", "second.json")
+    ]
+    assert maps[0] == maps[1]
+    assert len(maps[0]["stiffness"]) == 3

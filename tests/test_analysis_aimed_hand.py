@@ -1,0 +1,95 @@
+"""A hand that is aimed anew presses the tool as before, whatever the gains."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from held_samples import hold_with_grip, load_held
+
+from drake_haptics.analysis import aimed_hand
+from drake_haptics.analysis.aimed_hand import build_aimed
+from drake_haptics.analysis.equilibrium import find_equilibrium
+from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.scene import Coupling
+from drake_haptics.scene_check import SceneError
+from drake_haptics.systems.arm_inverse_kinematics import UnreachableError
+
+GAINS = {
+    "own": {},
+    "soft": {"stiffness_N_per_m": 200.0},
+    "stiff": {"stiffness_N_per_m": 1e5, "damping_Ns_per_m": 20.0},
+    "undamped": {"damping_Ns_per_m": 0.0, "rotational_damping_Nms_per_rad": 0.0},
+    "turned far": {"rotational_stiffness_Nm_per_rad": 0.05},
+    "stiff about": {"rotational_stiffness_Nm_per_rad": 500.0},
+}
+
+
+@pytest.fixture(scope="module", params=["cup_spoon", "hammer_block"])
+def held(request):
+    return load_held(request.param)
+
+
+def assert_rests_as_held(held, haptic, context):
+    # No step of Newton's method: it is the state that was built that stays.
+    found = find_equilibrium(haptic.diagram, context, tolerance=1e-9)
+    assert found.iterations == 0
+    tool, force = haptic.loop.haptic_tool, haptic.loop.penalty_force
+    pose = tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(context))
+    assert vector_to_pose(pose).IsExactlyEqualTo(held.X_WT)
+    pushed = force.get_tool_wrench_output_port().Eval(
+        force.GetMyContextFromRoot(context)
+    )
+    np.testing.assert_allclose(pushed, -held.F_Tool_W, atol=1e-7)
+    coupling = haptic.loop.virtual_coupling
+    model = coupling.get_wrench_model_output_port().Eval(
+        coupling.GetMyContextFromRoot(context)
+    )
+    np.testing.assert_allclose(model[:6], held.F_Tool_W, atol=1e-9)
+
+
+@pytest.mark.parametrize("gains", GAINS.values(), ids=GAINS.keys())
+def test_any_gains_hold_the_tool_where_it_was(held, gains):
+    coupling = replace(held.scene.coupling, **gains)
+    haptic, context = build_aimed(held, coupling)
+    assert haptic.scene.coupling == coupling
+    assert_rests_as_held(held, haptic, context)
+
+
+@pytest.mark.parametrize("grip", ["light", "nominal", "firm"])
+def test_any_hand_holds_the_tool_where_it_was(held, grip):
+    other = hold_with_grip(held, grip)
+    assert_rests_as_held(other, *build_aimed(other))
+
+
+def test_a_free_arm_has_nothing_to_hold_with(held):
+    with pytest.raises(ValueError, match="the hand has no spring to hold the tool"):
+        build_aimed(hold_with_grip(held, "none"))
+
+
+@pytest.mark.parametrize(
+    "name", ["stiffness_N_per_m", "rotational_stiffness_Nm_per_rad"]
+)
+def test_a_coupling_without_a_spring_has_nothing_to_hold_with(held, name):
+    coupling = replace(held.scene.coupling, **{name: 0.0})
+    with pytest.raises(ValueError, match="the coupling has no spring to hold the tool"):
+        build_aimed(held, coupling)
+
+
+def test_a_spring_that_is_turned_too_far_is_an_error(held):
+    coupling = replace(held.scene.coupling, rotational_stiffness_Nm_per_rad=1e-3)
+    with pytest.raises(ValueError, match=r"coupling's spring .* more than 2\.5 rad"):
+        build_aimed(held, coupling)
+
+
+def test_a_hand_that_would_leave_the_workspace_is_an_error(held):
+    with pytest.raises(SceneError, match="workspace"):
+        build_aimed(held, Coupling(stiffness_N_per_m=2.0))
+
+
+def test_an_arm_that_does_not_reach_is_an_error(monkeypatch):
+    def refuse(*_):
+        raise UnreachableError("the arm is too short")
+
+    monkeypatch.setattr(aimed_hand, "solve_arm_positions", refuse)
+    with pytest.raises(ValueError, match="to press as before: the arm is too short"):
+        build_aimed(load_held("hammer_block"))

@@ -1,0 +1,171 @@
+"""What the page of a scene's stability says, and that it says all of it."""
+
+import html
+import json
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from held_samples import analyse_sample, make_limits
+from PIL import Image
+
+from drake_haptics.analysis.modes import Mode, ModeKind
+from drake_haptics.analysis.motion_words import describe_motion, shorten_paths
+from drake_haptics.analysis.stability_page import (
+    describe_delay,
+    describe_situation,
+    describe_verdict,
+    write_stability_page,
+)
+
+GROWING = Mode(
+    ModeKind.MOTION,
+    1.01 * np.exp(0.2j * math.pi),
+    1e-3,
+    (("device/simulated_arm/arm/elbow_joint_w", 0.6), ("haptic_tool/step/x", 0.4)),
+)
+
+
+@pytest.fixture(scope="module")
+def sample():
+    stability = analyse_sample()
+    # As if device and hand damped twice of what is needed.
+    usage = stability.damping_usage / stability.damping_usage.max() / 2.0
+    return replace(stability, damping_usage=usage)
+
+
+def make_unstable(stability):
+    return replace(stability, growth=1.01, modes=(GROWING, *stability.modes))
+
+
+def write(stability, folder, name="a_scene"):
+    write_stability_page(stability, name, folder / "page.html")
+    return (folder / "page.html").read_text(encoding="utf-8")
+
+
+def test_a_stable_and_passive_scene(sample):
+    assert describe_verdict(sample) == (
+        "Stable; the coupling's stiffness of translation could be 20.9 times as large,"
+        " against a rigid wall. Passive: no hand can be driven into vibration."
+    )
+
+
+def test_an_unstable_scene_says_what_grows(sample):
+    assert describe_verdict(make_unstable(sample)) == (
+        "Unstable: a disturbance grows by 1 % in each tick: 100 Hz; mostly"
+        " elbow_joint_w and haptic_tool/x."
+    )
+
+
+def test_a_scene_that_is_not_passive_says_how_much_damping_it_needs(sample):
+    needy = replace(sample, damping_usage=3.0 * sample.damping_usage)
+    assert not needy.is_passive
+    words = describe_verdict(needy)
+    assert words.startswith("Stable;")
+    assert "Not passive: 150 % of the damping of device and hand would be" in words
+
+
+@pytest.mark.parametrize("limits", [(), (make_limits(math.inf),)])
+def test_limits_that_do_not_exist_are_not_counted(sample, limits):
+    words = describe_verdict(replace(sample, limits=limits))
+    assert words.startswith("Stable. Passive")
+    both = (make_limits(math.inf, "this contact"), make_limits(1600.0))
+    assert "2 times as large" in describe_verdict(replace(sample, limits=both))
+
+
+def test_a_limit_below_the_scenes_stiffness_is_a_warning(sample):
+    words = describe_verdict(replace(sample, limits=(make_limits(400.0),)))
+    assert words.startswith("Stable in this contact; but against a rigid wall")
+    assert "only at less than 0.5 of what it is" in words
+
+
+def test_the_situation_is_told(sample):
+    words = describe_situation(sample)
+    assert "phantom_premium_1_5_6dof in a firm grip at 1000 Hz" in words
+    assert "4 contacts push the tool with 3.07 N" in words
+    assert "1 contact pushes the tool" in describe_situation(
+        replace(sample, num_contacts=1)
+    )
+    assert "the tool touches nothing" in describe_situation(
+        replace(sample, num_contacts=0, contact_force_N=0.0)
+    )
+    free = replace(sample.scene, hand=replace(sample.scene.hand, grip="none"))
+    assert "without a hand" in describe_situation(replace(sample, scene=free))
+
+
+@pytest.mark.parametrize(
+    ("delay_s", "words"),
+    [(0.0123, "12.3 ms"), (0.0, "0 ms"), (math.inf, "more than 50 ticks")],
+)
+def test_the_delay_is_told(sample, delay_s, words):
+    assert describe_delay(replace(sample, delay_margin_s=delay_s)) == words
+
+
+def test_the_page_has_the_figures(sample, tmp_path):
+    page = html.unescape(write(sample, tmp_path))
+    data = sample.to_dict()
+    figures = [
+        *(f"{data['coupling'][name]:.5g}" for name in data["coupling"]),
+        *(f"{data['handle'][name]:.5g}" for name in data["handle"]),
+        f"{data['time_s']:.3f} s",
+        f"{data['contact_force_N']:.2f} N",
+        f"{data['growth']:.6f}",
+        "12.3 ms",
+        "50 % at",
+    ]
+    for limit in data["limits"]:
+        for name in ("stiffness", "eigenvalue", "simulated", "one_axis", "formula"):
+            figures.append(f"<td>{limit[name]:.7g}</td>")
+        figures += [f"{limit['gain_margin']:.3g} times", limit["limited_by"]]
+    figures += [shorten_paths(mode.describe()) for mode in sample.modes[:12]]
+    assert [figure for figure in figures if figure not in page] == []
+    assert 'class="verdict good"' in page
+
+
+def test_the_picture_is_beside_the_page_and_in_it(sample, tmp_path):
+    page = write(sample, tmp_path)
+    with Image.open(tmp_path / "page.png") as picture:
+        assert picture.width > 1200 and picture.height > 900
+    assert "data:image/png;base64,iVBOR" in page
+    assert not re.findall(r"\$\w+", page)
+
+
+def test_the_verdict_has_a_colour(sample, tmp_path):
+    assert 'class="verdict bad"' in write(make_unstable(sample), tmp_path)
+    needy = replace(sample, damping_usage=3.0 * sample.damping_usage)
+    assert 'class="verdict fair"' in write(needy, tmp_path)
+
+
+def test_names_are_escaped(sample, tmp_path):
+    scene = replace(sample.scene, description="<u>a & b</u> $100$")
+    odd = replace(sample, scene=scene, broken_bounds=("K < <i>bound</i>",))
+    page = write(odd, tmp_path, name="<script>alert(1)</script>")
+    for tag in ("<u>", "<i>", "<script>"):
+        assert tag not in page
+    assert "&lt;script&gt;alert(1)" in page and "K &lt; &lt;i&gt;bound" in page
+    assert "Bounds that the coupling breaks" in page
+
+
+def test_a_page_cannot_take_its_pictures_name(sample, tmp_path):
+    with pytest.raises(ValueError, match=r"must not be called page\.png"):
+        write_stability_page(sample, "a_scene", tmp_path / "page.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_json_has_no_number_that_is_none(sample):
+    endless = replace(
+        sample, delay_margin_s=math.inf, limits=(make_limits(math.inf), make_limits(0))
+    )
+    text = json.dumps(endless.to_dict(), allow_nan=False)
+    data = json.loads(text)
+    assert data["delay_margin_s"] is None
+    assert [limit["eigenvalue"] for limit in data["limits"]] == [None, 0]
+    assert data["limits"][0]["gain_margin"] is None
+    assert data["passivity"]["damping_usage"] == sample.damping_usage.tolist()
+
+
+def test_a_motion_that_does_not_swing():
+    still = Mode(ModeKind.MOTION, 0.9 + 0.0j, 1e-3, (("haptic_tool/step/x", 1.0),))
+    assert describe_motion(still) == "without swing; mostly haptic_tool/x"
