@@ -94,7 +94,8 @@ def AddHapticRendering(
 
     Warns:
         SceneWarning: A gain is too stiff for the explicit step of a discrete plant, or
-            Drake's own contact still acts between the tool and other bodies.
+            Drake's own contact acts between the tool and bodies that neither this call
+            nor an earlier one renders.
 
     Raises:
         ValueError: What was asked for cannot be; the message names the argument and
@@ -200,12 +201,14 @@ def _order_materials(
 
 
 def _describe_own_contact(tool: RigidBody, others: Sequence[str]) -> list[str]:
-    """Returns a sentence if Drake's own contact still acts on the tool."""
+    """Returns a sentence if Drake's own contact acts on the tool.
+
+    A later call for the same tool may render the others: that cannot be known here.
+    """
     if not others:
         return []
     return [
-        f"Drake's own contact still acts between {tool.name()!r} and"
-        f" {', '.join(map(repr, others))}, which are not rendered: name them in"
-        " environment, render them by another call, or exclude them with a collision"
-        " filter"
+        f"Drake's own contact acts between {tool.name()!r} and"
+        f" {', '.join(map(repr, others))}, unless another call renders them: name them"
+        " in environment, or exclude them with a collision filter"
     ]

@@ -190,6 +190,28 @@ def test_drakes_own_contact_does_not_act_a_second_time():
     assert count_own_contacts(scene) == 2
 
 
+def test_of_two_calls_for_one_tool_the_last_knows_what_is_left_to_drake():
+    scene = PlantScene()
+    scene.add("tool", CUBE)
+    scene.add("brick", CUBE)
+    scene.add_slab()
+    scene.finalize()
+    with pytest.warns(SceneWarning) as caught:
+        render(scene, environment=["slab"], name="on_slab")
+    (warning,) = caught
+    assert "acts between 'tool' and 'brick', unless another call" in str(
+        warning.message
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        render(scene, environment=["brick"], name="on_brick")
+    # In the end no contact counts twice, and none is Drake's.
+    deep = RigidTransform([0.0, 0.0, 0.5 * HALF])
+    scene.start(tool=deep, brick=RigidTransform([0.0, HALF, 3 * HALF]))
+    scene.simulator.AdvanceTo(1e-3)
+    assert count_own_contacts(scene) == 0
+
+
 def test_without_rendering_drakes_contact_would_act():
     scene = PlantScene()
     scene.add("tool", CUBE)

@@ -6,11 +6,7 @@ import trimesh
 from plant_scenes import PLANTS, G, PlantScene
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
-from pydrake.multibody.parsing import (
-    LoadModelDirectivesFromString,
-    Parser,
-    ProcessModelDirectives,
-)
+from pydrake.multibody.parsing import Parser
 from pydrake.multibody.tree import JacobianWrtVariable
 from pydrake.visualization import AddDefaultVisualization
 
@@ -109,9 +105,8 @@ def add_arm(scene, folder, height):
     (folder / "pen.sdf").write_text(PEN)
     text = ARM.replace("PEN", str(folder / "pen.sdf"))
     text = text.replace("HEIGHT", str(height - TABLE_TOP))
-    ProcessModelDirectives(
-        LoadModelDirectivesFromString(text), scene.plant, Parser(scene.plant)
-    )
+    (folder / "arm.dmd.yaml").write_text(text)
+    Parser(scene.plant).AddModels(str(folder / "arm.dmd.yaml"))
     return scene.finalize()
 
 

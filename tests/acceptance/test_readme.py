@@ -53,11 +53,33 @@ def test_the_other_commands_are_targets_of_the_makefile():
         assert re.search(rf"^{target}:", makefile, re.MULTILINE)
 
 
-def test_the_python_example_is_short_and_runs(capsys):
-    (block,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    assert len([line for line in block.splitlines() if line.strip()]) <= 12
-    exec(compile(block, "README.md", "exec"), {"__name__": "readme"})
-    assert "N" in capsys.readouterr().out
+@pytest.fixture
+def run_python(capsys, monkeypatch):
+    """Runs a Python example of a section, of few lines, and returns what it prints."""
+    monkeypatch.chdir(ROOT)
+
+    def run(section, most_lines):
+        text = README.split(f"\n## {section}\n")[1].split("\n## ")[0]
+        (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+        assert len([line for line in block.splitlines() if line.strip()]) <= most_lines
+        exec(compile(block, "README.md", "exec"), {"__name__": "readme"})
+        return capsys.readouterr().out
+
+    return run
+
+
+def test_the_python_example_is_short_and_runs(run_python):
+    assert "N" in run_python("From Python", 12)
+
+
+def test_a_die_lies_in_the_cup_of_ones_own_plant(run_python):
+    printed = run_python("In your own Drake simulation", 32)
+    height_mm, force_N = map(float, re.findall(r"\d+\.\d+", printed))
+    assert force_N == pytest.approx(0.1 * 9.81, abs=0.006)
+    # Its corners, 14 mm from the middle, are over a bottom that rises from 5 to 6 mm at
+    # 22 mm, within the tolerance of 2 mm. The rim is at 72 mm.
+    bottom_mm = 5.0 + 14.1 / 22.0
+    assert bottom_mm + 10.0 < height_mm < bottom_mm + 10.0 + 2.0
 
 
 def test_the_table_has_every_scene():
