@@ -13,14 +13,14 @@ from pydrake.systems.framework import InputPortSelection, OutputPortSelection
 from pydrake.systems.primitives import Linearize
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.scene import Contact
+from drake_haptics.scene import Braking, Contact, Effects
 
 CONTACT = Contact(stiffness_N_per_m=1e3, damping_Ns_per_m=3.0)
 K, MASS = 1e3, 0.1
 CUBE = Box(0.04, 0.04, 0.04)
 
 
-def make_scene():
+def make_scene(effects):
     """Returns a tilted cube that presses with a corner on a slab and a ball."""
     scene = PlantScene(PLANTS["continuous"])
     scene.add("tool", CUBE, mass=0.1)
@@ -33,6 +33,7 @@ def make_scene():
         scene.scene_graph,
         "tool",
         contact=CONTACT,
+        effects=effects,
     )
     turned = RollPitchYaw(0.5, 0.4, 0.2)
     corners = 0.02 * np.array(list(product((-1, 1), repeat=3)))
@@ -49,8 +50,9 @@ def change_of_velocity(scene, x):
     return scene.read(scene.plant, "generalized_acceleration")
 
 
-def test_accelerations_in_contact_agree_with_central_differences():
-    scene, rendering = make_scene()
+@pytest.mark.parametrize("braked", [False, True])
+def test_accelerations_in_contact_agree_with_central_differences(braked):
+    scene, rendering = make_scene(Effects(braking=Braking() if braked else None))
     plant = scene.plant
     x = plant.GetPositionsAndVelocities(scene.context).copy()
     nq = plant.num_positions()
@@ -79,6 +81,9 @@ def test_accelerations_in_contact_agree_with_central_differences():
         change_of_velocity(scene, x + h * direction)
         - change_of_velocity(scene, x - h * direction)
     ) / (2 * h)
+    if braked:
+        braking = rendering.GetSubsystemByName("pre_contact_braking")
+        assert np.linalg.norm(scene.read(braking, "F_O_W")) > 0.01
     gradient = ExtractGradient(found).ravel()
     np.testing.assert_allclose(
         gradient, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max()
