@@ -111,9 +111,9 @@ class PenaltyForce(DifferentiableSystem):
             self._calc_contact_wrench,
             from_inputs,
         )
-        # Where objects move, their reaction is asked for beside the wrench on the tool:
-        # the ports share the answer that `contact_wrench` keeps. Elsewhere one of them
-        # is asked, and to call the core takes less time.
+        # A plant asks for the wrench on the tool and the reaction of objects that move:
+        # these share the answer that `contact_wrench` keeps. A haptic loop asks for
+        # `wrench_model` alone, and to call the core then takes less time.
         self._eval_wrench: Callable[[Context], PenaltyWrench] = (
             self._contact_wrench.Eval if self._moving else self._calc_wrench
         )
@@ -195,7 +195,7 @@ class PenaltyForce(DifferentiableSystem):
         )
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._eval_wrench(context).wrench_model)
+        output.SetFromVector(self._calc_wrench(context).wrench_model)
 
     def _calc_F_Tool_W(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._eval_wrench(context).F_Tool_W)

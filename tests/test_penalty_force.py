@@ -103,7 +103,7 @@ def test_tool_and_objects_share_one_answer(plate, clusters, monkeypatch):
     )
     first = force.get_tool_wrench_output_port().Eval(context).copy()
     force.get_object_wrenches_output_port().Eval(context)
-    force.get_wrench_model_output_port().Eval(context)
+    force.get_contact_wrench_output_port().Eval(context)
     assert len(calls) == 1
     # Until an input changes.
     force.get_tool_velocity_input_port().FixValue(context, [0, 0, 0, 0, 0, -0.1])
