@@ -76,3 +76,12 @@ def test_a_map_is_the_same_in_any_process(growth):
         there = z_width(growth, **grid, executor=pool)
     np.testing.assert_array_equal(here.spectral_radius, there.spectral_radius)
     assert not here.reasons and np.isfinite(here.spectral_radius).all()
+
+
+def test_a_device_near_its_limit_is_linearized_all_the_same():
+    # The point beside the state at which derivatives are checked is, for one of these
+    # stiffnesses, where the device's torque just reaches its limit.
+    held = load_held("cup_spoon")
+    for stiffness in np.geomspace(29800.0, 30300.0, 12):
+        coupling = replace_gains(held.scene.coupling, stiffness, 2.0)
+        assert 0.98 < analyse_held_scene(held, coupling).growth < 1.0

@@ -67,14 +67,18 @@ def find_wrong_rows(
     return _compare(function, jacobian, sizes * direction)
 
 
-def move_beside(point: np.ndarray) -> np.ndarray:
+def move_beside(point: np.ndarray, side: float = 1.0) -> np.ndarray:
     """Returns a point (n,) a little beside another.
 
     Equilibria are special: what is at rest, flush or symmetric is often on a kink,
     where differences to both sides see both slopes. Beside it there is one.
+
+    Args:
+        point: (n,).
+        side: 1, or -1 for the point on the opposite side.
     """
     shift = np.random.default_rng(1).uniform(-1.0, 1.0, len(point))
-    return point + _BESIDE * calc_sizes(point) * shift
+    return point + side * _BESIDE * calc_sizes(point) * shift
 
 
 def calc_sizes(x: np.ndarray) -> np.ndarray:

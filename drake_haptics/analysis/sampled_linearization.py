@@ -159,9 +159,22 @@ def linearize_sampled(
 def _check_nearby(
     one_period: SampledMap, names: tuple[str, ...], outputs: list[str]
 ) -> None:
-    """Compares derivatives with differences a little beside the state."""
+    """Compares derivatives with differences a little beside the state.
+
+    A derivative that is lost is lost on both sides. A limit that is just reached, as
+    that of a device's torque, may happen to be at one of the two points.
+    """
+    try:
+        _check_beside(one_period, names, outputs, 1.0)
+    except ValueError:
+        _check_beside(one_period, names, outputs, -1.0)
+
+
+def _check_beside(
+    one_period: SampledMap, names: tuple[str, ...], outputs: list[str], side: float
+) -> None:
     n, n_c = len(one_period.x), one_period.num_continuous
-    point = move_beside(np.concatenate([one_period.x, one_period.u]))
+    point = move_beside(np.concatenate([one_period.x, one_period.u]), side)
     held = one_period.hold(point[:n], point[n:])
     check_derivatives(
         _step_from(one_period, point, held),

@@ -37,16 +37,8 @@ def sample(monkeypatch):
         asked.append((scene, time_s, settings))
         return analyse_sample()
 
-    monkeypatch.setattr(command_module(), "analyse_scene", analyse)
+    monkeypatch.setattr(command, "analyse_scene", analyse)
     return asked
-
-
-def command_module():
-    return (
-        sys.modules[command.callback.__module__]
-        if hasattr(command, "callback")
-        else command
-    )
 
 
 def test_a_scene_from_end_to_end(tmp_path):
@@ -125,7 +117,7 @@ def test_what_goes_wrong_is_told_in_a_line(invoke, monkeypatch, error, words):
     def fail(*_, **__):
         raise error
 
-    monkeypatch.setattr(command_module(), "analyse_scene", fail)
+    monkeypatch.setattr(command, "analyse_scene", fail)
     result = invoke("hammer_block")
     assert result.exit_code == 1
     (line,) = result.stderr.splitlines()
