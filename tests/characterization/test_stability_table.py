@@ -1,0 +1,51 @@
+"""The page on stability has tables of every scene, whose figures agree."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from stability_table import PAGE, PICTURE, SCENES, limit_rows, place_rows, span_of
+
+TEXT = PAGE.read_text(encoding="utf-8")
+
+
+def read_rows(name):
+    """Returns the cells of a table, its head first."""
+    lines = [line for line in TEXT[span_of(TEXT, name)].splitlines() if line]
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
+    return [rows[0], *rows[2:]]
+
+
+@pytest.mark.parametrize(
+    ("name", "rows"), [("places", place_rows), ("limits", limit_rows)]
+)
+def test_the_tables_are_those_of_the_command(name, rows):
+    head, *body = read_rows(name)
+    assert [head] == list(rows({}))
+    assert list(dict.fromkeys(row[0] for row in body)) == list(SCENES)
+
+
+def test_the_differences_are_those_of_the_figures():
+    _, *body = read_rows("limits")
+    assert len(body) == 4 * len(SCENES)
+    for row in body:
+        eigenvalue = float(row[4])
+        for value, difference in zip(row[5::2], row[6::2], strict=True):
+            share = 100.0 * (float(value) / eigenvalue - 1.0)
+            assert float(difference.removesuffix(" %")) == pytest.approx(
+                share, abs=0.02
+            )
+
+
+def test_simulation_agrees_and_one_axis_is_the_worst_direction():
+    _, *body = read_rows("limits")
+    for row in body:
+        assert abs(float(row[6].removesuffix(" %"))) < 0.5
+        if row[2] == "a rigid wall":
+            assert float(row[8].removesuffix(" %")) < 1.0
+
+
+def test_the_picture_is_there():
+    assert PICTURE.is_file() and PICTURE.name in TEXT
