@@ -136,10 +136,15 @@ def test_one_contact_is_braked_by_the_profile(near: float) -> None:
 
 def test_what_leaves_or_slides_is_not_held_back() -> None:
     contacts = slabs_around([[0, 0, 1]], [0.3 * D])
-    for V in (0.3 * UP, np.eye(6)[3], AT_REST):
+    F, damping = brake(contacts, 0.3 * UP)
+    assert not F.any()
+    assert not damping.any()
+    _, of_approach = brake(contacts, 0.3 * DOWN)
+    for V in (np.eye(6)[3], AT_REST):
         F, damping = brake(contacts, V)
         assert not F.any()
-        assert not damping.any()
+        # Half of every small motion from here is an approach.
+        np.testing.assert_allclose(damping, of_approach / 2, atol=1e-15)
 
 
 def test_only_the_motion_between_the_two_counts() -> None:

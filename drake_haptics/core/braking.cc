@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "approach.h"
 #include "require.h"
 
 namespace drake_haptics {
@@ -148,14 +149,15 @@ BrakingWrenchOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
     if (ValueOf(W) == 0) continue;
     const Vec3Of<T>& n = contact.nhat_BA_W;
     const MovingFrameOf<T>& object = objects.at(contact.object);
-    const T approach = SpeedAlong<T>(n, contact.p_WC, object) -
-                       SpeedAlong<T>(n, contact.p_WC, tool);
-    if (!(ValueOf(approach) > 0)) continue;
+    const Approach<T> approach(T(SpeedAlong<T>(n, contact.p_WC, tool) -
+                                 SpeedAlong<T>(n, contact.p_WC, object)));
+    if (approach.engaged == 0) continue;
     const T damping = T(gains.damping * sqrt(W)) * shares(n, W);
-    const T force = damping * approach;
+    const T force = -damping * approach.speed;
     const Vec6Of<T> G = Lever<T>(n, contact.p_WC, tool);
     wrench.tool.F += force * G;
-    wrench.tool.B.noalias() += damping * G * G.transpose();
+    wrench.tool.B.noalias() +=
+        T(approach.engaged * damping) * G * G.transpose();
     wrench.F_objects_W[contact.object] -=
         force * Lever<T>(n, contact.p_WC, object);
   }

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "approach.h"
+
 namespace drake_haptics {
 namespace {
 
@@ -41,23 +43,6 @@ Mat6Of<T> Stiffness(const ClusterSetOf<T>& set, const Wrenches<T>& G,
   const Eigen::Map<const MatrixOf<T>> H(set.coupling.data(), count, count);
   return kG * H * G.transpose();
 }
-
-// Slower than this, m/s, surfaces rest.
-constexpr double kAtRest = 1e-9;
-
-// What a damper sees that works on approach only. At rest it works in half of
-// every small motion, and what is linear there is the mean of both halves.
-template <typename T>
-struct Approach {
-  double engaged;  // in how far it works
-  T speed;         // at most 0
-
-  explicit Approach(const T& v) {
-    const double value = ValueOf(v);
-    engaged = std::abs(value) < kAtRest ? 0.5 : value < 0 ? 1.0 : 0.0;
-    speed = engaged * v + (std::min(value, 0.0) - engaged * value);
-  }
-};
 
 }  // namespace
 
