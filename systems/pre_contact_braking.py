@@ -61,8 +61,8 @@ class PreContactBraking(DifferentiableSystem):
 
     Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`.
     Derivatives are complete: profile, shares and normals change with the pose. Where a
-    contact begins or ends to brake (no approach, d = 0, d = D) they are those of a
-    contact that does not.
+    contact begins or ends to brake (d = 0, d = D) they are those of a contact that does
+    not; at rest they are the mean of approach and parting.
     """
 
     def __init__(
