@@ -79,9 +79,9 @@ def test_a_map_is_the_same_in_any_process(growth):
 
 
 def test_a_device_near_its_limit_is_linearized_all_the_same():
-    # The point beside the state at which derivatives are checked is, for one of these
-    # stiffnesses, where the device's torque just reaches its limit.
+    # The point beside the state at which derivatives are checked is, for the third of
+    # these stiffnesses, where the device's torque just reaches its limit.
     held = load_held("cup_spoon")
-    for stiffness in np.geomspace(29800.0, 30300.0, 12):
+    for stiffness in (3.0e4, 3.003e4, 30065.76, 3.01e4):
         coupling = replace_gains(held.scene.coupling, stiffness, 2.0)
         assert 0.98 < analyse_held_scene(held, coupling).growth < 1.0
