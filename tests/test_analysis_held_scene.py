@@ -99,3 +99,10 @@ def test_a_scene_with_an_unstable_coupling_is_held_all_the_same(hammer):
 def test_a_tool_that_cannot_come_to_rest_in_time_is_an_error(hammer):
     with pytest.raises(ValueError, match=r"within 0\.001 s after .* at 0\.350 s"):
         hold_scene(hammer, 0.35, settle_s=1e-3)
+
+
+def test_a_firmer_contact_that_does_not_rest_is_passed_over_and_named():
+    """Where the spoon is pressed most it goes from one facet of the cup to the next."""
+    held = hold_scene(load_scene(find_scene("cup_spoon")))
+    assert held.restless_s
+    assert held.time_s not in held.restless_s

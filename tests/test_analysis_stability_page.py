@@ -95,6 +95,12 @@ def test_the_situation_is_told(sample):
     assert "without a hand" in describe_situation(replace(sample, scene=free))
 
 
+def test_firmer_contacts_that_do_not_rest_are_told(sample):
+    assert "come to rest" not in describe_situation(sample)
+    words = describe_situation(replace(sample, restless_s=(1.557, 1.6)))
+    assert "at 1.557 s and 1.600 s, the tool does not come to rest" in words
+
+
 @pytest.mark.parametrize(
     ("delay_s", "words"),
     [(0.0123, "12.3 ms"), (0.0, "0 ms"), (math.inf, "more than 50 ticks")],

@@ -41,6 +41,8 @@ class HeldScene:
         X_WT: Pose of the tool at rest.
         F_Tool_W: What the coupling does to the tool there (6,), [N·m; N], at its origin
             in the world.
+        restless_s: Times of firmer contacts, s, at which the tool did not come to rest
+            in the scene's own coupling.
     """
 
     scene: Scene
@@ -48,6 +50,7 @@ class HeldScene:
     context: Context
     X_WT: RigidTransform
     F_Tool_W: np.ndarray
+    restless_s: tuple[float, ...] = ()
 
 
 def find_firmest_contact(scene: Scene) -> float:
@@ -92,12 +95,14 @@ def hold_scene(
     places = _find_firm_places(scene) if time_s is None else [time_s]
     coupling = scene.coupling
     for softening in range(_MOST_SOFTENINGS + 1):
-        for place in places:
+        for i, place in enumerate(places):
             report(f"stopping the hand at {place:.3f} s", softening / _MOST_SOFTENINGS)
             held = stop_hand(scene, place)
             found = _settle(replace(held, coupling=coupling), place + settle_s)
             if found is not None:
-                return HeldScene(held, place, *found)
+                # With a softer coupling it is the coupling that did not rest.
+                restless = places[:i] if softening == 0 else []
+                return HeldScene(held, place, *found, tuple(restless))
         coupling = _soften(coupling)
     raise ValueError(
         f"the tool does not come to rest within {settle_s:g} s after the hand stops at"

@@ -68,6 +68,7 @@ class SceneStability:
             frequency of `felt`: passive where it is at most 1.
         broken_bounds: Sentences of `check_coupling`.
         map: Growth over stiffness and damping of translation; None if not asked for.
+        restless_s: Times of firmer contacts, s, at which the tool did not come to rest.
     """
 
     scene: Scene
@@ -84,6 +85,7 @@ class SceneStability:
     damping_usage: np.ndarray
     broken_bounds: tuple[str, ...]
     map: ZWidth | None
+    restless_s: tuple[float, ...] = ()
 
     @property
     def period_s(self) -> float:
@@ -115,6 +117,7 @@ class SceneStability:
             "coupling": asdict(self.scene.coupling),
             "period_s": self.period_s,
             "time_s": self.time_s,
+            "restless_s": list(self.restless_s),
             "handle": asdict(self.handle),
             "num_contacts": self.num_contacts,
             "contact_force_N": self.contact_force_N,
@@ -195,6 +198,7 @@ def analyse_scene(
         damping_usage=passivity.calc_usage(felt.handle_damping),
         broken_bounds=tuple(check_scene_coupling(held.scene, device)),
         map=map_,
+        restless_s=held.restless_s,
     )
 
 

@@ -121,6 +121,18 @@ def describe_situation(stability: SceneStability) -> str:
         f" {1e6 * handle.inertia_kgm2:.0f} kg·mm² at least, and are damped by"
         f" {handle.damping_Ns_per_m:.3g} N·s/m and"
         f" {1e3 * handle.rotational_damping_Nms_per_rad:.3g} mN·m·s/rad at least."
+        + _describe_restless(stability)
+    )
+
+
+def _describe_restless(stability: SceneStability) -> str:
+    """Says where the tool is pressed more and does not rest; nothing if nowhere."""
+    if not stability.restless_s:
+        return ""
+    times = " and ".join(f"{time_s:.3f} s" for time_s in stability.restless_s)
+    return (
+        f" Where it is pressed more, at {times}, the tool does not come to rest: it"
+        " goes from one facet to another and back."
     )
 
 
