@@ -97,8 +97,12 @@ def test_the_situation_is_told(sample):
 
 def test_firmer_contacts_that_do_not_rest_are_told(sample):
     assert "come to rest" not in describe_situation(sample)
-    words = describe_situation(replace(sample, restless_s=(1.557, 1.6)))
-    assert "at 1.557 s and 1.600 s, the tool does not come to rest" in words
+    words = describe_situation(replace(sample, restless_s=(1.557,)))
+    assert "at 1.557 s, the tool does not come to rest" in words
+    restless = replace(sample, restless_s=(1.557, 1.6, 2.0))
+    assert "at 1.557, 1.600 and 2.000 s, the tool" in describe_situation(restless)
+    unstable = replace(restless, growth=1.01)
+    assert "come to rest" not in describe_situation(unstable)
 
 
 @pytest.mark.parametrize(

@@ -41,8 +41,7 @@ class HeldScene:
         X_WT: Pose of the tool at rest.
         F_Tool_W: What the coupling does to the tool there (6,), [N·m; N], at its origin
             in the world.
-        restless_s: Times of firmer contacts, s, at which the tool did not come to rest
-            in the scene's own coupling.
+        restless_s: Times of firmer contacts, s, at which the tool did not come to rest.
     """
 
     scene: Scene
@@ -100,9 +99,7 @@ def hold_scene(
             held = stop_hand(scene, place)
             found = _settle(replace(held, coupling=coupling), place + settle_s)
             if found is not None:
-                # With a softer coupling it is the coupling that did not rest.
-                restless = places[:i] if softening == 0 else []
-                return HeldScene(held, place, *found, tuple(restless))
+                return HeldScene(held, place, *found, tuple(places[:i]))
         coupling = _soften(coupling)
     raise ValueError(
         f"the tool does not come to rest within {settle_s:g} s after the hand stops at"

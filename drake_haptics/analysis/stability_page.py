@@ -127,9 +127,11 @@ def describe_situation(stability: SceneStability) -> str:
 
 def _describe_restless(stability: SceneStability) -> str:
     """Says where the tool is pressed more and does not rest; nothing if nowhere."""
-    if not stability.restless_s:
+    # An unstable coupling rests nowhere, which is said elsewhere.
+    if not stability.restless_s or not stability.is_stable:
         return ""
-    times = " and ".join(f"{time_s:.3f} s" for time_s in stability.restless_s)
+    *others, last = (f"{time_s:.3f}" for time_s in stability.restless_s)
+    times = f"{', '.join(others)} and {last} s" if others else f"{last} s"
     return (
         f" Where it is pressed more, at {times}, the tool does not come to rest: it"
         " goes from one facet to another and back."
