@@ -11,7 +11,6 @@ and the same study runs on a Dask cluster (docs/studies.md).
 
 import sys
 from pathlib import Path
-from tempfile import gettempdir
 
 import numpy as np
 
@@ -42,5 +41,4 @@ def main(store: Path) -> None:
 
 
 if __name__ == "__main__":
-    default = Path(gettempdir()) / "peg_stability_study.jsonl"
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else default)
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "peg_stability_study.jsonl"))

@@ -147,7 +147,8 @@ class StudyStore:
         else:
             why = f"results of {name} with other values bound to it"
         raise ValueError(
-            f"store {self.path} holds {why} (line {number}): give another file"
+            f"store {self.path} holds {why} (line {number}): give another file, or"
+            " delete this one"
         )
 
     def _warn(self, damaged: list[int]) -> None:
