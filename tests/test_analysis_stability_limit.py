@@ -18,6 +18,7 @@ def growth_of_wall(stiffness):
 def test_the_limit_does_not_depend_on_where_the_search_starts(start):
     limit = find_stability_limit(growth_of_wall, start, lowest=1e-3, highest=1e9)
     assert limit.value == pytest.approx(1000.83, rel=2e-4)
+    assert limit.is_crossing
     assert (
         growth_of_wall(limit.value * 0.999) < 1.0 < growth_of_wall(limit.value * 1.001)
     )
@@ -35,6 +36,7 @@ def test_what_cannot_be_evaluated_counts_as_unstable():
 
     limit = find_stability_limit(growth, 1.0, lowest=1.0, highest=1e3)
     assert limit.value == pytest.approx(30.0, rel=2e-4)
+    assert not limit.is_crossing
 
 
 def test_few_values_are_tried():

@@ -70,6 +70,21 @@ def test_a_range_without_a_limit_says_so(held, monkeypatch):
     assert data["gain_margin"] is None and data["one_axis"] == limits.one_axis
 
 
+def test_where_nothing_can_be_told_beyond_it_says_why(held, monkeypatch):
+    true = stiffness_limits.analyse_held_scene
+
+    def analyse(held, coupling):
+        if coupling.stiffness_N_per_m > 2000.0:
+            raise ValueError("the arm does not reach that far")
+        return true(held, coupling)
+
+    monkeypatch.setattr(stiffness_limits, "analyse_held_scene", analyse)
+    found = find_stiffness_limits(held, "translation")
+    assert found.eigenvalue == pytest.approx(2000.0, rel=1e-3)
+    assert math.isnan(found.simulated)
+    assert found.limited_by.endswith("told: the arm does not reach that far")
+
+
 @pytest.mark.parametrize("kind", ["translation", "rotation"])
 def test_a_coupling_without_that_stiffness_has_no_limit(held, kind):
     coupling = replace(

@@ -24,12 +24,15 @@ class StabilityLimit:
         lowest: The range that was searched.
         highest: Its upper end.
         evaluations: How many values were tried.
+        is_crossing: Whether growth passes 1 there; False where it cannot be told
+            beyond, or there is no limit.
     """
 
     value: float
     lowest: float
     highest: float
     evaluations: int
+    is_crossing: bool
 
 
 def calc_growth(eigenvalues: np.ndarray) -> float:
@@ -79,8 +82,8 @@ def find_stability_limit(
             tried[logarithm] = math.inf if math.isnan(found) else found
         return tried[logarithm]
 
-    def answer(value: float) -> StabilityLimit:
-        return StabilityLimit(value, lowest, highest, len(tried))
+    def answer(value: float, *, is_crossing: bool = False) -> StabilityLimit:
+        return StabilityLimit(value, lowest, highest, len(tried), is_crossing)
 
     stable = unstable = math.log(start)
     if excess(stable) < 0.0:
@@ -105,4 +108,4 @@ def find_stability_limit(
     if math.isinf(excess(unstable)):
         return answer(math.exp(stable))
     root = brentq(excess, stable, unstable, xtol=relative_tolerance)
-    return answer(math.exp(root))
+    return answer(math.exp(root), is_crossing=True)

@@ -123,21 +123,27 @@ def find_stiffness_limits(
         report(1.0 - 0.9**done)
         return analyse_held_scene(held, _replace(held, stiffness_name, value))
 
+    reasons: dict[float, str] = {}
+
     def growth(value: float) -> float:
         try:
             return analyse(value).growth
-        except ValueError:
+        except ValueError as error:
+            reasons[value] = str(error)
             return math.nan
 
-    limit = find_stability_limit(
+    found = find_stability_limit(
         growth, stiffness, lowest=stiffness / _RANGE, highest=stiffness * _RANGE
-    ).value
+    )
+    limit = found.value
     simulated, words = math.nan, "nothing in the range that was searched"
-    if 0.0 < limit < math.inf:
+    if found.is_crossing:
         simulated = _find_simulated(
             lambda value: analyse(value).measure_growth(), limit
         )
         words = describe_motion(find_modes(analyse(limit).linearization)[0])
+    elif reasons:
+        words = f"beyond it nothing can be told: {reasons[min(reasons)]}"
     haptic, context = build_aimed(held)
     handle = calc_scene_handle(held.scene, haptic.loop.device, context)
     wall = _make_wall(held, kind, handle, damping)
