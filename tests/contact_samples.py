@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from press_tools import MODELS
 
 from drake_haptics import _core
+from drake_haptics.decomposition import decompose
+from drake_haptics.mesh import load_mesh
 
 IDENTITY = np.array([1.0, 0, 0, 0, 0, 0, 0])
 
@@ -60,3 +63,8 @@ def contacts_at(points: object, depths: object, tolerance: float) -> _core.Conta
     body = _core.decompose_surface(vertices, triangles, ones)
     slab = box([10, 10, 1], [0, 0, -0.5])
     return _core.SceneTracker(body, [slab], tolerance).query(IDENTITY)
+
+
+def shipped(name: str) -> _core.Decomposition:
+    """A mesh that comes along, in pieces."""
+    return decompose(load_mesh(MODELS / f"{name}.obj", scale=1.0)).core

@@ -7,11 +7,17 @@ query anew at each displaced pose.
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from autodiff_check import seeded
+from autodiff_check import (
+    REACH,
+    derivative_errors,
+    flatten,
+    flatten_gradients,
+    seeded,
+)
 from scipy.spatial.transform import Rotation
 from touching_poses import touching_pose
 
@@ -196,3 +202,42 @@ def random_states(
         if (state.contacts().distance < T).any():
             found.append(state)
     return found
+
+
+def check_every_column(
+    states: Iterable[State],
+    evaluate: Callable[[State], object],
+    differentiate: Callable[[State], object],
+    columns: Sequence[str],
+    step: float,
+    parts: Mapping[str, object] | None = None,
+) -> None:
+    """Holds derivatives of a set by all that a state has against differences.
+
+    Args:
+        states: Random ones; those whose features change within a step are left out.
+        evaluate: Returns a set of doubles.
+        differentiate: Returns the same with derivatives.
+        columns: Of the set.
+        step: Of the differences.
+        parts: Rows, by name, that are also held each for itself.
+    """
+    parts = dict(parts or {})
+    errors: dict[str, list[float]] = {key: [] for key in (*columns, *parts)}
+    for state in states:
+        if not keeps_features(state, REACH * step):
+            continue
+        found, blocks = flatten_gradients(differentiate(state), columns)
+        of_state = derivative_errors(
+            lambda x, s=state: flatten(evaluate(s.at(x)), columns),
+            found,
+            state.x,
+            step,
+            blocks | parts,
+        )
+        for key, error in of_state.items():
+            errors[key].append(error)
+    for key, of_states in errors.items():
+        assert len(of_states) >= 7, key
+        assert np.median(of_states) < 1e-8, key
+        assert max(of_states) < 1e-6, key

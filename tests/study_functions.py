@@ -1,15 +1,19 @@
-"""Functions of tasks that worker processes can import."""
+"""Functions of tasks that worker processes can import, and what tests share."""
 
 from __future__ import annotations
 
 import functools
+import hashlib
 import os
 import time
+from concurrent.futures import BrokenExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
+from drake_haptics.analysis.exact_json import to_exact_json
 from drake_haptics.analysis.study import run_study
+from drake_haptics.analysis.study_pool import SerialExecutor
 
 
 def square(x):
@@ -92,3 +96,21 @@ def empty_list(task: list) -> int:
 def sum_of_squares(n: int) -> list:
     """A study inside of a task."""
     return [os.getpid(), sum(run_study(square, range(n)))]
+
+
+def as_bits(value) -> str:
+    """Equal for equal bits; short, for the messages."""
+    return hashlib.sha256(to_exact_json(value).encode()).hexdigest()
+
+
+class BrokenPool(SerialExecutor):
+    """Breaks after some tasks."""
+
+    def __init__(self, after: int = 0):
+        self._left = after
+
+    def submit(self, fn, /, *args, **kwargs):  # noqa: D102
+        if self._left == 0:
+            raise BrokenExecutor("gone")
+        self._left -= 1
+        return super().submit(fn)

@@ -5,7 +5,8 @@ import pytest
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.primitives import LinearSystem
 
-from drake_haptics.analysis.simulated_growth import measure_growth, read_state
+from drake_haptics.analysis.sampled_map import get_state
+from drake_haptics.analysis.simulated_growth import measure_growth
 
 PERIOD_S = 1e-3
 
@@ -49,7 +50,7 @@ def test_the_context_stays_as_it_is():
     measure_growth(
         lambda start: Simulator(system, start), context, eigenvectors(system), PERIOD_S
     )
-    np.testing.assert_array_equal(read_state(context), [1.0, 2.0, -3.0])
+    np.testing.assert_array_equal(get_state(context), [1.0, 2.0, -3.0])
     assert context.get_time() == 0.0
 
 

@@ -7,10 +7,14 @@ import copy
 import numpy as np
 import pytest
 import trimesh
-from autodiff_check import REACH, derivative_errors, flatten, flatten_gradients
-from contact_samples import box
-from contact_state import METHODS, State, T, keeps_features, random_states
-from test_core_autodiff_contact import shipped
+from contact_samples import box, shipped
+from contact_state import (
+    METHODS,
+    State,
+    T,
+    check_every_column,
+    random_states,
+)
 
 from drake_haptics import _core
 
@@ -45,24 +49,8 @@ def differentiate(state: State) -> _core.AutoDiffClusterSet:
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", ["box on box", "spoon in cup"])
 def test_every_column_has_its_derivatives(pairs, name: str, method: str) -> None:
-    errors: dict[str, list[float]] = {key: [] for key in COLUMNS}
-    for state in random_states(*pairs[name], method, 12):
-        if not keeps_features(state, REACH * STEP):
-            continue
-        found, blocks = flatten_gradients(differentiate(state), COLUMNS)
-        of_state = derivative_errors(
-            lambda x, s=state: flatten(clusters(s.at(x)), COLUMNS),
-            found,
-            state.x,
-            STEP,
-            blocks,
-        )
-        for key, error in of_state.items():
-            errors[key].append(error)
-    for key, of_states in errors.items():
-        assert len(of_states) >= 7, key
-        assert np.median(of_states) < 1e-8, key
-        assert max(of_states) < 1e-6, key
+    states = random_states(*pairs[name], method, 12)
+    check_every_column(states, clusters, differentiate, COLUMNS, STEP)
 
 
 @pytest.mark.parametrize("method", METHODS)

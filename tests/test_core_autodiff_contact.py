@@ -7,28 +7,17 @@ import copy
 import numpy as np
 import pytest
 from autodiff_check import (
-    REACH,
     constant,
-    derivative_errors,
-    flatten,
-    flatten_gradients,
     seeded,
 )
-from contact_samples import box, contacts_at
-from contact_state import State, T, keeps_features, random_states
-from press_tools import MODELS
+from contact_samples import box, contacts_at, shipped
+from contact_state import State, T, check_every_column, random_states
 
 from drake_haptics import _core
 from drake_haptics._core import AutoDiffVector
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import load_mesh
 
 STEP = 5e-7
 COLUMNS = ("distance", "nhat_BA_W", "p_WCa", "p_WCb", "p_WC", "extent", "flushness")
-
-
-def shipped(name: str) -> _core.Decomposition:
-    return decompose(load_mesh(MODELS / f"{name}.obj", scale=1.0)).core
 
 
 @pytest.fixture(scope="module")
@@ -43,25 +32,13 @@ def pairs() -> dict[str, tuple[_core.Decomposition, _core.Decomposition]]:
 @pytest.mark.parametrize("name", ["box on box", "spoon in cup", "peg in torus"])
 def test_every_column_has_its_derivatives(pairs, name: str) -> None:
     """By all bodies' pose vectors, with quaternions that are not unit."""
-    errors: dict[str, list[float]] = {key: [] for key in COLUMNS}
-    for near in random_states(*pairs[name], "shared", 12):
-        state = near.at(near.x * np.tile([1.1] * 4 + [1.0] * 9, 3))
-        if not keeps_features(state, REACH * STEP):
-            continue
-        found, blocks = flatten_gradients(state.differentiate_contacts(), COLUMNS)
-        of_state = derivative_errors(
-            lambda x, s=state: flatten(s.at(x).contacts(), COLUMNS),
-            found,
-            state.x,
-            STEP,
-            blocks,
-        )
-        for key, error in of_state.items():
-            errors[key].append(error)
-    for key, of_states in errors.items():
-        assert len(of_states) >= 8, key
-        assert np.median(of_states) < 1e-8, key
-        assert max(of_states) < 1e-6, key
+    states = (
+        near.at(near.x * np.tile([1.1] * 4 + [1.0] * 9, 3))
+        for near in random_states(*pairs[name], "shared", 12)
+    )
+    check_every_column(
+        states, State.contacts, State.differentiate_contacts, COLUMNS, STEP
+    )
 
 
 def test_values_are_those_of_the_query(pairs) -> None:

@@ -11,10 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contact_samples import box
+from contact_samples import box, shipped
 from contact_state import KV, METHODS, K, State, T, random_states
 from scipy.spatial.transform import Rotation
-from test_core_autodiff_contact import shipped
 
 from drake_haptics import _core
 

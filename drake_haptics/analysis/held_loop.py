@@ -17,7 +17,7 @@ from drake_haptics.analysis.sampled_linearization import (
     linearize_sampled,
 )
 from drake_haptics.analysis.simulated_growth import measure_growth
-from drake_haptics.analysis.stability_limit import calc_growth
+from drake_haptics.analysis.stability_limit import calc_growth, drop_neutral
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.scene import Coupling, Scene
 
@@ -54,8 +54,7 @@ class HeldLoop:
         period_s = self.linearization.period_s
         A = self.linearization.A
         values, right = np.linalg.eig(A)
-        moving = np.abs(values - 1.0) > 1e-6
-        fastest = int(np.argmax(np.where(moving, np.abs(values), 0.0)))
+        fastest = int(np.argmax(np.abs(drop_neutral(values))))
         conjugates, left = np.linalg.eig(A.T)
         same = int(np.argmin(np.abs(conjugates - values[fastest])))
         return measure_growth(

@@ -14,7 +14,7 @@ from drake_haptics.analysis.period_map import PeriodMap
 
 # An eigenvalue this near to 1 moves too slowly to be told from one that stays; the
 # two of a free mass, which are exactly 1, are found to the root of round-off.
-_NEUTRAL = 1e-6
+NEUTRAL = 1e-6
 # A remembered value is gone after as many periods as it is remembered, eigenvalue 0;
 # of a chain of three, 0 is found to the third root of round-off.
 _MEMORY = 1e-3
@@ -162,7 +162,7 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
 
 
 def _tell_kind(value: complex) -> ModeKind:
-    if abs(value - 1.0) <= _NEUTRAL:
+    if abs(value - 1.0) <= NEUTRAL:
         return ModeKind.NEUTRAL
     return ModeKind.MEMORY if abs(value) <= _MEMORY else ModeKind.MOTION
 
@@ -195,7 +195,7 @@ def _split_quaternions(linear: PeriodMap) -> tuple[np.ndarray, list[np.ndarray]]
         normal = np.zeros(n)
         normal[list(places)] = linear.state[list(places)]
         normal /= np.linalg.norm(normal)
-        kept = np.abs(normal @ linear.A - normal).max() <= _NEUTRAL
+        kept = np.abs(normal @ linear.A - normal).max() <= NEUTRAL
         if kept:
             lengths.append(normal)
             # The three directions in which a unit quaternion may turn.

@@ -9,7 +9,7 @@ import numpy as np
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
-from drake_haptics.analysis.sampled_map import set_state
+from drake_haptics.analysis.sampled_map import get_state, set_state
 
 # So small that nothing but the linear part of the motion is seen, and so large that
 # round-off is not: relative to states of metres, radians and newtons.
@@ -47,7 +47,7 @@ def measure_growth(
     """
     right, left = eigenvectors
     disturbance = np.real(right / np.abs(right).max()) * _DISTURBANCE
-    start = read_state(context)
+    start = get_state(context)
     contexts = [context.Clone(), context.Clone()]
     set_state(contexts[1], start + disturbance)
     runs = [make_simulator(clone) for clone in contexts]
@@ -56,7 +56,7 @@ def measure_growth(
     for k in range(1, periods + 1):
         for run in runs:
             run.AdvanceTo(start_s + k * period_s)
-        at_rest, disturbed = (read_state(run.get_context()) for run in runs)
+        at_rest, disturbed = (get_state(run.get_context()) for run in runs)
         amplitude = abs(np.vdot(left, disturbed - at_rest))
         # Below is round-off, above what is not linear; NaN is neither.
         if not 1.0 / _FOLLOWED < amplitude / math.exp(logarithms[0]) < _FOLLOWED:
@@ -70,12 +70,3 @@ def measure_growth(
             " it grows or dies out too fast"
         )
     return math.exp(np.polyfit(np.arange(len(followed)), followed, 1)[0])
-
-
-def read_state(context: Context) -> np.ndarray:
-    """Returns the state [x_c; all discrete groups] (n,) of a context."""
-    groups = range(context.num_discrete_state_groups())
-    return np.concatenate(
-        [context.get_continuous_state_vector().CopyToVector()]
-        + [context.get_discrete_state(i).CopyToVector() for i in groups]
-    )

@@ -9,9 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-# Eigenvalues so near to 1 belong to what has no place of its own: the adhesion
-# points of friction, a balance of energy, the sign of a quaternion.
-_NEUTRAL = 1e-6
+from drake_haptics.analysis.modes import NEUTRAL
 
 
 @dataclass(frozen=True)
@@ -41,8 +39,16 @@ def calc_growth(eigenvalues: np.ndarray) -> float:
     Args:
         eigenvalues: (n,) of one period. Those at 1, to 1e-6, are neutral and left out.
     """
-    moving = eigenvalues[np.abs(eigenvalues - 1.0) > _NEUTRAL]
-    return float(np.abs(moving).max(initial=0.0))
+    return float(np.abs(drop_neutral(eigenvalues)).max(initial=0.0))
+
+
+def drop_neutral(eigenvalues: np.ndarray) -> np.ndarray:
+    """Returns eigenvalues (n,) with 0 in the place of those at 1, to 1e-6.
+
+    They belong to what has no place of its own: the adhesion points of friction, a
+    balance of energy, the sign of a quaternion.
+    """
+    return np.where(np.abs(eigenvalues - 1.0) > NEUTRAL, eigenvalues, 0.0)
 
 
 def find_stability_limit(

@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drake_haptics.passivity_bounds import calc_stable_stiffness
+from drake_haptics.passivity_bounds import (
+    calc_passive_stiffness,
+    calc_stable_stiffness,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,13 +52,11 @@ class HeldBounds:
     def calc_passive_stiffness(self, damping: float) -> float:
         """Returns the stiffness K up to which K and B are passive.
 
-        b > K T/2 + |B| (Colgate and Schenkel 1997). A delay of d whole periods makes
-        it b > K (T/2 + t_d) + |B|, which is enough, and for B = 0 exact: K then has
-        the factor T sin((d + ½) ωT)/(2 sin(ωT/2)), at most T (d + ½), and B one on the
-        unit circle. Zero where no spring is passive.
+        See `passivity_bounds.calc_passive_stiffness`.
         """
-        left = self.held_damping - abs(damping)
-        return max(0.0, left / (self.period_s / 2.0 + self.delay_s))
+        return calc_passive_stiffness(
+            self.held_damping, damping, self.period_s, self.delay_s
+        )
 
     def calc_stable_stiffness(self, damping: float) -> float:
         """Returns the stiffness K below which K and B are stable (Gil et al. 2004).

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import click
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table as RichTable
 
 from drake_haptics.bench.benchmark import (
@@ -18,6 +17,7 @@ from drake_haptics.bench.benchmark import (
 )
 from drake_haptics.bench.report import machine_line, make_tables, missing_lines
 from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.cli.progress_bar import progress_bar
 
 
 @click.command()
@@ -39,28 +39,13 @@ def bench(
     Python) and scenes; all if none is named. Some minutes. The others are measured
     where they are installed: pip install "drake_haptics[peers]".
     """
-    figures = _with_progress(parts or PARTS, QUICK if quick else Effort(), meshes)
+    effort = QUICK if quick else Effort()
+    with progress_bar() as show:
+        figures = run_benchmarks(parts or PARTS, effort, meshes, show)
     if json_file is not None:
         write_json(figures.to_dict(), json_file)
     if json_file != "-":
         _print(figures)
-
-
-def _with_progress(
-    parts: tuple[str, ...], effort: Effort, meshes: Path | None
-) -> BenchFigures:
-    console = Console(stderr=True)
-    columns = (BarColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
-        task = bar.add_task("", total=1.0)
-
-        def show(what: str, share: float) -> None:
-            bar.update(task, description=what, completed=share)
-            bar.refresh()
-
-        return run_benchmarks(parts, effort, meshes, show)
 
 
 def _print(figures: BenchFigures) -> None:

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import click
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
@@ -20,8 +19,9 @@ from drake_haptics.analysis.stability_page import (
 from drake_haptics.analysis.stiffness_limits import format_limit
 from drake_haptics.analysis.study import StudyError
 from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
-from drake_haptics.scene import Scene, load_scene
+from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import RunError
 
@@ -78,7 +78,10 @@ def stability(
         raise UserError(f"--out: there is no folder {path.parent}")
     try:
         check_page_path(path)
-        result = _with_progress(chosen, time_s, map_size, store)
+        with progress_bar() as show:
+            result = analyse_scene(
+                chosen, time_s, map_size=map_size, store=store, progress=show
+            )
     except (ValueError, RunError, StudyError) as error:
         raise UserError(str(error)) from error
     except KeyboardInterrupt as stop:
@@ -89,24 +92,6 @@ def stability(
         write_json(result.to_dict(), json_file)
     if json_file != "-":
         _print(result, path)
-
-
-def _with_progress(
-    scene: Scene, time_s: float | None, map_size: int, store: Path | None
-) -> SceneStability:
-    console = Console(stderr=True)
-    columns = (BarColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
-        task = bar.add_task("", total=1.0)
-
-        def show(what: str, share: float) -> None:
-            bar.update(task, description=what, completed=share)
-
-        return analyse_scene(
-            scene, time_s, map_size=map_size, store=store, progress=show
-        )
 
 
 def _print(result: SceneStability, path: Path) -> None:
