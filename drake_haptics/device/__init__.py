@@ -1,0 +1,1 @@
+"""Devices behind one interface: network, replay, page, mouse, adapters."""

@@ -1,0 +1,150 @@
+"""What every haptic device offers, and what crosses between it and the loop.
+
+All poses, velocities and wrenches here are those of the device's handle H in the frame
+B of the device's base: a device knows nothing of the world it is put into.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+
+class GateState(IntEnum):
+    """Whether a device shows force. The numbers are those on the wire."""
+
+    IDLE = 0
+    """No force; waits to be enabled."""
+    ACTIVE = 1
+    """Shows what is asked, within its limits."""
+    FAULT = 2
+    """No force until it has been disabled."""
+
+
+class Fault(IntEnum):
+    """Why a device is in `GateState.FAULT`. The numbers are those on the wire."""
+
+    NONE = 0
+    STALE = 1
+    """Commands stopped for longer than their time to live."""
+    NOT_FINITE = 2
+    """A command or the handle's own state was NaN or infinite."""
+    OVERSPEED = 3
+    """The handle was faster than the device allows."""
+    CLOCK = 4
+    """The device's clock went backwards."""
+    DEVICE = 5
+    """The driver found its hardware at fault."""
+
+
+@dataclass(frozen=True, eq=False)
+class DeviceReading:
+    """What a device last told of itself.
+
+    Attributes:
+        sequence: Rises with every new sample; the same again means that nothing new
+            has come.
+        time_s: When it was sampled, by the device's own clock, s.
+        X_BH: (7,) the handle's pose [qw qx qy qz x y z], unit quaternion, m.
+        V_BH: (6,) its spatial velocity [ω; v], rad/s and m/s.
+        F_BH: (6,) the wrench [τ; f] at Ho that the device then showed, N·m and N.
+        buttons: Bit i is set while button i is held.
+        gate: Whether the device shows force.
+        fault: Why not, where it is at fault.
+    """
+
+    sequence: int
+    time_s: float
+    X_BH: np.ndarray
+    V_BH: np.ndarray
+    F_BH: np.ndarray
+    buttons: int = 0
+    gate: GateState = GateState.ACTIVE
+    fault: Fault = Fault.NONE
+
+
+@dataclass(frozen=True, eq=False)
+class DeviceCommand:
+    """The wrench to show, and how it changes as the handle moves on.
+
+    Near the handle's pose X₀ and velocity V₀ for which F was computed,
+
+        F(X, V) = F − K δ(X, X₀) − B (V − V₀),
+
+    with δ = [rotation vector; translation] from X₀ to X in B. A device that cannot
+    use the slopes shows F.
+
+    Attributes:
+        F_BH: (6,) wrench [τ; f] on the handle at Ho, N·m and N.
+        X_BH: (7,) pose X₀ [qw qx qy qz x y z], m.
+        V_BH: (6,) spatial velocity V₀ [ω; v], rad/s and m/s.
+        K_B: (6, 6) stiffness, N·m/rad, N·m/m, N/rad and N/m; None where not known.
+        B_B: (6, 6) damping, N·m·s/rad, ..., N·s/m; None where not known.
+    """
+
+    F_BH: np.ndarray
+    X_BH: np.ndarray
+    V_BH: np.ndarray
+    K_B: np.ndarray | None = None
+    B_B: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class LinkStatus:
+    """How the way to a device does, counted since it was opened.
+
+    Attributes:
+        received: Samples that came.
+        lost: Samples that never came, by the gaps in their numbers.
+        rejected: What came and was refused: damaged, old, foreign.
+        lateness_s: p50, p99 and p99.9 of how late the backend's own thread acted
+            after its deadline, s; None where it has none.
+    """
+
+    received: int = 0
+    lost: int = 0
+    rejected: int = 0
+    lateness_s: tuple[float, float, float] | None = None
+
+
+class DeviceError(RuntimeError):
+    """A device that cannot be opened, or has gone; says what to do."""
+
+
+class DeviceBackend(ABC):
+    """A device, whatever is behind it. No call ever waits for the device.
+
+    A backend is open from construction on. It shows no force before the first
+    `write` and none after `close`. Use it as a context manager, so that it is closed
+    whatever happens.
+    """
+
+    @abstractmethod
+    def read(self) -> DeviceReading | None:
+        """Returns the newest reading; None before the first has come."""
+
+    @abstractmethod
+    def write(self, command: DeviceCommand) -> None:
+        """Asks for a wrench from now on; the first call also enables the device."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Ends at zero force and gives the device up; may be called again."""
+
+    def recover(self) -> None:  # noqa: B027 - most devices have nothing to leave
+        """Takes a device at fault up again: disabled, then enabled by `write`."""
+
+    def get_link_status(self) -> LinkStatus:
+        """Returns how the way to the device does."""
+        return LinkStatus()
+
+    def __enter__(self) -> DeviceBackend:
+        """Returns the backend."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Closes the backend."""
+        self.close()
