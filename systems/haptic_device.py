@@ -21,6 +21,7 @@ class HapticDevice(Diagram):
         name: HapticDevice
         input_ports:
         - F_display
+        - handle_slopes (if the backend has it)
         output_ports:
         - X_WH
         - V_WH
@@ -29,12 +30,14 @@ class HapticDevice(Diagram):
 
     * `F_display` (6) is the wrench [τ; f] to show at the handle's origin, in the
       world, N·m and N.
+    * `handle_slopes` (72) is that of `DeviceIo`.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
     * `F_applied` and `status` are those of the `DisplayForceHold` before the device.
 
     A backend is a system with the input `F_applied` and the outputs `X_WH` and
-    `V_WH`, neither of which depends directly on the input.
+    `V_WH`, neither of which depends directly on the input: a `SimulatedArm`, or a
+    `DeviceIo` for any other device.
     """
 
     def __init__(
@@ -69,6 +72,9 @@ class HapticDevice(Diagram):
             hold.get_applied_wrench_output_port(), backend.GetInputPort("F_applied")
         )
         builder.ExportInput(hold.get_display_wrench_input_port(), "F_display")
+        self._wants_slopes = backend.HasInputPort("handle_slopes")
+        if self._wants_slopes:
+            builder.ExportInput(backend.GetInputPort("handle_slopes"), "handle_slopes")
         builder.ExportOutput(backend.GetOutputPort("X_WH"), "X_WH")
         builder.ExportOutput(backend.GetOutputPort("V_WH"), "V_WH")
         builder.ExportOutput(hold.get_applied_wrench_output_port(), "F_applied")
@@ -85,9 +91,18 @@ class HapticDevice(Diagram):
         """Largest torque shown, N·m."""
         return self._max_torque_Nm
 
+    @property
+    def wants_slopes(self) -> bool:
+        """Whether there is a backend that can use `handle_slopes`."""
+        return self._wants_slopes
+
     def get_display_wrench_input_port(self) -> InputPort:
         """Returns the input `F_display`."""
         return self.GetInputPort("F_display")
+
+    def get_handle_slopes_input_port(self) -> InputPort:
+        """Returns the input `handle_slopes`; there must be one."""
+        return self.GetInputPort("handle_slopes")
 
     def get_handle_pose_output_port(self) -> OutputPort:
         """Returns the output `X_WH`."""

@@ -65,6 +65,10 @@ class DeviceReading:
     gate: GateState = GateState.ACTIVE
     fault: Fault = Fault.NONE
 
+    def __deepcopy__(self, memo: dict[int, object]) -> DeviceReading:
+        """Returns itself: a reading never changes, so that Drake copies it for free."""
+        return self
+
 
 @dataclass(frozen=True, eq=False)
 class DeviceCommand:

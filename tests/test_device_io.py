@@ -1,0 +1,139 @@
+"""The exchange with a device: which value, in which frame, at which instant."""
+
+import numpy as np
+import pytest
+from fake_device import ScriptedDevice, make_reading
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+from pydrake.multibody.math import SpatialForce
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder, LeafSystem
+from pydrake.systems.primitives import ConstantVectorSource
+
+from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.systems.device_io import DeviceIo
+from drake_haptics.systems.haptic_device import HapticDevice
+
+PERIOD = 1e-3
+X_WB = RigidTransform(RollPitchYaw(0.3, -0.8, 2.0), [0.4, -0.2, 0.1])
+
+
+class Spring(LeafSystem):
+    """Draws the handle to the world's origin: f = -K p, with no state of its own."""
+
+    def __init__(self, stiffness):
+        super().__init__()
+        self._stiffness = stiffness
+        self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
+        self.DeclareVectorOutputPort("F_display", 6, self._calc)
+
+    def _calc(self, context, output):
+        force = -self._stiffness * self._X_WH.Eval(context)[4:]
+        output.SetFromVector([0, 0, 0, *force])
+
+
+def make_diagram(backend, *, X_WB=X_WB, source=None, slopes=None, first=None):
+    """Returns a diagram of a HapticDevice before a backend, and the device."""
+    io = DeviceIo(backend, X_WB, PERIOD, first or make_reading(0))
+    device = HapticDevice(io, period_s=PERIOD, max_force_N=50.0, max_torque_Nm=5.0)
+    builder = DiagramBuilder()
+    builder.AddNamedSystem("device", device)
+    source = builder.AddSystem(source or ConstantVectorSource(np.zeros(6)))
+    builder.Connect(source.get_output_port(), device.get_display_wrench_input_port())
+    if source.num_input_ports():
+        builder.Connect(device.get_handle_pose_output_port(), source.get_input_port(0))
+    if slopes is not None:
+        held = builder.AddSystem(ConstantVectorSource(slopes))
+        builder.Connect(held.get_output_port(), device.get_handle_slopes_input_port())
+    return builder.Build(), device
+
+
+def test_the_handle_is_shown_in_the_world():
+    turned = RollPitchYaw(1.0, 0.2, -0.5).ToQuaternion().wxyz()
+    reading = make_reading(
+        position=(0.1, 0.2, 0.3), velocity=(1.0, -2.0, 0.5), wxyz=turned
+    )
+    reading.V_BH[:3] = [3.0, 1.0, -1.0]
+    diagram, device = make_diagram(ScriptedDevice(lambda _: reading))
+    simulator = Simulator(diagram)
+    simulator.AdvanceTo(PERIOD / 2)
+    context = device.GetMyContextFromRoot(simulator.get_context())
+    X_WH = vector_to_pose(device.get_handle_pose_output_port().Eval(context))
+    assert X_WH.IsNearlyEqualTo(X_WB @ vector_to_pose(reading.X_BH), 1e-14)
+    V_WH = device.get_handle_velocity_output_port().Eval(context)
+    R_WB = X_WB.rotation().matrix()
+    np.testing.assert_allclose(V_WH[:3], R_WB @ [3.0, 1.0, -1.0], atol=1e-14)
+    np.testing.assert_allclose(V_WH[3:], R_WB @ [1.0, -2.0, 0.5], atol=1e-14)
+
+
+def test_the_wrench_is_written_in_the_base_frame():
+    F_W = np.array([0.1, 0.2, -0.3, 4.0, -5.0, 6.0])
+    backend = ScriptedDevice()
+    diagram, _ = make_diagram(backend, source=ConstantVectorSource(F_W))
+    Simulator(diagram).AdvanceTo(2 * PERIOD)
+    R_BW = X_WB.rotation().inverse()
+    F_B = SpatialForce(F_W).Rotate(R_BW).get_coeffs()
+    np.testing.assert_allclose(backend.commands[-1].F_BH, F_B, atol=1e-14)
+
+
+def test_a_tick_answers_the_handle_that_it_read():
+    """Truth: f = -K p of the very reading; a tick later would be the next position."""
+    stiffness = 100.0
+    backend = ScriptedDevice(lambda k: make_reading(k, position=(1e-3 * k, 0, 0)))
+    diagram, _ = make_diagram(backend, X_WB=RigidTransform(), source=Spring(stiffness))
+    simulator = Simulator(diagram)
+    simulator.Initialize()
+    assert [c.F_BH[3] for c in backend.commands] == [0.0], "enabled with no force"
+    simulator.AdvanceTo(5 * PERIOD)
+    # The update of tick k reads position k; its wrench is out before tick k + 1 reads.
+    assert backend.reads == 5
+    forces = [command.F_BH[3] for command in backend.commands[1:]]
+    np.testing.assert_allclose(forces, [-stiffness * 1e-3 * k for k in range(1, 6)])
+    for command in backend.commands[1:]:
+        assert command.F_BH[3] == pytest.approx(-stiffness * command.X_BH[4])
+
+
+def test_slopes_are_turned_into_the_base_frame():
+    """Truth: a small motion of the handle changes the same wrench in either frame."""
+    rng = np.random.default_rng(5)
+    K_W, B_W = rng.normal(size=(2, 6, 6))
+    backend = ScriptedDevice()
+    diagram, _ = make_diagram(
+        backend, slopes=np.concatenate([K_W.ravel(), B_W.ravel()])
+    )
+    Simulator(diagram).AdvanceTo(PERIOD)
+    R: RotationMatrix = X_WB.rotation()
+    for in_base, in_world in [
+        (backend.commands[-1].K_B, K_W),
+        (backend.commands[-1].B_B, B_W),
+    ]:
+        motion_B = rng.normal(size=6)
+        motion_W = np.concatenate([R @ motion_B[:3], R @ motion_B[3:]])
+        F_W = in_world @ motion_W
+        F_B = np.concatenate([R.inverse() @ F_W[:3], R.inverse() @ F_W[3:]])
+        np.testing.assert_allclose(in_base @ motion_B, F_B, atol=1e-13)
+
+
+def test_without_slopes_none_are_written():
+    backend = ScriptedDevice()
+    diagram, _ = make_diagram(backend)
+    Simulator(diagram).AdvanceTo(PERIOD)
+    assert backend.commands[-1].K_B is None
+    assert backend.commands[-1].B_B is None
+
+
+def test_a_device_with_nothing_new_stays_where_it_was():
+    first = make_reading(7, position=(0.01, 0.02, 0.03))
+    diagram, device = make_diagram(ScriptedDevice(lambda _: None), first=first)
+    simulator = Simulator(diagram)
+    simulator.AdvanceTo(3 * PERIOD)
+    context = device.GetMyContextFromRoot(simulator.get_context())
+    np.testing.assert_allclose(
+        device.get_handle_pose_output_port().Eval(context),
+        pose_to_vector(X_WB @ vector_to_pose(first.X_BH)),
+        atol=1e-14,
+    )
+
+
+def test_the_period_must_be_positive():
+    with pytest.raises(ValueError, match="period_s must be positive, is 0"):
+        DeviceIo(ScriptedDevice(), X_WB, 0.0, make_reading())
