@@ -8,6 +8,7 @@ import numpy as np
 
 from drake_haptics.energy_ledger import EnergyLedger
 from drake_haptics.systems.display_force_hold import LIMITED, NOT_FINITE
+from drake_haptics.tick_clock import TickClock
 
 # Distributions are those of the latest ticks, so that a demo left running
 # does not fill the memory; largest values and counts are of all ticks.
@@ -20,13 +21,20 @@ _BLOCK = 1 << 8
 class RunStatistics:
     """Times, contacts, loads and energies of a run."""
 
-    def __init__(self, period_s: float, ledger: EnergyLedger | None = None):
+    def __init__(
+        self,
+        period_s: float,
+        ledger: EnergyLedger | None = None,
+        clock: TickClock | None = None,
+    ):
         """Starts with no tick.
 
         Args:
             period_s: Simulated time of a tick, s.
             ledger: Where the run books its energy.
+            clock: What paces the run, if it is paced.
         """
+        self._clock = clock
         self._ledger = ledger
         self._period_s = period_s
         self._pending: list[tuple[float, ...]] = []
@@ -37,6 +45,11 @@ class RunStatistics:
         self._max_penetration_m = 0.0
         self._limit_hits = 0
         self._non_finite_events = 0
+
+    @property
+    def clock(self) -> TickClock | None:
+        """What paces the run, if it is paced."""
+        return self._clock
 
     @property
     def ticks(self) -> int:
@@ -93,7 +106,9 @@ class RunStatistics:
         (each with `median`, `p99`, `p99_9`, `max`), `contacts` and `clusters` (each
         with `median`, `max`), `max_force_N`, `max_torque_Nm`, `max_penetration_m`,
         `limit_hits` and `non_finite_events` (numbers of ticks), `energy_J` (by the
-        name of the part, as `EnergyLedger.to_dict` tells; empty without a ledger).
+        name of the part, as `EnergyLedger.to_dict` tells; empty without a ledger),
+        `lateness_us` (of a paced run, `p50`, `p99`, `p99_9` and `skipped`, the number
+        of ticks lost to stalls; else empty).
         """
         self._digest()
         tick_s, query_s, contacts, clusters = self._records[: self._ticks].T
@@ -110,11 +125,17 @@ class RunStatistics:
             "limit_hits": self._limit_hits,
             "non_finite_events": self._non_finite_events,
             "energy_J": self._ledger.to_dict() if self._ledger is not None else {},
+            "lateness_us": _describe_lateness(self._clock) if self._clock else {},
         }
 
 
 def _largest_norm(vectors: np.ndarray) -> float:
     return float(np.linalg.norm(vectors, axis=1).max())
+
+
+def _describe_lateness(clock: TickClock) -> dict[str, float]:
+    p50, p99, p99_9 = (1e6 * late_s for late_s in clock.calc_lateness())
+    return {"p50": p50, "p99": p99, "p99_9": p99_9, "skipped": clock.skipped}
 
 
 def _describe_times(seconds: np.ndarray) -> dict[str, float]:

@@ -13,6 +13,7 @@ from pydrake.systems.framework import Context, EventStatus
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.energy_ledger import EnergyLedger
 from drake_haptics.run_statistics import RunStatistics
+from drake_haptics.tick_clock import TickClock
 
 
 class RunError(RuntimeError):
@@ -71,9 +72,9 @@ def run(
     """
     simulator = make_simulator(haptic)
     ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
-    statistics = RunStatistics(haptic.period_s, ledger)
+    clock = TickClock(haptic.period_s) if realtime else None
+    statistics = RunStatistics(haptic.period_s, ledger, clock)
     measure = _make_measure(haptic, simulator.get_context(), statistics, ledger)
-    pace_s = haptic.period_s if realtime else 0.0
     # Collecting garbage over all of pydrake's objects takes many ticks; frozen, they
     # are left alone.
     gc.collect()
@@ -82,7 +83,7 @@ def run(
         simulator.Initialize()
         if ledger is not None:
             ledger.add()
-        simulator.set_monitor(_make_monitor(measure, on_tick, pace_s))
+        simulator.set_monitor(_make_monitor(measure, on_tick, clock))
         simulator.AdvanceTo(math.inf if duration_s is None else duration_s)
     except KeyboardInterrupt:
         pass
@@ -97,23 +98,21 @@ def run(
 def _make_monitor(
     measure: Callable[[Context, float], None],
     on_tick: Callable[[Context], None] | None,
-    pace_s: float,
+    clock: TickClock | None,
 ) -> Callable[[Context], EventStatus]:
     """Returns what the simulator calls after each tick."""
     start_s = time.perf_counter()
-    due_s = start_s
 
     def monitor(context: Context) -> EventStatus:
-        nonlocal start_s, due_s
+        nonlocal start_s
         now_s = time.perf_counter()
         measure(context, now_s - start_s)
         start_s = now_s
         if on_tick is not None:
             on_tick(context)
-        if pace_s > 0.0:
+        if clock is not None:
             now_s = time.perf_counter()
-            due_s = max(due_s + pace_s, now_s)
-            time.sleep(due_s - now_s)
+            clock.wait()
             # Waiting belongs to no tick.
             start_s += time.perf_counter() - now_s
         return EventStatus.Succeeded()
