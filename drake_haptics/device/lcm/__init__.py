@@ -1,0 +1,1 @@
+"""The device port's LCM messages, and a device behind them."""
