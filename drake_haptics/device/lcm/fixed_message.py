@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass, field, fields
-from functools import cache
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 _STRUCT_CODES = {
     "int8_t": "b",
@@ -41,8 +40,28 @@ def member(lcm_type: str, length: int | None = None) -> Any:
     )
 
 
+@dataclass(frozen=True)
+class Layout:
+    """How a message's members lie in its bytes.
+
+    Attributes:
+        members: Name and length of each.
+        packer: Of the fingerprint and all numbers.
+        fingerprint: Tells one type from another.
+    """
+
+    members: tuple[tuple[str, int | None], ...]
+    packer: struct.Struct
+    fingerprint: int
+
+
 class FixedMessage:
-    """Base of a frozen dataclass whose fields are `member`s in the file's order."""
+    """Base of a frozen dataclass whose fields are `member`s in the file's order.
+
+    It gets its layout by the decorator `lay_out`, above that of the dataclass.
+    """
+
+    layout: ClassVar[Layout]
 
     def encode(self) -> bytes:
         """Returns the message as LCM sends it: fingerprint, then big-endian members.
@@ -50,7 +69,7 @@ class FixedMessage:
         Raises:
             struct.error: A number does not fit its type or an array its length.
         """
-        layout = _get_layout(type(self))
+        layout = self.layout
         values: list[Any] = []
         for name, length in layout.members:
             value = getattr(self, name)
@@ -64,7 +83,7 @@ class FixedMessage:
         Raises:
             ValueError: They are not of this type.
         """
-        layout = _get_layout(cls)
+        layout = cls.layout
         if len(data) != layout.packer.size:
             raise ValueError(
                 f"{cls.__name__}: {len(data)} bytes, must be {layout.packer.size}"
@@ -86,31 +105,15 @@ class FixedMessage:
         return self
 
 
-@dataclass(frozen=True)
-class _Layout:
-    """How a message's members lie in its bytes.
-
-    Attributes:
-        members: Name and length of each.
-        packer: Of the fingerprint and all numbers.
-        fingerprint: Tells one type from another.
-    """
-
-    members: tuple[tuple[str, int | None], ...]
-    packer: struct.Struct
-    fingerprint: int
-
-
-@cache
-def _get_layout(cls: type) -> _Layout:
-    """Returns the layout of a message type.
+def lay_out(cls: type[_Message]) -> type[_Message]:
+    """Gives a message type its layout.
 
     The fingerprint is that of LCM's type specification: a hash over names, types and
     dimensions of the members in their order (`lcm_struct_hash` of lcm-gen), rotated
     left by one bit.
     """
     members, codes, value = [], ">Q", _FINGERPRINT_SEED
-    for item in fields(cls):
+    for item in fields(cls):  # type: ignore[arg-type]
         lcm_type, length = item.metadata["lcm_type"], item.metadata["length"]
         members.append((item.name, length))
         codes += f"{length or ''}{_STRUCT_CODES[lcm_type]}"
@@ -119,7 +122,8 @@ def _get_layout(cls: type) -> _Layout:
         if length is not None:
             value = _hash_text(_hash_byte(value, _CONSTANT_LENGTH), str(length))
     rotated = (value << 1 | value >> 63) & _UINT64
-    return _Layout(tuple(members), struct.Struct(codes), rotated)
+    cls.layout = Layout(tuple(members), struct.Struct(codes), rotated)
+    return cls
 
 
 def _hash_byte(value: int, byte: int) -> int:

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from drake_haptics.device.lcm.fixed_message import FixedMessage, member
+from drake_haptics.device.lcm.fixed_message import FixedMessage, lay_out, member
 
 
+@lay_out
 @dataclass(frozen=True)
 class lcmt_haptic_status(FixedMessage):
     """What a haptic device tells, once per tick; all in the frame B of its base.
@@ -47,6 +48,7 @@ class lcmt_haptic_status(FixedMessage):
     fault: int = member("int8_t")
 
 
+@lay_out
 @dataclass(frozen=True)
 class lcmt_haptic_command(FixedMessage):
     """What a haptic device is asked for.
