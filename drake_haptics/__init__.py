@@ -31,6 +31,13 @@ if TYPE_CHECKING:
         HapticDiagram,
     )
     from drake_haptics.decomposition import Decomposition, decompose
+    from drake_haptics.device.backend import (
+        DeviceBackend,
+        DeviceCommand,
+        DeviceError,
+        DeviceReading,
+    )
+    from drake_haptics.device_address import open_device
     from drake_haptics.energy_ledger import EnergyLedger
     from drake_haptics.errors import UserError
     from drake_haptics.haptic_loop import ConnectMovingObject, HapticLoop
@@ -40,6 +47,7 @@ if TYPE_CHECKING:
     from drake_haptics.scene import Scene, load_scene
     from drake_haptics.scene_library import find_scene, list_scenes
     from drake_haptics.simulation import RunError, make_simulator, run
+    from drake_haptics.tick_clock import TickClock
 
 __all__ = [
     "AddAppliedSpatialForce",
@@ -55,6 +63,10 @@ __all__ = [
     "ConvexPair",
     "ConvexPolytope",
     "Decomposition",
+    "DeviceBackend",
+    "DeviceCommand",
+    "DeviceError",
+    "DeviceReading",
     "EnergyLedger",
     "Feature",
     "FeatureKind",
@@ -66,6 +78,7 @@ __all__ = [
     "RunError",
     "Scene",
     "SceneTracker",
+    "TickClock",
     "UserError",
     "decompose",
     "find_scene",
@@ -73,6 +86,7 @@ __all__ = [
     "load_mesh",
     "load_scene",
     "make_simulator",
+    "open_device",
     "run",
 ]
 
@@ -90,6 +104,10 @@ _MODULE_OF = {
     "ConvexPair": "_core",
     "ConvexPolytope": "_core",
     "Decomposition": "decomposition",
+    "DeviceBackend": "device.backend",
+    "DeviceCommand": "device.backend",
+    "DeviceError": "device.backend",
+    "DeviceReading": "device.backend",
     "EnergyLedger": "energy_ledger",
     "Feature": "_core",
     "FeatureKind": "_core",
@@ -101,6 +119,7 @@ _MODULE_OF = {
     "RunError": "simulation",
     "Scene": "scene",
     "SceneTracker": "_core",
+    "TickClock": "tick_clock",
     "UserError": "errors",
     "decompose": "decomposition",
     "find_scene": "scene_library",
@@ -108,6 +127,7 @@ _MODULE_OF = {
     "load_mesh": "mesh",
     "load_scene": "scene",
     "make_simulator": "simulation",
+    "open_device": "device_address",
     "run": "simulation",
 }
 

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
@@ -16,6 +16,9 @@ from drake_haptics import _core
 from drake_haptics.builder_effects import EffectSite, add_effects, find_springs
 from drake_haptics.contact_systems import add_contact_systems
 from drake_haptics.decomposition import Decomposition, Method, decompose
+from drake_haptics.device.backend import DeviceBackend
+from drake_haptics.device_preset import load_device_preset
+from drake_haptics.device_site import make_haptic_device, wait_for_reading
 from drake_haptics.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.held_handle import check_scene_coupling
 from drake_haptics.mass_properties import calc_mass_properties
@@ -38,6 +41,9 @@ from drake_haptics.systems.haptic_tool import HapticTool
 from drake_haptics.systems.haptic_visualizer import HapticVisualizer
 from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
+if TYPE_CHECKING:
+    from drake_haptics.tick_log.tick_recorder import TickRecorder
+
 # Effects that push the tool, each through the input of its name.
 _FORCES = ("friction", "braking", "gravity")
 
@@ -54,6 +60,7 @@ class HapticDiagram:
         tool: The tool's mesh and convex pieces.
         environment: The same for each object of the scene, in its order.
         visualizer: Draws it; None without a Meshcat.
+        backend: The device behind the port; None where it is simulated.
     """
 
     diagram: Diagram
@@ -63,6 +70,7 @@ class HapticDiagram:
     tool: Decomposition
     environment: tuple[Decomposition, ...]
     visualizer: HapticVisualizer | None
+    backend: DeviceBackend | None = None
 
 
 def AddHapticLoop(
@@ -202,6 +210,8 @@ def _find_sources(base: BaseSystems) -> dict[str, OutputPort]:
 def BuildHapticDiagram(
     scene: Scene,
     *,
+    device: DeviceBackend | HapticDevice | None = None,
+    recorder: TickRecorder | None = None,
     meshcat: Meshcat | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> HapticDiagram:
@@ -209,6 +219,10 @@ def BuildHapticDiagram(
 
     Args:
         scene: What to build.
+        device: What is held: a backend, open, that remains the caller's to close, or
+            a port of one's own. If not given, the scene's hand holds a simulated one.
+        recorder: Notes every tick, by a `TickLogSink` that is otherwise not in the
+            diagram; remains the caller's to close.
         meshcat: Draws the scene there, by a `HapticVisualizer` that is otherwise
             not in the diagram.
         progress: Called during the decomposition with the name of the object and
@@ -223,13 +237,23 @@ def BuildHapticDiagram(
     Raises:
         SceneError: A value is impossible or the hand's path cannot be reached.
         MeshError: A mesh cannot be treated.
+        DeviceError: The device says nothing.
     """
     # First what is quick to fail.
     period_s = 1.0 / scene.device.rate_hz
     path = make_hand_path(scene.hand.path)
-    device = make_simulated_device(scene, path)
-    for sentence in check_scene_coupling(scene, device):
-        warnings.warn(f"coupling.{sentence}", SceneWarning, stacklevel=2)
+    X_HT = scene.tool.grasp.to_rigid_transform()
+    X_WT = path.start
+    backend = device if isinstance(device, DeviceBackend) else None
+    if isinstance(device, HapticDevice):
+        port = device
+    elif device is None or load_device_preset(scene.device.preset).model:
+        # A real device is held to what is known of its kind.
+        port = make_simulated_device(scene, path)
+        for sentence in check_scene_coupling(scene, port):
+            warnings.warn(f"coupling.{sentence}", SceneWarning, stacklevel=2)
+    if backend is not None:
+        wait_for_reading(backend)
     tool = _decompose("tool", scene.tool, progress)
     environment = tuple(
         _decompose(item.name, item, progress) for item in scene.environment
@@ -239,22 +263,29 @@ def BuildHapticDiagram(
         for item, part in zip(scene.environment, environment, strict=True)
     ]
     p_TTcm, I_TTcm_T = calc_mass_properties(tool.mesh, scene.tool.mass_kg)
-    X_HT = scene.tool.grasp.to_rigid_transform()
+    if backend is not None:
+        # Only now: while meshes are cut, a hand moves on.
+        port, X_WH = make_haptic_device(scene, backend)
+        X_WT = X_WH @ X_HT
     builder = DiagramBuilder()
     loop = AddHapticLoop(
         builder,
-        device=device,
+        device=port,
         tool=tool.core,
         tool_dynamics=_core.RigidToolDynamics(scene.tool.mass_kg, p_TTcm, I_TTcm_T),
         objects=objects,
         contact=scene.contact,
         coupling=scene.coupling,
         X_HT=X_HT,
-        X_WT=path.start,
+        X_WT=X_WT,
         period_s=period_s,
         effects=scene.effects,
         materials=[item.material for item in scene.environment],
     )
+    if recorder is not None:
+        from drake_haptics.tick_log.loop_log import AddTickLog
+
+        AddTickLog(builder, loop, recorder, period_s)
     visualizer = None
     if meshcat is not None:
         visualizer = builder.AddNamedSystem(
@@ -277,6 +308,7 @@ def BuildHapticDiagram(
         tool=tool,
         environment=environment,
         visualizer=visualizer,
+        backend=backend,
     )
 
 

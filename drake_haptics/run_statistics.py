@@ -25,16 +25,16 @@ class RunStatistics:
         self,
         period_s: float,
         ledger: EnergyLedger | None = None,
-        clock: TickClock | None = None,
+        pace: TickClock | None = None,
     ):
         """Starts with no tick.
 
         Args:
             period_s: Simulated time of a tick, s.
             ledger: Where the run books its energy.
-            clock: What paces the run, if it is paced.
+            pace: What paces the run, if it is paced.
         """
-        self._clock = clock
+        self._pace = pace
         self._ledger = ledger
         self._period_s = period_s
         self._pending: list[tuple[float, ...]] = []
@@ -45,11 +45,6 @@ class RunStatistics:
         self._max_penetration_m = 0.0
         self._limit_hits = 0
         self._non_finite_events = 0
-
-    @property
-    def clock(self) -> TickClock | None:
-        """What paces the run, if it is paced."""
-        return self._clock
 
     @property
     def ticks(self) -> int:
@@ -125,7 +120,7 @@ class RunStatistics:
             "limit_hits": self._limit_hits,
             "non_finite_events": self._non_finite_events,
             "energy_J": self._ledger.to_dict() if self._ledger is not None else {},
-            "lateness_us": _describe_lateness(self._clock) if self._clock else {},
+            "lateness_us": _describe_lateness(self._pace) if self._pace else {},
         }
 
 
@@ -133,9 +128,9 @@ def _largest_norm(vectors: np.ndarray) -> float:
     return float(np.linalg.norm(vectors, axis=1).max())
 
 
-def _describe_lateness(clock: TickClock) -> dict[str, float]:
-    p50, p99, p99_9 = (1e6 * late_s for late_s in clock.calc_lateness())
-    return {"p50": p50, "p99": p99, "p99_9": p99_9, "skipped": clock.skipped}
+def _describe_lateness(pace: TickClock) -> dict[str, float]:
+    p50, p99, p99_9 = (1e6 * late_s for late_s in pace.calc_lateness())
+    return {"p50": p50, "p99": p99, "p99_9": p99_9, "skipped": pace.skipped}
 
 
 def _describe_times(seconds: np.ndarray) -> dict[str, float]:

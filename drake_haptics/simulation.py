@@ -48,7 +48,7 @@ def run(
     haptic: HapticDiagram,
     duration_s: float | None = None,
     *,
-    realtime: bool = False,
+    pace: TickClock | None = None,
     energy: bool = False,
     on_tick: Callable[[Context], None] | None = None,
 ) -> RunStatistics:
@@ -57,8 +57,8 @@ def run(
     Args:
         haptic: What `BuildHapticDiagram` returned.
         duration_s: Simulated time, s; until Ctrl-C where not given.
-        realtime: Whether to wait so that simulated time is clock time. Time lost
-            to a stall is not caught up: a device must never be hurried.
+        pace: Waits for each tick, so that simulated time is clock time; a device needs
+            it. As fast as it can where not given.
         energy: Whether to keep the books of an `EnergyLedger`, for some 10 µs in
             each tick.
         on_tick: Called after every tick with the diagram's context, to be read
@@ -72,8 +72,7 @@ def run(
     """
     simulator = make_simulator(haptic)
     ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
-    clock = TickClock(haptic.period_s) if realtime else None
-    statistics = RunStatistics(haptic.period_s, ledger, clock)
+    statistics = RunStatistics(haptic.period_s, ledger, pace)
     measure = _make_measure(haptic, simulator.get_context(), statistics, ledger)
     # Collecting garbage over all of pydrake's objects takes many ticks; frozen, they
     # are left alone.
@@ -83,7 +82,7 @@ def run(
         simulator.Initialize()
         if ledger is not None:
             ledger.add()
-        simulator.set_monitor(_make_monitor(measure, on_tick, clock))
+        simulator.set_monitor(_make_monitor(measure, on_tick, pace))
         simulator.AdvanceTo(math.inf if duration_s is None else duration_s)
     except KeyboardInterrupt:
         pass
@@ -98,7 +97,7 @@ def run(
 def _make_monitor(
     measure: Callable[[Context, float], None],
     on_tick: Callable[[Context], None] | None,
-    clock: TickClock | None,
+    pace: TickClock | None,
 ) -> Callable[[Context], EventStatus]:
     """Returns what the simulator calls after each tick."""
     start_s = time.perf_counter()
@@ -110,9 +109,9 @@ def _make_monitor(
         start_s = now_s
         if on_tick is not None:
             on_tick(context)
-        if clock is not None:
+        if pace is not None:
             now_s = time.perf_counter()
-            clock.wait()
+            pace.wait()
             # Waiting belongs to no tick.
             start_s += time.perf_counter() - now_s
         return EventStatus.Succeeded()

@@ -27,6 +27,7 @@ class HapticDevice(Diagram):
         - V_WH
         - F_applied
         - status
+        - reading (if the backend has it)
 
     * `F_display` (6) is the wrench [τ; f] to show at the handle's origin, in the
       world, N·m and N.
@@ -34,6 +35,7 @@ class HapticDevice(Diagram):
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
     * `F_applied` and `status` are those of the `DisplayForceHold` before the device.
+    * `reading` is that of `DeviceIo`.
 
     A backend is a system with the input `F_applied` and the outputs `X_WH` and
     `V_WH`, neither of which depends directly on the input: a `SimulatedArm`, or a
@@ -79,6 +81,8 @@ class HapticDevice(Diagram):
         builder.ExportOutput(backend.GetOutputPort("V_WH"), "V_WH")
         builder.ExportOutput(hold.get_applied_wrench_output_port(), "F_applied")
         builder.ExportOutput(hold.get_status_output_port(), "status")
+        if backend.HasOutputPort("reading"):
+            builder.ExportOutput(backend.GetOutputPort("reading"), "reading")
         builder.BuildInto(self)
 
     @property

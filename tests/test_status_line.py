@@ -25,7 +25,7 @@ def run_with_status(haptic, *, terminal):
     console = Console(file=text, force_terminal=terminal, width=160, color_system=None)
     clock = itertools.count(0.0, 0.1)
     with StatusLine(console, haptic, clock=lambda: next(clock)) as status:
-        figures = run(haptic, 1.5, energy=True, on_tick=status.update).to_dict()
+        figures = run(haptic, 1.5, energy=True, on_tick=status.end_tick).to_dict()
     return text.getvalue(), figures
 
 

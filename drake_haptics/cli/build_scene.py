@@ -10,12 +10,16 @@ from rich.console import Console
 from rich.progress import Progress, TaskID
 
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.scene import Scene
 from drake_haptics.scene_check import SceneWarning
 
 
 def build_scene(
-    console: Console, scene: Scene, meshcat: Meshcat | None
+    console: Console,
+    scene: Scene,
+    meshcat: Meshcat | None,
+    device: DeviceBackend | None = None,
 ) -> HapticDiagram:
     """Builds the diagram, with a bar while meshes are cut into pieces.
 
@@ -23,7 +27,7 @@ def build_scene(
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SceneWarning)
-        haptic = _build(console, scene, meshcat)
+        haptic = _build(console, scene, meshcat, device)
     for warning in caught:
         if issubclass(warning.category, SceneWarning):
             click.secho(f"Warning: {warning.message}", fg="yellow", err=True)
@@ -34,7 +38,12 @@ def build_scene(
     return haptic
 
 
-def _build(console: Console, scene: Scene, meshcat: Meshcat | None) -> HapticDiagram:
+def _build(
+    console: Console,
+    scene: Scene,
+    meshcat: Meshcat | None,
+    device: DeviceBackend | None,
+) -> HapticDiagram:
     """Builds the diagram behind the bar."""
     quiet = not console.is_terminal
     with Progress(console=console, transient=True, disable=quiet) as bars:
@@ -47,4 +56,6 @@ def _build(console: Console, scene: Scene, meshcat: Meshcat | None) -> HapticDia
                 )
             bars.update(tasks[name], completed=share)
 
-        return BuildHapticDiagram(scene, meshcat=meshcat, progress=report)
+        return BuildHapticDiagram(
+            scene, device=device, meshcat=meshcat, progress=report
+        )

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from collections.abc import Callable
+from contextlib import ExitStack, nullcontext
 from pathlib import Path
 
 import click
+from pydrake.geometry import Meshcat
 from pydrake.systems.framework import Context
 from rich.console import Console
 
+from drake_haptics.builder import HapticDiagram
 from drake_haptics.callback_timer import CallbackTimer
 from drake_haptics.cli.build_scene import build_scene
+from drake_haptics.cli.enter_key import is_enter_pressed
 from drake_haptics.cli.mesh_options import write_json
 from drake_haptics.cli.parts_table import make_parts_table
 from drake_haptics.cli.status_line import StatusLine, make_summary
+from drake_haptics.device_address import open_device
+from drake_haptics.device_watch import DeviceWatch
 from drake_haptics.errors import UserError
 from drake_haptics.explain import explain_tick
 from drake_haptics.recording import write_recording
@@ -22,6 +28,7 @@ from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import RunError
 from drake_haptics.simulation import run as run_haptic
 from drake_haptics.stage import open_meshcat, set_stage
+from drake_haptics.tick_clock import TickClock
 
 _EXPLAINED_S = 2.0
 
@@ -39,6 +46,13 @@ _EXPLAINED_S = 2.0
     "--environment-scale",
     type=click.FloatRange(0, min_open=True),
     help="Metres per unit of the environment's file.  [default: 1]",
+)
+@click.option(
+    "--device",
+    metavar="ADDRESS",
+    help="Hold a device instead of the simulated one: udp://HOST:PORT of a driver (try"
+    " `drake-haptics device`), haply://HOST, lcm:, or without one meshcat: (sliders,"
+    " gamepad) and mouse:.",
 )
 @click.option(
     "--duration",
@@ -81,6 +95,7 @@ def run(
     environment: str | None,
     tool_scale: float | None,
     environment_scale: float | None,
+    device: str | None,
     duration: float | None,
     headless: bool,
     explain: bool,
@@ -92,7 +107,8 @@ def run(
     """Run a scene, or a tool mesh on another mesh, and show it in the browser.
 
     SCENE is the name of a shipped scene (see `drake-haptics scenes`) or a scene
-    file. A simulated hand holds a simulated 6-DOF arm and moves the tool.
+    file. A simulated hand holds a simulated 6-DOF arm and moves the tool, or you do
+    with --device.
 
     Exits with 0 at the end or at Ctrl-C, with 1 if something given cannot be used,
     with 3 if the simulation became unstable.
@@ -109,32 +125,36 @@ def run(
     console = Console(highlight=False, stderr=json_file == "-")
     meshcat = None if headless and record is None else open_meshcat(port)
     timer = CallbackTimer() if explain else None
-    with timer or nullcontext():
-        haptic = build_scene(console, chosen, meshcat)
-    visualizer = haptic.visualizer
-    if meshcat is not None and visualizer is not None:
-        set_stage(meshcat, haptic)
-        if pieces:
-            visualizer.ColorPieces()
-        if record is not None:
-            visualizer.StartRecording()
-        if not headless:
-            console.print(
-                f"Open [bold]{meshcat.web_url()}[/] to see it.", soft_wrap=True
-            )
-            console.print("Ctrl-C ends the run.", style="dim")
-    with StatusLine(console, haptic) as status:
+    with ExitStack() as closing:
+        backend = None
+        if device is not None:
+            # Closed whatever happens: at zero force.
+            backend = closing.enter_context(open_device(device, chosen, meshcat))
+        with timer or nullcontext():
+            haptic = build_scene(console, chosen, meshcat, backend)
+        if meshcat is not None:
+            _prepare_page(console, haptic, meshcat, pieces, record, headless)
+        # A device is never hurried.
+        live = backend is not None or not headless
+        pace = TickClock(haptic.period_s) if live else None
+        watch = None if backend is None else DeviceWatch(backend, is_enter_pressed)
+        status = StatusLine(console, haptic, pace)
+        closing.enter_context(status)
+        on_tick: list[Callable[[Context], None]] = [status.end_tick]
+        if watch is not None:
+            on_tick.append(watch.end_tick)
+        if timer is not None:
+            on_tick.append(timer.end_tick)
 
         def end_tick(context: Context) -> None:
-            status.update(context)
-            if timer is not None:
-                timer.end_tick(context)
+            for end in on_tick:
+                end(context)
 
         try:
             statistics = run_haptic(
                 haptic,
                 duration,
-                realtime=not headless,
+                pace=pace,
                 energy=json_file is not None,
                 on_tick=end_tick,
             )
@@ -142,15 +162,17 @@ def run(
         except RunError as error:
             statistics, unstable = error.statistics, error
     figures = statistics.to_dict()
+    if watch is not None:
+        figures["device"] = watch.to_dict()
     console.print(make_summary(figures))
     if timer is not None:
         parts = explain_tick(haptic, timer)
         figures["parts"] = [part.to_dict() for part in parts]
         console.print()
         console.print(make_parts_table(parts))
-    if record is not None and meshcat is not None and visualizer is not None:
-        visualizer.StopRecording()
-        visualizer.PublishRecording()
+    if record is not None and meshcat is not None and haptic.visualizer is not None:
+        haptic.visualizer.StopRecording()
+        haptic.visualizer.PublishRecording()
         write_recording(
             meshcat,
             record,
@@ -162,6 +184,27 @@ def run(
         write_json(figures, json_file)
     if unstable is not None:
         raise _UnstableError(str(unstable)) from unstable
+
+
+def _prepare_page(
+    console: Console,
+    haptic: HapticDiagram,
+    meshcat: Meshcat,
+    pieces: bool,
+    record: Path | None,
+    headless: bool,
+) -> None:
+    """Sets the stage and says where it is to be seen."""
+    set_stage(meshcat, haptic)
+    visualizer = haptic.visualizer
+    if visualizer is not None and pieces:
+        visualizer.ColorPieces()
+    if visualizer is not None and record is not None:
+        visualizer.StartRecording()
+    if not headless:
+        url = (haptic.backend and haptic.backend.url) or meshcat.web_url()
+        console.print(f"Open [bold]{url}[/] to see it.", soft_wrap=True)
+        console.print("Ctrl-C ends the run.", style="dim")
 
 
 class _UnstableError(click.ClickException):

@@ -4,32 +4,36 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from types import TracebackType
 from typing import Any
 
 import numpy as np
 from pydrake.systems.framework import Context
 from rich.console import Console
-from rich.live import Live
 from rich.table import Table
 
 from drake_haptics.builder import HapticDiagram
+from drake_haptics.cli.device_words import (
+    describe_gate,
+    describe_lateness,
+    describe_link,
+)
+from drake_haptics.cli.live_line import LiveLine
+from drake_haptics.tick_clock import TickClock
 
-_PERIOD_S = 0.2
 # Energies below are rounding: a nanojoule lifts a milligram by a tenth of a
 # millimetre.
 _ROUNDING_J = 1e-9
+# Lateness in the line is that of so many latest ticks.
+_LATEST = 1000
 
 
-class StatusLine:
-    """A line at the foot of the terminal, written five times per second.
-
-    Where the output is not a terminal it writes nothing. It has no thread of its own,
-    so it never takes the interpreter from the loop between two ticks.
+class StatusLine(LiveLine):
+    """What a run does, in one line.
 
     Args:
         console: Where to write.
         haptic: What runs.
+        pace: What paces the run, if it is paced.
         clock: Reads the time, s.
     """
 
@@ -37,43 +41,46 @@ class StatusLine:
         self,
         console: Console,
         haptic: HapticDiagram,
+        pace: TickClock | None = None,
         clock: Callable[[], float] = time.perf_counter,
     ):
+        super().__init__(console, self._make_run_line, clock)
         self._haptic = haptic
-        self._clock = clock
-        self._live = Live(console=console, auto_refresh=False, transient=True)
-        self._shown = console.is_terminal
-        self._next_s = 0.0
-        self._before = (0.0, 0.0)
+        self._pace = pace
+        self._context: Context | None = None
+        self._before_s = 0.0
 
-    def __enter__(self) -> StatusLine:
-        """Starts the line."""
-        self._live.start()
-        self._before = (self._clock(), 0.0)
-        return self
+    def end_tick(self, context: Context) -> None:
+        """Writes the line anew, if it is time.
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        """Takes the line away."""
-        self._live.stop()
+        Args:
+            context: The diagram's, after a tick.
+        """
+        self._context = context
+        self.update()
 
-    def update(self, context: Context) -> None:
-        """Writes the line anew, if it is time; a call costs well under 1 µs else."""
-        now_s = self._clock()
-        if now_s < self._next_s or not self._shown:
-            return
-        self._next_s = now_s + _PERIOD_S
-        before_s, before_t = self._before
-        rate = (context.get_time() - before_t) / max(now_s - before_s, 1e-9)
-        self._before = (now_s, context.get_time())
-        self._live.update(self._line(context, rate), refresh=True)
-
-    def _line(self, context: Context, rate: float) -> str:
+    def _make_run_line(self, passed_s: float) -> str:
         """Returns the line."""
+        assert self._context is not None
+        time_s = self._context.get_time()
+        run_s, self._before_s = time_s - self._before_s, time_s
+        parts = [f"[bold]{time_s:7.1f} s[/]"]
+        backend = self._haptic.backend
+        if backend is None or self._pace is None:
+            parts.append(f"{run_s / passed_s:5.2f} x real time")
+        else:
+            ticks = run_s / self._haptic.period_s
+            late_s = self._pace.calc_lateness(_LATEST)
+            parts = [
+                describe_gate(backend.read()),
+                *parts,
+                f"{ticks / passed_s:.0f} ticks/s, late {describe_lateness(late_s)}",
+                describe_link(backend.get_link_status()),
+            ]
+        return " · ".join([*parts, self._describe_touch(self._context)])
+
+    def _describe_touch(self, context: Context) -> str:
+        """Returns what is felt, and by how many contacts."""
         loop = self._haptic.loop
         query = loop.contact_query.GetMyContextFromRoot(context)
         contacts = loop.contact_query.get_contacts_output_port().Eval(query)
@@ -85,8 +92,7 @@ class StatusLine:
         )
         deepest_mm = 1e3 * max(0.0, -contacts.distance.min(initial=0.0))
         return (
-            f"[bold]{context.get_time():7.1f} s[/] · {rate:5.2f} x real time"
-            f" · {len(contacts):3d} contacts in {len(clusters):2d} clusters"
+            f"{len(contacts):3d} contacts in {len(clusters):2d} clusters"
             f" · {deepest_mm:4.2f} mm deep"
             f" · [bold]{np.linalg.norm(F_display[3:]):4.1f} N[/]"
             f" {1e3 * np.linalg.norm(F_display[:3]):4.0f} mN·m"
@@ -110,6 +116,12 @@ def make_summary(figures: dict[str, Any]) -> Table:
     table.add_row("ran", f"{figures['duration_s']:.2f} s, {figures['ticks']} ticks")
     table.add_row("whole tick", times("tick_us"))
     table.add_row("contact query", times("contact_query_us"))
+    if late := figures["lateness_us"]:
+        table.add_row(
+            "late",
+            f"median {late['p50']:.0f} µs, p99 {late['p99']:.0f} µs,"
+            f" p99.9 {late['p99_9']:.0f} µs; {late['skipped']} ticks skipped",
+        )
     table.add_row(
         "contacts",
         f"median {contacts['median']:.0f}, at most {contacts['max']}; in clusters:"
@@ -122,6 +134,12 @@ def make_summary(figures: dict[str, Any]) -> Table:
         f" penetration {1e3 * figures['max_penetration_m']:.3f} mm",
     )
     table.add_row("device limit", f"{figures['limit_hits']} ticks at it")
+    if device := figures.get("device"):
+        table.add_row(
+            "device",
+            f"{device['received']} readings, {device['lost']} lost,"
+            f" {device['rejected']} refused; {device['faults']} faults",
+        )
     if figures["energy_J"]:
         table.add_row("energy", _describe_energy(figures["energy_J"]))
     return table

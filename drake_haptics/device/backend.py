@@ -12,6 +12,8 @@ from enum import IntEnum
 
 import numpy as np
 
+from drake_haptics.errors import UserError
+
 
 class GateState(IntEnum):
     """Whether a device shows force. The numbers are those on the wire."""
@@ -114,7 +116,7 @@ class LinkStatus:
     lateness_s: tuple[float, float, float] | None = None
 
 
-class DeviceError(RuntimeError):
+class DeviceError(UserError):
     """A device that cannot be opened, or has gone; says what to do."""
 
 
@@ -125,6 +127,11 @@ class DeviceBackend(ABC):
     `write` and none after `close`. Use it as a context manager, so that it is closed
     whatever happens.
     """
+
+    @property
+    def url(self) -> str | None:
+        """Page on which the device is moved, if there is one."""
+        return None
 
     @abstractmethod
     def read(self) -> DeviceReading | None:

@@ -1,0 +1,39 @@
+"""A device's state in the words of a status line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from drake_haptics.device.backend import DeviceReading, GateState, LinkStatus
+
+_STYLES = {
+    GateState.IDLE: "dim",
+    GateState.ACTIVE: "green",
+    GateState.FAULT: "bold red",
+}
+
+
+def describe_gate(reading: DeviceReading | None) -> str:
+    """Returns whether a device shows force, and if not, why and what to do."""
+    if reading is None:
+        return "[dim]silent[/]"
+    words = reading.gate.name
+    if reading.gate == GateState.FAULT:
+        fault = reading.fault.name.lower().replace("_", " ")
+        words += f" ({fault}): Enter takes it up again"
+    return f"[{_STYLES[reading.gate]}]{words}[/]"
+
+
+def describe_lateness(late_s: Sequence[float]) -> str:
+    """Returns p50, p99 and p99.9, given in s, in ms."""
+    return "/".join(f"{1e3 * late:.2f}" for late in late_s) + " ms"
+
+
+def describe_link(link: LinkStatus) -> str:
+    """Returns what was lost on the way, and how late the backend's own thread is."""
+    words = f"{link.lost} lost"
+    if link.rejected:
+        words += f", {link.rejected} refused"
+    if link.lateness_s is not None:
+        words += f", servo late {describe_lateness(link.lateness_s)}"
+    return words

@@ -1,0 +1,78 @@
+"""Devices by their address, as the command line names them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from urllib.parse import SplitResult, urlsplit
+
+from pydrake.geometry import Meshcat
+
+from drake_haptics.device.backend import DeviceBackend, DeviceError
+from drake_haptics.device_site import DeviceSite, find_device_site
+from drake_haptics.scene import Scene
+
+_HAPLY_PORT = 10001
+
+# Opens a device by the parts of its address.
+_Opener = Callable[[SplitResult, DeviceSite, Meshcat | None], DeviceBackend]
+
+
+def open_device(
+    address: str, scene: Scene, meshcat: Meshcat | None = None
+) -> DeviceBackend:
+    """Opens a device by its address.
+
+    | address | device |
+    |---|---|
+    | `udp://HOST:PORT` | a driver that speaks the protocol of docs/device-protocol.md |
+    | `haply://HOST[:PORT]` | an Inverse3 behind Haply's Inverse Service |
+    | `lcm:[URL]` | a driver on LCM, at an LCM URL or the default one |
+    | `meshcat:` | sliders and gamepad of Drake's page |
+    | `mouse:` | the mouse, over the picture of the scene |
+
+    Args:
+        address: Of the table.
+        scene: Says where its device stands and within which limits.
+        meshcat: The page that `meshcat:` and `mouse:` need.
+
+    Returns:
+        The device, open; it is the caller's to close.
+
+    Raises:
+        DeviceError: There is no such kind of device, something is missing in the
+            address, or it cannot be opened.
+        SceneError: As `find_device_site`.
+    """
+    parts = urlsplit(address)
+    if parts.scheme not in _OPENERS:
+        raise DeviceError(
+            f"device {address!r}: give udp://HOST:PORT, haply://HOST, lcm:, meshcat: or"
+            " mouse:"
+        )
+    return _OPENERS[parts.scheme](parts, find_device_site(scene), meshcat)
+
+
+def _open_udp(
+    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+) -> DeviceBackend:
+    from drake_haptics.device.udp_device import UdpDevice
+
+    host, port = _split_host(parts, None)
+    return UdpDevice(host, port)
+
+
+def _split_host(parts: SplitResult, default_port: int | None) -> tuple[str, int]:
+    """Returns host and port of an address."""
+    try:
+        port = parts.port or default_port
+    except ValueError as error:  # Of a port that is no number, or too large.
+        raise DeviceError(f"device {parts.geturl()!r}: {error}") from error
+    if not parts.hostname or port is None:
+        raise DeviceError(
+            f"device {parts.geturl()!r}: give host and port,"
+            f" like {parts.scheme}://127.0.0.1:{default_port or 7400}"
+        )
+    return parts.hostname, port
+
+
+_OPENERS: dict[str, _Opener] = {"udp": _open_udp}

@@ -1,0 +1,107 @@
+"""Where a device stands in a scene, and how it gets into the scene's diagram."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+from pydrake.math import RigidTransform
+
+from drake_haptics.device.backend import DeviceBackend, DeviceError, DeviceReading
+from drake_haptics.device_preset import load_device_preset
+from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.scene import Scene
+from drake_haptics.simulated_device import make_hand_path, place_base
+from drake_haptics.systems.device_io import DeviceIo
+from drake_haptics.systems.haptic_device import HapticDevice
+
+_LOOK_AGAIN_S = 0.01
+
+
+@dataclass(frozen=True)
+class DeviceSite:
+    """Where a scene expects its device and the handle of it.
+
+    Attributes:
+        X_WB: Pose of the device's base in the world.
+        X_BH: Pose of the handle in the base where the scene's hand starts: for devices
+            that can be put anywhere.
+        workspace_radius_m: How far the handle reaches from the middle of the
+            workspace, m.
+        max_force_N: Largest force to be shown, N: the scene's, or the preset's.
+        max_torque_Nm: Largest torque to be shown, N·m.
+    """
+
+    X_WB: RigidTransform
+    X_BH: RigidTransform
+    workspace_radius_m: float
+    max_force_N: float
+    max_torque_Nm: float
+
+
+def find_device_site(scene: Scene) -> DeviceSite:
+    """Returns where a scene has its device.
+
+    Raises:
+        SceneError: There is no such preset, or the hand's path leaves the workspace.
+    """
+    path = make_hand_path(scene.hand.path)
+    X_WB = place_base(scene, path)
+    X_TH = scene.tool.grasp.to_rigid_transform().inverse()
+    preset = load_device_preset(scene.device.preset)
+    force, torque = scene.device.max_force_N, scene.device.max_torque_Nm
+    return DeviceSite(
+        X_WB=X_WB,
+        X_BH=X_WB.inverse() @ path.start @ X_TH,
+        workspace_radius_m=preset.workspace_radius_m,
+        max_force_N=preset.max_force_N if force is None else force,
+        max_torque_Nm=preset.max_torque_Nm if torque is None else torque,
+    )
+
+
+def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceReading:
+    """Returns the first reading of a device.
+
+    Args:
+        backend: Open.
+        timeout_s: How long to wait for it, s.
+
+    Raises:
+        DeviceError: None has come.
+    """
+    end_s = time.monotonic() + timeout_s
+    while (reading := backend.read()) is None:
+        if time.monotonic() > end_s:
+            raise DeviceError(
+                f"the device has said nothing for {timeout_s:g} s: is its driver"
+                " running, at the address given?"
+            )
+        time.sleep(_LOOK_AGAIN_S)
+    return reading
+
+
+def make_haptic_device(
+    scene: Scene, backend: DeviceBackend
+) -> tuple[HapticDevice, RigidTransform]:
+    """Returns a scene's device port before a backend, and X_WH, where its handle is.
+
+    Args:
+        scene: Says where the device stands, its rate and its limits.
+        backend: Open.
+
+    Raises:
+        SceneError: As `find_device_site`.
+        DeviceError: The backend says nothing.
+    """
+    site = find_device_site(scene)
+    period_s = 1.0 / scene.device.rate_hz
+    reading = wait_for_reading(backend)
+    io = DeviceIo(backend, site.X_WB, period_s, reading)
+    io.set_name("device_io")
+    device = HapticDevice(
+        io,
+        period_s=period_s,
+        max_force_N=site.max_force_N,
+        max_torque_Nm=site.max_torque_Nm,
+    )
+    return device, site.X_WB @ vector_to_pose(reading.X_BH)

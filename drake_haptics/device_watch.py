@@ -1,0 +1,67 @@
+"""Watches a device during a run: counts its faults, takes it up again when asked."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+
+from drake_haptics.device.backend import DeviceBackend, Fault, GateState
+
+
+class DeviceWatch:
+    """The book of a device's faults.
+
+    A device at fault shows no force until somebody asks for it again: whoever holds
+    it must not be surprised.
+
+    Args:
+        backend: The device, open.
+        wants_it_back: Says, while the device is at fault, whether to take it up again.
+    """
+
+    def __init__(self, backend: DeviceBackend, wants_it_back: Callable[[], bool]):
+        self._backend = backend
+        self._wants_it_back = wants_it_back
+        self._fault = Fault.NONE
+        self._faults: Counter[str] = Counter()
+        self._recoveries = 0
+        self._asked = False
+
+    def end_tick(self, _context: object = None) -> None:
+        """Looks at the device; made to be called after every tick."""
+        reading = self._backend.read()
+        if reading is None:
+            return
+        fault = reading.fault if reading.gate == GateState.FAULT else Fault.NONE
+        if fault != self._fault:
+            self._note(fault)
+        if fault != Fault.NONE and not self._asked and self._wants_it_back():
+            self._asked = True
+            self._backend.recover()
+
+    def _note(self, fault: Fault) -> None:
+        """Books that a fault has come or gone."""
+        if fault == Fault.NONE:
+            self._recoveries += 1
+        else:
+            self._faults[fault.name] += 1
+        self._fault, self._asked = fault, False
+
+    def to_dict(self) -> dict[str, object]:
+        """Returns the figures for a report, ready for JSON.
+
+        Keys: `gate` (the last state), `faults` (how often, by kind), `recoveries`,
+        `received`, `lost` and `rejected` (readings), `servo_lateness_us` (p50, p99,
+        p99.9 of the backend's own thread; None where it has none).
+        """
+        link, reading = self._backend.get_link_status(), self._backend.read()
+        late_s = link.lateness_s
+        return {
+            "gate": None if reading is None else reading.gate.name,
+            "faults": dict(self._faults),
+            "recoveries": self._recoveries,
+            "received": link.received,
+            "lost": link.lost,
+            "rejected": link.rejected,
+            "servo_lateness_us": late_s and [1e6 * late for late in late_s],
+        }

@@ -1,0 +1,104 @@
+"""A device of one's own in a scene: where it stands, and that the loop closes."""
+
+import numpy as np
+import pytest
+from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
+from fake_device import ScriptedDevice, make_reading
+from pydrake.math import RigidTransform
+
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.device.backend import DeviceError
+from drake_haptics.device_preset import load_device_preset
+from drake_haptics.device_site import find_device_site, wait_for_reading
+from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.scene import Pose, Scene
+from drake_haptics.simulation import run
+
+START = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
+
+
+def device_at(scene: Scene, *heights_m: float) -> ScriptedDevice:
+    """Returns a device that holds the tool at heights over the plate, tick by tick."""
+    X_WB = find_device_site(scene).X_WB
+    X_TH = scene.tool.grasp.to_rigid_transform().inverse()
+
+    def read(call):
+        z = PLATE_TOP + TOOL_HALF_HEIGHT + heights_m[min(call, len(heights_m)) - 1]
+        X_BH = X_WB.inverse() @ RigidTransform([0.0, 0.0, z]) @ X_TH
+        q_BH = pose_to_vector(X_BH)
+        return make_reading(call, position=q_BH[4:], wxyz=q_BH[:4])
+
+    return ScriptedDevice(read)
+
+
+@pytest.fixture
+def scene(tmp_path):
+    scene = over_a_plate(tmp_path, [START])
+    scene.tool.grasp = Pose([0.0, 0.0, -0.03], [0.0, 0.0, 20.0])
+    scene.device.base = Pose([-0.2, 0.01, 0.2], [0.0, 0.0, 5.0])
+    return scene
+
+
+def test_the_site_puts_the_tool_where_the_path_starts(scene):
+    site = find_device_site(scene)
+    X_WT = site.X_WB @ site.X_BH @ scene.tool.grasp.to_rigid_transform()
+    z = START[3] + PLATE_TOP
+    assert X_WT.IsNearlyEqualTo(RigidTransform([0.0, 0.0, z]), 1e-12)
+    preset = load_device_preset(scene.device.preset)
+    assert site.workspace_radius_m == preset.workspace_radius_m
+
+
+def test_the_tool_starts_where_the_device_holds_it(scene):
+    """Not where the scene's hand would start: that hand holds nothing here."""
+    haptic = BuildHapticDiagram(scene, device=device_at(scene, 0.004))
+    tool = haptic.loop.haptic_tool
+    root = haptic.diagram.CreateDefaultContext()
+    q_WT = tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root))
+    X_WT = vector_to_pose(q_WT)
+    expected = RigidTransform([0.0, 0.0, PLATE_TOP + TOOL_HALF_HEIGHT + 0.004])
+    assert X_WT.IsNearlyEqualTo(expected, 1e-12)
+
+
+def test_a_device_pressed_into_the_plate_is_pushed_out(scene):
+    """Truth: coupling and contact in series, the contact from its tolerance on."""
+    depth, tolerance = 2e-3, 0.5e-3
+    scene.contact.tolerance_m = tolerance
+    backend = device_at(scene, *np.linspace(0.001, -depth, 200))
+    run(BuildHapticDiagram(scene, device=backend), 1.0)
+    K, k = scene.coupling.stiffness_N_per_m, scene.contact.stiffness_N_per_m
+    X_WB = find_device_site(scene).X_WB
+    f_W = X_WB.rotation() @ backend.commands[-1].F_BH[3:]
+    # Four corners press: clustering shares one spring among them.
+    np.testing.assert_allclose(
+        f_W, [0, 0, (depth + tolerance) * K * k / (K + k)], rtol=1e-3, atol=1e-4
+    )
+
+
+def test_what_is_written_is_within_the_device_limits(scene):
+    scene.device.max_force_N, scene.device.max_torque_Nm = 0.3, 0.001
+    backend = device_at(scene, *np.linspace(0.001, -0.02, 100))
+    run(BuildHapticDiagram(scene, device=backend), 0.5)
+    wrenches = np.array([command.F_BH for command in backend.commands])
+    forces = np.linalg.norm(wrenches[:, 3:], axis=1)
+    assert forces.max() == pytest.approx(0.3)
+    assert np.linalg.norm(wrenches[:, :3], axis=1).max() <= 0.001 + 1e-15
+
+
+def test_a_device_of_which_no_model_is_known_needs_none(scene):
+    scene.device.preset, scene.device.base = "omega_6", None
+    backend = device_at(scene, 0.01)
+    haptic = BuildHapticDiagram(scene, device=backend)
+    assert haptic.backend is backend
+    assert haptic.loop.device.max_torque_Nm == 0.0
+
+
+def test_a_silent_device_is_an_error_that_says_what_to_do():
+    silent = ScriptedDevice(lambda _: None)
+    with pytest.raises(DeviceError, match=r"said nothing for 0.05 s.*driver running"):
+        wait_for_reading(silent, timeout_s=0.05)
+    assert silent.reads > 1
+
+
+def test_the_first_reading_is_waited_for():
+    late = ScriptedDevice(lambda call: make_reading(call) if call > 2 else None)
+    assert wait_for_reading(late).sequence == 3

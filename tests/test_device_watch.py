@@ -1,0 +1,65 @@
+"""The book of a device's faults, and who may end one."""
+
+import dataclasses
+
+from fake_device import ScriptedDevice, make_reading
+
+from drake_haptics.device.backend import Fault, GateState, LinkStatus
+from drake_haptics.device_watch import DeviceWatch
+
+ACTIVE = (GateState.ACTIVE, Fault.NONE)
+STALE = (GateState.FAULT, Fault.STALE)
+FAST = (GateState.FAULT, Fault.OVERSPEED)
+
+
+def watch_states(*states, wants_it_back=lambda: False):
+    """Watches a device go through (gate, fault) states, one per tick."""
+
+    def read(call):
+        gate, fault = states[min(call, len(states)) - 1]
+        return dataclasses.replace(make_reading(call), gate=gate, fault=fault)
+
+    backend = ScriptedDevice(read)
+    watch = DeviceWatch(backend, wants_it_back)
+    for _ in states:
+        watch.end_tick()
+    return watch.to_dict(), backend
+
+
+def test_each_fault_counts_once_however_long_it_lasts():
+    figures, _ = watch_states(ACTIVE, STALE, STALE, ACTIVE, STALE, FAST, FAST)
+    assert figures["faults"] == {"STALE": 2, "OVERSPEED": 1}
+    assert figures["recoveries"] == 1
+    assert figures["gate"] == "FAULT"
+
+
+def test_a_fault_lasts_until_somebody_wants_the_device_back():
+    _, backend = watch_states(ACTIVE, *[STALE] * 50)
+    assert backend.recovered == 0
+
+
+def test_a_wish_is_passed_on_once_for_each_fault():
+    _, backend = watch_states(
+        STALE, STALE, ACTIVE, ACTIVE, FAST, FAST, wants_it_back=lambda: True
+    )
+    assert backend.recovered == 2
+
+
+def test_nobody_is_asked_while_all_is_well():
+    asked = []
+    watch_states(ACTIVE, ACTIVE, wants_it_back=lambda: asked.append(1))
+    assert not asked
+
+
+def test_a_silent_device_has_no_state():
+    watch = DeviceWatch(ScriptedDevice(lambda _: None), lambda: False)
+    watch.end_tick()
+    assert watch.to_dict()["gate"] is None
+
+
+def test_the_way_to_the_device_is_reported():
+    backend = ScriptedDevice()
+    backend.get_link_status = lambda: LinkStatus(100, 2, 1, (1e-5, 2e-4, 3e-3))
+    figures = DeviceWatch(backend, lambda: False).to_dict()
+    assert (figures["received"], figures["lost"], figures["rejected"]) == (100, 2, 1)
+    assert [round(x) for x in figures["servo_lateness_us"]] == [10, 200, 3000]
