@@ -5,7 +5,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.drake_haptics
-CORE := $(wildcard drake_haptics/core/*.cc drake_haptics/core/*.h) drake_haptics/core/CMakeLists.txt
+CORE := $(wildcard drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h) drake_haptics/core/CMakeLists.txt
 
 .PHONY: demo test lint unit format build fuzz clean
 .DEFAULT_GOAL := demo
@@ -22,12 +22,12 @@ lint: $(STAMP)-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/clang-format --dry-run -Werror drake_haptics/core/*.cc drake_haptics/core/*.h tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
+	$(BIN)/clang-format --dry-run -Werror drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
 
 format: $(STAMP)-test
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
-	$(BIN)/clang-format -i drake_haptics/core/*.cc drake_haptics/core/*.h tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
+	$(BIN)/clang-format -i drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
 
 # Rebuilds the C++ core after an edit, without a fresh build environment.
 build:

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from drake_haptics.errors import UserError
     from drake_haptics.haptic_loop import ConnectMovingObject, HapticLoop
     from drake_haptics.haptic_rendering import HapticRendering
+    from drake_haptics.headers import get_include
     from drake_haptics.mesh import Mesh, load_mesh
     from drake_haptics.rendering_builder import AddHapticRendering
     from drake_haptics.scene import Scene, load_scene
@@ -82,6 +83,7 @@ __all__ = [
     "UserError",
     "decompose",
     "find_scene",
+    "get_include",
     "list_scenes",
     "load_mesh",
     "load_scene",
@@ -123,6 +125,7 @@ _MODULE_OF = {
     "UserError": "errors",
     "decompose": "decomposition",
     "find_scene": "scene_library",
+    "get_include": "headers",
     "list_scenes": "scene_library",
     "load_mesh": "mesh",
     "load_scene": "scene",

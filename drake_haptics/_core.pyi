@@ -1481,3 +1481,214 @@ def clock_interval() -> float:
     """
     Seconds between two readings of the clock that times queries, with nothing between them. Each timed query includes it.
     """
+
+class DeviceStatePacket:
+    """
+    What a driver sends (docs/device-protocol.md). The handle H in the frame B of the device's base, SI.
+    """
+
+    @property
+    def session(self) -> int:
+        """Host that is served, or 0."""
+
+    @property
+    def sequence(self) -> int:
+        """Rises by one, and wraps."""
+
+    @property
+    def time_ns(self) -> int:
+        """Of the sample, driver's clock."""
+
+    @property
+    def X_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
+        """(7,) pose [qw qx qy qz x y z], m."""
+
+    @property
+    def V_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """(6,) spatial velocity [ω; v], rad/s and m/s."""
+
+    @property
+    def F_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """(6,) wrench shown [τ; f] at Ho, N·m and N."""
+
+    @property
+    def boot(self) -> int:
+        """Random in each run of the driver."""
+
+    @property
+    def command_sequence(self) -> int:
+        """Of the newest command that was accepted."""
+
+    @property
+    def buttons(self) -> int:
+        """Bit i: button i is held."""
+
+    @property
+    def rejected(self) -> int:
+        """Packets refused so far."""
+
+    @property
+    def max_force_N(self) -> float:
+        """Largest force, N."""
+
+    @property
+    def max_torque_Nm(self) -> float:
+        """Largest torque, N·m."""
+
+    @property
+    def gate(self) -> int:
+        """As `backend.GateState`."""
+
+    @property
+    def fault(self) -> int:
+        """As `backend.Fault`."""
+
+class DeviceCommandPacket:
+    """What a host sends (docs/device-protocol.md), SI."""
+
+    @property
+    def session(self) -> int:
+        """Random in each run of it."""
+
+    @property
+    def sequence(self) -> int:
+        """Rises by one, and wraps."""
+
+    @property
+    def time_ns(self) -> int:
+        """Of sending, host's clock."""
+
+    @property
+    def F_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """(6,) wrench to show [τ; f] at Ho in B, N·m and N."""
+
+    @property
+    def state_sequence(self) -> int:
+        """Of the state that this answers."""
+
+    @property
+    def ttl_us(self) -> int:
+        """Time to live, µs."""
+
+    @property
+    def enable(self) -> bool:
+        """Whether force is to be shown."""
+
+def pack_state(*, sequence: int, time_ns: int, X_BH: object, V_BH: object, F_BH: object, boot: int, session: int, command_sequence: int, buttons: int, rejected: int, max_force_N: float, max_torque_Nm: float, gate: int, fault: int) -> bytes:
+    """
+    The 208 bytes of a state packet; the arguments are the attributes of `DeviceStatePacket`.
+
+    Raises:
+        ValueError: a number does not fit its field, or a wrong shape.
+    """
+
+def unpack_state(packet: bytes) -> DeviceStatePacket:
+    """
+    What a state packet says. Its real numbers may be NaN or infinite.
+
+    Raises:
+        ValueError: it is damaged or none; says which check failed.
+    """
+
+def pack_command(*, session: int, sequence: int, time_ns: int, F_BH: object, state_sequence: int, ttl_us: int, enable: bool) -> bytes:
+    """
+    The 88 bytes of a command packet; the arguments are the attributes of `DeviceCommandPacket`.
+
+    Raises:
+        ValueError: a number does not fit its field, or a wrong shape.
+    """
+
+def unpack_command(packet: bytes) -> DeviceCommandPacket:
+    """
+    What a command packet says. Its wrench may be NaN or infinite.
+
+    Raises:
+        ValueError: it is damaged or none; says which check failed.
+    """
+
+class DeviceGate:
+    """
+    What stands between commands and a hand, in the driver's process: the state machine of gate.h (docs/device-protocol.md), time as an argument. Force and torque never exceed the limits, in any state.
+    """
+
+    def __init__(self, *, max_force_N: float, max_torque_Nm: float, max_speed_m_per_s: float = 2.0, max_turn_rate_rad_per_s: float = 30.0, ramp_in_s: float = 0.2, ramp_out_s: float = 0.02, max_ttl_s: float = 0.1) -> None:
+        """
+        Args:
+            max_force_N: Largest norm of the force, N; 0 for none.
+            max_torque_Nm: Largest norm of the torque, N·m; 0 for none.
+            max_speed_m_per_s: A faster handle is a fault while active.
+            max_turn_rate_rad_per_s: Likewise for its turning.
+            ramp_in_s: From none to full, 0.001 to 10 s.
+            ramp_out_s: From full to none, 0.001 to 1 s.
+            max_ttl_s: The longest that a command lives, 1e-6 to 1 s.
+
+        Raises:
+            ValueError: a limit is not finite or out of its bounds.
+        """
+
+    def receive(self, now_ns: int, data: bytes) -> str:
+        """
+        Takes a packet in, whatever it holds.
+
+        Args:
+            now_ns: The driver's monotonic clock, ns.
+            data: The datagram.
+
+        Returns:
+            'accepted', or why not: a key of `counts`.
+        """
+
+    def step(self, now_ns: int, X_BH: object, V_BH: object) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """
+        Moves the time on; once per tick, after the packets.
+
+        Args:
+            now_ns: The driver's monotonic clock, ns.
+            X_BH: (7,) the handle's pose [qw qx qy qz x y z], m. A value that is not finite is a fault.
+            V_BH: (6,) its spatial velocity [ω; v], rad/s and m/s; likewise.
+
+        Returns:
+            (6,) the wrench to show [τ; f] at Ho in B, N·m and N.
+
+        Raises:
+            ValueError: X_BH or V_BH has a wrong shape.
+        """
+
+    def fail(self) -> None:
+        """The driver's own hardware is at fault: zero wrench at once."""
+
+    @property
+    def state(self) -> int:
+        """As `backend.GateState`."""
+
+    @property
+    def fault(self) -> int:
+        """As `backend.Fault`."""
+
+    @property
+    def session(self) -> int:
+        """Host that is served, or 0."""
+
+    @property
+    def command_sequence(self) -> int:
+        """Of the newest command that was accepted."""
+
+    @property
+    def command_F_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """(6,) the newest wrench to show, within the limits, N·m and N."""
+
+    @property
+    def F_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """(6,) the wrench that is shown, N·m and N."""
+
+    @property
+    def scale(self) -> float:
+        """Share of it that is shown, 0 to 1."""
+
+    @property
+    def rejected(self) -> int:
+        """Packets refused so far."""
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Packets by verdict."""

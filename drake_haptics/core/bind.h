@@ -26,5 +26,6 @@ void BindPassivity(nanobind::module_& m);
 void BindHand(nanobind::module_& m);
 void BindEnergy(nanobind::module_& m);
 void BindClock(nanobind::module_& m);
+void BindDevice(nanobind::module_& m);
 
 }  // namespace drake_haptics

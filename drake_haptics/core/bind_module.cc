@@ -27,4 +27,5 @@ NB_MODULE(_core, m) {
   drake_haptics::BindHand(m);
   drake_haptics::BindEnergy(m);
   drake_haptics::BindClock(m);
+  drake_haptics::BindDevice(m);
 }
