@@ -1,0 +1,183 @@
+"""Haply's Inverse3 with a VerseGrip, through Haply's Inverse Service."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+
+import numpy as np
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import ClientConnection, connect
+
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceCommand,
+    DeviceError,
+    DeviceReading,
+    LinkStatus,
+)
+from drake_haptics.device.haply_exchange import SILENT_NS, HaplyExchange
+from drake_haptics.device.haply_messages import ASK_FOR_DEVICES, ForceField
+from drake_haptics.device.local_gate import LocalGate
+from drake_haptics.tick_clock import TickClock
+
+_RETRY_S = 0.1
+# Ticks over which the lateness is told: a second of them.
+_LATENESS_TICKS = 1000
+# More than a force takes to ramp out.
+_CLOSING_S = 0.2
+
+
+class HaplyDevice(DeviceBackend):
+    """An Inverse3, which shows force but no torque, and the grip that turns on it.
+
+    A thread of its own speaks with the service: strictly in turn, a force for each
+    state. What it sends has passed the same gate as on any device. `read` and `write`
+    only exchange values with that thread.
+
+    Frame B is the service's own: x to the right, y forward, z up. The position and the
+    linear velocity are those of the cursor. The orientation is the grip's and the
+    angular velocity the smoothed difference of its orientations (see `TurnRate`).
+    Without a grip the orientation is the identity, or the last one that was known, and
+    `has_grip` is False.
+
+    A service that says nothing usable for 0.1 s, or has gone, is `Fault.DEVICE` in
+    the readings. When it is back, force ramps in again from nothing.
+    """
+
+    def __init__(
+        self,
+        uri: str = "ws://127.0.0.1:10001",
+        *,
+        device_id: str | None = None,
+        grip_id: str | None = None,
+        force_field: ForceField = "vector",
+        max_force_N: float = 2.0,
+        ttl_s: float = 0.1,
+        rate_hz: float = 1000.0,
+        timeout_s: float = 2.0,
+    ):
+        """Connects, and waits for the first state.
+
+        Args:
+            uri: Where the service is.
+            device_id: Of the Inverse3; the first one listed where not given.
+            grip_id: Of the VerseGrip, likewise.
+            force_field: What the service calls the force: `values` before version 3.5.
+            max_force_N: Largest force ever shown, N.
+            ttl_s: How long a written wrench holds without a newer one, s.
+            rate_hz: Exchanges per second, Hz, as far as the service keeps up.
+            timeout_s: How long to wait, s.
+
+        Raises:
+            DeviceError: There is no service, or it has no such device.
+            ValueError: A limit or rate is out of range.
+        """
+        self._uri = uri
+        self._exchange = HaplyExchange(
+            LocalGate(max_force_N=max_force_N, max_torque_Nm=0.0, ttl_s=ttl_s),
+            device_id,
+            grip_id,
+            force_field,
+        )
+        self._clock = TickClock(1.0 / rate_hz)
+        # Handed to the thread; replaced as a whole, never changed.
+        self._command: DeviceCommand | None = None
+        self._closing_s = math.inf
+        self._has_reading = threading.Event()
+        self._connection = f"{uri} does not answer"
+        self._thread = threading.Thread(
+            target=self._run, name="haply_device", daemon=True
+        )
+        self._thread.start()
+        if not self._has_reading.wait(timeout_s):
+            self.close()
+            raise DeviceError(
+                f"no Haply device: {self._connection}. Start Haply's Inverse Service,"
+                " plug in the Inverse3 and see that the demos of Haply Hub move"
+            )
+
+    @property
+    def has_grip(self) -> bool:
+        """Whether a VerseGrip tells the orientation."""
+        return self._exchange.has_grip
+
+    def read(self) -> DeviceReading | None:
+        """Returns the newest reading; its time is this computer's monotonic clock."""
+        return self._exchange.reading
+
+    def write(self, command: DeviceCommand) -> None:
+        """Asks for a wrench; the torque and the slopes are not used.
+
+        Raises:
+            ValueError: The wrench is not of six numbers.
+        """
+        if np.shape(command.F_BH) != (6,):
+            raise ValueError(f"F_BH must be (6,), is {np.shape(command.F_BH)}")
+        self._command = command
+
+    def recover(self) -> None:
+        """Leaves a fault of the gate; the next `write` ramps the force in."""
+        self._exchange.release()
+
+    def close(self) -> None:
+        """Ramps the force out, which takes 20 ms, and disconnects."""
+        if self._closing_s == math.inf:
+            self._exchange.release()
+            self._closing_s = time.monotonic()
+        self._thread.join(2.0)
+
+    def get_link_status(self) -> LinkStatus:
+        """Returns the counts; the protocol has no numbers to tell losses by."""
+        reading = self._exchange.reading
+        return LinkStatus(
+            received=0 if reading is None else reading.sequence,
+            rejected=self._exchange.rejected,
+            lateness_s=self._clock.calc_lateness(_LATENESS_TICKS),
+        )
+
+    def _run(self) -> None:
+        """Connects again and again, until the device is closed."""
+        try:
+            while self._closing_s == math.inf:
+                try:
+                    with connect(
+                        self._uri,
+                        compression=None,
+                        proxy=None,
+                        ping_interval=None,
+                        close_timeout=_RETRY_S,
+                    ) as socket:
+                        self._converse(socket)
+                except (OSError, WebSocketException) as error:
+                    self._connection = f"{self._uri}: {error}"
+                    self._exchange.fall_silent()
+                    time.sleep(_RETRY_S)
+        finally:
+            self._exchange.fall_silent()
+
+    def _converse(self, socket: ClientConnection) -> None:
+        """Answers each message in turn, until the device is closed."""
+        while not self._is_done():
+            try:
+                text = socket.recv(timeout=1e-9 * SILENT_NS)
+            except TimeoutError:
+                self._connection = f"{self._uri} says nothing"
+                self._exchange.fall_silent()
+                continue
+            answer = self._exchange.answer(text, self._command, time.monotonic_ns())
+            socket.send(answer)
+            if answer == ASK_FOR_DEVICES:
+                self._connection = f"{self._uri}: {self._exchange.complaint}"
+                time.sleep(_RETRY_S)
+            else:
+                self._has_reading.set()
+                self._clock.wait()
+
+    def _is_done(self) -> bool:
+        """Returns whether the device is closed and shows no force any more."""
+        closing_s = time.monotonic() - self._closing_s
+        return closing_s >= 0.0 and (
+            self._exchange.is_released or closing_s > _CLOSING_S
+        )
