@@ -29,6 +29,10 @@ _COMMANDS = {
         "drake_haptics.cli.stability",
         "Say how stable a scene is and how stiff its coupling could be.",
     ),
+    "log": (
+        "drake_haptics.cli.log",
+        "Look into, replay, compare and export recorded runs.",
+    ),
     "bench": (
         "drake_haptics.cli.bench",
         "Measure the contact query on this machine, beside other libraries.",

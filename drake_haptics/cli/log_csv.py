@@ -1,0 +1,29 @@
+"""`drake-haptics log csv`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from drake_haptics.cli.log_words import warn_of_gaps
+from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.tick_log.csv_export import write_csv
+from drake_haptics.tick_log.tick_log import TickLogReader
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("out", type=click.Path(dir_okay=False, allow_dash=True))
+def csv(file: Path, out: str) -> None:
+    """Write a log as a table: a line per tick, units in the names of the columns.
+
+    OUT is a file, or - for stdout. The numbers read back as the very same doubles.
+    """
+    reader = TickLogReader(file)
+    with (
+        click.open_file(out, "w", encoding="utf-8") as stream,
+        progress_bar() as show,
+    ):
+        write_csv(reader, stream, show)
+    warn_of_gaps(file, [gap.describe(reader.header.period_s) for gap in reader.gaps])

@@ -1,0 +1,84 @@
+"""`drake-haptics log replay`."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+from drake_haptics.cli.log_words import print_diff, warn_of_gaps
+from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.errors import UserError
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+from drake_haptics.tick_log.log_diff import compare_logs
+from drake_haptics.tick_log.mesh_digest import find_changed_meshes
+from drake_haptics.tick_log.replay import load_log_scene
+from drake_haptics.tick_log.replay import replay as replay_log
+from drake_haptics.tick_log.scene_settings import change_scene
+from drake_haptics.tick_log.tick_log import read_tick_log
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("scene", required=False)
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Change a value of the scene, like contact.stiffness_N_per_m=4000; may be"
+    " given again.",
+)
+@click.option(
+    "--log",
+    "out",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="OUT",
+    help="Keep the log of the replay.",
+)
+@json_option
+def replay(
+    file: Path,
+    scene: str | None,
+    settings: tuple[str, ...],
+    out: Path | None,
+    json_file: str | None,
+) -> None:
+    """Move the handle as it was recorded and compute everything else anew.
+
+    FILE is a log; SCENE another scene than the recorded one (a shipped scene's name or
+    a file). Then says how the replay differs from the record: in the same scene not
+    at all, to the last bit.
+    """
+    log = read_tick_log(file)
+    warn_of_gaps(file, log.describe_gaps())
+    if out is not None and out.exists() and os.path.samefile(out, file):
+        raise UserError(f"--log: {out} is the log that is replayed; give another file")
+    if scene is None:
+        for mesh in find_changed_meshes(log.header):
+            click.secho(
+                f"Warning: {mesh} is not what it was recorded on", fg="yellow", err=True
+            )
+    chosen = load_log_scene(log) if scene is None else load_scene(find_scene(scene))
+    if settings:
+        chosen = change_scene(chosen, settings)
+    with progress_bar() as show:
+        again = replay_log(log, chosen, out=out, progress=show)
+    difference = None
+    if again.header.period_s == log.header.period_s:
+        difference = compare_logs(log, again)
+    if json_file is not None:
+        figures = {"ticks": len(again.rows), "diff": None}
+        write_json(
+            figures | ({"diff": difference.to_dict()} if difference else {}), json_file
+        )
+    if json_file == "-":
+        return
+    click.echo(f"Replayed {log.count_ticks_from_start()} ticks.")
+    if difference is None:
+        click.echo("The rates differ, so there is nothing to compare tick by tick.")
+    else:
+        print_diff(difference, log.header.period_s)

@@ -1,0 +1,1 @@
+"""A log of every tick: recorded while a loop runs, read, replayed, compared."""

@@ -1,0 +1,190 @@
+"""Compares two runs, tick by tick."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from drake_haptics.tick_log.tick_log import TickLog
+from drake_haptics.tick_log.tick_log_error import TickLogError
+from drake_haptics.tick_log.tick_rows import (
+    CLOCK_QUANTITIES,
+    COUNTS,
+    POSE,
+    REALS,
+    VELOCITY,
+    WRENCH,
+    TickRows,
+)
+
+
+@dataclass(frozen=True)
+class QuantityDiff:
+    """How a quantity differs between two runs.
+
+    Attributes:
+        name: Of the quantity, and of its part.
+        unit: Of the differences; empty for counts.
+        differing: At how many ticks a bit of it differs.
+        first_tick: The first of them; None where there is none.
+        largest: Largest norm of the difference; NaN where one run was not finite.
+        largest_tick: Where that is.
+        rms: Root of the mean squared norm over all ticks compared.
+    """
+
+    name: str
+    unit: str
+    differing: int
+    first_tick: int | None
+    largest: float
+    largest_tick: int
+    rms: float
+
+
+@dataclass(frozen=True)
+class LogDiff:
+    """How two runs differ.
+
+    Attributes:
+        ticks: How many were compared: those that both logs have.
+        only_a: How many ticks only the first log has.
+        only_b: How many only the second has.
+        same_scene: Whether the same scene was recorded.
+        same_meshes: Whether it was on the same meshes.
+        quantities: All that was compared. The computer's and the device's clocks, which
+            differ in every run, are not.
+    """
+
+    ticks: int
+    only_a: int
+    only_b: int
+    same_scene: bool
+    same_meshes: bool
+    quantities: tuple[QuantityDiff, ...]
+
+    @property
+    def is_bit_equal(self) -> bool:
+        """Whether both have the same ticks and no bit of them differs."""
+        return (
+            self.only_a == 0
+            and self.only_b == 0
+            and not any(quantity.differing for quantity in self.quantities)
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns it ready for JSON; what is not finite becomes None."""
+        data = asdict(self)
+        for quantity in data["quantities"]:
+            for key in ("largest", "rms"):
+                if not np.isfinite(quantity[key]):
+                    quantity[key] = None
+        return {"is_bit_equal": self.is_bit_equal, **data}
+
+
+def compare_logs(a: TickLog, b: TickLog) -> LogDiff:
+    """Compares two runs at the ticks of the same numbers.
+
+    Raises:
+        TickLogError: They have no tick in common, or ticks of different lengths.
+    """
+    if a.header.period_s != b.header.period_s:
+        raise TickLogError(
+            f"the ticks of the logs last {a.header.period_s} s and"
+            f" {b.header.period_s} s and cannot be compared one by one"
+        )
+    rows_a, rows_b = find_common_rows(a, b)
+    if not len(rows_a):
+        raise TickLogError("the logs have no tick in common")
+    return LogDiff(
+        ticks=len(rows_a),
+        only_a=len(a.rows) - len(rows_a),
+        only_b=len(b.rows) - len(rows_b),
+        same_scene=a.header.scene == b.header.scene,
+        same_meshes=a.header.mesh_sha256 == b.header.mesh_sha256,
+        quantities=tuple(
+            _describe(rows_a.ticks, *difference)
+            for difference in iterate_differences(rows_a, rows_b)
+        ),
+    )
+
+
+def find_common_rows(a: TickLog, b: TickLog) -> tuple[TickRows, TickRows]:
+    """Returns the rows of both logs at the ticks that both have."""
+    ticks, in_a, in_b = np.intersect1d(
+        a.rows.ticks, b.rows.ticks, assume_unique=True, return_indices=True
+    )
+    return (
+        TickRows(ticks, a.rows.reals[in_a], a.rows.counts[in_a]),
+        TickRows(ticks, b.rows.reals[in_b], b.rows.counts[in_b]),
+    )
+
+
+# Parts of a quantity that have units of their own: name, unit, columns.
+_PARTS = {
+    POSE: (("rotation", "rad", slice(0, 4)), ("position", "m", slice(4, 7))),
+    VELOCITY: (
+        ("angular", "rad/s", slice(0, 3)),
+        ("linear", "m/s", slice(3, 6)),
+    ),
+    WRENCH: (("torque", "N·m", slice(0, 3)), ("force", "N", slice(3, 6))),
+}
+
+
+def iterate_differences(
+    a: TickRows, b: TickRows
+) -> Iterator[tuple[str, str, np.ndarray, np.ndarray]]:
+    """Yields for each quantity, part by part, how it differs between rows.
+
+    Yields:
+        Its name; the unit; (n,) the norm of the difference, of rotations the angle
+        between them; (n,) whether a bit differs.
+    """
+    for quantity, numbers in REALS.items():
+        if quantity in CLOCK_QUANTITIES:
+            continue
+        whole = (("", quantity.rpartition("_")[2], slice(None)),)
+        for part, unit, columns in _PARTS.get(numbers, whole):
+            x, y = (np.atleast_2d(rows[quantity].T)[columns].T for rows in (a, b))
+            bits = [np.ascontiguousarray(values).view(np.uint64) for values in (x, y)]
+            differs = (bits[0] != bits[1]).any(axis=1)
+            measure = _calc_angle if part == "rotation" else _calc_distance
+            norm = np.zeros(len(x))
+            norm[differs] = measure(x[differs], y[differs])
+            yield f"{quantity} {part}".rstrip(), unit, norm, differs
+    for quantity in COUNTS:
+        differs = a[quantity] != b[quantity]
+        norm = np.abs(a[quantity].astype(float) - b[quantity].astype(float))
+        yield quantity, "", norm, differs
+
+
+def _calc_distance(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Returns the norms of differences; what is as infinite in both does not differ."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        return np.linalg.norm(np.where(x == y, 0.0, x - y), axis=1)
+
+
+def _calc_angle(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Returns the angles between unit quaternions, exact where they are small."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        y = np.where((x * y).sum(axis=1, keepdims=True) < 0.0, -y, y)
+        half_chord = np.linalg.norm(x - y, axis=1) / 2.0
+        return 4.0 * np.arcsin(np.minimum(half_chord, 1.0))
+
+
+def _describe(
+    ticks: np.ndarray, name: str, unit: str, norm: np.ndarray, differs: np.ndarray
+) -> QuantityDiff:
+    """Returns the figures of a quantity."""
+    at = int(np.argmax(norm))  # the first that is not a number, if there is one
+    return QuantityDiff(
+        name=name,
+        unit=unit,
+        differing=int(np.count_nonzero(differs)),
+        first_tick=int(ticks[np.argmax(differs)]) if differs.any() else None,
+        largest=float(norm[at]),
+        largest_tick=int(ticks[at]),
+        rms=float(np.sqrt(np.mean(np.square(norm)))),
+    )

@@ -1,0 +1,125 @@
+"""A log that has been read, and what is missing in it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from drake_haptics.tick_log.log_scanner import Damage, EndMark, scan_blocks
+from drake_haptics.tick_log.tick_log_header import TickLogHeader, read_header
+from drake_haptics.tick_log.tick_rows import TickRows, join_rows
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Ticks that a log should have and has not.
+
+    Attributes:
+        first_tick: The first that is missing.
+        ticks: How many are; None where that cannot be told.
+    """
+
+    first_tick: int
+    ticks: int | None
+
+    def describe(self, period_s: float) -> str:
+        """Returns a sentence."""
+        where = f"from tick {self.first_tick} ({self.first_tick * period_s:.3f} s)"
+        if self.ticks is None:
+            return f"the log ends without its end mark: what came {where} on is missing"
+        return f"{self.ticks} ticks are missing {where}"
+
+
+@dataclass(frozen=True, eq=False)
+class TickLog:
+    """A recorded run.
+
+    Attributes:
+        header: What was recorded.
+        rows: Every tick that is sound, in order.
+        gaps: What is missing, in order.
+        damaged_blocks: Places in the file that could not be read.
+    """
+
+    header: TickLogHeader
+    rows: TickRows
+    gaps: tuple[Gap, ...]
+    damaged_blocks: int
+
+    def describe_gaps(self) -> list[str]:
+        """Returns a sentence for each gap."""
+        return [gap.describe(self.header.period_s) for gap in self.gaps]
+
+    def count_ticks_from_start(self) -> int:
+        """Returns how many ticks there are from the first to the first gap."""
+        return self.gaps[0].first_tick if self.gaps else len(self.rows)
+
+
+class TickLogReader:
+    """Reads a log block by block, so that a long one need not fit into memory.
+
+    Attributes:
+        header: What was recorded.
+        gaps: What is missing of what has been read so far.
+        damaged_blocks: Places that could not be read so far.
+        position_bytes: How far the file has been read.
+        size_bytes: How long it was when it was opened.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]):
+        """Reads the head.
+
+        Args:
+            path: The file.
+
+        Raises:
+            TickLogError: It is no log, of another version, or its head is damaged.
+            OSError: It cannot be opened.
+        """
+        self._path = Path(path)
+        self.gaps: list[Gap] = []
+        self.damaged_blocks = 0
+        with open(self._path, "rb") as stream:
+            self.header = read_header(stream, str(self._path))
+            self._first_block = self.position_bytes = stream.tell()
+            self.size_bytes = os.fstat(stream.fileno()).st_size
+
+    def iterate_blocks(self) -> Iterator[TickRows]:
+        """Yields the ticks of every sound block, in order.
+
+        After the last one, `gaps` and `damaged_blocks` tell what is missing.
+        """
+        self.gaps, self.damaged_blocks = [], 0
+        next_tick = 0
+        with open(self._path, "rb") as stream:
+            stream.seek(self._first_block)
+            for item in scan_blocks(stream):
+                if isinstance(item, Damage):
+                    self.damaged_blocks += 1
+                    continue
+                first = item.ticks if isinstance(item, EndMark) else int(item.ticks[0])
+                if first > next_tick:
+                    self.gaps.append(Gap(next_tick, first - next_tick))
+                if isinstance(item, EndMark):
+                    return
+                self.position_bytes = stream.tell()
+                yield item
+                next_tick = first + len(item)
+        self.gaps.append(Gap(next_tick, None))
+
+
+def read_tick_log(path: str | os.PathLike[str]) -> TickLog:
+    """Reads a whole log: 400 bytes of memory per tick, 1.4 GB for an hour at 1 kHz.
+
+    Args:
+        path: The file. It may be truncated or damaged, or still be written.
+
+    Raises:
+        TickLogError: It is no log, of another version, or its head is damaged.
+        OSError: It cannot be opened.
+    """
+    reader = TickLogReader(path)
+    rows = join_rows(list(reader.iterate_blocks()))
+    return TickLog(reader.header, rows, tuple(reader.gaps), reader.damaged_blocks)

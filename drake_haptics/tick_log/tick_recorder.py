@@ -1,0 +1,187 @@
+"""Writes a log while a loop runs. No tick waits for the disk."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections import deque
+from pathlib import Path
+
+import numpy as np
+
+from drake_haptics.tick_log.tick_block import MAX_BLOCK_TICKS, pack_block
+from drake_haptics.tick_log.tick_log_error import TickLogError
+from drake_haptics.tick_log.tick_log_header import TickLogHeader, pack_header
+from drake_haptics.tick_log.tick_rows import COUNTS, FIRST_SIGNAL, NUM_REALS
+
+# How often what has been recorded is handed to the system, s.
+_WRITE_PERIOD_S = 0.25
+# How much may wait for a slow disk: 256 Ki ticks, 100 MB, four minutes at 1 kHz.
+_MAX_CHUNKS = 256
+
+
+class _Chunk:
+    """Room for one block of ticks. Rows below `filled` are final."""
+
+    def __init__(self, first_tick: int):
+        self.first_tick = first_tick
+        self.reals = np.zeros((MAX_BLOCK_TICKS, NUM_REALS))
+        self.counts = np.zeros((MAX_BLOCK_TICKS, len(COUNTS)), np.uint32)
+        self.filled = 0
+
+
+class TickRecorder:
+    """A log that is being written.
+
+    A thread of its own packs and writes what `add` has noted, four times per second,
+    and hands it to the system: a process that is killed loses less than the last
+    second. (A computer that loses its power may lose more.)
+
+    If the disk cannot keep up with some minutes of ticks, or fails, ticks are left
+    out, and `close` says so: the loop goes on. Use it as a context manager; only a log
+    that was closed has the mark of a complete one.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], header: TickLogHeader):
+        """Creates the file, in place of one that is there, and writes its head.
+
+        Args:
+            path: The file.
+            header: What is recorded.
+
+        Raises:
+            OSError: The system refuses.
+        """
+        self._path = Path(path)
+        self._stream = open(self._path, "wb")
+        self._stream.write(pack_header(header))
+        self._stream.flush()
+        self._start_s = time.perf_counter()
+        self._ticks = 0
+        self._left_out = 0
+        self._chunk = _Chunk(0)
+        # The last one is being filled; the writer takes from the first.
+        self._chunks = deque([self._chunk])
+        self._written = 0
+        self._error: OSError | None = None
+        self._stop = threading.Event()
+        self._thread = threading.Thread(
+            target=self._write_all, name="tick_recorder", daemon=True
+        )
+        self._thread.start()
+
+    @property
+    def ticks(self) -> int:
+        """Ticks so far."""
+        return self._ticks
+
+    def add(
+        self,
+        time_s: float,
+        signals: np.ndarray,
+        counts: tuple[int, ...],
+        *,
+        query_s: float,
+        distance_m: float,
+        device_time_s: float,
+    ) -> None:
+        """Notes a tick; takes some microseconds and never waits.
+
+        Args:
+            time_s: Time of the simulation, s.
+            signals: (38,) the quantities from `X_WH` to `V_WTool`, as `REALS` has them.
+            counts: Those of `COUNTS`, in [0, 2³²).
+            query_s: How long the contact query took, s.
+            distance_m: Of the nearest contact, m; infinite where there is none.
+            device_time_s: Of the device's own clock, s; NaN where it is simulated.
+        """
+        tick = self._ticks
+        self._ticks = tick + 1
+        chunk = self._chunk
+        i = chunk.filled
+        if i == MAX_BLOCK_TICKS:
+            if len(self._chunks) >= _MAX_CHUNKS:
+                self._left_out += 1
+                return
+            chunk, i = _Chunk(tick), 0
+            self._chunk = chunk
+            self._chunks.append(chunk)
+        clock_s = time.perf_counter() - self._start_s
+        row = chunk.reals[i]
+        row[:FIRST_SIGNAL] = (time_s, clock_s, query_s, device_time_s, distance_m)
+        row[FIRST_SIGNAL:] = signals
+        chunk.counts[i] = counts
+        # Last: from here on the writer may take the row.
+        chunk.filled = i + 1
+
+    def close(self) -> None:
+        """Writes the rest and the end mark; may be called again.
+
+        Raises:
+            TickLogError: The log is not complete; says what is missing.
+        """
+        if self._stream.closed:
+            return
+        self._stop.set()
+        self._thread.join()
+        try:
+            self._stream.close()
+        except OSError as error:  # what could not be written still cannot
+            self._error = self._error or error
+        if self._error is not None:
+            raise TickLogError(
+                f"{self._path}: the log ends early, the system refused to write on:"
+                f" {self._error.strerror}; make room and record again"
+            ) from self._error
+        if self._left_out:
+            raise TickLogError(
+                f"{self._path}: {self._left_out} ticks are missing in the log, the"
+                " disk was too slow; record to a faster one"
+            )
+
+    def __enter__(self) -> TickRecorder:
+        """Returns the recorder."""
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        """Closes the log; what went wrong before is worth more than what now does."""
+        try:
+            self.close()
+        except TickLogError:
+            if kind is None:
+                raise
+
+    def _write_all(self) -> None:
+        """Writes until told to stop: what the thread does."""
+        stopped = False
+        try:
+            while not stopped:
+                stopped = self._stop.wait(_WRITE_PERIOD_S)
+                self._write_noted()
+            nothing = self._chunk.reals[:0], self._chunk.counts[:0]
+            self._stream.write(pack_block(self._ticks, *nothing))
+            self._stream.flush()
+        except OSError as error:
+            self._error = error
+
+    def _write_noted(self) -> None:
+        """Writes what has been noted since the last time."""
+        while True:
+            chunk = self._chunks[0]
+            filled = chunk.filled
+            if filled > self._written:
+                rows = slice(self._written, filled)
+                self._stream.write(
+                    pack_block(
+                        chunk.first_tick + self._written,
+                        chunk.reals[rows],
+                        chunk.counts[rows],
+                    )
+                )
+                self._written = filled
+            if filled < MAX_BLOCK_TICKS or len(self._chunks) == 1:
+                self._stream.flush()
+                return
+            self._chunks.popleft()
+            self._written = 0
