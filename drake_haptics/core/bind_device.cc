@@ -314,7 +314,10 @@ void BindGate(nb::module_& m) {
           "(6,) the wrench that is shown, N·m and N.")
       .def_ro("scale", &dh_gate::scale, "Share of it that is shown, 0 to 1.")
       .def_prop_ro("rejected", &dh_gate_rejected, "Packets refused so far.")
-      .def_prop_ro("counts", &Counts, "Packets by verdict.");
+      .def_prop_ro("counts", &Counts, "Packets by verdict.")
+      // Drake copies what is in a state.
+      .def("__deepcopy__",
+           [](const dh_gate& gate, nb::handle) { return gate; });
 }
 
 }  // namespace
