@@ -1692,3 +1692,218 @@ class DeviceGate:
     @property
     def counts(self) -> dict[str, int]:
         """Packets by verdict."""
+
+class ServoLaw:
+    """
+    What a servo shows between the ticks of a slower loop: the last local wrench F − K δ − B (V − V₀), δ = [rotation vector; translation] from X₀ to X, each of force and torque within its limit. A wrench that is not renewed is shown for `hold_s`, then goes to zero within `release_s`; one that is renewed comes back within `engage_s`. Wrenches are [τ; f] at the handle's origin, N·m and N, in one frame with poses [qw qx qy qz x y z], m, and velocities [ω; v], rad/s and m/s.
+    """
+
+    def __init__(self, *, max_force_N: float, max_torque_Nm: float, hold_s: float = 0.02, release_s: float = 0.02, engage_s: float = 0.2) -> None:
+        """
+        Raises:
+            ValueError: a time is not finite and above zero.
+        """
+
+    def adopt(self, F: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], X: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], K: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')] | None, B: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')] | None, time_s: float) -> None:
+        """
+        Takes a wrench (6,) as of `time_s`, for the pose X₀ (7,) and the velocity V₀ (6,), with its slopes K and B (6, 6). Only the nearest symmetric slope without a negative eigenvalue acts: a servo gives no energy. What is not finite ends all force at once.
+        """
+
+    def step(self, time_s: float, X: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """
+        Returns the wrench (6,) to show at `time_s`; zero where X (7,) or V (6,) is not finite.
+        """
+
+    @property
+    def scale(self) -> float:
+        """Part of the wrench that is shown, 0 to 1."""
+
+    @property
+    def num_not_finite(self) -> int:
+        """Wrenches and states that were not finite."""
+
+    @property
+    def num_not_passive(self) -> int:
+        """Wrenches whose K or B was not passive."""
+
+class HandleState:
+    """What a device last told, in its base frame B."""
+
+    @property
+    def number(self) -> int:
+        """Rises with every state that counts, also when the driver is restarted."""
+
+    @property
+    def time_s(self) -> float:
+        """When, by the driver's clock, s."""
+
+    @property
+    def X_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
+        """(7,) pose [qw qx qy qz x y z], m."""
+
+    @property
+    def V_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """(6,) velocity [ω; v], rad/s and m/s."""
+
+    @property
+    def F_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """(6,) wrench that the device showed, [τ; f], N·m and N."""
+
+    @property
+    def max_force_N(self) -> float:
+        """The device's limit, N."""
+
+    @property
+    def max_torque_Nm(self) -> float:
+        """The device's limit, N·m."""
+
+    @property
+    def buttons(self) -> int:
+        """Bit i: button i is held."""
+
+    @property
+    def gate(self) -> int:
+        """Number of a `GateState`."""
+
+    @property
+    def fault(self) -> int:
+        """Number of a `Fault`."""
+
+class UdpServoStatus:
+    """What a `UdpServo` knows. Counted from the start."""
+
+    @property
+    def received(self) -> int:
+        """States that came whole."""
+
+    @property
+    def lost(self) -> int:
+        """States that never came, by the gaps."""
+
+    @property
+    def late(self) -> int:
+        """States that came after a newer one."""
+
+    @property
+    def duplicate(self) -> int:
+        """States that came before."""
+
+    @property
+    def damaged(self) -> int:
+        """Packets that are no whole state."""
+
+    @property
+    def not_finite(self) -> int:
+        """States without a finite pose, velocity and wrench."""
+
+    @property
+    def restarts(self) -> int:
+        """Of the driver."""
+
+    @property
+    def silences(self) -> int:
+        """Times that no state came for longer than the time to live."""
+
+    @property
+    def refused(self) -> int:
+        """Packets that the driver refused, by its own count."""
+
+    @property
+    def sent(self) -> int:
+        """Commands."""
+
+    @property
+    def wrenches_not_finite(self) -> int:
+        """Wrenches that were not finite, and shown as zero."""
+
+    @property
+    def wrenches_not_passive(self) -> int:
+        """Wrenches whose K or B gave energy, which was left out."""
+
+    @property
+    def scale(self) -> float:
+        """Part of the wrench that is sent."""
+
+    @property
+    def is_running(self) -> bool:
+        """False once closed."""
+
+    @property
+    def is_heard(self) -> bool:
+        """States are coming."""
+
+    @property
+    def is_active(self) -> bool:
+        """A wrench may be shown."""
+
+    @property
+    def has_realtime_priority(self) -> bool:
+        """Whether the system granted it to the thread."""
+
+    @property
+    def has_locked_memory(self) -> bool:
+        """Whether the system keeps the servo from being paged out."""
+
+class UdpServo:
+    """
+    A thread that answers every state of a device's driver with the wrench of a `ServoLaw`. It runs without Python; no method but `close` waits for it. One thread of the program may use it.
+    """
+
+    def __init__(self, host: str, port: int, *, ttl_s: float = 0.05, max_rate_hz: float = 4000.0, hold_s: float = 0.02, release_s: float = 0.02, engage_s: float = 0.2) -> None:
+        """
+        Starts to look for the driver at that address.
+
+        Args:
+            host: name or number, IPv4 or IPv6.
+            port: UDP.
+            ttl_s: how long the device shows a command that is not renewed; silence of the driver for longer is a fault.
+            max_rate_hz: of commands.
+            hold_s, release_s, engage_s: of the `ServoLaw`.
+
+        Raises:
+            ValueError: an option is not finite and above zero.
+            RuntimeError: there is no such host, or no socket to be had.
+        """
+
+    def read(self) -> HandleState | None:
+        """Returns the newest `HandleState`; None before the first."""
+
+    def publish(self, F_BH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], X_BH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_BH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], K_B: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')] | None = None, B_B: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')] | None = None) -> None:
+        """
+        Shows a local wrench from now on, as `ServoLaw.adopt` does; the first one enables the device.
+        """
+
+    def recover(self) -> None:
+        """
+        Takes up again after a fault: disabled until the device is idle, then enabled.
+        """
+
+    def close(self) -> None:
+        """
+        Disables the device and ends the thread, in some 30 ms. May be called again.
+        """
+
+    def status(self) -> UdpServoStatus:
+        """Returns a `UdpServoStatus`."""
+
+    def lateness_s(self) -> tuple[float, float, float]:
+        """
+        Returns p50, p99 and p99.9 of how much later than the promptest one of the last 10 s each state was answered, s, rounded up by at most a fifth.
+        """
+
+    @property
+    def local_port(self) -> int:
+        """Our own UDP port."""
+
+def handle_slopes(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], coupling_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], contact_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]:
+    """
+    How the wrench on a handle changes with the handle's motion, the tool following at rest between coupling and contact (springs in series; Guyan, AIAA Journal 3(2), 1965).
+
+    Args:
+        q_WH, q_WTool: (7,) poses [qw qx qy qz x y z] of handle and tool.
+        coupling_model: (78,) [F; K; B] of the coupling on the tool, at To in W.
+        contact_model: (78,) the sum of all others.
+
+    Returns:
+        (72,): K then B by rows, at Ho in W; symmetric, no negative eigenvalue. The wrench is F − K δ − B ΔV.
+    """

@@ -27,5 +27,6 @@ void BindHand(nanobind::module_& m);
 void BindEnergy(nanobind::module_& m);
 void BindClock(nanobind::module_& m);
 void BindDevice(nanobind::module_& m);
+void BindServo(nanobind::module_& m);
 
 }  // namespace drake_haptics

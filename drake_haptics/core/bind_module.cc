@@ -28,4 +28,5 @@ NB_MODULE(_core, m) {
   drake_haptics::BindEnergy(m);
   drake_haptics::BindClock(m);
   drake_haptics::BindDevice(m);
+  drake_haptics::BindServo(m);
 }

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+namespace drake_haptics {
+
+/// Which packet of a numbered series came, in what order, and which did not.
+/// Numbers rise by one and wrap at 2³²; they are compared by serial-number
+/// arithmetic (RFC 1982).
+class SequenceWindow {
+ public:
+  enum class Arrival { kNewest, kLate, kDuplicate };
+
+  /// Counts a packet. One more than 64 numbers late counts as a duplicate.
+  Arrival Accept(std::uint32_t sequence);
+
+  /// Numbers that were skipped and have not come since.
+  std::int64_t num_lost() const { return num_lost_; }
+  std::int64_t num_late() const { return num_late_; }
+  std::int64_t num_duplicate() const { return num_duplicate_; }
+
+  /// Begins a new series, and goes on counting.
+  void Restart() { has_newest_ = false; }
+
+ private:
+  bool has_newest_ = false;
+  std::uint32_t newest_ = 0;
+  std::uint64_t came_ = 0;  // bit i: newest_ - i has come
+  std::int64_t num_lost_ = 0;
+  std::int64_t num_late_ = 0;
+  std::int64_t num_duplicate_ = 0;
+};
+
+}  // namespace drake_haptics

@@ -1,0 +1,139 @@
+"""A device whose driver is another process, reached by UDP."""
+
+from __future__ import annotations
+
+import weakref
+
+from drake_haptics._core import HandleState, UdpServo
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceCommand,
+    DeviceError,
+    DeviceReading,
+    Fault,
+    GateState,
+    LinkStatus,
+)
+
+
+class UdpDevice(DeviceBackend):
+    """A device behind a driver that speaks the protocol of docs/device-protocol.md.
+
+    A thread without Python answers each sample of the driver with the wrench of the
+    last `write`, carried on by its slopes; see docs/servo.md. If this process stalls,
+    that wrench is shown for `hold_s` more and then released, and it comes back
+    gently.
+
+    A fault of the device, the restart of its driver and its silence for longer than
+    the time to live are each held as `GateState.FAULT` until `recover`.
+    """
+
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        *,
+        ttl_s: float = 0.05,
+        hold_s: float = 0.02,
+        max_rate_hz: float = 4000.0,
+    ):
+        """Starts to look for the driver; does not wait for it.
+
+        Args:
+            host: Name or number of the driver's machine, IPv4 or IPv6. A name is
+                looked up here.
+            port: Its UDP port.
+            ttl_s: How long the device shows a wrench that no packet renews, s.
+            hold_s: How long a wrench is shown that no `write` renews, s.
+            max_rate_hz: Largest rate of packets to the device, Hz.
+
+        Raises:
+            ValueError: The port or a time is out of range.
+            DeviceError: There is no such host.
+        """
+        if not 0 < port < 65536:
+            raise ValueError(f"port must be from 1 to 65535, is {port}")
+        self._address = f"udp://{f'[{host}]' if ':' in host else host}:{port}"
+        try:
+            self._servo = UdpServo(
+                host, port, ttl_s=ttl_s, hold_s=hold_s, max_rate_hz=max_rate_hz
+            )
+        except RuntimeError as error:
+            raise DeviceError(
+                f"{self._address}: {error}; check the address of the driver"
+            ) from error
+        self._reading: DeviceReading | None = None
+        # Also where the program ends without close.
+        self._finalizer = weakref.finalize(self, self._servo.close)
+
+    @property
+    def address(self) -> str:
+        """Where the driver is, "udp://host:port"."""
+        return self._address
+
+    def read(self) -> DeviceReading | None:
+        """Returns the newest reading; None before the first has come."""
+        state = self._servo.read()
+        if state is None:
+            return None
+        last = self._reading
+        gate, fault = _GATES[state.gate], _FAULTS[state.fault]
+        # A fault on this side of the way comes without a new sample.
+        if (
+            last is None
+            or last.sequence != state.number
+            or (last.gate, last.fault) != (gate, fault)
+        ):
+            self._reading = last = _to_reading(state, gate, fault)
+        return last
+
+    def write(self, command: DeviceCommand) -> None:
+        """Asks for a wrench from now on; the first call also enables the device."""
+        self._servo.publish(
+            command.F_BH, command.X_BH, command.V_BH, command.K_B, command.B_B
+        )
+
+    def recover(self) -> None:
+        """Takes a device at fault up again: disabled, then enabled by `write`."""
+        self._servo.recover()
+
+    def close(self) -> None:
+        """Ends at zero force and gives the device up; may be called again."""
+        self._finalizer()
+
+    def get_link_status(self) -> LinkStatus:
+        """Returns how the way to the device does."""
+        status = self._servo.status()
+        return LinkStatus(
+            received=status.received,
+            lost=status.lost,
+            rejected=status.late
+            + status.duplicate
+            + status.damaged
+            + status.not_finite,
+            lateness_s=self._servo.lateness_s() if status.received else None,
+        )
+
+    def explain_silence(self) -> str:
+        """Returns what to do where no reading comes, for a message."""
+        return (
+            f"nothing answers at {self._address}: start the driver there, for example"
+            " 'drake-haptics device'"
+        )
+
+
+_GATES = tuple(GateState)
+_FAULTS = tuple(Fault)
+
+
+def _to_reading(state: HandleState, gate: GateState, fault: Fault) -> DeviceReading:
+    return DeviceReading(
+        sequence=state.number,
+        time_s=state.time_s,
+        X_BH=state.X_BH,
+        V_BH=state.V_BH,
+        F_BH=state.F_BH,
+        buttons=state.buttons,
+        gate=gate,
+        fault=fault,
+    )
