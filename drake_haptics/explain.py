@@ -24,6 +24,7 @@ _WHY = {
     "pre_contact_braking": "effects.braking",
     "tool_gravity": "effects.gravity",
     "passivity_control": "effects.passivity",
+    "tick_log_sink": "--log: notes every tick",
     "haptic_visualizer": "draws the page or the recording",
 }
 REST = "Drake and the rest"

@@ -13,6 +13,7 @@ from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.scene import Scene
 from drake_haptics.scene_check import SceneWarning
+from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 
 def build_scene(
@@ -20,6 +21,7 @@ def build_scene(
     scene: Scene,
     meshcat: Meshcat | None,
     device: DeviceBackend | None = None,
+    recorder: TickRecorder | None = None,
 ) -> HapticDiagram:
     """Builds the diagram, with a bar while meshes are cut into pieces.
 
@@ -27,7 +29,7 @@ def build_scene(
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SceneWarning)
-        haptic = _build(console, scene, meshcat, device)
+        haptic = _build(console, scene, meshcat, device, recorder)
     for warning in caught:
         if issubclass(warning.category, SceneWarning):
             click.secho(f"Warning: {warning.message}", fg="yellow", err=True)
@@ -43,6 +45,7 @@ def _build(
     scene: Scene,
     meshcat: Meshcat | None,
     device: DeviceBackend | None,
+    recorder: TickRecorder | None,
 ) -> HapticDiagram:
     """Builds the diagram behind the bar."""
     quiet = not console.is_terminal
@@ -57,5 +60,5 @@ def _build(
             bars.update(tasks[name], completed=share)
 
         return BuildHapticDiagram(
-            scene, device=device, meshcat=meshcat, progress=report
+            scene, device=device, recorder=recorder, meshcat=meshcat, progress=report
         )

@@ -29,6 +29,8 @@ from drake_haptics.simulation import RunError
 from drake_haptics.simulation import run as run_haptic
 from drake_haptics.stage import open_meshcat, set_stage
 from drake_haptics.tick_clock import TickClock
+from drake_haptics.tick_log.loop_log import make_log_header
+from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 _EXPLAINED_S = 2.0
 
@@ -77,6 +79,12 @@ _EXPLAINED_S = 2.0
     help="Write what is to be seen as one HTML file that plays in any browser.",
 )
 @click.option(
+    "--log",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE",
+    help="Note every tick in a file, for `drake-haptics log`.",
+)
+@click.option(
     "--json",
     "json_file",
     type=click.Path(dir_okay=False, allow_dash=True),
@@ -100,6 +108,7 @@ def run(
     headless: bool,
     explain: bool,
     record: Path | None,
+    log: Path | None,
     json_file: str | None,
     pieces: bool,
     port: int | None,
@@ -126,12 +135,14 @@ def run(
     meshcat = None if headless and record is None else open_meshcat(port)
     timer = CallbackTimer() if explain else None
     with ExitStack() as closing:
-        backend = None
+        backend, recorder = None, None
+        if log is not None:
+            recorder = closing.enter_context(TickRecorder(log, make_log_header(chosen)))
         if device is not None:
             # Closed whatever happens: at zero force.
             backend = closing.enter_context(open_device(device, chosen, meshcat))
         with timer or nullcontext():
-            haptic = build_scene(console, chosen, meshcat, backend)
+            haptic = build_scene(console, chosen, meshcat, backend, recorder)
         if meshcat is not None:
             _prepare_page(console, haptic, meshcat, pieces, record, headless)
         # A device is never hurried.
@@ -180,6 +191,8 @@ def run(
             has_friction=chosen.effects.friction is not None,
         )
         console.print(f"Wrote [bold]{record}[/].", soft_wrap=True)
+    if log is not None:
+        console.print(f"Wrote [bold]{log}[/].", soft_wrap=True)
     if json_file is not None:
         write_json(figures, json_file)
     if unstable is not None:

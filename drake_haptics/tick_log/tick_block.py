@@ -14,7 +14,7 @@ import numpy as np
 from drake_haptics.tick_log.tick_rows import COUNTS, NUM_REALS, TickRows
 
 BLOCK_MAGIC = b"\x89DHBLK\r\n"
-MAX_BLOCK_TICKS = 1024
+MAX_BLOCK_TICKS = 256
 MAX_TICK = 1 << 48
 
 _HEADER = struct.Struct("<8sQIII")
