@@ -20,10 +20,15 @@ from drake_haptics.errors import UserError
 _COMMANDS = {
     "run": ("drake_haptics.cli.run", "Run a scene, or a tool mesh on another mesh."),
     "scenes": ("drake_haptics.cli.scenes", "List the scenes that come along."),
+    "devices": ("drake_haptics.cli.devices", "List the devices that come along."),
     "check": ("drake_haptics.cli.check", "Report what a mesh file is and lacks."),
     "decompose": (
         "drake_haptics.cli.decompose",
         "Cut the surface of a mesh into convex pieces.",
+    ),
+    "device": (
+        "drake_haptics.cli.device",
+        "Serve a simulated device to `run` in another terminal.",
     ),
     "stability": (
         "drake_haptics.cli.stability",

@@ -1,0 +1,91 @@
+"""`drake-haptics device`."""
+
+from __future__ import annotations
+
+import click
+from rich.console import Console
+
+from drake_haptics.cli.driver_status import DriverStatusLine, make_driver_summary
+from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.device.simulated_driver import make_simulated_driver
+from drake_haptics.device.stop_signals import stop_on_signals
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+
+
+@click.command()
+@click.argument("scene", default="cup_spoon")
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=7400,
+    show_default=True,
+    help="UDP port to listen at; 0: any free one.",
+)
+@click.option(
+    "--bind",
+    default="127.0.0.1",
+    show_default=True,
+    metavar="ADDRESS",
+    help="Address to listen at. Any host that reaches it can move the device.",
+)
+@click.option(
+    "--rate",
+    type=click.FloatRange(10, 10000),
+    metavar="HZ",
+    help="Ticks per second.  [default: the scene's]",
+)
+@click.option(
+    "--ttl-ms",
+    type=click.FloatRange(0, 1000, min_open=True),
+    default=100.0,
+    show_default=True,
+    help="A command is shown for so long at most, then the force goes to zero and the"
+    " device is at fault.",
+)
+@click.option(
+    "--duration",
+    type=click.FloatRange(0, min_open=True),
+    metavar="S",
+    help="Stop after so many seconds.  [default: at Ctrl-C]",
+)
+@json_option
+def device(
+    scene: str,
+    port: int,
+    bind: str,
+    rate: float | None,
+    ttl_ms: float,
+    duration: float | None,
+    json_file: str | None,
+) -> None:
+    """Serve a simulated device to `drake-haptics run` in another terminal.
+
+    SCENE is the name of a shipped scene (see `drake-haptics scenes`) or a scene
+    file: the device is its device, in its hand, which begins to move when the host
+    enables the device.
+
+    Whatever fails, host, network or this program's end, the device goes to zero
+    force. Exits with 0 at the end or at Ctrl-C.
+    """
+    console = Console(highlight=False, stderr=json_file == "-")
+    driver = make_simulated_driver(
+        load_scene(find_scene(scene)),
+        rate_hz=rate,
+        max_ttl_s=1e-3 * ttl_ms,
+        bind=bind,
+        port=port,
+    )
+    host, port = driver.address
+    console.print("The device waits. In another terminal:")
+    console.print(
+        f"  [bold]drake-haptics run {scene} --device udp://{host}:{port}[/]",
+        soft_wrap=True,
+    )
+    console.print("Ctrl-C ends it.", style="dim")
+    with stop_on_signals(driver.stop), DriverStatusLine(console, driver) as status:
+        driver.run(duration, on_tick=status.update)
+    figures = driver.to_dict()
+    console.print(make_driver_summary(figures))
+    if json_file is not None:
+        write_json(figures, json_file)

@@ -1,0 +1,232 @@
+"""The reference driver: an arm, the gate and a UDP port, tick by tick."""
+
+from __future__ import annotations
+
+import gc
+import math
+import secrets
+import time
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+
+from drake_haptics import _core
+from drake_haptics.device.backend import DeviceReading, Fault, GateState
+from drake_haptics.device.driver_socket import DriverSocket, Peer
+from drake_haptics.device.driver_statistics import DriverStatistics
+from drake_haptics.tick_clock import TickClock
+
+# A tick looks at so many packets and leaves the rest: a host sends one or two, and a
+# flood must not keep the loop from its next tick.
+_MAX_PACKETS_PER_TICK = 64
+_WRAP = 1 << 32
+
+
+class DrivenArm(Protocol):
+    """What a driver asks of the arm that it drives."""
+
+    def start(self) -> None:
+        """Called once, before the first tick in which a wrench may be shown."""
+
+    def step(self, F_BH: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Shows a wrench for a period.
+
+        Args:
+            F_BH: (6,) wrench [τ; f] on the handle at Ho, N·m and N, within limits.
+
+        Returns:
+            X_BH (7,) = [qw qx qy qz x y z], m, and V_BH (6,) = [ω; v], rad/s and
+            m/s, at the end of it.
+        """
+
+
+class DeviceDriver:
+    """Serves an arm to one host at a time over the UDP protocol.
+
+    Every tick takes the commands that have come, has the gate decide what is shown,
+    moves the arm, and answers the host with one state. Nothing waits for the host. The
+    protocol is that of docs/device-protocol.md.
+
+    Args:
+        arm: What it drives, at rest.
+        max_force_N: Largest force that is ever shown, N.
+        max_torque_Nm: Largest torque, N·m.
+        max_ttl_s: A command that is not renewed is shown no longer than this, s.
+        rate_hz: Ticks per second, Hz.
+        bind: Address to listen at; only this machine can reach 127.0.0.1.
+        port: UDP port to listen at; 0 lets the system choose.
+        clock_ns: Reads a clock that never goes back, ns.
+
+    Raises:
+        UserError: The address or port cannot be had.
+        ValueError: A limit or the rate is out of range.
+    """
+
+    def __init__(
+        self,
+        arm: DrivenArm,
+        *,
+        max_force_N: float,
+        max_torque_Nm: float,
+        max_ttl_s: float,
+        rate_hz: float,
+        bind: str,
+        port: int,
+        clock_ns: Callable[[], int] = time.monotonic_ns,
+    ):
+        self._arm = arm
+        self._limits = (max_force_N, max_torque_Nm)
+        self._gate = _core.DeviceGate(
+            max_force_N=max_force_N, max_torque_Nm=max_torque_Nm, max_ttl_s=max_ttl_s
+        )
+        self._period_s = 1.0 / rate_hz
+        self._pace = TickClock(self._period_s)
+        self._largest_late_s = 0.0
+        self._clock_ns = clock_ns
+        self._start_ns = clock_ns()
+        self._statistics = DriverStatistics(max_force_N, max_torque_Nm)
+        # Tells a host that this is another run of the driver than before.
+        self._boot = 1 + secrets.randbelow(_WRAP - 1)
+        self._peer: Peer | None = None
+        self._arm_started = False
+        self._stops = False
+        self._reading = self._move_arm(np.zeros(6), GateState.IDLE, Fault.NONE)
+        self._socket = DriverSocket(bind, port)
+
+    @property
+    def address(self) -> Peer:
+        """Where it listens: host and port."""
+        return self._socket.address
+
+    @property
+    def pace(self) -> TickClock:
+        """What paces the ticks."""
+        return self._pace
+
+    @property
+    def reading(self) -> DeviceReading:
+        """What the device last told of itself."""
+        return self._reading
+
+    @property
+    def packets(self) -> dict[str, int]:
+        """How many packets came, by the gate's verdict on them."""
+        return {name: count for name, count in self._gate.counts.items() if count}
+
+    def stop(self) -> None:
+        """Ends `run` after the tick under way."""
+        self._stops = True
+
+    def run(
+        self,
+        duration_s: float | None = None,
+        on_tick: Callable[[], None] | None = None,
+    ) -> None:
+        """Serves in real time. However it ends, it ends at zero force.
+
+        Args:
+            duration_s: For how long, s; until `stop` where not given.
+            on_tick: Called after every tick.
+        """
+        end_s = math.inf if duration_s is None else time.monotonic() + duration_s
+        # Collecting garbage over all objects of a simulation takes many ticks.
+        gc.collect()
+        gc.freeze()
+        try:
+            while not self._stops and time.monotonic() < end_s:
+                self.tick(self._pace.wait())
+                if on_tick is not None:
+                    on_tick()
+        finally:
+            gc.unfreeze()
+            self._show(np.zeros(6), GateState.IDLE, Fault.NONE)
+            self._socket.close()
+
+    def tick(self, late_s: float = 0.0) -> None:
+        """Does what is to be done in one period.
+
+        Args:
+            late_s: By how much the loop missed the tick's time, s.
+        """
+        gate, reading = self._gate, self._reading
+        now_ns = self._clock_ns()
+        self._largest_late_s = max(self._largest_late_s, late_s)
+        if late_s > self._period_s:
+            # The gate learns of the silence before it hears what queued up in it.
+            gate.step(now_ns, reading.X_BH, reading.V_BH)
+        for packet, sender in self._socket.receive(_MAX_PACKETS_PER_TICK):
+            if gate.receive(now_ns, packet) == "accepted":
+                self._peer = sender
+        F_BH = gate.step(now_ns, reading.X_BH, reading.V_BH)
+        self._show(F_BH, GateState(gate.state), Fault(gate.fault))
+
+    def _show(self, F_BH: np.ndarray, gate: GateState, fault: Fault) -> None:
+        """Has the arm show a wrench, books it and tells the host."""
+        if gate == GateState.ACTIVE and not self._arm_started:
+            self._arm_started = True
+            self._arm.start()
+        self._reading = self._move_arm(F_BH, gate, fault)
+        self._statistics.add_tick(self._reading)
+        if self._peer is not None:
+            self._socket.send(self._pack(self._reading), self._peer)
+
+    def _move_arm(
+        self, F_BH: np.ndarray, gate: GateState, fault: Fault
+    ) -> DeviceReading:
+        """Returns what the device is after a period under a wrench."""
+        X_BH, V_BH = self._arm.step(F_BH)
+        return DeviceReading(
+            sequence=(self._statistics.ticks + 1) % _WRAP,
+            time_s=1e-9 * (self._clock_ns() - self._start_ns),
+            X_BH=X_BH,
+            V_BH=V_BH,
+            F_BH=F_BH,
+            gate=gate,
+            fault=fault,
+        )
+
+    def _pack(self, reading: DeviceReading) -> bytes:
+        """Returns a reading as a state of the protocol."""
+        gate = self._gate
+        return _core.pack_state(
+            sequence=reading.sequence,
+            time_ns=self._clock_ns(),
+            X_BH=reading.X_BH,
+            V_BH=reading.V_BH,
+            F_BH=reading.F_BH,
+            boot=self._boot,
+            session=gate.session,
+            command_sequence=gate.command_sequence,
+            buttons=reading.buttons,
+            rejected=gate.rejected % _WRAP,
+            max_force_N=self._limits[0],
+            max_torque_Nm=self._limits[1],
+            gate=reading.gate,
+            fault=reading.fault,
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns the figures under names that say their units.
+
+        Those of `DriverStatistics.to_dict`, and `duration_s`, `rate_hz`,
+        `force_limit_N`, `torque_limit_Nm`, `packets` (their number by the gate's
+        verdict) and `lateness_us` (`p50`, `p99` and `p99_9` of the latest minute,
+        `max` of all and `skipped`, the number of ticks lost to stalls).
+        """
+        p50, p99, p99_9 = (1e6 * late_s for late_s in self._pace.calc_lateness())
+        return {
+            "duration_s": self._reading.time_s,
+            "rate_hz": 1.0 / self._period_s,
+            "force_limit_N": self._limits[0],
+            "torque_limit_Nm": self._limits[1],
+            "packets": self.packets,
+            "lateness_us": {
+                "p50": p50,
+                "p99": p99,
+                "p99_9": p99_9,
+                "max": 1e6 * self._largest_late_s,
+                "skipped": self._pace.skipped,
+            },
+            **self._statistics.to_dict(),
+        }
