@@ -58,13 +58,18 @@ class State:
         return math.hypot(*self.F_BH[3:])
 
 
+def is_whole(packet):
+    """Whether a packet's checksum is that of its bytes."""
+    return packet[-4:] == struct.pack("<I", zlib.crc32(packet[:-4]))
+
+
 def unpack_state(packet):
     """Returns the state, after a check of every field that is fixed."""
     assert len(packet) == STATE.size == 208
     values = STATE.unpack(packet)
     magic, version, kind, size, session, sequence, time_ns = values[:7]
     assert (magic, version, kind, size) == (b"DHAP", 1, 1, 208)
-    assert values[-1] == zlib.crc32(packet[:-4])
+    assert is_whole(packet)
     assert values[-2] == 0
     return State(
         session,
@@ -106,6 +111,10 @@ class StructHost:
         port: Of the device, or of a relay to it.
         session: Of this host's run.
         sequence: Of its first command.
+
+    Attributes:
+        state: The newest that has come; None before the first.
+        damaged: How many packets had a wrong checksum.
     """
 
     def __init__(self, port, *, session=None, sequence=0):
@@ -115,6 +124,7 @@ class StructHost:
         self.session = session or random.getrandbits(31) + 1
         self.sequence = sequence
         self.state = None
+        self.damaged = 0
 
     def close(self):
         """Gives the socket up, without a word to the device."""
@@ -143,11 +153,15 @@ class StructHost:
             pass  # nobody listens yet or any more, or the flood is too fast
 
     def receive(self, timeout_s=0.0):
-        """Takes all states that have come; returns the newest there ever was."""
+        """Takes all states that have come; returns the newest that ever came whole."""
         select.select([self._socket], [], [], timeout_s)
         try:
             while True:
-                self.state = unpack_state(self._socket.recv(4096))
+                packet = self._socket.recv(4096)
+                if is_whole(packet):
+                    self.state = unpack_state(packet)
+                else:
+                    self.damaged += 1
         except (BlockingIOError, ConnectionRefusedError):
             return self.state
 
@@ -176,9 +190,9 @@ class StructHost:
     def enable(self, force_z=0.0):
         """Takes an idle device to full force; returns the first state there."""
         self.disable()
-        wanted = max(0.99 * force_z, 0.0)
+        full = force_z * (1.0 - 1e-9)
         return self.exchange(
-            lambda state: state.gate == ACTIVE and state.force_N >= wanted,
+            lambda state: state.gate == ACTIVE and state.force_N >= full,
             force_z=force_z,
         )
 
