@@ -1693,6 +1693,8 @@ class DeviceGate:
     def counts(self) -> dict[str, int]:
         """Packets by verdict."""
 
+    def __deepcopy__(self, arg: object, /) -> DeviceGate: ...
+
 class ServoLaw:
     """
     What a servo shows between the ticks of a slower loop: the last local wrench F − K δ − B (V − V₀), δ = [rotation vector; translation] from X₀ to X, each of force and torque within its limit. A wrench that is not renewed is shown for `hold_s`, then goes to zero within `release_s`; one that is renewed comes back within `engage_s`. Wrenches are [τ; f] at the handle's origin, N·m and N, in one frame with poses [qw qx qy qz x y z], m, and velocities [ω; v], rad/s and m/s.
