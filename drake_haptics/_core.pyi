@@ -1636,6 +1636,9 @@ class DeviceGate:
 
         Returns:
             'accepted', or why not: a key of `counts`.
+
+        Raises:
+            ValueError: now_ns is no 64-bit time.
         """
 
     def step(self, now_ns: int, X_BH: object, V_BH: object) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
@@ -1651,7 +1654,7 @@ class DeviceGate:
             (6,) the wrench to show [τ; f] at Ho in B, N·m and N.
 
         Raises:
-            ValueError: X_BH or V_BH has a wrong shape.
+            ValueError: X_BH or V_BH has a wrong shape, or now_ns is no 64-bit time.
         """
 
     def fail(self) -> None:

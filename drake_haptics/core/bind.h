@@ -26,7 +26,8 @@ void BindPassivity(nanobind::module_& m);
 void BindHand(nanobind::module_& m);
 void BindEnergy(nanobind::module_& m);
 void BindClock(nanobind::module_& m);
-void BindDevice(nanobind::module_& m);
+void BindPackets(nanobind::module_& m);
+void BindGate(nanobind::module_& m);
 void BindServo(nanobind::module_& m);
 
 }  // namespace drake_haptics

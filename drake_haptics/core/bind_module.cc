@@ -27,6 +27,7 @@ NB_MODULE(_core, m) {
   drake_haptics::BindHand(m);
   drake_haptics::BindEnergy(m);
   drake_haptics::BindClock(m);
-  drake_haptics::BindDevice(m);
+  drake_haptics::BindPackets(m);
+  drake_haptics::BindGate(m);
   drake_haptics::BindServo(m);
 }

@@ -14,24 +14,10 @@
 #ifndef DRAKE_HAPTICS_GATE_H_
 #define DRAKE_HAPTICS_GATE_H_
 
-#include <float.h>
-#include <math.h>
-
+#include "limits.h"
 #include "wire.h"
 
 enum { DH_REMEMBERED_SESSIONS = 8 };
-
-/* What a gate allows. A maximum of zero shows nothing, as for the torque of a
- * device that has none. */
-typedef struct dh_gate_limits {
-  double max_force_N;             /* of the norm, >= 0 */
-  double max_torque_Nm;           /* of the norm, >= 0 */
-  double max_speed_m_per_s;       /* of the handle while active, > 0 */
-  double max_turn_rate_rad_per_s; /* likewise */
-  double ramp_in_s;               /* none to full, 0.001 to 10 */
-  double ramp_out_s;              /* full to none, 0.001 to 1 */
-  double max_ttl_s;               /* the longest life of a command, 1e-6 to 1 */
-} dh_gate_limits;
 
 /* A host that was heard. */
 typedef struct dh_gate_session {
@@ -54,49 +40,20 @@ typedef struct dh_gate {
   uint64_t now_ns;           /* the latest time that was told */
   uint64_t received_ns;      /* when the newest command came, while active */
   uint64_t ttl_ns;           /* its time to live */
-  uint64_t slewed_ns;        /* up to when `scale` is */
   uint64_t counts[DH_VERDICT_COUNT];                /* packets by verdict */
   dh_gate_session sessions[DH_REMEMBERED_SESSIONS]; /* latest heard first */
 } dh_gate;
 
-/* Limits for a device of that strength: in over 200 ms, out within 20 ms, a
- * handle below 2 m/s and 30 rad/s, commands that live 100 ms at most. */
-static inline dh_gate_limits dh_gate_default_limits(double max_force_N,
-                                                    double max_torque_Nm) {
-  dh_gate_limits limits;
-  limits.max_force_N = max_force_N;
-  limits.max_torque_Nm = max_torque_Nm;
-  limits.max_speed_m_per_s = 2.0;
-  limits.max_turn_rate_rad_per_s = 30.0;
-  limits.ramp_in_s = 0.2;
-  limits.ramp_out_s = 0.02;
-  limits.max_ttl_s = 0.1;
-  return limits;
-}
-
-static inline int dh_is_within(double x, double low, double high) {
-  return dh_is_finite(x) && x >= low && x <= high;
-}
-
-static inline int dh_are_possible_limits(const dh_gate_limits* limits) {
-  return dh_is_within(limits->max_force_N, 0, FLT_MAX) &&
-         dh_is_within(limits->max_torque_Nm, 0, FLT_MAX) &&
-         dh_is_within(limits->max_speed_m_per_s, DBL_MIN, DBL_MAX) &&
-         dh_is_within(limits->max_turn_rate_rad_per_s, DBL_MIN, DBL_MAX) &&
-         dh_is_within(limits->ramp_in_s, 0.001, 10) &&
-         dh_is_within(limits->ramp_out_s, 0.001, 1) &&
-         dh_is_within(limits->max_ttl_s, 1e-6, 1);
-}
-
-/* Makes a gate that is idle and has heard nobody. Returns 0, and a gate that
- * never shows any wrench, if the limits are not possible ones. */
-static inline int dh_gate_init(dh_gate* gate, const dh_gate_limits* limits) {
-  const int possible = dh_are_possible_limits(limits);
+/* Makes a gate that is idle and has heard nobody. Returns NULL; or, if the
+ * limits are not possible, why not, and the gate never shows any wrench. */
+static inline const char* dh_gate_init(dh_gate* gate,
+                                       const dh_gate_limits* limits) {
+  const char* problem = dh_limits_problem(limits);
   memset(gate, 0, sizeof *gate);
-  gate->limits = possible ? *limits : dh_gate_default_limits(0, 0);
+  gate->limits = problem ? dh_gate_default_limits(0, 0) : *limits;
   gate->state = DH_IDLE;
   gate->fault = DH_FAULT_NONE;
-  return possible;
+  return problem;
 }
 
 /* How many packets were refused. */
@@ -105,51 +62,6 @@ static inline uint64_t dh_gate_rejected(const dh_gate* gate) {
   int i;
   for (i = DH_ACCEPTED + 1; i < DH_VERDICT_COUNT; ++i) sum += gate->counts[i];
   return sum;
-}
-
-static inline int dh_are_finite(const double* values, int count) {
-  int i;
-  for (i = 0; i < count; ++i) {
-    if (!dh_is_finite(values[i])) return 0;
-  }
-  return 1;
-}
-
-/* The norm of a finite vector as largest * norm, which 1e308 cannot overflow:
- * divides v by its largest component and returns that. */
-static inline double dh_split_norm(const double v[3], double unit[3],
-                                   double* norm) {
-  double largest = 0;
-  int i;
-  for (i = 0; i < 3; ++i) {
-    const double size = v[i] < 0 ? -v[i] : v[i];
-    if (size > largest) largest = size;
-  }
-  for (i = 0; i < 3; ++i) unit[i] = largest > 0 ? v[i] / largest : 0;
-  *norm = sqrt(unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2]);
-  return largest;
-}
-
-static inline int dh_exceeds(const double v[3], double limit) {
-  double unit[3], norm;
-  const double largest = dh_split_norm(v, unit, &norm);
-  return largest > 0 && largest > limit / norm;
-}
-
-/* A finite vector, shortened to the limit where it is longer. */
-static inline void dh_clamp_norm(const double v[3], double limit,
-                                 double out[3]) {
-  double unit[3], norm;
-  const double largest = dh_split_norm(v, unit, &norm);
-  /* By four round-offs less, so that nobody who forms the norm of what comes
-   * out finds it above the limit. */
-  const double allowed = limit * (1 - 4 * DBL_EPSILON);
-  int i;
-  for (i = 0; i < 3; ++i) {
-    out[i] = largest > 0 && largest > allowed / norm
-                 ? unit[i] * (allowed / norm)
-                 : v[i];
-  }
 }
 
 static inline void dh_gate_release(dh_gate* gate, dh_gate_state state,
@@ -183,12 +95,39 @@ static inline void dh_gate_fail(dh_gate* gate) {
   dh_gate_enter_fault(gate, DH_FAULT_DEVICE);
 }
 
-/* Takes the time in. A clock that went backwards is a fault, and 0. */
+/* Ramps in while commands are fresh, else out; at zero it ends. What is shown
+ * rises by a twentieth of full in one call at most, however late that comes. */
+static inline void dh_gate_ramp(dh_gate* gate, uint64_t passed_ns) {
+  const uint64_t age_ns = gate->now_ns - gate->received_ns;
+  const int fresh = age_ns <= gate->ttl_ns;
+  int i;
+  if (gate->enabled && fresh) {
+    const double rise = 1e-9 * (double)passed_ns / gate->limits.ramp_in_s;
+    gate->scale += rise < 0.05 ? rise : 0.05;
+    if (gate->scale > 1) gate->scale = 1;
+  } else {
+    if (gate->enabled && age_ns - gate->ttl_ns < passed_ns) {
+      passed_ns = age_ns - gate->ttl_ns; /* since the command went stale */
+    }
+    gate->scale -= 1e-9 * (double)passed_ns / gate->limits.ramp_out_s;
+    if (gate->scale < 1e-9) gate->scale = 0; /* it is round-off */
+  }
+  for (i = 0; i < 6; ++i) gate->F_BH[i] = gate->scale * gate->command_F_BH[i];
+  if (gate->scale > 0) return;
+  if (!gate->enabled) dh_gate_release(gate, DH_IDLE, DH_FAULT_NONE);
+  if (gate->enabled && !fresh) dh_gate_enter_fault(gate, DH_FAULT_STALE);
+}
+
+/* Lets time pass. A clock that went backwards is a fault, and 0. */
 static inline int dh_gate_advance(dh_gate* gate, uint64_t now_ns) {
-  const int forwards = now_ns >= gate->now_ns;
-  if (!forwards) dh_gate_enter_fault(gate, DH_FAULT_CLOCK);
+  const uint64_t before_ns = gate->now_ns;
   gate->now_ns = now_ns;
-  return forwards;
+  if (now_ns < before_ns) {
+    dh_gate_enter_fault(gate, DH_FAULT_CLOCK);
+    return 0;
+  }
+  if (gate->state == DH_ACTIVE) dh_gate_ramp(gate, now_ns - before_ns);
+  return 1;
 }
 
 /* The place of that session; DH_REMEMBERED_SESSIONS if it is not remembered. */
@@ -234,7 +173,7 @@ static inline dh_verdict dh_gate_judge(const dh_gate* gate,
 
 static inline void dh_gate_obey(dh_gate* gate, const dh_command* command) {
   if (!command->enable) {
-    gate->enabled = 0; /* while active, the step ramps out */
+    gate->enabled = 0; /* while active, it ramps out as time passes */
     if (gate->state == DH_FAULT) dh_gate_release(gate, DH_IDLE, DH_FAULT_NONE);
     return;
   }
@@ -242,7 +181,6 @@ static inline void dh_gate_obey(dh_gate* gate, const dh_command* command) {
     dh_gate_forget_permissions(gate);
     gate->state = DH_ACTIVE;
     gate->session = command->session;
-    gate->slewed_ns = gate->now_ns;
   }
   gate->enabled = 1;
   gate->received_ns = gate->now_ns;
@@ -277,27 +215,11 @@ static inline dh_verdict dh_gate_receive(dh_gate* gate, uint64_t now_ns,
   return verdict;
 }
 
-/* Moves the scale on. It rises by a twentieth in one step at most, however late
- * the step comes; it falls by all the time that has passed. */
-static inline void dh_gate_slew(dh_gate* gate, int shown) {
-  const double passed_s = 1e-9 * (double)(gate->now_ns - gate->slewed_ns);
-  if (shown) {
-    const double rise = passed_s / gate->limits.ramp_in_s;
-    gate->scale += rise < 0.05 ? rise : 0.05;
-    if (gate->scale > 1) gate->scale = 1;
-  } else {
-    gate->scale -= passed_s / gate->limits.ramp_out_s;
-    if (gate->scale < 1e-9) gate->scale = 0;
-  }
-  gate->slewed_ns = gate->now_ns;
-}
-
-/* Moves the time on and gives the wrench to show, F_BH, from the handle's pose
- * and velocity. Call it in each tick, in all states. */
+/* Lets time pass, looks at the handle's pose and velocity and gives the wrench
+ * to show. Call it in each tick, in all states. */
 static inline void dh_gate_step(dh_gate* gate, uint64_t now_ns,
                                 const double X_BH[7], const double V_BH[6],
                                 double F_BH[6]) {
-  int i;
   dh_gate_advance(gate, now_ns);
   if (!dh_are_finite(X_BH, 7) || !dh_are_finite(V_BH, 6)) {
     dh_gate_enter_fault(gate, DH_FAULT_NOT_FINITE);
@@ -306,16 +228,6 @@ static inline void dh_gate_step(dh_gate* gate, uint64_t now_ns,
       (dh_exceeds(V_BH, gate->limits.max_turn_rate_rad_per_s) ||
        dh_exceeds(V_BH + 3, gate->limits.max_speed_m_per_s))) {
     dh_gate_enter_fault(gate, DH_FAULT_OVERSPEED);
-  }
-  if (gate->state == DH_ACTIVE) {
-    const int fresh = gate->now_ns - gate->received_ns <= gate->ttl_ns;
-    dh_gate_slew(gate, gate->enabled && fresh);
-    for (i = 0; i < 6; ++i) gate->F_BH[i] = gate->scale * gate->command_F_BH[i];
-    if (gate->scale <= 0 && !gate->enabled) {
-      dh_gate_release(gate, DH_IDLE, DH_FAULT_NONE);
-    } else if (gate->scale <= 0 && !fresh) {
-      dh_gate_enter_fault(gate, DH_FAULT_STALE);
-    }
   }
   memcpy(F_BH, gate->F_BH, sizeof gate->F_BH);
 }
