@@ -10,6 +10,10 @@ namespace {
 
 // After a pause of the fast loop itself, force rises as after this much, s.
 constexpr double kLargestRise = 2e-3;
+// Damping half way between no force and full force, N·m·s/rad and N·s/m: the
+// least that the device presets recommend, which any device can show.
+constexpr double kTurnBrake = 4e-3;
+constexpr double kBrake = 4;
 
 // Shortens the vector to `largest`. Divided first: the norm of huge values is
 // infinite, their ratios are not.
@@ -20,6 +24,12 @@ Vec3 Clamp(const Vec3& vector, double largest) {
   const double norm = even.norm();
   if (norm <= largest / size) return vector;
   return largest * (even / norm);
+}
+
+Vec6 Brake(const Vec6& V) {
+  Vec6 F;
+  F << kTurnBrake * V.head<3>(), kBrake * V.tail<3>();
+  return F;
 }
 
 }  // namespace
@@ -61,14 +71,19 @@ Vec6 ServoLaw::Step(double now, const PoseVector& X, const Vec6& V) {
   Slew(now);
   if (!has_wrench_) return Vec6::Zero();
   const Vec6 F = Extrapolate(X, V);
-  if (!F.allFinite()) {
+  if (!F.allFinite() || !V.allFinite()) {
     ++num_not_finite_;
     Release();
     return Vec6::Zero();
   }
-  Vec6 shown;
-  shown << Clamp(F.head<3>(), max_torque_), Clamp(F.tail<3>(), max_force_);
-  return scale_ * shown;
+  const double brake = 4 * scale_ * (1 - scale_);
+  return Limit(scale_ * Limit(F) - brake * Brake(V));
+}
+
+Vec6 ServoLaw::Limit(const Vec6& F) const {
+  Vec6 limited;
+  limited << Clamp(F.head<3>(), max_torque_), Clamp(F.tail<3>(), max_force_);
+  return limited;
 }
 
 Vec6 ServoLaw::Extrapolate(const PoseVector& X, const Vec6& V) const {

@@ -37,6 +37,11 @@ struct ServoTimes {
 /// What a fast loop shows between the ticks of a slow one: the last local
 /// wrench, within limits, and nothing once it is not renewed. Time is an
 /// argument; the law knows no clock and no thread.
+///
+/// With s the part of the wrench that is shown, F = limit(s limit(F(X, V)) −
+/// 4 s (1 − s) D V). The damping D acts on the way between none and all of the
+/// force only: a handle that was released has drifted, and would be thrown
+/// back by a spring that engages undamped. docs/servo.md has measurements.
 class ServoLaw {
  public:
   /// @throws std::invalid_argument unless the times are finite and above zero.
@@ -65,6 +70,7 @@ class ServoLaw {
   std::int64_t num_not_passive() const { return num_not_passive_; }
 
  private:
+  Vec6 Limit(const Vec6& F) const;
   Vec6 Extrapolate(const PoseVector& X, const Vec6& V) const;
   void Slew(double now);
 

@@ -53,23 +53,17 @@ class UdpDevice(DeviceBackend):
         """
         if not 0 < port < 65536:
             raise ValueError(f"port must be from 1 to 65535, is {port}")
-        self._address = f"udp://{f'[{host}]' if ':' in host else host}:{port}"
         try:
             self._servo = UdpServo(
                 host, port, ttl_s=ttl_s, hold_s=hold_s, max_rate_hz=max_rate_hz
             )
         except RuntimeError as error:
             raise DeviceError(
-                f"{self._address}: {error}; check the address of the driver"
+                f"the driver's address cannot be used: {error}"
             ) from error
         self._reading: DeviceReading | None = None
         # Also where the program ends without close.
         self._finalizer = weakref.finalize(self, self._servo.close)
-
-    @property
-    def address(self) -> str:
-        """Where the driver is, "udp://host:port"."""
-        return self._address
 
     def read(self) -> DeviceReading | None:
         """Returns the newest reading; None before the first has come."""
@@ -112,13 +106,6 @@ class UdpDevice(DeviceBackend):
             + status.damaged
             + status.not_finite,
             lateness_s=self._servo.lateness_s() if status.received else None,
-        )
-
-    def explain_silence(self) -> str:
-        """Returns what to do where no reading comes, for a message."""
-        return (
-            f"nothing answers at {self._address}: start the driver there, for example"
-            " 'drake-haptics device'"
         )
 
 
