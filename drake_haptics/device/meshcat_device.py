@@ -1,0 +1,198 @@
+"""Sliders and a gamepad in Meshcat as a haptic device."""
+
+from __future__ import annotations
+
+import math
+from time import monotonic
+
+import numpy as np
+from pydrake.geometry import Meshcat
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceCommand,
+    DeviceError,
+    DeviceReading,
+)
+from drake_haptics.device.followed_handle import FollowedHandle
+from drake_haptics.device.gamepad import GamepadReader
+from drake_haptics.pose_vector import pose_to_vector
+
+# Label, and the keys that make it less and more.
+_SLIDERS = (
+    ("x (mm)", "ArrowLeft", "ArrowRight"),
+    ("y (mm)", "ArrowDown", "ArrowUp"),
+    ("z (mm)", "PageDown", "PageUp"),
+    ("roll (deg)", "KeyS", "KeyW"),
+    ("pitch (deg)", "KeyA", "KeyD"),
+    ("yaw (deg)", "KeyE", "KeyQ"),
+)
+_HOME = "bring the handle home"
+_LARGEST_ANGLES_DEG = (180.0, 90.0, 180.0)
+_POLL_PERIOD_S = 0.02
+_READOUT_PERIOD_S = 0.25
+# A stick's full deflection crosses the workspace's radius, or turns, in a second.
+_STICK_RADII_PER_S = 1.0
+_STICK_TURN_DEG_PER_S = 90.0
+
+
+class MeshcatDevice(DeviceBackend):
+    """Six sliders in Meshcat's controls, a button home, a gamepad if there is one.
+
+    Sliders give the handle's pose from where it starts: x, y and z along the axes of
+    the world, roll, pitch and yaw about them (Drake's order). Each has two keys. A
+    gamepad's sticks move the sliders; see `GamepadReader`. The controls' last line
+    tells force and torque.
+
+    As all of Drake's Meshcat, it is to be used from the thread that made the Meshcat.
+    """
+
+    def __init__(
+        self,
+        meshcat: Meshcat,
+        *,
+        X_WB: RigidTransform,
+        X_BH: RigidTransform,
+        workspace_radius_m: float,
+    ):
+        """Puts the controls into the page.
+
+        Args:
+            meshcat: Where.
+            X_WB: Pose of the device's base in the world of the Meshcat.
+            X_BH: Pose of the handle where it starts.
+            workspace_radius_m: How far the sliders reach along each axis, m.
+
+        Raises:
+            ValueError: A pose is not finite, or the radius is less than a millimetre
+                or not finite.
+            DeviceError: The Meshcat has such controls already.
+        """
+        if not 1e-3 <= workspace_radius_m < math.inf:
+            raise ValueError(
+                f"workspace_radius_m must be 0.001 or more, is {workspace_radius_m}"
+            )
+        taken = {*meshcat.GetSliderNames(), *meshcat.GetButtonNames()}
+        taken &= {_HOME, *(name for name, _, _ in _SLIDERS)}
+        if taken:
+            raise DeviceError(
+                f"the Meshcat has controls of the names {', '.join(sorted(taken))}"
+                " already; close what they are for"
+            )
+        self._handle = FollowedHandle(pose_to_vector(X_BH))
+        self._X_WB = X_WB
+        self._X_WStart = X_WB @ X_BH
+        self._meshcat = meshcat
+        # Whole steps of a slider, or its middle would not be zero.
+        reach_mm = float(round(1e3 * workspace_radius_m))
+        self._largest = np.array([reach_mm] * 3 + [*_LARGEST_ANGLES_DEG])
+        self._fastest = np.array(
+            [_STICK_RADII_PER_S * reach_mm] * 3 + [_STICK_TURN_DEG_PER_S] * 3
+        )
+        self._gamepad = GamepadReader()
+        self._buttons = 0
+        self._clicks = 0
+        # Numbers of the sliders, as wanted and as the page rounds them.
+        self._offsets = np.zeros(6)
+        self._shown = [0.0] * 6
+        self._polled_s = self._read_out_s = -math.inf
+        self._readout = ""
+        self._is_open = True
+        self._add_controls()
+
+    def read(self) -> DeviceReading:
+        """Returns where the handle is now."""
+        now_s = monotonic()
+        if self._is_open and now_s - self._polled_s >= _POLL_PERIOD_S:
+            self._poll(now_s)
+        return self._handle.read(now_s, self._buttons)
+
+    def write(self, command: DeviceCommand) -> None:
+        """Shows force and torque as numbers, four times a second."""
+        if not self._is_open:
+            return
+        self._handle.show(command)
+        now_s = monotonic()
+        if now_s - self._read_out_s >= _READOUT_PERIOD_S:
+            self._read_out_s = now_s
+            self._show_wrench()
+
+    def close(self) -> None:
+        """Takes the controls out of the page; the handle stays where it is."""
+        if not self._is_open:
+            return
+        self._is_open = False
+        self._handle.release()
+        for name, _, _ in _SLIDERS:
+            self._meshcat.DeleteSlider(name, strict=False)
+        for name in (_HOME, self._readout):
+            self._meshcat.DeleteButton(name, strict=False)
+
+    def _add_controls(self) -> None:
+        """Adds sliders and buttons."""
+        for i, (name, less, more) in enumerate(_SLIDERS):
+            largest = float(self._largest[i])
+            self._shown[i] = self._meshcat.AddSlider(
+                name, -largest, largest, 1.0, 0.0, less, more
+            )
+        self._offsets = np.array(self._shown)
+        self._meshcat.AddButton(_HOME, "Home")
+        self._show_wrench()
+
+    def _poll(self, now_s: float) -> None:
+        """Takes what sliders, buttons and sticks ask for."""
+        # After a stall a stick has not been pushed all the time.
+        elapsed_s = min(now_s - self._polled_s, 2 * _POLL_PERIOD_S)
+        self._polled_s = now_s
+        before = self._offsets.copy()
+        for i, (name, _, _) in enumerate(_SLIDERS):
+            value = self._meshcat.GetSliderValue(name)
+            if value != self._shown[i] and math.isfinite(value):
+                self._offsets[i] = self._shown[i] = value
+        clicks = self._meshcat.GetButtonClicks(_HOME)
+        go_home = clicks != self._clicks
+        self._clicks = clicks
+        pad = self._meshcat.GetGamepad()
+        # A page that has gone leaves its sticks as they were.
+        if pad.index is not None and self._meshcat.GetNumActiveConnections() > 0:
+            self._buttons, called = self._gamepad.read_buttons(pad.button_values)
+            go_home |= called
+            speeds = self._fastest * self._gamepad.read_sticks(pad.axes)
+            self._offsets += elapsed_s * speeds
+        else:
+            self._buttons = 0
+        if go_home:
+            self._offsets[:] = 0.0
+        self._offsets = np.clip(self._offsets, -self._largest, self._largest)
+        if not np.array_equal(self._offsets, before):
+            self._show_offsets()
+            self._handle.set_goal(self._calc_goal(), now_s)
+
+    def _show_offsets(self) -> None:
+        """Moves the sliders to what is wanted."""
+        for i, (name, _, _) in enumerate(_SLIDERS):
+            if abs(self._offsets[i] - self._shown[i]) >= 0.5:
+                self._shown[i] = self._meshcat.SetSliderValue(
+                    name, float(self._offsets[i])
+                )
+
+    def _calc_goal(self) -> np.ndarray:
+        """Returns the pose X_BG (7,) that the sliders ask for."""
+        R_offset = RotationMatrix(RollPitchYaw(np.deg2rad(self._offsets[3:])))
+        X_WG = RigidTransform(
+            R_offset @ self._X_WStart.rotation(),
+            self._X_WStart.translation() + 1e-3 * self._offsets[:3],
+        )
+        return pose_to_vector(self._X_WB.InvertAndCompose(X_WG))
+
+    def _show_wrench(self) -> None:
+        """Writes force and torque on the last button, if they are new."""
+        F_BH = self._handle.F_BH
+        force_N, torque_Nm = np.linalg.norm(F_BH[3:]), np.linalg.norm(F_BH[:3])
+        text = f"force {force_N:.1f} N, torque {torque_Nm:.2f} N·m"
+        if text != self._readout:
+            # A control's name cannot be changed; as the last one it keeps its place.
+            self._meshcat.DeleteButton(self._readout, strict=False)
+            self._meshcat.AddButton(text)
+            self._readout = text

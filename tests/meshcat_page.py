@@ -1,0 +1,91 @@
+"""A Meshcat page without a browser: says what a page would say."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import umsgpack
+import websocket
+from pydrake.geometry import Meshcat
+from pydrake.math import RigidTransform
+
+BOUND_S = 20.0
+
+
+class MeshcatPage:
+    """Connects to a Meshcat as its page does, and sends its messages."""
+
+    def __init__(self, meshcat: Meshcat):
+        self._meshcat = meshcat
+        self._before = meshcat.GetNumActiveConnections()
+        self._socket = websocket.create_connection(meshcat.ws_url(), timeout=BOUND_S)
+        self._wait(lambda: meshcat.GetNumActiveConnections() > self._before)
+
+    def __enter__(self) -> MeshcatPage:
+        """Nothing more to open."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Goes away."""
+        self._socket.close()
+        self._wait(lambda: self._meshcat.GetNumActiveConnections() <= self._before)
+
+    def send_gamepad(
+        self, axes: list[float], buttons: list[float], index: int = 0
+    ) -> None:
+        """Says how sticks and buttons are, and waits until Meshcat knows."""
+        gamepad = {"index": index, "button_values": buttons, "axes": axes}
+        self._send(type="gamepad", name="", gamepad=gamepad)
+        self._wait(
+            lambda: (
+                self._meshcat.GetGamepad().axes == axes
+                and self._meshcat.GetGamepad().button_values == buttons
+            )
+        )
+
+    def send_slider(self, name: str, value: float) -> None:
+        """Moves a slider, and waits until Meshcat knows."""
+        self._send(type="slider", name=name, value=value)
+        self._wait(
+            lambda: np.array_equal(
+                self._meshcat.GetSliderValue(name), value, equal_nan=True
+            )
+        )
+
+    def click_button(self, name: str) -> None:
+        """Clicks a button, and waits until Meshcat knows."""
+        clicks = self._meshcat.GetButtonClicks(name)
+        self._send(type="button", name=name)
+        self._wait(lambda: self._meshcat.GetButtonClicks(name) > clicks)
+
+    def send_camera(self, X_WC: RigidTransform) -> None:
+        """Says where the camera is, as three.js counts: y up, z to the viewer."""
+        # three.js's world has y up: its axes are Drake's x, z, -y.
+        R_TW = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
+        matrix = np.eye(4)
+        matrix[:3, :3] = R_TW @ X_WC.rotation().matrix() @ np.diag([1, -1, -1])
+        matrix[:3, 3] = R_TW @ X_WC.translation()
+        elements = matrix.T.ravel().tolist()
+        self._send(
+            type="camera_pose", name="", camera_pose=elements, is_perspective=True
+        )
+
+        def known() -> bool:
+            X = self._meshcat.GetTrackedCameraPose()
+            return X is not None and X.IsNearlyEqualTo(X_WC, 1e-9)
+
+        self._wait(known)
+
+    def _send(self, **message: Any) -> None:
+        self._socket.send_binary(umsgpack.packb(message))
+
+    @staticmethod
+    def _wait(done: Callable[[], bool]) -> None:
+        end = time.monotonic() + BOUND_S
+        while not done():
+            if time.monotonic() > end:
+                raise TimeoutError("Meshcat did not take the message")
+            time.sleep(0.005)
