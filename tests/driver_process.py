@@ -124,6 +124,6 @@ def running(command, json_file):
         driver.kill()
 
 
-def device_command(json_file, *options, scene="cup_spoon"):
+def device_command(json_file, *options, scene="cup_spoon", port=0):
     """Returns the words that start `drake-haptics device` for a test."""
-    return [COMMAND, "device", scene, "--port", 0, "--json", json_file, *options]
+    return [COMMAND, "device", scene, "--port", port, "--json", json_file, *options]

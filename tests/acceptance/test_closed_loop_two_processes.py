@@ -1,0 +1,132 @@
+"""`drake-haptics device` and `drake-haptics run`, in two processes, as people use them.
+
+Where the machine stalls for longer than a command lives, the device goes to fault, as
+it must: whatever waits for force in these tests presses Enter at any fault.
+"""
+
+import signal
+import time
+
+import pytest
+from driver_process import WatchedLink, check_figures, device_command, running
+from host_process import hosting
+from struct_host import ACTIVE, FAULT, IDLE
+
+FELT_N = 0.5
+
+
+@pytest.fixture(scope="module")
+def device(tmp_path_factory):
+    """A driver for all tests."""
+    file = tmp_path_factory.mktemp("device") / "figures.json"
+    with running(device_command(file, "--ttl-ms", 500), file) as driver:
+        yield driver
+        figures = driver.end()
+    check_figures(figures)
+
+
+@pytest.fixture
+def link(device):
+    """The way to the driver."""
+    with WatchedLink(device.port) as link:
+        yield link
+    link.check_limits()
+
+
+@pytest.fixture
+def host_file(tmp_path):
+    """Where a host writes its figures."""
+    return tmp_path / "host.json"
+
+
+def press_enter_until(host, link, wanted, bound_s=40.0):
+    """Takes the device up after each fault; returns the first state as wanted."""
+    end_s = time.monotonic() + bound_s
+    seen = len(link.states)
+    while time.monotonic() < end_s:
+        assert host.is_running
+        time.sleep(0.05)
+        new = link.states[seen:]
+        seen += len(new)
+        if found := next((state for state in new if wanted(state)), None):
+            return found
+        if new and new[-1].gate == FAULT:
+            host.press_enter()
+            time.sleep(0.3)
+    raise AssertionError(f"not reached; the last state was {link.states[-1:]}")
+
+
+def is_felt(state):
+    return state.gate == ACTIVE and state.force_N > FELT_N
+
+
+def test_contact_is_felt_and_the_end_of_a_run_is_idle(link, host_file):
+    with hosting(link.port, host_file, "--duration", 3) as host:
+        press_enter_until(host, link, is_felt)
+        host.wait()
+        figures = host.end()
+    last = link.wait_for(lambda state: state.gate != ACTIVE)
+    assert last.force_N == 0.0
+    assert figures["duration_s"] == pytest.approx(3.0)
+    assert figures["contacts"]["max"] >= 1
+    assert figures["limit_hits"] == figures["non_finite_events"] == 0
+    assert figures["device"]["received"] > 1000
+    if not figures["device"]["faults"]:
+        assert last.gate == IDLE
+
+
+def test_ctrl_c_of_the_host_leaves_the_device_idle(link, host_file):
+    with hosting(link.port, host_file) as host:
+        press_enter_until(host, link, is_felt)
+        assert host.end()["device"]["received"] > 100
+    last = link.wait_for(lambda state: True)
+    assert (last.gate, last.force_N) == (IDLE, 0.0)
+
+
+def test_a_killed_host_leaves_no_force_and_the_next_one_takes_over(link, host_file):
+    with hosting(link.port, host_file) as host:
+        press_enter_until(host, link, is_felt)
+        host.send_signal(signal.SIGKILL)
+        last = link.wait_for(lambda state: state.gate != ACTIVE)
+        assert (last.gate, last.fault, last.force_N) == (FAULT, "STALE", 0.0)
+    with hosting(link.port, host_file) as host:
+        press_enter_until(host, link, is_felt)
+        host.end()
+
+
+def test_a_paused_host_needs_enter_before_anything_is_felt_again(link, host_file):
+    with hosting(link.port, host_file) as host:
+        press_enter_until(host, link, is_felt)
+        host.send_signal(signal.SIGSTOP)
+        last = link.wait_for(lambda state: state.gate != ACTIVE)
+        assert (last.gate, last.fault, last.force_N) == (FAULT, "STALE", 0.0)
+        seen = len(link.states)
+        host.send_signal(signal.SIGCONT)
+        link.wait_for(lambda state: state.sequence > last.sequence + 1000)
+        assert all(state.gate == FAULT for state in link.states[seen:])
+        press_enter_until(host, link, is_felt)
+        figures = host.end()
+    assert figures["device"]["faults"]["STALE"] >= 1
+    assert figures["device"]["recoveries"] >= 1
+
+
+def test_a_driver_that_is_started_anew_needs_enter_too(tmp_path, host_file):
+    file = tmp_path / "figures.json"
+    with running(device_command(file, "--ttl-ms", 500), file) as driver:
+        with WatchedLink(driver.port) as link:
+            with hosting(link.port, host_file) as host:
+                press_enter_until(host, link, is_felt)
+                driver.send_signal(signal.SIGKILL)
+                before = link.states[-1]
+                command = device_command(file, "--ttl-ms", 500, port=driver.port)
+                with running(command, file) as again:
+                    first = link.wait_for(lambda state: state.boot != before.boot)
+                    assert first.gate == IDLE
+                    link.wait_for(lambda state: state.sequence > first.sequence + 500)
+                    new = [s for s in link.states if s.boot == first.boot]
+                    assert all(state.gate == IDLE for state in new)
+                    host.press_enter()
+                    press_enter_until(host, link, is_felt)
+                    host.end()
+                    check_figures(again.end())
+        link.check_limits()
