@@ -26,7 +26,8 @@ def change_scene(scene: Scene, settings: Iterable[str]) -> Scene:
         scene: Stays as it is.
         settings: Each KEY=VALUE, the key as messages name it
             (`contact.stiffness_N_per_m`, `environment[0].pose.position_m`), the value
-            as in a scene file.
+            as in a scene file. Without a value the key is taken out, so that its
+            default holds, and an effect is gone.
 
     Raises:
         SceneError: A setting is not of that form, its key is unknown, or the value
@@ -63,10 +64,13 @@ def _set(data: Any, key: str, value: Any) -> None:
             place[step] = {}
         place = _look_up(place, step, key)
     last = steps[-1]
-    if isinstance(place, dict):
+    if isinstance(place, dict) and value is not None:
         place.setdefault(last)
     _look_up(place, last, key)
-    place[last] = value
+    if value is None:
+        del place[last]
+    else:
+        place[last] = value
 
 
 def _look_up(place: Any, step: str | int, key: str) -> Any:
@@ -75,7 +79,7 @@ def _look_up(place: Any, step: str | int, key: str) -> Any:
     Raises:
         SceneError: Nothing does.
     """
-    if isinstance(step, str) and isinstance(place, dict):
+    if isinstance(step, str) and isinstance(place, dict) and step in place:
         return place[step]
     if isinstance(step, int) and isinstance(place, list) and step < len(place):
         return place[step]
