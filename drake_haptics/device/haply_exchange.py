@@ -99,6 +99,7 @@ class HaplyExchange:
         if state is None:
             return self._answer_blindly(now_ns)
         if now_ns - self._heard_ns > SILENT_NS and not self.is_released:
+            self._gate.fail()
             self.release()
         self._heard_ns = now_ns
         X_BH, V_BH = self._calc_motion(state, 1e-9 * now_ns)

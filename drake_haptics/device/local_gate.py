@@ -59,6 +59,10 @@ class LocalGate:
         """Asks for no force: it ramps out, or a fault is left."""
         self._send(np.zeros(6), now_ns, enable=False)
 
+    def fail(self) -> None:
+        """Ends at zero force at once: the device itself is lost or at fault."""
+        self._gate.fail()
+
     def step(self, X_BH: np.ndarray, V_BH: np.ndarray, now_ns: int) -> np.ndarray:
         """Moves the time on.
 
