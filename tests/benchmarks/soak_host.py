@@ -1,0 +1,56 @@
+"""The host of a soak, as a program that can be paused and killed.
+
+    python tests/benchmarks/soak_host.py SCENE ADDRESS
+
+Runs the scene on the device until Ctrl-C, and then prints its figures as JSON.
+Whenever the device is at fault it takes it up again by the documented step,
+`DeviceBackend.recover`, half a second later.
+"""
+
+import json
+import sys
+import time
+
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.device_address import open_device
+from drake_haptics.device_watch import DeviceWatch
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+from drake_haptics.simulation import run
+from drake_haptics.tick_clock import TickClock
+
+# Some people are slower to see that the force is gone.
+PATIENCE_S = 0.5
+
+
+class Person:
+    """Wants a device back some time after it went to fault."""
+
+    def __init__(self):
+        self._since_s = None
+
+    def wants_it_back(self):
+        """Asked in every tick of a fault, until yes."""
+        now_s = time.monotonic()
+        if self._since_s is None:
+            self._since_s = now_s
+        if now_s < self._since_s + PATIENCE_S:
+            return False
+        self._since_s = None
+        return True
+
+
+def main():
+    """Runs the scene."""
+    scene = load_scene(find_scene(sys.argv[1]))
+    with open_device(sys.argv[2], scene, None) as backend:
+        haptic = BuildHapticDiagram(scene, device=backend)
+        watch = DeviceWatch(backend, Person().wants_it_back)
+        pace = TickClock(haptic.period_s)
+        statistics = run(haptic, pace=pace, on_tick=watch.end_tick)
+        figures = {**statistics.to_dict(), "device": watch.to_dict()}
+    print(json.dumps(figures))
+
+
+if __name__ == "__main__":
+    main()
