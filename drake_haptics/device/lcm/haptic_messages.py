@@ -17,7 +17,7 @@ class lcmt_haptic_status(FixedMessage):
 
     Attributes:
         utime: The device's monotonic clock, µs.
-        boot: Random for each start of the device, never 0.
+        boot: Random for each start of the device, from 1 to 2³² − 1.
         sequence: Rises by one with each message.
         session: The run of a host that is served, 0 for none.
         command_sequence: The newest command of it that was accepted, 0 for none.
@@ -55,7 +55,7 @@ class lcmt_haptic_command(FixedMessage):
 
     Attributes:
         utime: The host's monotonic clock, µs.
-        session: Random for each run of a host, never 0.
+        session: Random for each run of a host, from 1 to 2³² − 1.
         sequence: Rises with each message.
         time_to_live: How long this holds without a newer one, µs.
         enable: Whether the device may show force.

@@ -1,0 +1,197 @@
+"""A haptic device behind LCM."""
+
+from __future__ import annotations
+
+import re
+import secrets
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from pydrake.lcm import DrakeLcm
+
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceCommand,
+    DeviceError,
+    DeviceReading,
+    Fault,
+    GateState,
+    LinkStatus,
+)
+from drake_haptics.device.lcm.haptic_messages import (
+    lcmt_haptic_command,
+    lcmt_haptic_status,
+)
+from drake_haptics.device.lcm.host_handshake import HostHandshake
+from drake_haptics.device.lcm.status_check import find_flaw
+
+STATUS_CHANNEL = "HAPTIC_STATUS"
+COMMAND_CHANNEL = "HAPTIC_COMMAND"
+
+# LCM itself answers what it cannot use by a line on stderr, and then does nothing.
+_URL = r"(memq://|udpm://2(2[4-9]|3\d)(\.\d{1,3}){3}:\d{1,5}(\?\S+)?)?"
+_LONGEST_TTL_S = 10.0
+# Released so often, one release is enough to get through.
+_CLOSING_RELEASES = 3
+
+
+class LcmDevice(DeviceBackend):
+    """A device whose driver sends `lcmt_haptic_status` and obeys `lcmt_haptic_command`.
+
+    The gate is the driver's: `HapticCommandReceiver`, or the driver's own. This side
+    keeps to the gate's rules by a `HostHandshake`. It has no thread: messages come in
+    by `read` and go out by `write`, which must be called in every tick.
+
+    The slopes of a command are not sent: between two commands the wrench is constant.
+    """
+
+    def __init__(
+        self,
+        lcm: DrakeLcm,
+        *,
+        status_channel: str = STATUS_CHANNEL,
+        command_channel: str = COMMAND_CHANNEL,
+        ttl_s: float = 0.1,
+        clock: Callable[[], float] = time.monotonic,
+    ):
+        """Subscribes.
+
+        Args:
+            lcm: Where to; nobody else handles its subscriptions.
+            status_channel: Where the device sends.
+            command_channel: Where it listens.
+            ttl_s: How long a wrench holds without a newer one, s; the device may
+                hold it for less.
+            clock: Reads the time, s.
+
+        Raises:
+            ValueError: The time is out of range.
+        """
+        if not 0.0 < ttl_s <= _LONGEST_TTL_S:
+            raise ValueError(f"ttl_s must be in (0, {_LONGEST_TTL_S:g}], is {ttl_s}")
+        self._lcm = lcm
+        self._channel = command_channel
+        self._time_to_live = round(1e6 * ttl_s)
+        self._clock = clock
+        self._handshake = HostHandshake()
+        self._session = secrets.randbelow(2**32 - 1) + 1
+        self._sequence = 0
+        self._status: lcmt_haptic_status | None = None
+        self._reading: DeviceReading | None = None
+        self._received = self._lost = self._rejected = 0
+        self._is_closed = False
+        lcm.Subscribe(status_channel, self._receive)
+
+    @staticmethod
+    def open(url: str = "", **options: Any) -> LcmDevice:
+        """Returns the device that is heard at a URL.
+
+        Args:
+            url: As LCM has them: `udpm://239.255.76.67:7667?ttl=0`; empty for LCM's
+                default.
+            **options: Those of the constructor.
+
+        Raises:
+            DeviceError: LCM has no such transport, or no way to the network.
+        """
+        if not re.fullmatch(_URL, url):
+            raise DeviceError(
+                f"'{url}' is no LCM URL: give one such as"
+                " udpm://239.255.76.67:7667?ttl=0, with a multicast address"
+            )
+        try:
+            return LcmDevice(DrakeLcm(url), **options)
+        except RuntimeError as error:
+            raise DeviceError(
+                f"LCM cannot use the network at '{url}': {error}"
+            ) from error
+
+    def read(self) -> DeviceReading | None:
+        """Returns the newest reading that has come; its time is the device's clock."""
+        if not self._is_closed:
+            self._lcm.HandleSubscriptions(0)
+        return self._reading
+
+    def write(self, command: DeviceCommand) -> None:
+        """Sends a wrench, or the release that must come before.
+
+        Raises:
+            ValueError: The wrench is not of six numbers.
+        """
+        if np.shape(command.F_BH) != (6,):
+            raise ValueError(f"F_BH must be (6,), is {np.shape(command.F_BH)}")
+        if self._is_closed:
+            return
+        enable = self._handshake.choose(self._sequence + 1)
+        if enable is not None:
+            self._send(np.asarray(command.F_BH) if enable else np.zeros(6), enable)
+
+    def recover(self) -> None:
+        """Leaves a fault; the next writes release the device and enable it again."""
+        self._handshake.recover()
+
+    def close(self) -> None:
+        """Releases the device, which ramps out by itself."""
+        if not self._is_closed:
+            for _ in range(_CLOSING_RELEASES):
+                self._send(np.zeros(6), enable=False)
+            self._is_closed = True
+
+    def get_link_status(self) -> LinkStatus:
+        """Returns the counts of messages, and of commands that the device refused."""
+        refused = 0 if self._status is None else self._status.rejected
+        return LinkStatus(
+            received=self._received,
+            lost=self._lost,
+            rejected=self._rejected + refused,
+        )
+
+    def _send(self, F_BH: np.ndarray, enable: bool) -> None:
+        """Sends a command."""
+        self._sequence += 1
+        message = lcmt_haptic_command(
+            utime=round(1e6 * self._clock()),
+            session=self._session,
+            sequence=self._sequence,
+            time_to_live=self._time_to_live,
+            enable=enable,
+            wrench=tuple(F_BH.tolist()),
+        )
+        self._lcm.Publish(self._channel, message.encode())
+
+    def _receive(self, data: bytes) -> None:
+        """Takes a status in, or refuses and counts it."""
+        try:
+            status = lcmt_haptic_status.decode(data)
+        except ValueError:
+            self._rejected += 1
+            return
+        last = self._status
+        is_same_run = last is not None and status.boot == last.boot
+        step = status.sequence - last.sequence if last and is_same_run else 1
+        if find_flaw(status) or step <= 0:
+            self._rejected += 1
+            return
+        self._lost += step - 1
+        self._received += 1
+        self._status = status
+        self._handshake.hear(status, self._clock())
+        self._reading = DeviceReading(
+            sequence=self._received,
+            time_s=1e-6 * status.utime,
+            X_BH=_normalize(status.pose),
+            V_BH=np.array(status.velocity),
+            F_BH=np.array(status.wrench),
+            buttons=status.buttons,
+            gate=GateState(status.gate),
+            fault=Fault(status.fault),
+        )
+
+
+def _normalize(pose: tuple[float, ...]) -> np.ndarray:
+    """Returns a pose (7,) with its quaternion at length one."""
+    X = np.array(pose)
+    X[:4] /= np.linalg.norm(X[:4])
+    return X

@@ -1,0 +1,173 @@
+"""The gate of a haptic device that is asked over LCM."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass, replace
+
+import numpy as np
+from pydrake.common.value import AbstractValue, Value
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+    State,
+)
+
+from drake_haptics import _core
+from drake_haptics.device.backend import Fault, GateState
+from drake_haptics.device.gate_status import GateStatus
+from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_command
+
+_UINT32 = (1 << 32) - 1
+
+
+@dataclass(frozen=True, eq=False)
+class _Memory:
+    """The state: the gate, what it has decided, and the message it has seen last."""
+
+    gate: _core.DeviceGate
+    status: GateStatus
+    seen: lcmt_haptic_command
+
+    def __deepcopy__(self, memo: object) -> _Memory:
+        """Returns a copy; only the gate can change."""
+        return _Memory(copy.deepcopy(self.gate), self.status, self.seen)
+
+
+class HapticCommandReceiver(LeafSystem):
+    """Lets the wrench of an `lcmt_haptic_command` pass to a device, if it may.
+
+    The message comes from Drake's `LcmSubscriberSystem`. The gate is the one of every
+    device (gate.h): force ramps in, is never over the limits, and ramps out when
+    messages stop, are damaged, or the handle is too fast.
+
+    .. pydrake_system::
+
+        name: HapticCommandReceiver
+        input_ports:
+        - lcmt_haptic_command
+        - X_BH
+        - V_BH
+        output_ports:
+        - F_BH
+        - gate_status
+
+    * `X_BH` (7) is the handle's pose [qw qx qy qz x y z] in the device's base, m.
+    * `V_BH` (6) is its spatial velocity [ω; v] there, rad/s and m/s.
+    * `F_BH` (6) is the wrench [τ; f] to show on the handle at Ho, N·m and N.
+    * `gate_status` (abstract) is the `GateStatus`.
+
+    The state is the gate, moved on every period from 0 s on by an unrestricted update;
+    the outputs depend on it alone. Its clock is the context's time.
+    """
+
+    def __init__(
+        self,
+        period_s: float,
+        *,
+        max_force_N: float,
+        max_torque_Nm: float,
+        max_ttl_s: float = 0.1,
+    ):
+        """Constructs the system.
+
+        Args:
+            period_s: The device's tick, s.
+            max_force_N: Largest force ever shown, N.
+            max_torque_Nm: Largest torque ever shown, N·m.
+            max_ttl_s: The longest that a command holds without a newer one, s.
+
+        Raises:
+            ValueError: A time or a limit is out of range.
+        """
+        super().__init__()
+        if not period_s > 0.0:
+            raise ValueError(f"period_s must be positive, is {period_s}")
+        gate = _core.DeviceGate(
+            max_force_N=max_force_N, max_torque_Nm=max_torque_Nm, max_ttl_s=max_ttl_s
+        )
+        self._idle = GateStatus(max_force_N=max_force_N, max_torque_Nm=max_torque_Nm)
+        self._command = self.DeclareAbstractInputPort(
+            "lcmt_haptic_command", Value[object](lcmt_haptic_command())
+        )
+        self._X_BH = self.DeclareVectorInputPort("X_BH", 7)
+        self._V_BH = self.DeclareVectorInputPort("V_BH", 6)
+        self._memory = self.DeclareAbstractState(
+            Value[object](_Memory(gate, self._idle, lcmt_haptic_command()))
+        )
+        from_state = {self.abstract_state_ticket(self._memory)}
+        self._F_BH = self.DeclareVectorOutputPort("F_BH", 6, self._calc_F, from_state)
+        self._gate_status = self.DeclareAbstractOutputPort(
+            "gate_status",
+            lambda: Value[object](GateStatus()),
+            self._calc_gate_status,
+            from_state,
+        )
+        self.DeclarePeriodicUnrestrictedUpdateEvent(period_s, 0.0, self._update)
+
+    def get_command_input_port(self) -> InputPort:
+        """Returns the input `lcmt_haptic_command`."""
+        return self._command
+
+    def get_handle_pose_input_port(self) -> InputPort:
+        """Returns the input `X_BH`."""
+        return self._X_BH
+
+    def get_handle_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_BH`."""
+        return self._V_BH
+
+    def get_wrench_output_port(self) -> OutputPort:
+        """Returns the output `F_BH`."""
+        return self._F_BH
+
+    def get_gate_status_output_port(self) -> OutputPort:
+        """Returns the output `gate_status`."""
+        return self._gate_status
+
+    def _update(self, context: Context, state: State) -> None:
+        now_ns = round(1e9 * context.get_time())
+        value = state.get_mutable_abstract_state(int(self._memory))
+        memory = value.get_value()
+        gate, command = memory.gate, self._command.Eval(context)
+        # The subscriber shows a message until the next one comes, and at first an empty
+        # one. A session of more bits than a gate knows is none, either.
+        if command is not memory.seen and 0 < command.session <= _UINT32:
+            gate.receive(now_ns, _pack(command))
+        F_BH = gate.step(now_ns, self._X_BH.Eval(context), self._V_BH.Eval(context))
+        status = replace(
+            self._idle,
+            F_BH=F_BH,
+            session=gate.session,
+            command_sequence=gate.command_sequence,
+            rejected=gate.rejected,
+            state=GateState(gate.state),
+            fault=Fault(gate.fault),
+        )
+        value.set_value(_Memory(gate, status, command))
+
+    def _calc_F(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._get_status(context).F_BH)
+
+    def _calc_gate_status(self, context: Context, output: AbstractValue) -> None:
+        output.set_value(self._get_status(context))
+
+    def _get_status(self, context: Context) -> GateStatus:
+        """Returns what the gate has decided last."""
+        return context.get_abstract_state(int(self._memory)).get_value().status
+
+
+def _pack(command: lcmt_haptic_command) -> bytes:
+    """Returns the packet of a message, for the gate to judge."""
+    return _core.pack_command(
+        session=command.session,
+        sequence=command.sequence & _UINT32,
+        time_ns=0,
+        F_BH=np.array(command.wrench),
+        state_sequence=0,
+        ttl_us=max(command.time_to_live, 0),
+        enable=command.enable,
+    )

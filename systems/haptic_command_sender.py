@@ -1,0 +1,98 @@
+"""What a haptic device is asked for over LCM, from a vector."""
+
+from __future__ import annotations
+
+import secrets
+
+from pydrake.common.value import AbstractValue, Value
+from pydrake.systems.framework import (
+    Context,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+)
+
+from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_command
+
+_LONGEST_TTL_S = 10.0
+# Enough messages at any rate of a haptic loop for one to get through.
+_RELEASED_UNTIL_S = 0.05
+
+
+class HapticCommandSender(LeafSystem):
+    """Makes the `lcmt_haptic_command` of a host for Drake's `LcmPublisherSystem`.
+
+    .. pydrake_system::
+
+        name: HapticCommandSender
+        input_ports:
+        - F_BH
+        - enable
+        output_ports:
+        - lcmt_haptic_command
+
+    * `F_BH` (6) is the wrench [τ; f] to show on the handle at Ho in the device's base,
+      N·m and N.
+    * `enable` (1) asks for force where above one half; always where not connected. A
+      device leaves a fault when it is asked for none, and then for some again.
+
+    A device takes force only from a host that it has heard ask for none, so all
+    messages before 0.05 s do.
+
+    The message's number is that of the period that the context's time is in, so it
+    must be published once per period. One such system serves one run: the numbers of
+    another that starts at 0 s would be old ones.
+    """
+
+    def __init__(self, period_s: float, *, ttl_s: float = 0.1):
+        """Constructs the system.
+
+        Args:
+            period_s: From message to message, s.
+            ttl_s: How long a wrench holds without a newer one, s.
+
+        Raises:
+            ValueError: A time is out of range.
+        """
+        super().__init__()
+        if not period_s > 0.0:
+            raise ValueError(f"period_s must be positive, is {period_s}")
+        if not 0.0 < ttl_s <= _LONGEST_TTL_S:
+            raise ValueError(f"ttl_s must be in (0, {_LONGEST_TTL_S:g}], is {ttl_s}")
+        self._period_s = period_s
+        self._time_to_live = round(1e6 * ttl_s)
+        self._session = secrets.randbelow(2**32 - 1) + 1
+        self._F_BH = self.DeclareVectorInputPort("F_BH", 6)
+        self._enable = self.DeclareVectorInputPort("enable", 1)
+        self._message = self.DeclareAbstractOutputPort(
+            "lcmt_haptic_command",
+            lambda: Value[object](lcmt_haptic_command()),
+            self._calc_message,
+        )
+
+    def get_wrench_input_port(self) -> InputPort:
+        """Returns the input `F_BH`."""
+        return self._F_BH
+
+    def get_enable_input_port(self) -> InputPort:
+        """Returns the input `enable`."""
+        return self._enable
+
+    def get_command_output_port(self) -> OutputPort:
+        """Returns the output `lcmt_haptic_command`."""
+        return self._message
+
+    def _calc_message(self, context: Context, output: AbstractValue) -> None:
+        enable = context.get_time() >= _RELEASED_UNTIL_S
+        if self._enable.HasValue(context):
+            enable &= bool(self._enable.Eval(context)[0] > 0.5)
+        output.set_value(
+            lcmt_haptic_command(
+                utime=round(1e6 * context.get_time()),
+                session=self._session,
+                sequence=1 + round(context.get_time() / self._period_s),
+                time_to_live=self._time_to_live,
+                enable=enable,
+                wrench=tuple(self._F_BH.Eval(context).tolist()),
+            )
+        )

@@ -1,0 +1,111 @@
+"""What a haptic device tells over LCM, from vectors."""
+
+from __future__ import annotations
+
+import secrets
+
+from pydrake.common.value import AbstractValue, Value
+from pydrake.systems.framework import (
+    Context,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+)
+
+from drake_haptics.device.gate_status import GateStatus
+from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status
+
+
+class HapticStatusSender(LeafSystem):
+    """Makes the `lcmt_haptic_status` of a device for Drake's `LcmPublisherSystem`.
+
+    .. pydrake_system::
+
+        name: HapticStatusSender
+        input_ports:
+        - X_BH
+        - V_BH
+        - gate_status
+        - buttons
+        output_ports:
+        - lcmt_haptic_status
+
+    * `X_BH` (7) is the handle's pose [qw qx qy qz x y z] in the device's base, m.
+    * `V_BH` (6) is its spatial velocity [ω; v] there, rad/s and m/s.
+    * `gate_status` (abstract) is that of the device's `HapticCommandReceiver`.
+    * `buttons` (1) has bit i set while button i is held; none where not connected.
+
+    The message's number is that of the period that the context's time is in, so it
+    must be published once per period. One such system serves one run: the numbers of
+    another that starts at 0 s would be old ones.
+    """
+
+    def __init__(self, period_s: float):
+        """Constructs the system.
+
+        Args:
+            period_s: From message to message, s.
+
+        Raises:
+            ValueError: The period is not positive.
+        """
+        super().__init__()
+        if not period_s > 0.0:
+            raise ValueError(f"period_s must be positive, is {period_s}")
+        self._period_s = period_s
+        self._boot = secrets.randbelow(2**32 - 1) + 1
+        self._X_BH = self.DeclareVectorInputPort("X_BH", 7)
+        self._V_BH = self.DeclareVectorInputPort("V_BH", 6)
+        self._gate_status = self.DeclareAbstractInputPort(
+            "gate_status", Value[object](GateStatus())
+        )
+        self._buttons = self.DeclareVectorInputPort("buttons", 1)
+        self._message = self.DeclareAbstractOutputPort(
+            "lcmt_haptic_status",
+            lambda: Value[object](lcmt_haptic_status()),
+            self._calc_message,
+        )
+
+    def get_handle_pose_input_port(self) -> InputPort:
+        """Returns the input `X_BH`."""
+        return self._X_BH
+
+    def get_handle_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_BH`."""
+        return self._V_BH
+
+    def get_gate_status_input_port(self) -> InputPort:
+        """Returns the input `gate_status`."""
+        return self._gate_status
+
+    def get_buttons_input_port(self) -> InputPort:
+        """Returns the input `buttons`."""
+        return self._buttons
+
+    def get_status_output_port(self) -> OutputPort:
+        """Returns the output `lcmt_haptic_status`."""
+        return self._message
+
+    def _calc_message(self, context: Context, output: AbstractValue) -> None:
+        gate = self._gate_status.Eval(context)
+        buttons = 0.0
+        if self._buttons.HasValue(context):
+            buttons = self._buttons.Eval(context)[0]
+        output.set_value(
+            lcmt_haptic_status(
+                utime=round(1e6 * context.get_time()),
+                boot=self._boot,
+                sequence=1 + round(context.get_time() / self._period_s),
+                session=gate.session,
+                command_sequence=gate.command_sequence,
+                pose=tuple(self._X_BH.Eval(context).tolist()),
+                velocity=tuple(self._V_BH.Eval(context).tolist()),
+                wrench=tuple(gate.F_BH.tolist()),
+                max_force=gate.max_force_N,
+                max_torque=gate.max_torque_Nm,
+                buttons=int(buttons),
+                rejected=gate.rejected,
+                gate=int(gate.state),
+                fault=int(gate.fault),
+            )
+        )

@@ -1,0 +1,121 @@
+"""Devices behind LCM messages, and a host's loop, as diagrams."""
+
+import numpy as np
+from one_axis_device import make_one_axis_device
+from pydrake.math import RigidTransform
+from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
+from pydrake.systems.lcm import (
+    LcmInterfaceSystem,
+    LcmPublisherSystem,
+    LcmSubscriberSystem,
+)
+from pydrake.systems.primitives import AffineSystem
+
+from drake_haptics.device.lcm.haptic_messages import (
+    lcmt_haptic_command,
+    lcmt_haptic_status,
+)
+from drake_haptics.device_preset import load_device_preset
+from drake_haptics.systems.hand_grip import HAND_GRIPS
+from drake_haptics.systems.hand_path import HandPath
+from drake_haptics.systems.haptic_command_receiver import HapticCommandReceiver
+from drake_haptics.systems.haptic_command_sender import HapticCommandSender
+from drake_haptics.systems.haptic_status_receiver import HapticStatusReceiver
+from drake_haptics.systems.haptic_status_sender import HapticStatusSender
+from drake_haptics.systems.simulated_arm import SimulatedArm
+
+PERIOD_S = 1e-3
+MAX_FORCE_N, MAX_TORQUE_NM = 8.5, 0.188
+START = np.array(
+    load_device_preset("phantom_premium_1_5_6dof").workspace_center_m, float
+)
+
+
+def make_arm():
+    """An arm whose hand rests for half a second, then goes 2 cm down."""
+    preset = load_device_preset("phantom_premium_1_5_6dof")
+    above, below = RigidTransform(START), RigidTransform(START - [0.0, 0.0, 0.02])
+    path = HandPath([0.0, 0.5, 0.7, 1.5], [above, above, below, below], periodic=False)
+    return SimulatedArm(
+        preset.model_path,
+        preset.handle_link,
+        RigidTransform(),
+        path,
+        RigidTransform(),
+        HAND_GRIPS["nominal"],
+    )
+
+
+def make_spring(stiffness_N_per_m=100.0, origin=START):
+    """F_BH (6) of X_BH (7): a spring to a point, nothing to turn against."""
+    D, y0 = np.zeros((6, 7)), np.zeros(6)
+    D[3:, 4:] = -stiffness_N_per_m * np.eye(3)
+    y0[3:] = stiffness_N_per_m * np.asarray(origin)
+    none = np.zeros
+    return AffineSystem(none((0, 0)), none((0, 7)), none(0), none((6, 0)), D, y0)
+
+
+def add_lcm(builder, lcm):
+    """Adds what has the subscriptions handled."""
+    builder.AddSystem(LcmInterfaceSystem(lcm))
+
+
+def add_device(builder, lcm, arm, **limits):
+    """Adds a device's side: an arm, its gate and its messages."""
+    limits = {"max_force_N": MAX_FORCE_N, "max_torque_Nm": MAX_TORQUE_NM} | limits
+    builder.AddSystem(arm)
+    receiver = builder.AddSystem(HapticCommandReceiver(PERIOD_S, **limits))
+    sender = builder.AddSystem(HapticStatusSender(PERIOD_S))
+    commands = builder.AddSystem(
+        LcmSubscriberSystem.Make("HAPTIC_COMMAND", lcmt_haptic_command, lcm)
+    )
+    statuses = builder.AddSystem(
+        LcmPublisherSystem.Make("HAPTIC_STATUS", lcmt_haptic_status, lcm, PERIOD_S)
+    )
+    X_BH, V_BH = arm.GetOutputPort("X_WH"), arm.GetOutputPort("V_WH")
+    for output, input in [
+        (commands.get_output_port(), receiver.get_command_input_port()),
+        (X_BH, receiver.get_handle_pose_input_port()),
+        (V_BH, receiver.get_handle_velocity_input_port()),
+        (receiver.get_wrench_output_port(), arm.GetInputPort("F_applied")),
+        (X_BH, sender.get_handle_pose_input_port()),
+        (V_BH, sender.get_handle_velocity_input_port()),
+        (receiver.get_gate_status_output_port(), sender.get_gate_status_input_port()),
+        (sender.get_status_output_port(), statuses.get_input_port()),
+    ]:
+        builder.Connect(output, input)
+    return receiver
+
+
+def add_host(builder, lcm, law):
+    """Adds a host's side: what it gives back for the handle's pose."""
+    builder.AddSystem(law)
+    receiver = builder.AddSystem(HapticStatusReceiver())
+    sender = builder.AddSystem(HapticCommandSender(PERIOD_S))
+    statuses = builder.AddSystem(
+        LcmSubscriberSystem.Make("HAPTIC_STATUS", lcmt_haptic_status, lcm)
+    )
+    commands = builder.AddSystem(
+        LcmPublisherSystem.Make("HAPTIC_COMMAND", lcmt_haptic_command, lcm, PERIOD_S)
+    )
+    for output, input in [
+        (statuses.get_output_port(), receiver.get_status_input_port()),
+        (receiver.get_handle_pose_output_port(), law.get_input_port()),
+        (law.get_output_port(), sender.get_wrench_input_port()),
+        (sender.get_command_output_port(), commands.get_input_port()),
+    ]:
+        builder.Connect(output, input)
+    return receiver
+
+
+def make_simulator(diagram):
+    """A simulator of one fixed step per tick, as `make_simulator` of the package."""
+    simulator = Simulator(diagram)
+    ResetIntegratorFromFlags(simulator, "runge_kutta2", PERIOD_S)
+    simulator.get_mutable_integrator().set_fixed_step_mode(True)
+    return simulator
+
+
+def make_axis():
+    """A device that moves along x only: 0.1 kg with a damper of 5 N·s/m."""
+    return make_one_axis_device(0.1, 5.0)

@@ -1,0 +1,379 @@
+"""Drake's sender and receiver systems for a haptic device, over LCM in one process."""
+
+import math
+
+import numpy as np
+import pytest
+from lcm_rig import (
+    MAX_FORCE_N,
+    PERIOD_S,
+    add_device,
+    add_host,
+    add_lcm,
+    make_arm,
+    make_axis,
+    make_simulator,
+    make_spring,
+)
+from pydrake.lcm import DrakeLcm
+from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import DiscreteTimeDelay
+
+from drake_haptics.device.backend import Fault, GateState
+from drake_haptics.device.gate_status import GateStatus
+from drake_haptics.device.lcm.haptic_messages import (
+    lcmt_haptic_command,
+    lcmt_haptic_status,
+)
+from drake_haptics.systems.haptic_command_receiver import HapticCommandReceiver
+from drake_haptics.systems.haptic_command_sender import HapticCommandSender
+from drake_haptics.systems.haptic_status_receiver import HapticStatusReceiver
+from drake_haptics.systems.haptic_status_sender import HapticStatusSender
+
+REST = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def list_ports(system):
+    ports = [system.get_input_port(i) for i in range(system.num_input_ports())]
+    ports += [system.get_output_port(i) for i in range(system.num_output_ports())]
+    return {port.get_name(): port.size() for port in ports}
+
+
+def test_topology():
+    assert list_ports(HapticStatusSender(PERIOD_S)) == {
+        "X_BH": 7,
+        "V_BH": 6,
+        "gate_status": 0,
+        "buttons": 1,
+        "lcmt_haptic_status": 0,
+    }
+    assert list_ports(HapticStatusReceiver()) == {
+        "lcmt_haptic_status": 0,
+        "X_BH": 7,
+        "V_BH": 6,
+        "F_BH": 6,
+        "gate": 1,
+        "fault": 1,
+    }
+    assert list_ports(HapticCommandSender(PERIOD_S)) == {
+        "F_BH": 6,
+        "enable": 1,
+        "lcmt_haptic_command": 0,
+    }
+    receiver = make_receiver()
+    assert list_ports(receiver) == {
+        "lcmt_haptic_command": 0,
+        "X_BH": 7,
+        "V_BH": 6,
+        "F_BH": 6,
+        "gate_status": 0,
+    }
+    assert not receiver.HasAnyDirectFeedthrough()
+
+
+def make_receiver():
+    return HapticCommandReceiver(PERIOD_S, max_force_N=MAX_FORCE_N, max_torque_Nm=0.2)
+
+
+def calc_motion(diagram, arm, duration_s=1.0):
+    """The handle's poses at the ticks, by tick."""
+    simulator = make_simulator(diagram)
+    pose = arm.GetOutputPort("X_WH")
+    poses = {}
+
+    def look(root):
+        tick = round(root.get_time() / PERIOD_S)
+        poses[tick] = pose.Eval(arm.GetMyContextFromRoot(root)).copy()
+
+    simulator.set_monitor(look)
+    simulator.AdvanceTo(duration_s)
+    return np.array([poses[tick] for tick in sorted(poses)]), simulator
+
+
+def test_the_loop_over_messages_is_the_direct_one_two_samples_later():
+    """A message each way costs a sample: nothing else may differ, to the last bit."""
+    builder, lcm, arm = DiagramBuilder(), DrakeLcm("memq://"), make_arm()
+    add_lcm(builder, lcm)
+    gate = add_device(builder, lcm, arm)
+    add_host(builder, lcm, make_spring())
+    through_lcm, simulator = calc_motion(builder.Build(), arm)
+    context = gate.GetMyContextFromRoot(simulator.get_context())
+    status = gate.get_gate_status_output_port().Eval(context)
+    assert (status.state, status.rejected) == (GateState.ACTIVE, 0)
+    assert status.F_BH[5] == pytest.approx(1.47, abs=0.02)
+    differences = []
+    for samples in (1, 2, 3):
+        builder, arm, spring = DiagramBuilder(), make_arm(), make_spring()
+        delay = DiscreteTimeDelay(PERIOD_S, samples, 6)
+        for system in (arm, spring, delay):
+            builder.AddSystem(system)
+        builder.Connect(arm.GetOutputPort("X_WH"), spring.get_input_port())
+        builder.Connect(spring.get_output_port(), delay.get_input_port())
+        builder.Connect(delay.get_output_port(), arm.GetInputPort("F_applied"))
+        direct, _ = calc_motion(builder.Build(), arm)
+        differences.append(np.abs(through_lcm - direct).max())
+    assert differences[1] == 0.0
+    assert min(differences[0], differences[2]) > 1e-5
+
+
+class Gate:
+    """A device's side alone; the test is the host."""
+
+    def __init__(self, **limits):
+        builder, self.lcm = DiagramBuilder(), DrakeLcm("memq://")
+        add_lcm(builder, self.lcm)
+        self.axis = make_axis()
+        self.receiver = add_device(builder, self.lcm, self.axis, **limits)
+        self.simulator = make_simulator(builder.Build())
+        self.statuses = []
+        self.lcm.Subscribe(
+            "HAPTIC_STATUS",
+            lambda data: self.statuses.append(lcmt_haptic_status.decode(data)),
+        )
+        self.sequence = self.ticks = 0
+        self.simulator.Initialize()
+
+    def tick(self, force=None, **fields):
+        """A tick; with a force, after a command for it along x. Returns F_BH."""
+        if force is not None:
+            self.sequence += 1
+            command = {
+                "session": 7,
+                "sequence": self.sequence,
+                "time_to_live": 50_000,
+                "enable": True,
+                "wrench": (0.0, 0.0, 0.0, force, 0.0, 0.0),
+            } | fields
+            self.lcm.Publish("HAPTIC_COMMAND", lcmt_haptic_command(**command).encode())
+        # Between two events, where round-off cannot tell on which side of one.
+        self.ticks += 1
+        self.simulator.AdvanceTo((self.ticks + 0.5) * PERIOD_S)
+        return self.get_status().F_BH
+
+    def start(self, force=1.0, ticks=300):
+        """Releases, then asks for a force until it is shown."""
+        self.tick(0.0, enable=False)
+        for _ in range(ticks):
+            self.tick(force)
+
+    def get_status(self):
+        """What the gate has decided."""
+        context = self.receiver.GetMyContextFromRoot(self.simulator.get_context())
+        return self.receiver.get_gate_status_output_port().Eval(context)
+
+    @property
+    def state(self):
+        """Gate and fault."""
+        status = self.get_status()
+        return status.state, status.fault
+
+    def set_velocity(self, value):
+        """Throws the handle along x."""
+        axis = self.axis.GetSubsystemByName("axis")
+        context = self.simulator.get_mutable_context()
+        axis.GetMyMutableContextFromRoot(context).SetContinuousState([0.0, value])
+
+
+def test_force_ramps_in_within_the_limit():
+    gate = Gate()
+    gate.tick(0.0, enable=False)
+    shown = [np.linalg.norm(gate.tick(1e300)) for _ in range(300)]
+    assert np.diff(shown).max() == pytest.approx(MAX_FORCE_N * PERIOD_S / 0.2)
+    assert shown[-1] <= MAX_FORCE_N
+    assert shown[-1] == pytest.approx(MAX_FORCE_N)
+    assert gate.state == (GateState.ACTIVE, Fault.NONE)
+    last = gate.statuses[-1]
+    assert (last.gate, last.fault, last.session) == (GateState.ACTIVE, Fault.NONE, 7)
+    assert last.wrench[3] == pytest.approx(MAX_FORCE_N)
+    assert (last.max_force, last.max_torque) == (MAX_FORCE_N, 0.188)
+    assert last.pose[4] > 0.0
+    assert last.velocity[3] > 0.0
+    numbers = [status.sequence for status in gate.statuses]
+    assert numbers == list(range(1, len(numbers) + 1))
+    assert len({status.boot for status in gate.statuses}) == 1
+
+
+def test_silence_is_a_fault_that_only_a_release_leaves():
+    gate = Gate()
+    gate.start()
+    shown = [gate.tick()[3] for _ in range(100)]
+    assert max(shown) == shown[0] == pytest.approx(1.0)
+    assert shown[45] == pytest.approx(1.0)
+    assert shown[75] == 0.0
+    assert gate.state == (GateState.FAULT, Fault.STALE)
+    gate.start()
+    assert gate.get_status().F_BH[3] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_a_wrench_that_is_not_finite_is_a_fault(value):
+    gate = Gate()
+    gate.start()
+    gate.tick(value)
+    gate.tick(1.0)
+    assert not gate.tick(1.0).any()
+    assert gate.state == (GateState.FAULT, Fault.NOT_FINITE)
+
+
+def test_a_handle_that_is_too_fast_is_a_fault():
+    gate = Gate()
+    gate.start()
+    gate.set_velocity(3.0)
+    gate.tick(1.0)
+    assert not gate.tick(1.0).any()
+    assert gate.state == (GateState.FAULT, Fault.OVERSPEED)
+
+
+@pytest.mark.parametrize(
+    "fields", [{"session": 8}, {"sequence": 1}, {"time_to_live": -1}]
+)
+def test_what_is_foreign_old_or_dead_is_not_shown(fields):
+    gate = Gate()
+    gate.start()
+    rejected = gate.get_status().rejected
+    for _ in range(200):
+        gate.tick(-1.0, **fields)
+    assert gate.state == (GateState.FAULT, Fault.STALE)
+    assert gate.get_status().F_BH[3] == 0.0
+    assert "time_to_live" in fields or gate.get_status().rejected >= rejected + 100
+
+
+@pytest.mark.parametrize("session", [0, -1, 2**32])
+def test_a_session_that_cannot_be_one_is_ignored(session):
+    gate = Gate()
+    for enable in (False, True, True):
+        gate.tick(1.0, session=session, enable=enable)
+    assert gate.state == (GateState.IDLE, Fault.NONE)
+    assert gate.get_status().rejected == 0
+
+
+def test_a_copied_context_has_a_gate_of_its_own():
+    gate = Gate()
+    gate.start()
+    root = gate.simulator.get_context()
+    twin = root.Clone()
+    for _ in range(100):
+        gate.tick()
+    assert gate.state == (GateState.FAULT, Fault.STALE)
+    status = gate.receiver.get_gate_status_output_port().Eval(
+        gate.receiver.GetMyContextFromRoot(twin)
+    )
+    assert status.state is GateState.ACTIVE
+
+
+def test_a_command_is_released_at_first_and_while_it_is_not_enabled():
+    sender = HapticCommandSender(PERIOD_S, ttl_s=0.02)
+    context = sender.CreateDefaultContext()
+    sender.get_wrench_input_port().FixValue(context, np.arange(6.0))
+
+    def send(time_s):
+        context.SetTime(time_s)
+        return sender.get_command_output_port().Eval(context)
+
+    first, later = send(0.0), send(0.05)
+    assert (first.enable, first.sequence, first.utime) == (False, 1, 0)
+    assert (later.enable, later.sequence, later.utime) == (True, 51, 50_000)
+    assert later.wrench == (0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
+    assert later.time_to_live == 20_000
+    assert 0 < later.session == first.session < 2**32
+    for value, enable in [(0.0, False), (1.0, True)]:
+        sender.get_enable_input_port().FixValue(context, [value])
+        assert send(0.06).enable is enable
+
+
+def test_a_status_as_it_is_sent_and_received():
+    sender = HapticStatusSender(PERIOD_S)
+    context = sender.CreateDefaultContext()
+    context.SetTime(0.004)
+    pose = [0.5, 0.5, -0.5, 0.5, 0.1, 0.2, 0.3]
+    sender.get_handle_pose_input_port().FixValue(context, pose)
+    sender.get_handle_velocity_input_port().FixValue(context, np.arange(6.0))
+    sender.get_buttons_input_port().FixValue(context, [5.0])
+    sender.get_gate_status_input_port().FixValue(
+        context,
+        GateStatus(
+            F_BH=-np.arange(6.0),
+            session=7,
+            command_sequence=8,
+            rejected=9,
+            state=GateState.FAULT,
+            fault=Fault.OVERSPEED,
+            max_force_N=3.0,
+            max_torque_Nm=4.0,
+        ),
+    )
+    status = sender.get_status_output_port().Eval(context)
+    assert 0 < status.boot < 2**32
+    assert status == lcmt_haptic_status(
+        utime=4000,
+        boot=status.boot,
+        sequence=5,
+        session=7,
+        command_sequence=8,
+        pose=tuple(pose),
+        velocity=(0.0, 1.0, 2.0, 3.0, 4.0, 5.0),
+        wrench=(0.0, -1.0, -2.0, -3.0, -4.0, -5.0),
+        max_force=3.0,
+        max_torque=4.0,
+        buttons=5,
+        rejected=9,
+        gate=2,
+        fault=3,
+    )
+    assert receive(status) == {
+        "X_BH": pose,
+        "V_BH": [0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
+        "F_BH": [0.0, -1.0, -2.0, -3.0, -4.0, -5.0],
+        "gate": [2.0],
+        "fault": [3.0],
+    }
+
+
+def receive(status):
+    """All outputs of a receiver, by name."""
+    receiver = HapticStatusReceiver()
+    context = receiver.CreateDefaultContext()
+    receiver.get_status_input_port().FixValue(context, status)
+    ports = [
+        receiver.get_handle_pose_output_port(),
+        receiver.get_handle_velocity_output_port(),
+        receiver.get_shown_wrench_output_port(),
+        receiver.get_gate_output_port(),
+        receiver.get_fault_output_port(),
+    ]
+    return {port.get_name(): port.Eval(context).tolist() for port in ports}
+
+
+def test_before_the_first_message_the_handle_rests():
+    got = receive(lcmt_haptic_status())
+    assert got["X_BH"] == list(REST)
+    assert not any(got["V_BH"] + got["F_BH"] + got["gate"] + got["fault"])
+
+
+@pytest.mark.parametrize(
+    ("fields", "says"),
+    [
+        ({"pose": (math.nan, *REST[1:])}, "pose is not finite"),
+        ({"pose": (0.9, *REST[1:])}, "quaternion of pose has the length 0.9"),
+        ({"velocity": (math.inf, *REST[2:])}, "velocity is not finite"),
+        ({"wrench": (math.nan, *REST[2:])}, "wrench is not finite"),
+        ({"gate": 3}, "gate is 3"),
+        ({"fault": -1}, "fault is -1"),
+    ],
+)
+def test_a_status_that_cannot_be_stops_the_loop(fields, says):
+    with pytest.raises(ValueError, match=says):
+        receive(lcmt_haptic_status(**{"boot": 1, "pose": REST} | fields))
+
+
+def test_arguments_out_of_range():
+    for wrong in (0.0, -1e-3, math.nan):
+        for make in (HapticStatusSender, HapticCommandSender):
+            with pytest.raises(ValueError, match="period_s must be positive"):
+                make(wrong)
+        with pytest.raises(ValueError, match="period_s must be positive"):
+            HapticCommandReceiver(wrong, max_force_N=1.0, max_torque_Nm=0.0)
+    with pytest.raises(ValueError, match="ttl_s must be in"):
+        HapticCommandSender(PERIOD_S, ttl_s=0.0)
+    with pytest.raises(ValueError, match="max_force_N"):
+        HapticCommandReceiver(PERIOD_S, max_force_N=-1.0, max_torque_Nm=0.0)
