@@ -224,6 +224,17 @@ def test_nothing_pulls_a_tool_that_comes_from_behind_an_open_sheet() -> None:
         assert len(tracker.query(pose([0, 0, z]))) == 0
 
 
+@pytest.mark.parametrize("tolerance", [0.0, 1e-300, 1e-9, T])
+def test_faces_that_are_pressed_flush_meet_at_any_tolerance(tolerance: float) -> None:
+    tracker = _core.SceneTracker(
+        box([0.02, 0.02, 0.02]), [box([0.2, 0.2, 0.02])], tolerance
+    )
+    for gap in np.linspace(1e-3, -2e-3, 200):
+        contacts = tracker.query(pose([0.0, 0.0, 0.02 + gap]))
+        if gap < 0.0:
+            assert contacts.distance.min() == pytest.approx(gap, abs=1e-15)
+
+
 def test_objects_are_posed_and_named_by_their_index() -> None:
     tracker = _core.SceneTracker(
         spike([0, 0, 0]), [box([0.1, 0.1, 0.1]), box([0.1, 0.1, 0.1])], T

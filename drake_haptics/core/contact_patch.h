@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "pressure_polygon.h"
@@ -8,10 +9,13 @@
 
 namespace drake_haptics {
 
-/// Thickness of the layer between flush faces, as a share of the tolerance:
-/// thin enough that it ends on the face, thick enough to be soft against
-/// rocking.
-inline constexpr double kPressureLayerShare = 0.1;
+/// Thickness (m) of the layer between flush faces where contacts are found up
+/// to `tolerance` (m): thin enough that it ends on the face, thick enough to be
+/// soft against rocking; never none, since the faces of pieces that only
+/// overlap must still be seen to lie on each other.
+inline double PressureLayer(double tolerance) {
+  return std::max(0.1 * tolerance, 1e-9);
+}
 
 /// Whether edges of both bodies at the hub lie in the contact's plane to within
 /// `layer` (m), and more than one of either: a quick test that rules out most

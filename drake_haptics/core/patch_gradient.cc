@@ -19,7 +19,7 @@ constexpr double kNear = 2.0 / 3, kFar = -1.0 / 12;
 void DifferentiatePatch(const PosedPieces& pieces, const Contact& contact,
                         double tolerance, ContactGradient* gradient,
                         MovingWitness* witness) {
-  const double layer = kPressureLayerShare * tolerance;
+  const double layer = PressureLayer(tolerance);
   const Hub hub{contact.support[0], contact.support[1]};
   const MovingWitness of_features = *witness;
   PatchWorkspace workspace;

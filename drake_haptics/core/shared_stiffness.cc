@@ -38,9 +38,7 @@ T Fade(const T& distance, const T& width) {
 // How far a flush face or edge reaches, m: as far as an edge of its extent.
 template <typename T>
 T Reach(const ContactOf<T>& contact, double tolerance) {
-  return tolerance > 0 ? T(contact.flushness * contact.extent /
-                           (kPressureLayerShare * tolerance))
-                       : T(0);
+  return contact.flushness * contact.extent / PressureLayer(tolerance);
 }
 
 // In how far two contacts are parts of one constraint, 0 to 1.
@@ -159,8 +157,7 @@ void Press(std::span<const ContactOf<T>* const> contacts, double tolerance,
     cluster.compression = forces.compression[i];
     // Damping sets in over the thickness of the pressure layer.
     cluster.damping_share =
-        cluster.compression /
-        std::max<T>(depth[i], kPressureLayerShare * tolerance);
+        cluster.compression / std::max<T>(depth[i], PressureLayer(tolerance));
     for (std::size_t j = 0; j < contacts.size(); ++j) {
       out->coupling[(first + i) * all + first + j] = forces.coupling(i, j);
     }

@@ -330,11 +330,10 @@ class Query {
 
   PressurePatch FindPatch(const Vec3& n, double h, const Hub& hub,
                           const Vec3& p_a) {
-    const double tolerance = request_.tolerance;
-    const double layer = kPressureLayerShare * tolerance;
+    const double layer = PressureLayer(request_.tolerance);
     return FindPressurePatch(pair_, n, h, hub, p_a,
-                             std::clamp(tolerance - h, 0.0, layer), layer,
-                             &workspace_.patch);
+                             std::clamp(request_.tolerance - h, 0.0, layer),
+                             layer, &workspace_.patch);
   }
 
   void Remember(const std::optional<PairContact>& contact) {
