@@ -1,0 +1,301 @@
+"""What a page says moves the handle, and what it is told is what was written."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+import websocket
+from meshcat_page import MeshcatPage
+from pydrake.math import RigidTransform, RollPitchYaw
+from scipy.spatial.transform import Rotation
+
+from drake_haptics.device import mouse_device
+from drake_haptics.device.backend import DeviceCommand, DeviceError, GateState
+from drake_haptics.device.mouse_device import MouseDevice
+from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.stage import open_meshcat
+
+X_WB = RigidTransform(RollPitchYaw(0.3, -0.2, 1.8), [0.1, 0.2, -0.3])
+X_BH = RigidTransform(RollPitchYaw(-0.4, 0.5, 0.1), [0.02, -0.05, 0.3])
+RADIUS_M = 0.12
+BOUND_S = 20.0
+# Four radii before the workspace, Meshcat's camera sees so much of the world.
+HEIGHT_M = 2 * 4 * RADIUS_M * np.tan(np.deg2rad(37.5))
+
+
+class Clock:
+    """Time as the test wants it."""
+
+    def __init__(self):
+        self.now_s = 100.0
+
+    def __call__(self):
+        """Returns it, s."""
+        return self.now_s
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    clock = Clock()
+    monkeypatch.setattr(mouse_device, "monotonic", clock)
+    return clock
+
+
+@pytest.fixture(scope="module")
+def meshcat():
+    return open_meshcat()
+
+
+def make(meshcat, **changes):
+    options = {"workspace_radius_m": RADIUS_M, "max_force_N": 8.5, "max_torque_Nm": 0.2}
+    return MouseDevice(meshcat, X_WB=X_WB, X_BH=X_BH, **{**options, **changes})
+
+
+@pytest.fixture
+def device(meshcat, clock):
+    with make(meshcat) as device:
+        yield device
+
+
+class Page:
+    """A page of the device, without a browser."""
+
+    def __init__(self, device):
+        self._device = device
+        url = device.url.replace("http", "ws")
+        self._socket = websocket.create_connection(url, timeout=BOUND_S)
+
+    def __enter__(self):
+        """Nothing more to open."""
+        return self
+
+    def __exit__(self, *_):
+        """Goes away."""
+        self._socket.close()
+
+    def say(self, message):
+        """Says something, as JSON if it is no text, and waits until it was heard."""
+        before = self._device.get_link_status()
+        if isinstance(message, bytes):
+            self._socket.send_binary(message)
+        else:
+            text = message if isinstance(message, str) else json.dumps(message)
+            self._socket.send(text)
+        end = time.monotonic() + BOUND_S
+        while self._device.get_link_status() == before:
+            assert time.monotonic() < end
+            time.sleep(0.002)
+
+    def hear(self, wanted):
+        """Returns the first report that is as wanted."""
+        end = time.monotonic() + BOUND_S
+        while not wanted(report := json.loads(self._socket.recv())):
+            assert time.monotonic() < end
+        return report
+
+
+def settle(device, clock):
+    """Lets the handle arrive; returns how it is displaced and turned in the world."""
+    device.read()
+    clock.now_s += 5.0
+    reading = device.read()
+    X_WH, X_WStart = X_WB @ vector_to_pose(reading.X_BH), X_WB @ X_BH
+    R = X_WH.rotation() @ X_WStart.rotation().inverse()
+    turn = Rotation.from_matrix(R.matrix()).as_rotvec()
+    return X_WH.translation() - X_WStart.translation(), turn
+
+
+def test_it_needs_nobody_to_look_at_it(device, clock):
+    reading = device.read()
+    assert vector_to_pose(reading.X_BH).IsNearlyEqualTo(X_BH, 1e-12)
+    np.testing.assert_array_equal(reading.V_BH, np.zeros(6))
+    assert reading.gate is GateState.IDLE
+    device.write(DeviceCommand(np.ones(6), reading.X_BH, reading.V_BH))
+    reading = device.read()
+    assert reading.gate is GateState.ACTIVE
+    np.testing.assert_array_equal(reading.F_BH, np.ones(6))
+
+
+def test_the_pointer_moves_the_handle_as_seen_from_the_front(device, clock):
+    with Page(device) as page:
+        page.say({"do": "move", "by": [0.05, 0.0, 0.0]})
+        p, turn = settle(device, clock)
+        np.testing.assert_allclose(p, [0.05 * HEIGHT_M, 0, 0], atol=1e-9)
+        page.say({"do": "move", "by": [0.0, -0.04, 0.02]})
+        p, turn = settle(device, clock)
+    expected = HEIGHT_M * np.array([0.05, 0.02, -0.04])
+    np.testing.assert_allclose(p, expected, atol=1e-9)
+    np.testing.assert_allclose(turn, 0, atol=1e-9)
+
+
+def test_the_pointer_turns_the_handle_where_it_is(device, clock):
+    with Page(device) as page:
+        page.say({"do": "turn", "by": [0.25, 0.0, 0.0]})
+        p, turn = settle(device, clock)
+        # To the right, the near side: about the vertical.
+        np.testing.assert_allclose(turn, [0, 0, np.pi / 4], atol=1e-9)
+        np.testing.assert_allclose(p, 0, atol=1e-9)
+        page.say({"do": "home"})
+        page.say({"do": "turn", "by": [0.0, 0.0, 0.1]})
+        np.testing.assert_allclose(
+            settle(device, clock)[1], [0, 0.1 * np.pi, 0], atol=1e-9
+        )
+
+
+def test_the_pointer_goes_with_the_camera(meshcat, device, clock):
+    # From the left, half as far away.
+    p_WH = (X_WB @ X_BH).translation()
+    R_WC = np.array([[0, 0, 1], [-1, 0, 0], [0, -1, 0]])
+    camera = np.eye(4)
+    camera[:3, :3], camera[:3, 3] = R_WC, p_WH - [2 * RADIUS_M, 0, 0]
+    with MeshcatPage(meshcat) as view, Page(device) as page:
+        view.send_camera(RigidTransform(camera))
+        clock.now_s += 1.0
+        device.read()
+        page.say({"do": "move", "by": [0.1, 0.0, 0.02]})
+        p, _ = settle(device, clock)
+    np.testing.assert_allclose(p, HEIGHT_M / 2 * np.array([0.02, -0.1, 0]), atol=1e-9)
+
+
+def test_a_leap_of_the_pointer_is_no_leap_of_the_handle(device, clock):
+    with Page(device) as page:
+        page.say({"do": "move", "by": [0.1, 0.0, 0.0]})
+        before = device.read()
+        for _ in range(300):
+            clock.now_s += 0.001
+            reading = device.read()
+            way = np.linalg.norm(reading.X_BH[4:] - before.X_BH[4:])
+            assert way <= 0.5e-3 + 1e-12
+            before = reading
+
+
+def test_the_handle_stays_in_its_workspace(device, clock):
+    with Page(device) as page:
+        for _ in range(3):
+            page.say({"do": "move", "by": [1.0, 1.0, 1.0]})
+        p, _ = settle(device, clock)
+        assert np.linalg.norm(p) == pytest.approx(RADIUS_M)
+        # And comes back at once.
+        page.say({"do": "move", "by": [-0.05, 0.0, 0.0]})
+        back = settle(device, clock)[0] - p
+    assert back[0] < -0.01
+
+
+def test_home_is_where_it_started(device, clock):
+    with Page(device) as page:
+        page.say({"do": "move", "by": [0.1, 0.2, -0.1]})
+        page.say({"do": "turn", "by": [0.4, -0.2, 0.3]})
+        settle(device, clock)
+        page.say({"do": "home"})
+        p, turn = settle(device, clock)
+    np.testing.assert_allclose(p, 0, atol=1e-9)
+    np.testing.assert_allclose(turn, 0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "nonsense",
+    ["", "{}", '{"do": "move", "by": [NaN, 0, 0]}', {"do": "move", "by": [7, 0, 0]},
+     {"do": "fly"}, b"\x00\xff"],
+)  # fmt: skip
+def test_what_a_page_must_not_say_is_counted_and_moves_nothing(device, clock, nonsense):
+    with Page(device) as page:
+        page.say(nonsense)
+        p, turn = settle(device, clock)
+        assert device.get_link_status().rejected == 1
+        np.testing.assert_allclose([*p, *turn], 0, atol=1e-9)
+        # It is heard further.
+        page.say({"do": "move", "by": [0.01, 0.0, 0.0]})
+        assert device.get_link_status().received == 1
+
+
+def test_only_one_page_drives(device, clock):
+    with Page(device) as first, Page(device) as second:
+        second.hear(lambda report: report["drives"])
+        first.say({"do": "move", "by": [0.1, 0.0, 0.0]})
+        assert device.get_link_status().rejected == 1
+        np.testing.assert_allclose(settle(device, clock)[0], 0, atol=1e-9)
+        first.say({"do": "take"})
+        second.hear(lambda report: not report["drives"])
+        first.say({"do": "move", "by": [0.1, 0.0, 0.0]})
+        assert settle(device, clock)[0][0] > 0.01
+
+
+def test_without_its_page_the_handle_stays_and_goes_on_being_read(device, clock):
+    with Page(device) as page:
+        page.say({"do": "move", "by": [0.05, 0.0, 0.0]})
+        p, _ = settle(device, clock)
+    before = device.read()
+    for _ in range(20):
+        clock.now_s += 0.05
+        reading = device.read()
+    assert reading.sequence == before.sequence + 20
+    np.testing.assert_allclose(settle(device, clock)[0], p, atol=1e-12)
+    # A page that comes later takes over from there.
+    with Page(device) as page:
+        page.say({"do": "move", "by": [0.05, 0.0, 0.0]})
+        np.testing.assert_allclose(settle(device, clock)[0], 2 * p, atol=1e-9)
+
+
+def test_a_page_is_told_the_wrench_as_its_picture_shows_it(device, clock):
+    reading = device.read()
+    # 1 N to the right, 2 up, 3 towards the viewer, who looks along y.
+    f_W, tau_W = np.array([1.0, -3.0, 2.0]), np.array([0.0, -0.2, 0.1])
+    R_BW = X_WB.rotation().inverse()
+    F_BH = np.concatenate([R_BW @ tau_W, R_BW @ f_W])
+    with Page(device) as page:
+        assert page.hear(lambda report: True)["gate"] == "idle"
+        device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
+        report = page.hear(lambda report: report["gate"] == "active")
+        np.testing.assert_allclose(report["force_N"], [1, 2, 3], atol=1e-12)
+        np.testing.assert_allclose(report["torque_Nm"], [0, 0.1, 0.2], atol=1e-12)
+        np.testing.assert_allclose(report["handle"], [0, 0], atol=1e-12)
+        page.say({"do": "move", "by": [0.07, -0.03, 0.0]})
+        settle(device, clock)
+        report = page.hear(lambda report: report["handle"][0] > 0.06)
+        np.testing.assert_allclose(report["handle"], [0.07, -0.03], atol=1e-9)
+
+
+def test_a_wrench_that_is_none_is_shown_as_zero(device):
+    """JSON has no word for it: a page would fail to read the report."""
+    reading = device.read()
+    with Page(device) as page:
+        F_BH = np.array([0.0, np.inf, 0, np.nan, 1, 1])
+        device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
+        report = page.hear(lambda report: report["gate"] == "active")
+    assert report["force_N"] == report["torque_Nm"] == [0, 0, 0]
+
+
+def test_close_ends_at_no_force_and_tells_the_page(meshcat, clock):
+    device = make(meshcat)
+    with Page(device) as page:
+        reading = device.read()
+        device.write(DeviceCommand(np.ones(6), reading.X_BH, reading.V_BH))
+        page.hear(lambda report: report["gate"] == "active")
+        device.close()
+        report = page.hear(lambda report: report["gate"] == "idle")
+        assert report["force_N"] == [0, 0, 0]
+    device.close()
+    reading = device.read()
+    assert reading.gate is GateState.IDLE
+    np.testing.assert_array_equal(reading.F_BH, np.zeros(6))
+
+
+def test_a_port_in_use_is_refused(meshcat, device):
+    port = int(device.url.rstrip("/").rpartition(":")[2])
+    with pytest.raises(DeviceError, match=str(port)):
+        make(meshcat, port=port)
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("workspace_radius_m", [0.0, -1.0, np.nan, np.inf]),
+        ("max_force_N", [-1.0, np.nan, np.inf]),
+        ("max_torque_Nm", [-1.0, np.nan, np.inf]),
+    ],
+)
+def test_a_number_out_of_range_is_refused(meshcat, name, values):
+    for value in values:
+        with pytest.raises(ValueError, match=name):
+            make(meshcat, **{name: value})
