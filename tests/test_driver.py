@@ -181,7 +181,7 @@ def test_what_queued_up_while_the_driver_stood_still_is_not_shown(rig):
     for _ in range(10):
         host.send(-8.0)
     rig.now_ns += 10**9
-    rig.driver.tick(late_s=1.0)
+    rig.driver.tick()
     state = host.receive(5.0)
     assert (state.gate, state.fault) == (FAULT, "STALE")
     assert not np.any(rig.arm.calls[-1])

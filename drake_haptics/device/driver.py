@@ -80,8 +80,8 @@ class DeviceDriver:
         self._gate = _core.DeviceGate(
             max_force_N=max_force_N, max_torque_Nm=max_torque_Nm, max_ttl_s=max_ttl_s
         )
-        self._period_s = 1.0 / rate_hz
-        self._pace = TickClock(self._period_s)
+        self._rate_hz = rate_hz
+        self._pace = TickClock(1.0 / rate_hz)
         self._largest_late_s = 0.0
         self._clock_ns = clock_ns
         self._start_ns = clock_ns()
@@ -135,7 +135,8 @@ class DeviceDriver:
         gc.freeze()
         try:
             while not self._stops and time.monotonic() < end_s:
-                self.tick(self._pace.wait())
+                self._largest_late_s = max(self._largest_late_s, self._pace.wait())
+                self.tick()
                 if on_tick is not None:
                     on_tick()
         finally:
@@ -143,18 +144,10 @@ class DeviceDriver:
             self._show(np.zeros(6), GateState.IDLE, Fault.NONE)
             self._socket.close()
 
-    def tick(self, late_s: float = 0.0) -> None:
-        """Does what is to be done in one period.
-
-        Args:
-            late_s: By how much the loop missed the tick's time, s.
-        """
+    def tick(self) -> None:
+        """Does what is to be done in one period."""
         gate, reading = self._gate, self._reading
         now_ns = self._clock_ns()
-        self._largest_late_s = max(self._largest_late_s, late_s)
-        if late_s > self._period_s:
-            # The gate learns of the silence before it hears what queued up in it.
-            gate.step(now_ns, reading.X_BH, reading.V_BH)
         for packet, sender in self._socket.receive(_MAX_PACKETS_PER_TICK):
             if gate.receive(now_ns, packet) == "accepted":
                 self._peer = sender
@@ -217,7 +210,7 @@ class DeviceDriver:
         p50, p99, p99_9 = (1e6 * late_s for late_s in self._pace.calc_lateness())
         return {
             "duration_s": self._reading.time_s,
-            "rate_hz": 1.0 / self._period_s,
+            "rate_hz": self._rate_hz,
             "force_limit_N": self._limits[0],
             "torque_limit_Nm": self._limits[1],
             "packets": self.packets,
