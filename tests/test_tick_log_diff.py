@@ -98,10 +98,12 @@ def test_counts_differ_by_their_number():
     assert (contacts.largest, contacts.largest_tick, contacts.first_tick) == (4.0, 4, 3)
 
 
-def test_clocks_do_not_count():
+def test_clocks_do_not_count_nor_what_only_a_device_tells():
     def change(rows):
         for name in ("clock_s", "query_s", "device_time_s"):
             rows[name][:] += 1.0
+        for name in ("sequence", "buttons", "gate", "fault"):
+            rows[name][:] += 1
 
     assert not compare(change)
 

@@ -32,8 +32,8 @@ def diff(
     """Compare two runs, tick by tick.
 
     A and B are logs. Says for each quantity at how many ticks it differs, where first,
-    where most and by how much. The clocks of computer and device, which differ in every
-    run, do not count.
+    where most and by how much. The clocks, which differ in every run, do not count, nor
+    what a device told besides its handle.
 
     Exits with 0 if both are equal to the last bit, with 3 if not, with 1 if they
     cannot be compared.

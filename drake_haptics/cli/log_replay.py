@@ -71,10 +71,8 @@ def replay(
     if again.header.period_s == log.header.period_s:
         difference = compare_logs(log, again)
     if json_file is not None:
-        figures = {"ticks": len(again.rows), "diff": None}
-        write_json(
-            figures | ({"diff": difference.to_dict()} if difference else {}), json_file
-        )
+        described = None if difference is None else difference.to_dict()
+        write_json({"ticks": len(again.rows), "diff": described}, json_file)
     if json_file == "-":
         return
     click.echo(f"Replayed {log.count_ticks_from_start()} ticks.")

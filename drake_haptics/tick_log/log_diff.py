@@ -13,6 +13,7 @@ from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_rows import (
     CLOCK_QUANTITIES,
     COUNTS,
+    DEVICE_QUANTITIES,
     POSE,
     REALS,
     VELOCITY,
@@ -54,8 +55,8 @@ class LogDiff:
         only_b: How many only the second has.
         same_scene: Whether the same scene was recorded.
         same_meshes: Whether it was on the same meshes.
-        quantities: All that was compared. The computer's and the device's clocks, which
-            differ in every run, are not.
+        quantities: All that was compared: not the clocks, which differ in every run,
+            nor what a device tells besides its handle, which a replay has not.
     """
 
     ticks: int
@@ -155,6 +156,8 @@ def iterate_differences(
             norm[differs] = measure(x[differs], y[differs])
             yield f"{quantity} {part}".rstrip(), unit, norm, differs
     for quantity in COUNTS:
+        if quantity in DEVICE_QUANTITIES:
+            continue
         differs = a[quantity] != b[quantity]
         norm = np.abs(a[quantity].astype(float) - b[quantity].astype(float))
         yield quantity, "", norm, differs

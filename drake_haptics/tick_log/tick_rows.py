@@ -38,6 +38,8 @@ FIRST_SIGNAL = 5
 SIGNALS = tuple(REALS)[FIRST_SIGNAL:]
 # What depends on the computer and its load, and so differs in every run.
 CLOCK_QUANTITIES = ("clock_s", "query_s", "device_time_s")
+# What a device tells of itself besides its handle. A replay has no device.
+DEVICE_QUANTITIES = ("sequence", "buttons", "gate", "fault")
 
 
 def _find_slices() -> dict[str, slice]:
