@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, cast
@@ -36,6 +36,7 @@ from drake_haptics.scene import (
 from drake_haptics.scene_check import SceneWarning
 from drake_haptics.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.handle_model import HandleModel
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.haptic_tool import HapticTool
 from drake_haptics.systems.haptic_visualizer import HapticVisualizer
@@ -162,6 +163,8 @@ def AddHapticLoop(
     }
     for name, source in sources.items():
         builder.Connect(source, base.haptic_tool.get_wrench_input_port(name))
+    if device.wants_slopes:
+        _add_handle_model(builder, base, sources)
     loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
     builder.Connect(loop.contacts, loop.contact_clustering.get_contacts_input_port())
     builder.Connect(loop.display_wrench, device.get_display_wrench_input_port())
@@ -188,6 +191,31 @@ def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
         ),
         (X_WTool, force.get_tool_pose_input_port()),
         (V_WTool, force.get_tool_velocity_input_port()),
+    ]:
+        builder.Connect(output, input)
+
+
+def _add_handle_model(
+    builder: DiagramBuilder, base: BaseSystems, sources: Mapping[str, OutputPort]
+) -> None:
+    """Tells the device how its wrench goes on between two ticks."""
+    model = builder.AddNamedSystem(
+        "handle_model", HandleModel([name for name in sources if name != "coupling"])
+    )
+    for output, input in [
+        (
+            base.device.get_handle_pose_output_port(),
+            model.get_handle_pose_input_port(),
+        ),
+        (base.haptic_tool.get_pose_output_port(), model.get_tool_pose_input_port()),
+        *(
+            (source, model.get_wrench_input_port(name))
+            for name, source in sources.items()
+        ),
+        (
+            model.get_handle_slopes_output_port(),
+            base.device.get_handle_slopes_input_port(),
+        ),
     ]:
         builder.Connect(output, input)
 

@@ -13,6 +13,7 @@ from drake_haptics.callback_timer import CallbackTimer
 _WHY = {
     "display_force_hold": "always: limits what the device shows",
     "device_io": "--device: reads the handle, writes the wrench",
+    "handle_model": "--device: carries the wrench on between two ticks",
     "simulated_arm": "device.preset, hand: the arm that is held",
     "virtual_coupling": "always: couples the tool to the handle",
     "haptic_tool": "always: moves the tool",

@@ -74,6 +74,23 @@ def test_a_device_pressed_into_the_plate_is_pushed_out(scene):
     )
 
 
+def test_what_is_written_says_how_the_wrench_goes_on(scene):
+    """Truth: coupling and contact in series along the normal, and nothing in air."""
+    scene.tool.grasp = Pose()
+    X_WB = find_device_site(scene).X_WB
+    R = np.kron(np.eye(2), X_WB.rotation().matrix())
+    press = device_at(scene, *np.linspace(0.001, -2e-3, 200))
+    run(BuildHapticDiagram(scene, device=press), 1.0)
+    K, k = scene.coupling.stiffness_N_per_m, scene.contact.stiffness_N_per_m
+    slopes = R @ press.commands[-1].K_B @ R.T
+    assert slopes[5, 5] == pytest.approx(K * k / (K + k), rel=1e-9)
+    assert slopes[3, 3] == pytest.approx(0.0, abs=1e-6 * K), "it slides on the plate"
+    air = device_at(scene, 0.02)
+    run(BuildHapticDiagram(scene, device=air), 0.01)
+    assert np.abs(air.commands[-1].K_B).max() < 1e-6
+    assert np.abs(air.commands[-1].B_B).max() < 1e-6
+
+
 def test_what_is_written_is_within_the_device_limits(scene):
     scene.device.max_force_N, scene.device.max_torque_Nm = 0.3, 0.001
     backend = device_at(scene, *np.linspace(0.001, -0.02, 100))

@@ -1,0 +1,88 @@
+"""How the wrench on the handle changes as the handle moves on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+)
+
+from drake_haptics._core import handle_slopes
+
+
+class HandleModel(LeafSystem):
+    """Stiffness and damping that a handle feels, for a servo between two ticks.
+
+    The tool is light and follows at rest: coupling and contact are springs in series.
+    Free in space the handle feels no stiffness, at a wall that of both along the
+    normal alone, however stiff the coupling is in all others.
+
+    .. pydrake_system::
+
+        name: HandleModel
+        input_ports:
+        - X_WH
+        - X_WTool
+        - coupling
+        - <name of each other wrench>
+        output_ports:
+        - handle_slopes
+
+    * `X_WH` and `X_WTool` (7) are the poses [qw qx qy qz x y z] of the handle and the
+      tool in the world, m.
+    * `coupling` and each other wrench (78) are wrench models [F; K; B] on the tool,
+      as `PenaltyForce` documents them.
+    * `handle_slopes` (72) is [K; B], each (6, 6) by rows, of the wrench [τ; f] on the
+      handle at its origin in the world: it changes by -K δ - B ΔV where the handle
+      moves by δ = [rotation vector; translation] and its velocity by ΔV.
+    """
+
+    def __init__(self, wrench_names: Sequence[str]):
+        """Constructs the system.
+
+        Args:
+            wrench_names: A name for each wrench on the tool besides the coupling's.
+        """
+        super().__init__()
+        self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
+        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._coupling = self.DeclareVectorInputPort("coupling", 78)
+        self._wrenches = [
+            self.DeclareVectorInputPort(name, 78) for name in wrench_names
+        ]
+        self.DeclareVectorOutputPort(
+            "handle_slopes", 72, self._calc, {self.all_input_ports_ticket()}
+        )
+
+    def get_handle_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WH`."""
+        return self._X_WH
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self._X_WTool
+
+    def get_wrench_input_port(self, name: str) -> InputPort:
+        """Returns the input of a wrench model."""
+        return self.GetInputPort(name)
+
+    def get_handle_slopes_output_port(self) -> OutputPort:
+        """Returns the output `handle_slopes`."""
+        return self.get_output_port()
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        others = sum((port.Eval(context) for port in self._wrenches), np.zeros(78))
+        output.SetFromVector(
+            handle_slopes(
+                self._X_WH.Eval(context),
+                self._X_WTool.Eval(context),
+                self._coupling.Eval(context),
+                others,
+            )
+        )
