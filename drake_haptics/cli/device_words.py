@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from drake_haptics.device.backend import DeviceReading, GateState, LinkStatus
 
@@ -13,14 +13,21 @@ _STYLES = {
 }
 
 
-def describe_gate(reading: DeviceReading | None) -> str:
-    """Returns whether a device shows force, and if not, why and what to do."""
+def describe_gate(
+    reading: DeviceReading | None, remedy: str = "Enter takes it up again"
+) -> str:
+    """Returns whether a device shows force, and if not, why and what to do.
+
+    Args:
+        reading: Its newest; None before the first.
+        remedy: What to do about a fault.
+    """
     if reading is None:
         return "[dim]silent[/]"
     words = reading.gate.name
     if reading.gate == GateState.FAULT:
         fault = reading.fault.name.lower().replace("_", " ")
-        words += f" ({fault}): Enter takes it up again"
+        words += f" ({fault}): {remedy}"
     return f"[{_STYLES[reading.gate]}]{words}[/]"
 
 
@@ -37,3 +44,9 @@ def describe_link(link: LinkStatus) -> str:
     if link.lateness_s is not None:
         words += f", servo late {describe_lateness(link.lateness_s)}"
     return words
+
+
+def describe_faults(counts: Mapping[str, int]) -> str:
+    """Returns how often a device was at fault, by the names of the faults."""
+    words = [f"{n} {name.lower().replace('_', ' ')}" for name, n in counts.items()]
+    return f"faults: {', '.join(words) or 'none'}"

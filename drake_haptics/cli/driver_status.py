@@ -46,7 +46,7 @@ class DriverStatusLine(LiveLine):
         taken = packets.pop("accepted", 0)
         return " · ".join(
             [
-                describe_gate(reading),
+                describe_gate(reading, "until the host disables it"),
                 f"{rate:.0f} ticks/s, late"
                 f" {describe_lateness(driver.pace.calc_lateness(_LATEST))}",
                 f"{taken} commands, {sum(packets.values())} refused",
