@@ -13,6 +13,7 @@ from rich.table import Table
 
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.cli.device_words import (
+    describe_faults,
     describe_gate,
     describe_lateness,
     describe_link,
@@ -138,7 +139,7 @@ def make_summary(figures: dict[str, Any]) -> Table:
         table.add_row(
             "device",
             f"{device['received']} readings, {device['lost']} lost,"
-            f" {device['rejected']} refused; {device['faults']} faults",
+            f" {device['rejected']} refused; {describe_faults(device['faults'])}",
         )
     if figures["energy_J"]:
         table.add_row("energy", _describe_energy(figures["energy_J"]))

@@ -1,0 +1,43 @@
+"""What a person reads of a device's state."""
+
+import dataclasses
+
+from fake_device import make_reading
+
+from drake_haptics.cli.device_words import (
+    describe_faults,
+    describe_gate,
+    describe_lateness,
+    describe_link,
+)
+from drake_haptics.device.backend import Fault, GateState, LinkStatus
+
+
+def test_a_fault_says_why_and_what_to_do():
+    reading = dataclasses.replace(
+        make_reading(), gate=GateState.FAULT, fault=Fault.NOT_FINITE
+    )
+    words = describe_gate(reading)
+    assert "FAULT (not finite): Enter takes it up again" in words
+
+
+def test_an_active_device_has_nothing_to_say():
+    assert "ACTIVE[/]" in describe_gate(make_reading())
+    assert "silent" in describe_gate(None)
+
+
+def test_lateness_is_in_milliseconds():
+    assert describe_lateness((5e-5, 1.25e-3, 0.1)) == "0.05/1.25/100.00 ms"
+
+
+def test_the_link_tells_what_went_wrong_only():
+    assert describe_link(LinkStatus(1000, 3)) == "3 lost"
+    words = describe_link(LinkStatus(1000, 0, 7, (1e-5, 1e-4, 1e-3)))
+    assert words == "0 lost, 7 refused, servo late 0.01/0.10/1.00 ms"
+
+
+def test_faults_are_counted_by_name():
+    assert describe_faults({}) == "faults: none"
+    assert describe_faults({"STALE": 2, "OVERSPEED": 1}) == (
+        "faults: 2 stale, 1 overspeed"
+    )
