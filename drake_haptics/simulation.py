@@ -60,7 +60,8 @@ def run(
         pace: Waits for each tick, so that simulated time is clock time; a device needs
             it. As fast as it can where not given.
         energy: Whether to keep the books of an `EnergyLedger`, for some 10 µs in
-            each tick.
+            each tick. Only of a simulated device: what any other does between two
+            readings is not known.
         on_tick: Called after every tick with the diagram's context, to be read
             only. Its time counts in the tick.
 
@@ -68,8 +69,11 @@ def run(
         What was measured. Ctrl-C ends a run early and is not an error.
 
     Raises:
+        ValueError: `energy` is asked for, but the device is not simulated.
         RunError: The tool or the arm has a pose or velocity that is not finite.
     """
+    if energy and haptic.backend is not None:
+        raise ValueError("energy can be booked for a simulated device only")
     simulator = make_simulator(haptic)
     ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
     statistics = RunStatistics(haptic.period_s, ledger, pace)

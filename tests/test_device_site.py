@@ -109,6 +109,12 @@ def test_a_device_of_which_no_model_is_known_needs_none(scene):
     assert haptic.loop.device.max_torque_Nm == 0.0
 
 
+def test_no_energy_is_booked_for_a_device_that_nobody_simulates(scene):
+    haptic = BuildHapticDiagram(scene, device=device_at(scene, 0.01))
+    with pytest.raises(ValueError, match="energy can be booked for a simulated"):
+        run(haptic, 0.01, energy=True)
+
+
 def test_a_silent_device_is_an_error_that_says_what_to_do():
     silent = ScriptedDevice(lambda _: None)
     with pytest.raises(DeviceError, match=r"said nothing for 0.05 s.*driver running"):

@@ -166,7 +166,7 @@ def run(
                 haptic,
                 duration,
                 pace=pace,
-                energy=json_file is not None,
+                energy=json_file is not None and backend is None,
                 on_tick=end_tick,
             )
             unstable = None
