@@ -16,12 +16,11 @@ from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_status,
 )
 from drake_haptics.device_preset import load_device_preset
+from drake_haptics.lcm_driver import AddLcmDriver
 from drake_haptics.systems.hand_grip import HAND_GRIPS
 from drake_haptics.systems.hand_path import HandPath
-from drake_haptics.systems.haptic_command_receiver import HapticCommandReceiver
 from drake_haptics.systems.haptic_command_sender import HapticCommandSender
 from drake_haptics.systems.haptic_status_receiver import HapticStatusReceiver
-from drake_haptics.systems.haptic_status_sender import HapticStatusSender
 from drake_haptics.systems.simulated_arm import SimulatedArm
 
 PERIOD_S = 1e-3
@@ -60,31 +59,17 @@ def add_lcm(builder, lcm):
     builder.AddSystem(LcmInterfaceSystem(lcm))
 
 
-def add_device(builder, lcm, arm, **limits):
+def add_device(builder, lcm, arm):
     """Adds a device's side: an arm, its gate and its messages."""
-    limits = {"max_force_N": MAX_FORCE_N, "max_torque_Nm": MAX_TORQUE_NM} | limits
     builder.AddSystem(arm)
-    receiver = builder.AddSystem(HapticCommandReceiver(PERIOD_S, **limits))
-    sender = builder.AddSystem(HapticStatusSender(PERIOD_S))
-    commands = builder.AddSystem(
-        LcmSubscriberSystem.Make("HAPTIC_COMMAND", lcmt_haptic_command, lcm)
+    return AddLcmDriver(
+        builder,
+        arm,
+        lcm,
+        period_s=PERIOD_S,
+        max_force_N=MAX_FORCE_N,
+        max_torque_Nm=MAX_TORQUE_NM,
     )
-    statuses = builder.AddSystem(
-        LcmPublisherSystem.Make("HAPTIC_STATUS", lcmt_haptic_status, lcm, PERIOD_S)
-    )
-    X_BH, V_BH = arm.GetOutputPort("X_WH"), arm.GetOutputPort("V_WH")
-    for output, input in [
-        (commands.get_output_port(), receiver.get_command_input_port()),
-        (X_BH, receiver.get_handle_pose_input_port()),
-        (V_BH, receiver.get_handle_velocity_input_port()),
-        (receiver.get_wrench_output_port(), arm.GetInputPort("F_applied")),
-        (X_BH, sender.get_handle_pose_input_port()),
-        (V_BH, sender.get_handle_velocity_input_port()),
-        (receiver.get_gate_status_output_port(), sender.get_gate_status_input_port()),
-        (sender.get_status_output_port(), statuses.get_input_port()),
-    ]:
-        builder.Connect(output, input)
-    return receiver
 
 
 def add_host(builder, lcm, law):

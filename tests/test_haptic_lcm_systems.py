@@ -119,11 +119,11 @@ def test_the_loop_over_messages_is_the_direct_one_two_samples_later():
 class Gate:
     """A device's side alone; the test is the host."""
 
-    def __init__(self, **limits):
+    def __init__(self):
         builder, self.lcm = DiagramBuilder(), DrakeLcm("memq://")
         add_lcm(builder, self.lcm)
         self.axis = make_axis()
-        self.receiver = add_device(builder, self.lcm, self.axis, **limits)
+        self.receiver = add_device(builder, self.lcm, self.axis)
         self.simulator = make_simulator(builder.Build())
         self.statuses = []
         self.lcm.Subscribe(

@@ -159,6 +159,24 @@ def test_a_device_that_starts_again_is_taken_up_again():
     assert shown.max() <= MAX_FORCE_N
 
 
+def test_a_device_that_says_nothing_is_at_fault_until_it_does():
+    loop = Loop()
+    loop.press(400, push_N=1.0)
+    before = loop.device.read()
+    loop.time_s += 0.2
+    assert loop.device.read() is before
+    loop.time_s += 0.1
+    silent = loop.device.read()
+    assert (silent.gate, silent.fault) == (GateState.FAULT, Fault.DEVICE)
+    assert not silent.F_BH.any()
+    assert not silent.V_BH.any()
+    assert silent.X_BH is before.X_BH
+    assert silent.sequence == before.sequence
+    assert loop.device.read() is silent
+    loop.press(20, push_N=1.0)
+    assert loop.state == (GateState.ACTIVE, Fault.NONE)
+
+
 def test_a_closed_device_is_released():
     loop = Loop()
     loop.press(400, push_N=1.0)

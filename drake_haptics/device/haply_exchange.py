@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from drake_haptics.device.backend import (
@@ -21,6 +19,7 @@ from drake_haptics.device.haply_messages import (
     parse_state,
 )
 from drake_haptics.device.local_gate import LocalGate
+from drake_haptics.device.silent_reading import make_silent
 from drake_haptics.device.turn_rate import TurnRate
 
 # A service that says nothing usable for so long is at fault.
@@ -120,13 +119,7 @@ class HaplyExchange:
     def fall_silent(self) -> None:
         """Has the reading say that the service says nothing usable."""
         if self.reading is not None and self.reading.fault is not Fault.DEVICE:
-            self.reading = replace(
-                self.reading,
-                V_BH=np.zeros(6),
-                F_BH=np.zeros(6),
-                gate=GateState.FAULT,
-                fault=Fault.DEVICE,
-            )
+            self.reading = make_silent(self.reading)
 
     def _answer_blindly(self, now_ns: int) -> str:
         """Returns the answer to what told nothing of the device."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import secrets
 import time
@@ -26,6 +27,7 @@ from drake_haptics.device.lcm.haptic_messages import (
 )
 from drake_haptics.device.lcm.host_handshake import HostHandshake
 from drake_haptics.device.lcm.status_check import find_flaw
+from drake_haptics.device.silent_reading import make_silent
 
 STATUS_CHANNEL = "HAPTIC_STATUS"
 COMMAND_CHANNEL = "HAPTIC_COMMAND"
@@ -33,6 +35,7 @@ COMMAND_CHANNEL = "HAPTIC_COMMAND"
 # LCM itself answers what it cannot use by a line on stderr, and then does nothing.
 _URL = r"(memq://|udpm://2(2[4-9]|3\d)(\.\d{1,3}){3}:\d{1,5}(\?\S+)?)?"
 _LONGEST_TTL_S = 10.0
+_SILENT_S = 0.25
 # Released so often, one release is enough to get through.
 _CLOSING_RELEASES = 3
 
@@ -80,6 +83,7 @@ class LcmDevice(DeviceBackend):
         self._sequence = 0
         self._status: lcmt_haptic_status | None = None
         self._reading: DeviceReading | None = None
+        self._heard_s = -math.inf
         self._received = self._lost = self._rejected = 0
         self._is_closed = False
         lcm.Subscribe(status_channel, self._receive)
@@ -109,9 +113,15 @@ class LcmDevice(DeviceBackend):
             ) from error
 
     def read(self) -> DeviceReading | None:
-        """Returns the newest reading that has come; its time is the device's clock."""
+        """Returns the newest reading that has come; its time is the device's clock.
+
+        After 0.25 s without any it says `Fault.DEVICE`, until the next one comes.
+        """
         if not self._is_closed:
             self._lcm.HandleSubscriptions(0)
+            if self._reading and self._clock() - self._heard_s > _SILENT_S:
+                self._reading = make_silent(self._reading)
+                self._heard_s = math.inf
         return self._reading
 
     def write(self, command: DeviceCommand) -> None:
@@ -177,7 +187,8 @@ class LcmDevice(DeviceBackend):
         self._lost += step - 1
         self._received += 1
         self._status = status
-        self._handshake.hear(status, self._clock())
+        self._heard_s = self._clock()
+        self._handshake.hear(status, self._heard_s)
         self._reading = DeviceReading(
             sequence=self._received,
             time_s=1e-6 * status.utime,

@@ -1,0 +1,127 @@
+"""docs/lcm.md as two real processes over UDP multicast, and what can go wrong there."""
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydrake.lcm import DrakeLcm
+
+from drake_haptics.device.backend import DeviceCommand, Fault, GateState
+from drake_haptics.device.lcm.lcm_device import LcmDevice
+
+TEXT = (Path(__file__).parents[2] / "docs" / "lcm.md").read_text(encoding="utf-8")
+DEVICE, HOST = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
+
+
+@pytest.fixture
+def url(monkeypatch):
+    """A multicast address of this test's own; skips where there is no multicast."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("", 0))
+        url = f"udpm://239.255.76.67:{probe.getsockname()[1]}?ttl=0"
+    try:
+        DrakeLcm(url)
+    except RuntimeError as error:
+        pytest.skip(f"no UDP multicast here: {error}")
+    monkeypatch.setenv("LCM_DEFAULT_URL", url)
+    return url
+
+
+@pytest.fixture
+def start_device(url):
+    """Starts the page's device as a process; all are ended at the end."""
+    processes = []
+
+    def start():
+        processes.append(subprocess.Popen([sys.executable, "-c", DEVICE]))
+        return processes[-1]
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.wait(30)
+
+
+def press(device):
+    """One turn of a host's loop: 1 N upwards."""
+    reading = device.read()
+    if reading is not None:
+        F_BH = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+        device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
+
+
+def wait_until(condition, act, bound_s=60.0):
+    end_s = time.monotonic() + bound_s
+    while not condition():
+        assert time.monotonic() < end_s, "this never happened"
+        act()
+        time.sleep(1e-3)
+
+
+def test_the_page_in_two_processes(start_device):
+    start_device()
+    with LcmDevice.open() as device:
+        wait_until(lambda: device.read() is not None, lambda: None)
+    process = subprocess.run(
+        [sys.executable, "-c", HOST],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env=os.environ,
+    )
+    assert process.returncode == 0, process.stderr
+    gate, force = process.stdout.split()
+    assert gate == "ACTIVE"
+    assert float(force) == pytest.approx(1.5, abs=0.05)
+
+
+def test_host_paused_and_device_killed(url, start_device):
+    process = start_device()
+    with LcmDevice.open(url) as device:
+
+        def is_in(gate, fault=Fault.NONE):
+            reading = device.read()
+            return reading is not None and (reading.gate, reading.fault) == (
+                gate,
+                fault,
+            )
+
+        def is_felt():
+            return is_in(GateState.ACTIVE) and device.read().F_BH[5] > 0.99
+
+        wait_until(is_felt, lambda: press(device))
+        # The host pauses: it only listens.
+        wait_until(lambda: is_in(GateState.FAULT, Fault.STALE), lambda: None)
+        assert not device.read().F_BH.any()
+        device.recover()
+        wait_until(is_felt, lambda: press(device))
+        # The device is killed and another one started.
+        process.send_signal(signal.SIGKILL)
+        process.wait(30)
+        last = device.read()
+        wait_until(lambda: is_in(GateState.FAULT, Fault.DEVICE), lambda: press(device))
+        start_device()
+        wait_until(is_felt, lambda: press(device))
+        assert device.read().sequence > last.sequence
+        assert np.linalg.norm(device.read().F_BH[3:]) <= 1.0 + 1e-9
+
+
+def test_figures_of_the_page():
+    """The delay's price, and that every name exists."""
+    from drake_haptics import lcm_driver
+    from drake_haptics.device.lcm import haptic_messages
+
+    period_s = 1e-3
+    direct, later = 1.0 / (period_s / 2), 1.0 / (period_s / 2 + 2 * period_s)
+    assert later / direct == pytest.approx(0.2)
+    assert "a fifth of the stiffness" in TEXT
+    for name in re.findall(r"`(lcmt_\w+)`", TEXT):
+        assert hasattr(haptic_messages, name)
+    assert hasattr(lcm_driver, "AddLcmDriver")
