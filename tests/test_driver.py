@@ -38,7 +38,7 @@ class NotingArm:
 class Rig:
     """A driver and its arm, in a time that only the test moves on."""
 
-    def __init__(self, port=0):
+    def __init__(self, port=0, bind="127.0.0.1"):
         self.now_ns = 10**9
         self.arm = NotingArm()
         self.driver = DeviceDriver(
@@ -47,7 +47,7 @@ class Rig:
             max_torque_Nm=0.188,
             max_ttl_s=TTL_S,
             rate_hz=1000.0,
-            bind="127.0.0.1",
+            bind=bind,
             port=port,
             clock_ns=lambda: self.now_ns,
         )
@@ -225,6 +225,15 @@ def test_the_figures_tell_what_happened(rig):
     assert figures["packets"] == {"accepted": 502, "too_short": 1}
     assert figures["ticks"] == 251 + 100 + 251
     assert figures["rate_hz"] == pytest.approx(1000.0)
+
+
+@pytest.mark.parametrize("bind", ["127.0.0.1", "0.0.0.0"])
+def test_a_host_finds_the_driver_under_its_url(bind):
+    rig = Rig(bind=bind)
+    port = rig.driver.address[1]
+    name = socket.gethostname() if bind == "0.0.0.0" else bind
+    assert rig.driver.url == f"udp://{name}:{port}"
+    rig.driver.run(1e-9)
 
 
 def test_a_port_that_is_taken_is_the_users_error():

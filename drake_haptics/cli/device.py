@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+
 import click
 from rich.console import Console
 
@@ -76,10 +78,9 @@ def device(
         bind=bind,
         port=port,
     )
-    host, port = driver.address
     console.print("The device waits. In another terminal:")
     console.print(
-        f"  [bold]drake-haptics run {scene} --device udp://{host}:{port}[/]",
+        f"  [bold]drake-haptics run {shlex.quote(scene)} --device {driver.url}[/]",
         soft_wrap=True,
     )
     console.print("Ctrl-C ends it.", style="dim")

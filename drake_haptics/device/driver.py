@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import math
 import secrets
+import socket
 import time
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -98,6 +99,13 @@ class DeviceDriver:
     def address(self) -> Peer:
         """Where it listens: host and port."""
         return self._socket.address
+
+    @property
+    def url(self) -> str:
+        """Address under which hosts find it, "udp://host:port"."""
+        host, port = self.address
+        # One that listens at all addresses is known by the machine's name.
+        return f"udp://{socket.gethostname() if host == '0.0.0.0' else host}:{port}"
 
     @property
     def pace(self) -> TickClock:
