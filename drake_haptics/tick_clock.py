@@ -38,14 +38,15 @@ class TickClock:
         self._period_s = period_s
         self._clock = clock
         self._sleep = sleep
-        self._due_s = clock()
+        # From the first tick on: until then the loop is only being prepared.
+        self._due_s: float | None = None
         self._late_s = np.zeros(_MAX_RECORDS)
         self._ticks = 0
         self._skipped = 0
 
     @property
     def ticks(self) -> int:
-        """Ticks waited for so far."""
+        """Ticks waited for so far, without the first."""
         return self._ticks
 
     @property
@@ -54,7 +55,10 @@ class TickClock:
         return self._skipped
 
     def wait(self) -> float:
-        """Returns at the next tick, with how late it is, s."""
+        """Returns at the next tick, with how late it is, s; the first is at once."""
+        if self._due_s is None:
+            self._due_s = self._clock()
+            return 0.0
         self._due_s += self._period_s
         ahead_s = self._due_s - self._clock()
         if ahead_s > 0.0:

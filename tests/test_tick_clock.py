@@ -19,8 +19,10 @@ class Time:
         self.now_s += seconds + self._oversleep_s
 
     def make_clock(self, period_s=1e-3):
-        """Returns a tick clock by this time."""
-        return TickClock(period_s, lambda: self.now_s, self.sleep)
+        """Returns a tick clock by this time, after its first tick."""
+        clock = TickClock(period_s, lambda: self.now_s, self.sleep)
+        assert clock.wait() == 0.0
+        return clock
 
 
 def test_ticks_keep_the_period_though_each_is_late():
@@ -57,6 +59,15 @@ def test_work_that_takes_longer_than_a_tick_shortens_none():
     after_s = time.now_s
     clock.wait()
     assert time.now_s - after_s == pytest.approx(1e-3)
+
+
+def test_what_comes_before_the_first_tick_is_no_lateness():
+    time = Time()
+    clock = TickClock(1e-3, lambda: time.now_s, time.sleep)
+    time.now_s += 0.5
+    assert clock.wait() == 0.0
+    assert clock.wait() == pytest.approx(0.0, abs=1e-12)
+    assert (clock.ticks, clock.skipped) == (1, 0)
 
 
 def test_percentiles_are_of_the_last_ticks():
