@@ -1,7 +1,9 @@
 """What a page says moves the handle, and what it is told is what was written."""
 
+import gc
 import json
 import time
+import weakref
 
 import numpy as np
 import pytest
@@ -279,6 +281,22 @@ def test_close_ends_at_no_force_and_tells_the_page(meshcat, clock):
     reading = device.read()
     assert reading.gate is GateState.IDLE
     np.testing.assert_array_equal(reading.F_BH, np.zeros(6))
+
+
+def test_nothing_holds_it_after_its_end(meshcat, clock):
+    """A Meshcat that only the garbage collector frees may end in a foreign thread."""
+    device = make(meshcat)
+    with Page(device) as page:
+        page.say({"do": "move", "by": [0.1, 0.0, 0.0]})
+        settle(device, clock)
+    device.close()
+    gone = weakref.ref(device)
+    gc.disable()
+    try:
+        del device, page
+        assert gone() is None
+    finally:
+        gc.enable()
 
 
 def test_a_port_in_use_is_refused(meshcat, device):

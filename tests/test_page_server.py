@@ -3,6 +3,7 @@
 import json
 import queue
 import socket
+import threading
 import time
 import urllib.error
 import urllib.request
@@ -190,6 +191,25 @@ def test_closing_tells_the_pages_and_frees_the_port(talk):
                 raise websocket.WebSocketConnectionClosedException
     again = PageServer(PAGE, server.port, talk.hear, talk.report)
     again.close()
+
+
+def test_what_is_dead_does_not_end_in_its_thread(talk):
+    """A Meshcat that does ends the process."""
+    ends = []
+
+    class Cycle:
+        def __init__(self):
+            self.me = self
+
+        def __del__(self):
+            ends.append(threading.current_thread())
+
+    Cycle()
+    server = PageServer(PAGE, 0, talk.hear, talk.report)
+    try:
+        assert ends == [threading.main_thread()]
+    finally:
+        server.close()
 
 
 @pytest.mark.parametrize("port", [-1, 70_000])

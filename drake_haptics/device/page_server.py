@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import logging
 import socket
 import threading
@@ -73,6 +74,9 @@ class PageServer:
         self._thread = threading.Thread(
             target=self._run, name="page_server", daemon=True
         )
+        # Drake ends the process if a Meshcat dies in another thread than its own. One
+        # that is dead already must not meet its end by chance in the thread here.
+        gc.collect()
         self._thread.start()
 
     @property
