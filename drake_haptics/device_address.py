@@ -29,6 +29,9 @@ def open_device(
     | `lcm:[URL]` | a driver on LCM, at an LCM URL or the default one |
     | `meshcat:` | sliders and gamepad of Drake's page |
     | `mouse:` | the mouse, over the picture of the scene |
+    | `replay:FILE` | the handle of a log of `run --log` |
+
+    An Inverse3's may end in options, like `?max_force_N=4`: see `HaplyDevice.open`.
 
     Args:
         address: Of the table.
@@ -42,12 +45,14 @@ def open_device(
         DeviceError: There is no such kind of device, something is missing in the
             address, or it cannot be opened.
         SceneError: As `find_device_site`.
+        TickLogError: A log cannot be read.
+        OSError: A log cannot be opened.
     """
     parts = urlsplit(address)
     if parts.scheme not in _OPENERS:
         raise DeviceError(
-            f"device {address!r}: give udp://HOST:PORT, haply://HOST, lcm:, meshcat: or"
-            " mouse:"
+            f"device {address!r}: give udp://HOST:PORT, haply://HOST, lcm:, meshcat:,"
+            " mouse: or replay:FILE"
         )
     return _OPENERS[parts.scheme](parts, find_device_site(scene), meshcat)
 
@@ -59,6 +64,23 @@ def _open_udp(
 
     host, port = _split_host(parts, None)
     return UdpDevice(host, port)
+
+
+def _open_haply(
+    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+) -> DeviceBackend:
+    from drake_haptics.device.haply_device import HaplyDevice
+
+    host, port = _split_host(parts, _HAPLY_PORT)
+    return HaplyDevice.open(f"ws://{host}:{port}", parts.query)
+
+
+def _open_lcm(
+    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+) -> DeviceBackend:
+    from drake_haptics.device.lcm.lcm_device import LcmDevice
+
+    return LcmDevice.open(parts.geturl().removeprefix("lcm:"))
 
 
 def _split_host(parts: SplitResult, default_port: int | None) -> tuple[str, int]:
@@ -75,4 +97,18 @@ def _split_host(parts: SplitResult, default_port: int | None) -> tuple[str, int]
     return parts.hostname, port
 
 
-_OPENERS: dict[str, _Opener] = {"udp": _open_udp}
+def _open_replay(
+    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+) -> DeviceBackend:
+    from drake_haptics.device.replay_device import ReplayDevice
+    from drake_haptics.tick_log.tick_log import read_tick_log
+
+    return ReplayDevice(read_tick_log(parts.geturl().removeprefix("replay:")))
+
+
+_OPENERS: dict[str, _Opener] = {
+    "haply": _open_haply,
+    "lcm": _open_lcm,
+    "replay": _open_replay,
+    "udp": _open_udp,
+}

@@ -1,6 +1,7 @@
 """The Haply backend against a service in another thread, over real WebSockets."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,9 @@ from drake_haptics.device.backend import (
     GateState,
 )
 from drake_haptics.device.haply_device import HaplyDevice
+from drake_haptics.device_address import open_device as open_device_at
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
 
 STIFFNESS_N_PER_M = 300.0
 MAX_FORCE_N = 2.0
@@ -209,6 +213,28 @@ def test_a_service_without_the_device(devices, says):
             HaplyDevice(service.uri, device_id="04EA", timeout_s=0.5)
         assert service.others
         assert not any(device.forces for device in devices.values())
+
+
+def test_an_address_as_a_person_writes_it():
+    scene = load_scene(find_scene("sphere_pen"))
+    with HaplyService({"left": Inverse3(), "right": Inverse3()}) as service:
+        service.devices["right"].p = np.array([0.0, 0.0, 0.1])
+        address = f"haply://127.0.0.1:{service.port}"
+        with open_device_at(f"{address}?device_id=right&max_force_N=1.5", scene) as it:
+            assert it.read().X_BH[6] == 0.1
+            mass = service.devices["right"]
+            ask = DeviceCommand(np.full(6, 9.0), np.zeros(7), np.zeros(6))
+            wait_until(lambda: mass.largest_N > 1.4, lambda: it.write(replace(ask)))
+        assert mass.largest_N <= 1.5
+        assert not service.devices["left"].forces
+    for options, says in [
+        ("max_force=1", "max_force is none of device_id, grip_id, force_field, max"),
+        ("max_force_N=x", "could not convert"),
+        ("max_force_N=-1", "max_force_N"),
+        ("force_field=force", "must be vector or values, is 'force'"),
+    ]:
+        with pytest.raises(DeviceError, match=f"ws://.*{options}.*{says}"):
+            open_device_at(f"{address}?{options}", scene)
 
 
 def test_what_is_not_a_wrench_is_refused():

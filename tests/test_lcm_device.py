@@ -26,6 +26,9 @@ from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_status,
 )
 from drake_haptics.device.lcm.lcm_device import LcmDevice
+from drake_haptics.device_address import open_device
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
 
 STIFFNESS_N_PER_M = 200.0
 REST = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -269,6 +272,14 @@ def test_a_url_that_lcm_cannot_use(url):
 def test_a_url_that_it_can():
     with LcmDevice.open("memq://", ttl_s=0.02) as device:
         assert device.read() is None
+
+
+def test_an_address_as_a_person_writes_it():
+    scene = load_scene(find_scene("sphere_pen"))
+    with open_device("lcm:memq://", scene) as device:
+        assert isinstance(device, LcmDevice)
+    with pytest.raises(DeviceError, match="'udp://1' is no LCM URL"):
+        open_device("lcm:udp://1", scene)
 
 
 def test_arguments_out_of_range():

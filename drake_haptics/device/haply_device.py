@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 import threading
 import time
+from collections.abc import Callable
+from typing import Any, get_args
+from urllib.parse import parse_qsl
 
 import numpy as np
 from websockets.exceptions import WebSocketException
@@ -25,6 +28,13 @@ from drake_haptics.tick_clock import TickClock
 _RETRY_S = 0.1
 # Ticks over which the lateness is told: a second of them.
 _LATENESS_TICKS = 1000
+# What an address may say.
+_OPTIONS: dict[str, Callable[[str], Any]] = {
+    "device_id": str,
+    "grip_id": str,
+    "force_field": str,
+    "max_force_N": float,
+}
 # More than a force takes to ramp out.
 _CLOSING_S = 0.2
 
@@ -72,8 +82,12 @@ class HaplyDevice(DeviceBackend):
 
         Raises:
             DeviceError: There is no service, or it has no such device.
-            ValueError: A limit or rate is out of range.
+            ValueError: A limit or rate is out of range, or there is no such field.
         """
+        if force_field not in get_args(ForceField):
+            raise ValueError(
+                f"force_field must be vector or values, is {force_field!r}"
+            )
         self._uri = uri
         self._exchange = HaplyExchange(
             LocalGate(max_force_N=max_force_N, max_torque_Nm=0.0, ttl_s=ttl_s),
@@ -97,6 +111,31 @@ class HaplyDevice(DeviceBackend):
                 f"no Haply device: {self._connection}. Start Haply's Inverse Service,"
                 " plug in the Inverse3 and see that the demos of Haply Hub move"
             )
+
+    @staticmethod
+    def open(uri: str, options: str = "") -> HaplyDevice:
+        """Returns the device at an address that a person wrote.
+
+        Args:
+            uri: Where the service is.
+            options: Arguments of the constructor, like
+                `max_force_N=4&device_id=049D`: any of `device_id`, `grip_id`,
+                `force_field` and `max_force_N`.
+
+        Raises:
+            DeviceError: There is no such device or option, or a value is impossible.
+        """
+        arguments: dict[str, Any] = {}
+        try:
+            for name, value in parse_qsl(options, keep_blank_values=True):
+                if name not in _OPTIONS:
+                    raise ValueError(f"{name} is none of {', '.join(_OPTIONS)}")
+                arguments[name] = _OPTIONS[name](value)
+            return HaplyDevice(uri, **arguments)
+        except DeviceError:
+            raise
+        except ValueError as error:
+            raise DeviceError(f"{uri}?{options}: {error}") from error
 
     @property
     def has_grip(self) -> bool:
