@@ -70,7 +70,8 @@ class TickLogSink(Diagram):
             "signals", Multiplexer([*(len(REALS[name]) for name in SIGNALS), 1])
         )
         notes = builder.AddNamedSystem(
-            "notes", _Notes(recorder, period_s, signals.get_output_port().size())
+            "notes",
+            _Notes(recorder, period_s, signals.get_output_port().size(), has_reading),
         )
         builder.Connect(signals.get_output_port(), notes.GetInputPort("signals"))
         for i, name in enumerate([*SIGNALS, "status"]):
@@ -83,14 +84,17 @@ class TickLogSink(Diagram):
 class _Notes(LeafSystem):
     """The event of a `TickLogSink`."""
 
-    def __init__(self, recorder: TickRecorder, period_s: float, size: int):
+    def __init__(
+        self, recorder: TickRecorder, period_s: float, size: int, has_reading: bool
+    ):
         super().__init__()
         self._recorder = recorder
         self._signals = self.DeclareVectorInputPort("signals", size)
-        self._contacts, self._clusters, self._reading = (
-            self.DeclareAbstractInputPort(name, Value[object]())
-            for name in ("contacts", "clusters", "reading")
-        )
+        self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
+        self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())
+        self._reading = None
+        if has_reading:
+            self._reading = self.DeclareAbstractInputPort("reading", Value[object]())
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._note)
 
     def _note(self, context: Context, _: DiscreteValues) -> None:
@@ -98,7 +102,7 @@ class _Notes(LeafSystem):
         contacts: ContactSet = self._contacts.Eval(context)
         clusters: ClusterSet = self._clusters.Eval(context)
         told, device_time_s = (0, 0, 0, 0), math.nan
-        if self._reading.HasValue(context):
+        if self._reading is not None:
             reading: DeviceReading = self._reading.Eval(context)
             told = (
                 reading.sequence & 0xFFFFFFFF,

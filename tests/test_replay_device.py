@@ -4,15 +4,18 @@ import dataclasses
 
 import numpy as np
 import pytest
+from box_scenes import over_a_plate
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.analysis import Simulator
 from test_device_io import make_diagram
-from tick_log_samples import HEADER, make_rows, make_smooth_rows
+from tick_log_samples import HEADER, make_rows, make_smooth_rows, write_log
 
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.replay_device import ReplayDevice
+from drake_haptics.device_address import open_device
 from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.tick_log.tick_log import Gap, TickLog
+from drake_haptics.tick_log.tick_log_error import TickLogError
 
 X_WB = RigidTransform(RollPitchYaw(0.3, -0.8, 2.0), [0.4, -0.2, 0.1])
 
@@ -72,6 +75,16 @@ def test_a_loop_meets_each_tick_at_its_time():
         X_WH = device.get_handle_pose_output_port().Eval(context)
         np.testing.assert_allclose(X_WH, log.rows["X_WH"][k], atol=1e-14)
         assert device.GetOutputPort("reading").Eval(context).sequence == k
+
+
+def test_it_is_opened_by_its_address(tmp_path):
+    scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, 0.03)])
+    # A name in which a reader of addresses could find more than a file.
+    path = write_log(tmp_path / "a?b#c.tick", [make_smooth_rows(9)], end=9)
+    device = open_device(f"replay:{path}", scene)
+    assert device.read().sequence == 0
+    with pytest.raises(TickLogError, match="is not a tick log"):
+        open_device(f"replay:{scene.tool.mesh}", scene)
 
 
 def test_it_stops_at_a_gap():

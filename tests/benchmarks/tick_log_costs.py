@@ -1,0 +1,144 @@
+"""Measures what a log of every tick costs: instructions, time and bytes.
+
+python tests/benchmarks/tick_log_costs.py [--write]
+
+Needs valgrind. --write puts the table into docs/record-replay.md. Times are noisy on a
+computer that does other things too; instructions are not.
+"""
+
+from __future__ import annotations
+
+import shutil
+import statistics
+import sys
+import tempfile
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+from valgrind import count_instructions, counted
+
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene, list_scenes
+from drake_haptics.simulation import make_simulator
+from drake_haptics.tick_log import tick_recorder
+from drake_haptics.tick_log.loop_log import make_log_header
+from drake_haptics.tick_log.tick_block import pack_block
+from drake_haptics.tick_log.tick_log import read_tick_log
+from drake_haptics.tick_log.tick_recorder import TickRecorder
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "record-replay.md"
+_BEGIN = "<!-- figures: written by tests/benchmarks/tick_log_costs.py -->\n"
+_END = "<!-- end of figures -->\n"
+_SCENE = "rubbed_sphere"
+_WARM_UP = 1000
+_TICKS = 1000
+_TIMED_ROUNDS = 5
+_RECORDED_S = 4.0
+
+
+def make_loop(stack: ExitStack, folder: Path, name: str, logged: bool):  # type: ignore[no-untyped-def]
+    """Returns a simulator of a scene after its first second, and the tick, s."""
+    scene = load_scene(find_scene(name))
+    recorder = None
+    if logged:
+        recorder = TickRecorder(folder / f"{name}.tick", make_log_header(scene))
+        stack.enter_context(recorder)
+    haptic = BuildHapticDiagram(scene, recorder=recorder)
+    simulator = make_simulator(haptic)
+    simulator.AdvanceTo(_WARM_UP * haptic.period_s)
+    return simulator, haptic.period_s
+
+
+def count(what: str, folder: Path) -> None:
+    """Counts, in a child under valgrind, ticks of a loop or what the thread does."""
+    # The thread is kept out of the loop's ticks: it would write more often than in a
+    # run, which valgrind slows down.
+    tick_recorder._WRITE_PERIOD_S = 1e6
+    with ExitStack() as stack:
+        if what == "thread":
+            rows = read_tick_log(folder / f"{_SCENE}.tick").rows
+            pack_block(0, rows.reals[:250], rows.counts[:250])
+            with counted():
+                for i in range(0, _TICKS, 250):
+                    pack_block(i, rows.reals[i : i + 250], rows.counts[i : i + 250])
+            return
+        simulator, period_s = make_loop(stack, folder, _SCENE, what == "log")
+        with counted():
+            simulator.AdvanceTo((_WARM_UP + _TICKS) * period_s)
+
+
+def time_ticks(folder: Path) -> dict[bool, float]:
+    """Returns the least of several medians of a tick, without and with a log, µs."""
+    medians: dict[bool, list[float]] = {False: [], True: []}
+    for _ in range(_TIMED_ROUNDS):
+        for logged, values in medians.items():
+            with ExitStack() as stack:
+                simulator, period_s = make_loop(stack, folder, _SCENE, logged)
+                times = []
+                for tick in range(_WARM_UP + 1, _WARM_UP + _TICKS):
+                    start_s = time.perf_counter()
+                    simulator.AdvanceTo(tick * period_s)
+                    times.append(time.perf_counter() - start_s)
+            values.append(1e6 * statistics.median(times))
+    return {logged: min(values) for logged, values in medians.items()}
+
+
+def measure_bytes(folder: Path) -> dict[str, float]:
+    """Returns bytes per tick by scene."""
+    found = {}
+    for name in list_scenes():
+        with ExitStack() as stack:
+            simulator, _ = make_loop(stack, folder, name, True)
+            simulator.AdvanceTo(_RECORDED_S)
+        ticks = len(read_tick_log(folder / f"{name}.tick").rows)
+        found[name] = (folder / f"{name}.tick").stat().st_size / ticks
+    return found
+
+
+def measure() -> list[tuple[str, str]]:
+    """Returns the rows of the table."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        sizes = measure_bytes(folder)
+        tick_us = time_ticks(folder)
+        child = [__file__, str(folder)]
+        bare, log, thread = (
+            count_instructions([*child, what]) / _TICKS
+            for what in ("bare", "log", "thread")
+        )
+    span = f"{min(sizes.values()):.0f} to {max(sizes.values()):.0f}"
+    minutes = [0.06 * size for size in (min(sizes.values()), max(sizes.values()))]
+    return [
+        ("tick, instructions", f"+{log - bare:,.0f} on {bare:,.0f}"),
+        (
+            "tick, µs (noisy)",
+            f"+{tick_us[True] - tick_us[False]:.0f} on {tick_us[False]:.0f}",
+        ),
+        ("writer's thread, instructions per tick", f"{thread:,.0f}"),
+        (f"bytes per tick, {len(sizes)} scenes", span),
+        ("MB per minute at 1 kHz", f"{minutes[0]:.1f} to {minutes[1]:.1f}"),
+    ]
+
+
+def main() -> None:
+    """Measures, prints, and writes the page if asked to."""
+    if len(sys.argv) == 3:
+        count(sys.argv[2], Path(sys.argv[1]))
+        return
+    if shutil.which("valgrind") is None:
+        sys.exit("valgrind is not installed")
+    lines = ["| cost of a log | |", "| --- | --: |"]
+    lines += [f"| {name} | {value} |" for name, value in measure()]
+    table = "\n".join(lines)
+    print(table)
+    if "--write" in sys.argv[1:]:
+        page = PAGE.read_text(encoding="utf-8")
+        start, end = page.index(_BEGIN) + len(_BEGIN), page.index(_END)
+        page = f"{page[:start]}\n{table}\n\n{page[end:]}"
+        PAGE.write_text(page, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
