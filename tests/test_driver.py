@@ -197,6 +197,29 @@ def test_a_run_ends_at_zero_force_and_says_so(rig):
     assert rig.driver.reading.gate == GateState.IDLE
 
 
+def test_a_stall_is_booked_though_the_host_takes_the_fault_back_at_once(rig):
+    host = rig.make_host()
+    rig.bring_to_force(host, 3.0)
+    host.send(3.0)
+    host.send(enable=False)
+    rig.now_ns += 10**9
+    rig.driver.tick()
+    assert host.receive(5.0).gate == IDLE
+    figures = rig.driver.to_dict()
+    assert figures["faults"] == figures["recoveries"] == {"STALE": 1}
+    assert figures["fault_times"][0]["time_s"] == pytest.approx(1.251)
+
+
+def test_a_run_that_ends_at_fault_has_not_recovered(rig):
+    host = rig.make_host()
+    rig.bring_to_force(host, 3.0)
+    rig.tick(200)
+    rig.driver.run(1e-9)
+    figures = rig.driver.to_dict()
+    assert (figures["faults"], figures["recoveries"]) == ({"STALE": 1}, {})
+    assert host.receive(5.0).fault == "STALE"
+
+
 def test_a_run_ends_at_zero_force_when_the_arm_breaks(rig):
     host = rig.make_host()
     rig.bring_to_force(host, 3.0)

@@ -86,3 +86,12 @@ def test_faults_and_recoveries_are_counted_by_kind_and_listed_with_times(statist
         {"time_s": 3.0, "fault": "OVERSPEED"},
         {"time_s": 5.0, "fault": "STALE"},
     ]
+
+
+def test_a_fault_between_two_ticks_counts(statistics):
+    tick(statistics, [0] * 6)
+    statistics.note_fault(0.5, 1)
+    statistics.note_fault(0.5, 0)
+    tick(statistics, [0] * 6)
+    figures = statistics.to_dict()
+    assert figures["faults"] == figures["recoveries"] == {"STALE": 1}

@@ -149,7 +149,8 @@ class DeviceDriver:
                     on_tick()
         finally:
             gc.unfreeze()
-            self._show(np.zeros(6), GateState.IDLE, Fault.NONE)
+            fault = Fault(self._gate.fault)
+            self._show(np.zeros(6), GateState.FAULT if fault else GateState.IDLE, fault)
             self._socket.close()
 
     def tick(self) -> None:
@@ -159,6 +160,8 @@ class DeviceDriver:
         for packet, sender in self._socket.receive(_MAX_PACKETS_PER_TICK):
             if gate.receive(now_ns, packet) == "accepted":
                 self._peer = sender
+            # A packet may take back a fault that the one before it brought to light.
+            self._statistics.note_fault(self._to_s(now_ns), gate.fault)
         F_BH = gate.step(now_ns, reading.X_BH, reading.V_BH)
         self._show(F_BH, GateState(gate.state), Fault(gate.fault))
 
@@ -179,13 +182,17 @@ class DeviceDriver:
         X_BH, V_BH = self._arm.step(F_BH)
         return DeviceReading(
             sequence=(self._statistics.ticks + 1) % _WRAP,
-            time_s=1e-9 * (self._clock_ns() - self._start_ns),
+            time_s=self._to_s(self._clock_ns()),
             X_BH=X_BH,
             V_BH=V_BH,
             F_BH=F_BH,
             gate=gate,
             fault=fault,
         )
+
+    def _to_s(self, time_ns: int) -> float:
+        """Returns a time since the driver began, s."""
+        return 1e-9 * (time_ns - self._start_ns)
 
     def _pack(self, reading: DeviceReading) -> bytes:
         """Returns a reading as a state of the protocol."""

@@ -60,11 +60,18 @@ class DriverStatistics:
             and (reading.gate == GateState.ACTIVE or torque == force == 0.0)
         )
         self._limit_violations += not within
-        if reading.fault != self._fault:
-            self._note_fault(reading.time_s, reading.fault)
+        self.note_fault(reading.time_s, reading.fault)
 
-    def _note_fault(self, time_s: float, fault: Fault) -> None:
-        """Notes that the device is at fault, or no longer."""
+    def note_fault(self, time_s: float, fault: int) -> None:
+        """Notes whether the device is at fault; between ticks too.
+
+        Args:
+            time_s: Since the driver began, s.
+            fault: A `Fault`, or its number.
+        """
+        if fault == self._fault:
+            return
+        fault = Fault(fault)
         if self._fault != Fault.NONE and fault == Fault.NONE:
             self._recoveries[self._fault.name] += 1
         if fault != Fault.NONE:
