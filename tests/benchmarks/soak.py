@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
+from collections import Counter, defaultdict
 from pathlib import Path
 
 from rich.console import Console
@@ -26,53 +26,13 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from driver_process import device_command, running
 from lossy_link import LossyLink, Trouble
 from soak_injections import NAMES, Injections
-from struct_host import ACTIVE, unpack_state
+from soak_watch import StateWatch
 
 HOST = Path(__file__).with_name("soak_host.py")
-# From the end of a trouble to the device at force again: with a host's start.
+# From the end of a trouble until the device is active again: with a host's start.
 RECOVERY_S = 60.0
-
-
-class StateWatch:
-    """Counts what the device sends, and what it never may.
-
-    Called in the relay's thread.
-    """
-
-    def __init__(self):
-        self.states = 0
-        self.over_limit = 0
-        self.not_finite = 0
-        self.max_force_N = 0.0
-        self.max_torque_Nm = 0.0
-        self.newest = None
-
-    def __call__(self, packet):
-        """Takes a state in."""
-        state = unpack_state(packet)
-        self.states += 1
-        values = (*state.X_BH, *state.V_BH, *state.F_BH)
-        if any(value - value != 0.0 for value in values):
-            self.not_finite += 1
-        # The limits are told in single precision.
-        self.over_limit += not (
-            state.force_N <= state.max_force_N * (1 + 1e-6)
-            and state.torque_Nm <= state.max_torque_Nm * (1 + 1e-6)
-            and (state.gate == ACTIVE or not any(state.F_BH))
-        )
-        self.max_force_N = max(self.max_force_N, state.force_N)
-        self.max_torque_Nm = max(self.max_torque_Nm, state.torque_Nm)
-        self.newest = state
-
-    def wait_until_active(self, bound_s):
-        """Returns whether the device is at force within that time."""
-        end_s = time.monotonic() + bound_s
-        while time.monotonic() < end_s:
-            before = self.states
-            time.sleep(0.05)
-            if self.states > before and self.newest.gate == ACTIVE:
-                return True
-        return False
+# What a trouble does to the device shows within the life of a command.
+SETTLE_S = 0.5
 
 
 class HostKeeper:
@@ -113,10 +73,14 @@ class HostKeeper:
         self._process.stdout.close()
 
 
-def soak(options, driver, link, watch, hosts, console):
-    """Makes trouble until the time is over; returns how often, and what stayed."""
-    injections = Injections(link, hosts, driver.pid)
-    made, stayed = Counter(), Counter()
+def soak(options, injections, watch, hosts, console):
+    """Makes troubles until the time is over.
+
+    Returns:
+        How often each was made; the faults that came of each, by kind; and those
+        after which the device did not come back.
+    """
+    made, came, stayed = Counter(), defaultdict(Counter), Counter()
     start_s = time.monotonic()
     if not watch.wait_until_active(RECOVERY_S):
         raise SystemExit("the host never enabled the device")
@@ -125,50 +89,45 @@ def soak(options, driver, link, watch, hosts, console):
             name = NAMES[made.total() % len(NAMES)]
             line.update(
                 f"{passed_s:.0f} of {60 * options.minutes:.0f} s"
-                f" · {watch.states} states"
+                f" · {watch.states} states, {watch.violations} violations"
                 f" · {made.total()} troubles, {stayed.total()} not recovered"
                 f" · at most {watch.max_force_N:.2f} N · now {name}"
             )
+            before = watch.faults.copy()
             getattr(injections, name)()
             made[name] += 1
-            # What the device makes of it may take as long as a command lives.
-            time.sleep(0.5)
+            time.sleep(SETTLE_S)
             if not watch.wait_until_active(RECOVERY_S):
                 stayed[name] += 1
                 hosts.restart()
             time.sleep(options.pause_s)
-    return made, stayed
+            came[name] += watch.faults - before
+    return made, came, stayed
 
 
-def make_table(figures, host, watch, link, made, stayed):
-    """Returns what came of it, in rows of words and figures."""
+def make_rows(figures, host, watch, link, troubles):
+    """Returns what came of it, in words and figures."""
+    made, came, stayed = troubles
     servo = host["device"]["servo_lateness_us"]
-    return [
-        ("ran", f"{figures['duration_s']:.0f} s, {figures['ticks']} ticks"),
-        (
-            "limit violations",
-            f"{figures['limit_violations']} (seen from outside: {watch.over_limit})",
-        ),
-        (
-            "not finite",
-            f"{figures['non_finite_values']} (seen from outside: {watch.not_finite})",
-        ),
-        (
-            "largest",
-            f"{watch.max_force_N:.3f} of {figures['force_limit_N']:g} N,"
-            f" {1e3 * watch.max_torque_Nm:.1f} of"
-            f" {1e3 * figures['torque_limit_Nm']:g} mN·m",
-        ),
-        ("troubles made", _count(made)),
-        ("not recovered", _count(stayed)),
-        ("faults", _count(figures["faults"])),
-        ("recoveries", _count(figures["recoveries"])),
-        ("packets at the device", _count(figures["packets"])),
-        ("packets on the way", _count(link.counts)),
-        ("driver late", _describe_lateness(*_percentiles(figures))),
-        ("host late", _describe_lateness(*_percentiles(host))),
-        ("servo late", _describe_lateness(*servo)),
-    ]
+    return {
+        "ran": f"{figures['duration_s']:.0f} s, {figures['ticks']} ticks",
+        "limit violations": f"{figures['limit_violations']}"
+        f" (seen from outside: {watch.over_limit} of {watch.states} states)",
+        "not finite": f"{figures['non_finite_values']}"
+        f" (seen from outside: {watch.not_finite})",
+        "largest": f"{watch.max_force_N:.3f} of {figures['force_limit_N']:g} N,"
+        f" {1e3 * watch.max_torque_Nm:.1f} of"
+        f" {1e3 * figures['torque_limit_Nm']:g} mN·m",
+        **{f"{n} x {name}": _count(came[name]) for name, n in made.items()},
+        "faults in the driver's books": _count(figures["faults"]),
+        "recovered from": _count(figures["recoveries"]),
+        "not recovered after": _count(stayed),
+        "packets at the device": _count(figures["packets"]),
+        "packets on the way": _count(link.counts),
+        "driver late": _describe_lateness(*_percentiles(figures)),
+        "host late": _describe_lateness(*_percentiles(host)),
+        "servo late": _describe_lateness(*servo),
+    }
 
 
 def _percentiles(figures):
@@ -181,22 +140,29 @@ def _describe_lateness(p50, p99, p99_9):
 
 
 def _count(counts):
-    return ", ".join(f"{n} {name.lower()}" for name, n in counts.items()) or "none"
+    words = [f"{n} {name.lower()}" for name, n in counts.items()]
+    return ", ".join(words) or "none"
+
+
+def parse_options():
+    """Returns the options of the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    add = parser.add_argument
+    add("--minutes", type=float, default=10.0)
+    add("--scene", default="torus_peg")
+    add("--loss", type=float, default=0.01, help="share of packets, each way")
+    add("--jitter-ms", type=float, default=2.0)
+    add("--reorder", type=float, default=0.01, help="share of packets, each way")
+    add("--ttl-ms", type=float, default=200.0, help="longest life of a command")
+    add("--pause-s", type=float, default=3.0, help="between troubles")
+    add("--seed", type=int, default=0)
+    add("--json", type=Path, metavar="FILE", help="write the table there too")
+    return parser.parse_args()
 
 
 def main():
     """Runs the soak."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--minutes", type=float, default=10.0)
-    parser.add_argument("--scene", default="torus_peg")
-    parser.add_argument("--loss", type=float, default=0.01)
-    parser.add_argument("--jitter-ms", type=float, default=2.0)
-    parser.add_argument("--reorder", type=float, default=0.01)
-    parser.add_argument("--ttl-ms", type=float, default=200.0)
-    parser.add_argument("--pause-s", type=float, default=3.0, help="between troubles")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--json", type=Path)
-    options = parser.parse_args()
+    options = parse_options()
     console = Console(highlight=False)
     trouble = Trouble(
         loss=options.loss, jitter_s=1e-3 * options.jitter_ms, reorder=options.reorder
@@ -211,20 +177,25 @@ def main():
         ):
             hosts = HostKeeper(options.scene, link.port)
             try:
-                made, stayed = soak(options, driver, link, watch, hosts, console)
+                injections = Injections(link, hosts, driver.pid)
+                troubles = soak(options, injections, watch, hosts, console)
                 host = hosts.end()
             finally:
                 hosts.kill()
             figures = driver.end()
-    rows = make_table(figures, host, watch, link, made, stayed)
+    rows = make_rows(figures, host, watch, link, troubles)
     table = Table(box=None, show_header=False)
-    for row in rows:
+    for row in rows.items():
         table.add_row(*row)
     console.print(table)
     if options.json:
-        options.json.write_text(json.dumps(dict(rows), indent=2) + "\n")
-    bad = figures["limit_violations"] + figures["non_finite_values"]
-    sys.exit(1 if bad + watch.over_limit + watch.not_finite + stayed.total() else 0)
+        options.json.write_text(json.dumps(rows, indent=2, ensure_ascii=False) + "\n")
+    failed = (
+        figures["limit_violations"] + figures["non_finite_values"] + watch.violations
+        or figures["faults"] != figures["recoveries"]
+        or troubles[-1]
+    )
+    sys.exit(1 if failed else 0)
 
 
 if __name__ == "__main__":
