@@ -49,8 +49,7 @@ void ServoLaw::SetLimits(double max_force, double max_torque) {
 
 void ServoLaw::Adopt(const LocalWrench& wrench) {
   if (!wrench.IsFinite()) {
-    ++num_not_finite_;
-    Release();
+    Refuse();
     return;
   }
   bool changed = false;
@@ -62,22 +61,26 @@ void ServoLaw::Adopt(const LocalWrench& wrench) {
 }
 
 void ServoLaw::Release() {
-  has_wrench_ = false;
   has_slewed_ = false;
   scale_ = 0;
+}
+
+void ServoLaw::Refuse() {
+  ++num_not_finite_;
+  has_wrench_ = false;
+  Release();
 }
 
 Vec6 ServoLaw::Step(double now, const PoseVector& X, const Vec6& V) {
   Slew(now);
   if (!has_wrench_) return Vec6::Zero();
   const Vec6 F = Extrapolate(X, V);
-  if (!F.allFinite() || !V.allFinite()) {
-    ++num_not_finite_;
-    Release();
+  const Vec6 braking = 4 * scale_ * (1 - scale_) * Brake(V);
+  if (!F.allFinite() || !braking.allFinite()) {
+    Refuse();
     return Vec6::Zero();
   }
-  const double brake = 4 * scale_ * (1 - scale_);
-  return Limit(scale_ * Limit(F) - brake * Brake(V));
+  return Limit(scale_ * Limit(F) - braking);
 }
 
 Vec6 ServoLaw::Limit(const Vec6& F) const {

@@ -59,7 +59,7 @@ class ServoLaw {
   /// once, where these are not finite.
   Vec6 Step(double now, const PoseVector& X, const Vec6& V);
 
-  /// Ends all force at once; the next wrench engages from zero.
+  /// Ends all force at once; the wrench engages from zero at the next step.
   void Release();
 
   /// Part of the wrench that is shown, from 0 to 1.
@@ -70,6 +70,7 @@ class ServoLaw {
   std::int64_t num_not_passive() const { return num_not_passive_; }
 
  private:
+  void Refuse();
   Vec6 Limit(const Vec6& F) const;
   Vec6 Extrapolate(const PoseVector& X, const Vec6& V) const;
   void Slew(double now);
