@@ -42,6 +42,7 @@ def test_it_stands_until_it_is_enabled_and_moves_by_a_tick_per_command():
     assert sequences == [0, 1, 2, 3, 4, 4, 4]
     assert device.read().gate == GateState.ACTIVE
     assert device.read().buttons == 4
+    assert device.get_link_status().received == 5
     device.close()
     device.close()
     assert device.read().gate == GateState.IDLE

@@ -68,8 +68,16 @@ def test_meshes_that_changed_are_named(tmp_path):
     for path in (same, changed):
         with open(path, "w") as stream:
             stream.write("v 0 0 0\n")
+    # What a forged log may name: nothing ever ends there.
+    endless = "/dev/zero"
     digest = hashlib.sha256(b"v 0 0 0\n").hexdigest()
     header = dataclasses.replace(
-        HEADER, mesh_sha256={same: digest, changed: "0" + digest[1:], gone: digest}
+        HEADER,
+        mesh_sha256={
+            same: digest,
+            changed: "0" + digest[1:],
+            gone: digest,
+            endless: digest,
+        },
     )
-    assert find_changed_meshes(header) == [changed, gone]
+    assert find_changed_meshes(header) == [changed, gone, endless]

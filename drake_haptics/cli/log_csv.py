@@ -21,9 +21,14 @@ def csv(file: Path, out: str) -> None:
     OUT is a file, or - for stdout. The numbers read back as the very same doubles.
     """
     reader = TickLogReader(file)
-    with (
-        click.open_file(out, "w", encoding="utf-8") as stream,
-        progress_bar() as show,
-    ):
-        write_csv(reader, stream, show)
+    try:
+        with (
+            click.open_file(out, "w", encoding="utf-8") as stream,
+            progress_bar() as show,
+        ):
+            write_csv(reader, stream, show)
+    except BrokenPipeError:
+        raise  # the reader of our output has gone
+    except OSError as error:  # name the file that the caller knows
+        raise OSError(error.errno, error.strerror, error.filename or out) from error
     warn_of_gaps(file, [gap.describe(reader.header.period_s) for gap in reader.gaps])

@@ -37,7 +37,7 @@ def _print(file: Path, summary: LogSummary) -> None:
     table.add_column()
     duration_s = ticks * header.period_s
     table.add_row("recorded by", f"drake_haptics {header.program_version}")
-    table.add_row("device", "simulated" if summary.is_simulated else "real")
+    table.add_row("device", "simulated" if summary.is_simulated else "not simulated")
     table.add_row("ticks", f"{ticks}, {duration_s:.3f} s at {1 / header.period_s:g} Hz")
     table.add_row("longest tick", f"{1e3 * summary.longest_wait_s:.2f} ms by the clock")
     size = f"{summary.bytes / 1e6:.2f} MB"

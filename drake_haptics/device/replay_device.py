@@ -10,6 +10,7 @@ from drake_haptics.device.backend import (
     DeviceError,
     DeviceReading,
     GateState,
+    LinkStatus,
 )
 from drake_haptics.tick_log.tick_log import TickLog
 
@@ -67,6 +68,10 @@ class ReplayDevice(DeviceBackend):
         if self._gate == GateState.ACTIVE:
             self._tick = min(self._tick + 1, len(self._times_s) - 1)
         self._gate = GateState.ACTIVE
+
+    def get_link_status(self) -> LinkStatus:
+        """Returns how many ticks have been given; none is ever lost."""
+        return LinkStatus(received=self._tick + 1)
 
     def close(self) -> None:
         """Stops where it is."""

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from drake_haptics.tick_log.tick_log_header import TickLogHeader
 
+_READ_BYTES = 1 << 20
+
 
 def hash_file(path: str) -> str:
     """Returns the SHA-256 of a file, in hexadecimal digits.
@@ -14,7 +16,11 @@ def hash_file(path: str) -> str:
     Raises:
         OSError: It cannot be read.
     """
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    sha = hashlib.sha256()
+    with open(path, "rb") as stream:
+        while data := stream.read(_READ_BYTES):
+            sha.update(data)
+    return sha.hexdigest()
 
 
 def find_changed_meshes(header: TickLogHeader) -> list[str]:
@@ -22,8 +28,9 @@ def find_changed_meshes(header: TickLogHeader) -> list[str]:
 
     def is_same(path: str, sha256: str) -> bool:
         try:
-            return hash_file(path) == sha256
-        except (OSError, ValueError):  # A forged path can be none at all.
+            # A forged path can be that of a device, which never ends, or none at all.
+            return Path(path).is_file() and hash_file(path) == sha256
+        except (OSError, ValueError):
             return False
 
     return [path for path, sha in header.mesh_sha256.items() if not is_same(path, sha)]

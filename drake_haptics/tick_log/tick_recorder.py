@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import os
 import threading
 import time
 from collections import deque
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -32,6 +34,21 @@ class _Chunk:
         self.filled = 0
 
 
+def _create(path: Path, head: bytes) -> BinaryIO:
+    """Returns a new file that begins with these bytes.
+
+    Raises:
+        OSError: The system refuses; names the file.
+    """
+    stream = open(path, "wb", buffering=0)
+    try:
+        stream.write(head)
+    except OSError as error:
+        stream.close()
+        raise OSError(error.errno, error.strerror, str(path)) from error
+    return io.BufferedWriter(stream)
+
+
 class TickRecorder:
     """A log that is being written.
 
@@ -55,9 +72,7 @@ class TickRecorder:
             OSError: The system refuses.
         """
         self._path = Path(path)
-        self._stream = open(self._path, "wb")
-        self._stream.write(pack_header(header))
-        self._stream.flush()
+        self._stream = _create(self._path, pack_header(header))
         self._start_s = time.perf_counter()
         self._ticks = 0
         self._left_out = 0

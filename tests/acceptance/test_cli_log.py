@@ -136,6 +136,8 @@ def test_a_damaged_log_is_used_as_far_as_it_goes(log, tmp_path):
         (["replay", "LOG", "--log", "none/out.tick"], "No such file or directory"),
         (["diff", "LOG", "LOG", "--plot", "a.xyz"], "--plot: Format 'xyz'"),
         (["csv", "LOG", "none/out.csv"], "No such file or directory"),
+        (["csv", "LOG", "/dev/full"], "/dev/full: No space left"),
+        (["replay", "LOG", "--log", "/dev/full"], "/dev/full: No space left"),
     ],
 )
 def test_what_cannot_be_done_is_said_with_status_1(log, arguments, words):
