@@ -121,6 +121,7 @@ class MouseDevice(DeviceBackend):
         self._handle.release()
         self._tell()
         self._server.close()
+        self._meshcat.Delete(_NUDGE)
 
     def get_link_status(self) -> LinkStatus:
         """Returns how many messages of pages were taken and refused."""
