@@ -131,6 +131,8 @@ def run(
     chosen = _choose_scene(scene, tool, environment, tool_scale, environment_scale)
     if record is not None and not record.absolute().parent.is_dir():
         raise UserError(f"--record: there is no folder {record.parent}")
+    if log is not None and device == f"replay:{log}":
+        raise UserError(f"--log: {log} is the log that is replayed; give another file")
     console = Console(highlight=False, stderr=json_file == "-")
     meshcat = None if headless and record is None else open_meshcat(port)
     timer = CallbackTimer() if explain else None

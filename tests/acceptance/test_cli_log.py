@@ -11,8 +11,10 @@ import time
 from pathlib import Path
 
 import matplotlib.image
+import numpy as np
 import pytest
 from click.testing import CliRunner
+from driver_process import device_command, running
 
 from drake_haptics.cli import main
 from drake_haptics.tick_log.tick_log import read_tick_log
@@ -163,6 +165,47 @@ def test_a_mesh_that_has_changed_is_told(tmp_path):
     answer = invoke("log", "replay", path)
     assert "is not what it was recorded on" in answer.stderr
     assert "equal to the last bit" in answer.stdout
+
+
+def test_a_run_over_two_processes_replays_to_the_last_bit(tmp_path):
+    figures, path = tmp_path / "driver.json", tmp_path / "run.tick"
+    options = ["--ttl-ms", "1000"]
+    with running(
+        device_command(figures, *options, scene="rubbed_sphere"), figures
+    ) as driver:
+        run = [COMMAND, "run", "rubbed_sphere", "--headless", "--duration", "1.5"]
+        address = f"udp://127.0.0.1:{driver.port}"
+        answer = subprocess.run(
+            [*run, "--device", address, "--log", path],
+            capture_output=True,
+            text=True,
+            timeout=LONG_S,
+        )
+        assert answer.returncode == 0, answer.stderr
+        driver.end()
+    rows = read_tick_log(path).rows
+    assert len(rows) == 1500
+    # Over a network readings come when they come, some twice or not at all.
+    assert (rows["device_time_s"] > 0.0).all()
+    assert (np.diff(rows["sequence"].astype(int)) >= 0).all()
+    assert rows["contacts"].max() > 0
+    answer = invoke("log", "replay", path)
+    assert "All 1500 ticks are equal to the last bit." in answer.output
+
+
+def test_a_recorded_handle_can_be_held(log, tmp_path):
+    run = ["run", "rubbed_sphere", "--headless", "--duration", "0.3", "--device"]
+    answer = invoke(*run, f"replay:{log}", "--log", tmp_path / "again.tick")
+    assert answer.exit_code == 0, answer.output
+    recorded, again = (
+        read_tick_log(path).rows["X_WH"][:300]
+        for path in (log, tmp_path / "again.tick")
+    )
+    np.testing.assert_allclose(again, recorded, atol=1e-14)
+    answer = invoke(*run, f"replay:{log}", "--log", log)
+    assert answer.exit_code == 1
+    assert "is the log that is replayed" in answer.output
+    assert len(read_tick_log(log).rows) == 1500
 
 
 def test_a_run_that_is_killed_leaves_a_log_that_replays(tmp_path):
