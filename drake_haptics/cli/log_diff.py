@@ -8,6 +8,7 @@ import click
 
 from drake_haptics.cli.log_words import print_diff, warn_of_gaps
 from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
 from drake_haptics.tick_log.log_diff import compare_logs
 from drake_haptics.tick_log.tick_log import read_tick_log
@@ -38,7 +39,8 @@ def diff(
     Exits with 0 if both are equal to the last bit, with 3 if not, with 1 if they
     cannot be compared.
     """
-    logs = [read_tick_log(file) for file in (a, b)]
+    with progress_bar() as show:
+        logs = [read_tick_log(file, show) for file in (a, b)]
     for file, log in zip((a, b), logs, strict=True):
         warn_of_gaps(file, log.describe_gaps())
     difference = compare_logs(*logs)

@@ -53,7 +53,8 @@ def replay(
     a file). Then says how the replay differs from the record: in the same scene not
     at all, to the last bit.
     """
-    log = read_tick_log(file)
+    with progress_bar() as show:
+        log = read_tick_log(file, show)
     warn_of_gaps(file, log.describe_gaps())
     if out is not None and out.exists() and os.path.samefile(out, file):
         raise UserError(f"--log: {out} is the log that is replayed; give another file")

@@ -28,7 +28,7 @@ def write_csv(
     """
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(["tick", *iterate_column_names()])
-    for rows in reader.iterate_blocks():
+    for rows in reader.iterate_blocks(progress):
         writer.writerows(
             [tick, *reals, *counts]
             for tick, reals, counts in zip(
@@ -38,5 +38,3 @@ def write_csv(
                 strict=True,
             )
         )
-        if progress is not None:
-            progress("Writing", reader.position_bytes / reader.size_bytes)

@@ -82,9 +82,7 @@ def summarize_log(
     ticks = limited = contacts = 0
     end_s = last_clock_s = force = torque = depth = wait_s = 0.0
     simulated = True
-    for rows in reader.iterate_blocks():
-        if progress is not None:
-            progress("Reading", reader.position_bytes / reader.size_bytes)
+    for rows in reader.iterate_blocks(progress):
         if ticks == 0:
             last_clock_s = float(rows["clock_s"][0])
         clock_s = np.concatenate([[last_clock_s], rows["clock_s"]])
@@ -101,7 +99,7 @@ def summarize_log(
         ticks += len(rows)
     return LogSummary(
         header=reader.header,
-        bytes=reader.size_bytes,
+        bytes=os.stat(path).st_size,
         ticks=ticks,
         end_s=end_s,
         gaps=tuple(gap.describe(reader.header.period_s) for gap in reader.gaps),

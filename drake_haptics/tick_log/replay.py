@@ -103,8 +103,13 @@ def _run(
         max_force_N=site.max_force_N,
         max_torque_Nm=site.max_torque_Nm,
     )
+
+    def report_cut(name: str, share: float) -> None:
+        if progress is not None:
+            progress(f"Cutting {name} into convex pieces", share)
+
     haptic = BuildHapticDiagram(
-        scene, device=device, recorder=recorder, progress=progress
+        scene, device=device, recorder=recorder, progress=report_cut
     )
     simulator = make_simulator(haptic)
     tool = haptic.loop.haptic_tool.GetMyMutableContextFromRoot(
