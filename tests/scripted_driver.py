@@ -61,7 +61,7 @@ def main():
         arm,
         max_force_N=8.5,
         max_torque_Nm=0.188,
-        max_ttl_s=0.5,
+        max_ttl_s=1.0,
         rate_hz=1000.0,
         bind="127.0.0.1",
         port=0,

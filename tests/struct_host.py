@@ -24,8 +24,11 @@ COMMAND = struct.Struct(HEADER + "6dIIII")
 IDLE, ACTIVE, FAULT = 0, 1, 2
 FAULTS = ["NONE", "STALE", "NOT_FINITE", "OVERSPEED", "CLOCK", "DEVICE"]
 ENABLE = 1
-# The slowest test machine may stall for as long without a fault.
-TTL_S = 0.5
+# The slowest test machine may stall for as long without a fault: the longest life that
+# a gate allows.
+TTL_S = 1.0
+# For those whose commands are meant to go stale.
+SHORT_TTL_S = 0.3
 
 
 @dataclasses.dataclass(frozen=True)
@@ -187,14 +190,30 @@ class StructHost:
         self.state = None
         return self.exchange(lambda state: state.gate == IDLE, enable=False)
 
-    def enable(self, force_z=0.0):
-        """Takes an idle device to full force; returns the first state there."""
-        self.disable()
+    def enable(self, force_z=0.0, **more):
+        """Takes a device to full force, from wherever it is.
+
+        Args:
+            force_z: The force, N, within the device's limit.
+            more: As for `send`.
+
+        Returns:
+            The first state there.
+        """
         full = force_z * (1.0 - 1e-9)
-        return self.exchange(
-            lambda state: state.gate == ACTIVE and state.force_N >= full,
-            force_z=force_z,
-        )
+        while True:
+            self.disable()
+            state = self.exchange(
+                lambda state: (
+                    state.gate == FAULT
+                    or (state.gate == ACTIVE and state.force_N >= full)
+                ),
+                force_z=force_z,
+                **more,
+            )
+            # A machine that stalls on the way there is no failure of the device.
+            if state.fault != "STALE":
+                return state
 
 
 def main():
@@ -202,11 +221,14 @@ def main():
     port, duration_s, force = int(sys.argv[1]), float(sys.argv[2]), float(sys.argv[3])
     host = StructHost(port)
     try:
-        host.enable(force)
+        host.enable(force, ttl_s=SHORT_TTL_S)
         print("active", flush=True)
         end_s = time.monotonic() + duration_s
         host.exchange(
-            lambda _: time.monotonic() > end_s, bound_s=duration_s + 60, force_z=force
+            lambda _: time.monotonic() > end_s,
+            bound_s=duration_s + 60,
+            force_z=force,
+            ttl_s=SHORT_TTL_S,
         )
     finally:
         host.disable()

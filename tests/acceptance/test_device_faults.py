@@ -23,9 +23,9 @@ from driver_process import (
     running,
 )
 from lossy_link import Trouble
-from struct_host import ACTIVE, FAULT, IDLE, StructHost, pack_command
+from struct_host import ACTIVE, FAULT, IDLE, SHORT_TTL_S, StructHost, pack_command
 
-TTL_MS = 500
+TTL_MS = 1000
 
 
 @pytest.fixture(scope="module")
@@ -123,7 +123,7 @@ def test_a_restarted_host_recovers_by_disable_and_enable(host_process, link, hos
 
 
 def test_a_cut_network_leaves_no_force(link, host):
-    host.enable(3.0)
+    host.enable(3.0, ttl_s=SHORT_TTL_S)
     link.trouble = Trouble(cut=True)
     assert link.wait_for(is_stale).force_N == 0.0
 
@@ -254,20 +254,24 @@ def test_a_flood_leaves_the_driver_its_ticks(device, link, host, kind):
     finally:
         flood.join(30)
     after = host.exchange(lambda state: state is not before, force_z=2.0)
-    seconds = 1e-9 * (after.time_ns - before.time_ns)
-    assert sent[0] > 5_000
-    assert after.rejected - before.rejected > 1_000
-    assert after.sequence - before.sequence > 300 * seconds
+    ticks, refused = (
+        after.sequence - before.sequence,
+        after.rejected - before.rejected,
+    )
+    assert sent[0] > 5_000 and refused > 1_000
+    # However slow the machine: no tick was spent on more packets than a tick may take.
+    assert ticks >= refused / 64
+    assert ticks > 50
     assert all(s.F_BH[5] >= 0.0 for s in link.states)
 
 
 def test_a_paused_driver_shows_nothing_of_what_queued_up(device, link, host):
-    host.enable(3.0)
+    host.enable(3.0, ttl_s=SHORT_TTL_S)
     os.kill(device.pid, signal.SIGSTOP)
     try:
         for _ in range(100):
-            host.send(-8.0)
-            time.sleep(2.0 * 1e-3 * TTL_MS / 100)
+            host.send(-8.0, ttl_s=SHORT_TTL_S)
+            time.sleep(2.0 * SHORT_TTL_S / 100)
     finally:
         seen = len(link.states)
         os.kill(device.pid, signal.SIGCONT)
