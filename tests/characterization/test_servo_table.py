@@ -1,0 +1,61 @@
+"""The page on the servo has the tables that its command prints, and says what is so."""
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from servo_loop import NOMINAL_HAND, SERVO, simulate
+from servo_table import MAP, PAGE, TABLES, TRACES, span_of, to_markdown
+
+
+def read_cells(text):
+    """Returns the cells of a table."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
+
+
+@pytest.fixture(scope="module")
+def now():
+    """The tables of now, by name."""
+    return {name: read_cells(to_markdown(rows())) for name, rows in TABLES.items()}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_the_page_has_the_table_of_now(name, now):
+    """The same words; motions that grew out of round-off to about a half."""
+    page = PAGE.read_text(encoding="utf-8")
+    written = read_cells(page[span_of(page, name)])
+    assert len(written) > 7
+    assert len(written) == len(now[name])
+    number = re.compile(r"\d+\.\d")
+    for row, row_now in zip(written, now[name], strict=True):
+        for cell, cell_now in zip(row, row_now, strict=True):
+            assert number.sub("#", cell) == number.sub("#", cell_now)
+            values = [[float(x) for x in number.findall(c)] for c in (cell, cell_now)]
+            assert values[0] == pytest.approx(values[1], rel=0.5, abs=0.3)
+
+
+def test_a_fast_servo_neither_buzzes_nor_holds_a_stale_force(now):
+    head, _, *rows = now["stalls"]
+    column, held = head.index("servo, 4 kHz"), head.index("held force")
+    assert {row[column] for row in rows} == {"still, 0.0 N"}
+    assert all(row[held] != "still, 0.0 N" for row in rows)
+
+
+@pytest.mark.parametrize("loop_hz", [100, 1000])
+@pytest.mark.parametrize("stall_s", [0.05, 0.2])
+def test_a_released_handle_comes_back_without_a_blow(stall_s, loop_hz):
+    """The wall never pushes harder than where the hand presses it at rest."""
+    run = simulate(SERVO, 1500, loop_hz, stall_s, hand=NOMINAL_HAND)
+    settled = run.force_N[run.time_s > 0.9]
+    at_rest = settled[0]
+    assert settled.min() > 1.5 * at_rest
+
+
+def test_the_pictures_are_there():
+    for picture in (MAP, TRACES):
+        assert picture.name in PAGE.read_text(encoding="utf-8")
+        assert picture.is_file()
