@@ -2,35 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import ExitStack, nullcontext
 from pathlib import Path
 
 import click
 from pydrake.geometry import Meshcat
-from pydrake.systems.framework import Context
 from rich.console import Console
 
 from drake_haptics.builder import HapticDiagram
-from drake_haptics.callback_timer import CallbackTimer
-from drake_haptics.cli.build_scene import build_scene
-from drake_haptics.cli.enter_key import is_enter_pressed
 from drake_haptics.cli.mesh_options import write_json
 from drake_haptics.cli.parts_table import make_parts_table
-from drake_haptics.cli.status_line import StatusLine, make_summary
-from drake_haptics.device_address import open_device
-from drake_haptics.device_watch import DeviceWatch
+from drake_haptics.cli.run_session import run_session
+from drake_haptics.cli.status_line import make_summary
 from drake_haptics.errors import UserError
-from drake_haptics.explain import explain_tick
 from drake_haptics.recording import write_recording
 from drake_haptics.scene import Scene, load_scene
 from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import RunError
-from drake_haptics.simulation import run as run_haptic
 from drake_haptics.stage import open_meshcat, set_stage
-from drake_haptics.tick_clock import TickClock
-from drake_haptics.tick_log.loop_log import make_log_header
-from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 _EXPLAINED_S = 2.0
 
@@ -135,81 +122,47 @@ def run(
         raise UserError(f"--log: {log} is the log that is replayed; give another file")
     console = Console(highlight=False, stderr=json_file == "-")
     meshcat = None if headless and record is None else open_meshcat(port)
-    timer = CallbackTimer() if explain else None
-    with ExitStack() as closing:
-        backend, recorder = None, None
-        if log is not None:
-            recorder = closing.enter_context(TickRecorder(log, make_log_header(chosen)))
-        if device is not None:
-            # Closed whatever happens: at zero force.
-            backend = closing.enter_context(open_device(device, chosen, meshcat))
-        with timer or nullcontext():
-            haptic = build_scene(console, chosen, meshcat, backend, recorder)
-        if meshcat is not None:
-            _prepare_page(console, haptic, meshcat, pieces, record, headless)
-        # A device is never hurried.
-        live = backend is not None or not headless
-        pace = TickClock(haptic.period_s) if live else None
-        watch = None if backend is None else DeviceWatch(backend, is_enter_pressed)
-        status = StatusLine(console, haptic, pace)
-        closing.enter_context(status)
-        on_tick: list[Callable[[Context], None]] = [status.end_tick]
-        if watch is not None:
-            on_tick.append(watch.end_tick)
-        if timer is not None:
-            on_tick.append(timer.end_tick)
-
-        def end_tick(context: Context) -> None:
-            for end in on_tick:
-                end(context)
-
-        try:
-            statistics = run_haptic(
-                haptic,
-                duration,
-                pace=pace,
-                energy=json_file is not None and backend is None,
-                on_tick=end_tick,
-            )
-            unstable = None
-        except RunError as error:
-            statistics, unstable = error.statistics, error
-    figures = statistics.to_dict()
-    if watch is not None:
-        figures["device"] = watch.to_dict()
-    console.print(make_summary(figures))
-    if timer is not None:
-        parts = explain_tick(haptic, timer)
-        figures["parts"] = [part.to_dict() for part in parts]
+    session = run_session(
+        console,
+        chosen,
+        device=device,
+        meshcat=meshcat,
+        prepare_page=lambda haptic: _prepare_page(
+            console, haptic, meshcat, pieces, record, headless
+        ),
+        duration_s=duration,
+        paced=not headless,
+        energy=json_file is not None,
+        explained=explain,
+        log=log,
+    )
+    console.print(make_summary(session.figures))
+    if explain:
+        session.figures["parts"] = [part.to_dict() for part in session.parts]
         console.print()
-        console.print(make_parts_table(parts))
-    if record is not None and meshcat is not None and haptic.visualizer is not None:
-        haptic.visualizer.StopRecording()
-        haptic.visualizer.PublishRecording()
-        write_recording(
-            meshcat,
-            record,
-            chosen.description,
-            has_friction=chosen.effects.friction is not None,
-        )
+        console.print(make_parts_table(session.parts))
+    if record is not None:
+        _write_recording(session.haptic, meshcat, record)
         console.print(f"Wrote [bold]{record}[/].", soft_wrap=True)
     if log is not None:
         console.print(f"Wrote [bold]{log}[/].", soft_wrap=True)
     if json_file is not None:
-        write_json(figures, json_file)
-    if unstable is not None:
-        raise _UnstableError(str(unstable)) from unstable
+        write_json(session.figures, json_file)
+    if session.error is not None:
+        raise _UnstableError(str(session.error)) from session.error
 
 
 def _prepare_page(
     console: Console,
     haptic: HapticDiagram,
-    meshcat: Meshcat,
+    meshcat: Meshcat | None,
     pieces: bool,
     record: Path | None,
     headless: bool,
 ) -> None:
     """Sets the stage and says where it is to be seen."""
+    if meshcat is None:
+        return
     set_stage(meshcat, haptic)
     visualizer = haptic.visualizer
     if visualizer is not None and pieces:
@@ -220,6 +173,22 @@ def _prepare_page(
         url = (haptic.backend and haptic.backend.url) or meshcat.web_url()
         console.print(f"Open [bold]{url}[/] to see it.", soft_wrap=True)
         console.print("Ctrl-C ends the run.", style="dim")
+
+
+def _write_recording(
+    haptic: HapticDiagram, meshcat: Meshcat | None, file: Path
+) -> None:
+    """Writes what was to be seen."""
+    if meshcat is None or haptic.visualizer is None:
+        return
+    haptic.visualizer.StopRecording()
+    haptic.visualizer.PublishRecording()
+    write_recording(
+        meshcat,
+        file,
+        haptic.scene.description,
+        has_friction=haptic.scene.effects.friction is not None,
+    )
 
 
 class _UnstableError(click.ClickException):

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from drake_haptics.cli import main
+from drake_haptics.cli import main, run_session
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene_library import list_scenes
 from drake_haptics.shapes import SHAPES
@@ -297,9 +297,7 @@ def test_an_unstable_run_ends_with_its_figures_and_a_status_of_its_own(
     def diverge(*args, **kwargs):
         raise RunError("the tool's pose is not finite", statistics)
 
-    # The command's module has the command's name, which hides it from `import`.
-    module = sys.modules[main.get_command(None, "run").callback.__module__]
-    monkeypatch.setattr(module, "run_haptic", diverge)
+    monkeypatch.setattr(run_session, "run", diverge)
     file = tmp_path / "s.json"
     result = invoke("run", "sphere_pen", "--headless", "--json", file)
     assert result.exit_code == 3
