@@ -157,6 +157,19 @@ def test_when_nothing_usable_comes_the_device_is_at_fault(text):
     assert again[-1] == pytest.approx(1.0)
 
 
+def test_a_command_that_fell_into_a_silence_is_not_shown_after_it():
+    talk = Conversation()
+    talk.tick()
+    talk.push((1.0, 0.0, 0.0), 300)
+    for _ in range(150):
+        talk.written = command((1.0, 0.0, 0.0))
+        talk.tick("{")
+    assert talk.exchange.is_released
+    for _ in range(20):
+        assert not talk.tick().any()
+    assert talk.state == (GateState.IDLE, Fault.NONE)
+
+
 def test_after_a_silence_force_ramps_in_from_nothing():
     talk = Conversation()
     talk.tick()
@@ -167,6 +180,20 @@ def test_after_a_silence_force_ramps_in_from_nothing():
     assert again[0] == 0.0
     assert np.diff(again).max() <= 1.01e-3 / RAMP_IN_S
     assert again[-1] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("ticks", [1, 150])
+def test_a_release_works_while_nothing_usable_comes(ticks):
+    talk = Conversation()
+    talk.tick()
+    talk.push((1.0, 0.0, 0.0), 300)
+    for _ in range(ticks):
+        talk.tick("{")
+    talk.exchange.release()
+    for _ in range(50):
+        shown = talk.tick("{")
+    assert shown is None or not shown.any()
+    assert talk.exchange.is_released
 
 
 def test_a_silence_does_not_forgive_a_fault():
@@ -252,4 +279,4 @@ def test_whatever_happens_the_force_is_finite_and_within_the_limit(events):
         if shown is not None:
             assert np.isfinite(shown).all()
             assert np.linalg.norm(shown) <= MAX_FORCE_N
-            assert talk.reading.gate is GateState.ACTIVE or not shown.any()
+            assert not (talk.exchange.is_released and shown.any())

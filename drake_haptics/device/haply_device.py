@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import threading
 import time
 from collections.abc import Callable
@@ -26,6 +25,7 @@ from drake_haptics.device.local_gate import LocalGate
 from drake_haptics.tick_clock import TickClock
 
 _RETRY_S = 0.1
+_CONNECT_S = 1.0
 # Ticks over which the lateness is told: a second of them.
 _LATENESS_TICKS = 1000
 # What an address may say.
@@ -35,8 +35,8 @@ _OPTIONS: dict[str, Callable[[str], Any]] = {
     "force_field": str,
     "max_force_N": float,
 }
-# More than a force takes to ramp out.
-_CLOSING_S = 0.2
+# Much more than a force takes to ramp out, and a connection to be given up.
+_CLOSING_S = 3.0
 
 
 class HaplyDevice(DeviceBackend):
@@ -98,7 +98,7 @@ class HaplyDevice(DeviceBackend):
         self._clock = TickClock(1.0 / rate_hz)
         # Handed to the thread; replaced as a whole, never changed.
         self._command: DeviceCommand | None = None
-        self._closing_s = math.inf
+        self._closes = False
         self._has_reading = threading.Event()
         self._connection = f"{uri} does not answer"
         self._thread = threading.Thread(
@@ -162,10 +162,9 @@ class HaplyDevice(DeviceBackend):
 
     def close(self) -> None:
         """Ramps the force out, which takes 20 ms, and disconnects."""
-        if self._closing_s == math.inf:
-            self._exchange.release()
-            self._closing_s = time.monotonic()
-        self._thread.join(2.0)
+        self._exchange.release()
+        self._closes = True
+        self._thread.join(_CLOSING_S)
 
     def get_link_status(self) -> LinkStatus:
         """Returns the counts; the protocol has no numbers to tell losses by."""
@@ -179,13 +178,14 @@ class HaplyDevice(DeviceBackend):
     def _run(self) -> None:
         """Connects again and again, until the device is closed."""
         try:
-            while self._closing_s == math.inf:
+            while not self._closes:
                 try:
                     with connect(
                         self._uri,
                         compression=None,
                         proxy=None,
                         ping_interval=None,
+                        open_timeout=_CONNECT_S,
                         close_timeout=_RETRY_S,
                     ) as socket:
                         self._converse(socket)
@@ -198,10 +198,12 @@ class HaplyDevice(DeviceBackend):
 
     def _converse(self, socket: ClientConnection) -> None:
         """Answers each message in turn, until the device is closed."""
-        while not self._is_done():
+        while not (self._closes and self._exchange.is_released):
             try:
                 text = socket.recv(timeout=1e-9 * SILENT_NS)
             except TimeoutError:
+                if self._closes:
+                    return
                 self._connection = f"{self._uri} says nothing"
                 self._exchange.fall_silent()
                 continue
@@ -213,10 +215,3 @@ class HaplyDevice(DeviceBackend):
             else:
                 self._has_reading.set()
                 self._clock.wait()
-
-    def _is_done(self) -> bool:
-        """Returns whether the device is closed and shows no force any more."""
-        closing_s = time.monotonic() - self._closing_s
-        return closing_s >= 0.0 and (
-            self._exchange.is_released or closing_s > _CLOSING_S
-        )

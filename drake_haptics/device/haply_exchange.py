@@ -96,10 +96,8 @@ class HaplyExchange:
             if state is None:
                 self.complaint = f"it has no Inverse3 {self._device_id or ''}".rstrip()
         if state is None:
-            return self._answer_blindly(now_ns)
-        if now_ns - self._heard_ns > SILENT_NS and not self.is_released:
-            self._gate.fail()
-            self.release()
+            return self._answer_blindly(command, now_ns)
+        self._start_over_after_silence(now_ns)
         self._heard_ns = now_ns
         X_BH, V_BH = self._calc_motion(state, 1e-9 * now_ns)
         F_BH = self._pass(command, X_BH, V_BH, now_ns)
@@ -121,15 +119,27 @@ class HaplyExchange:
         if self.reading is not None and self.reading.fault is not Fault.DEVICE:
             self.reading = make_silent(self.reading)
 
-    def _answer_blindly(self, now_ns: int) -> str:
+    def _answer_blindly(self, command: DeviceCommand | None, now_ns: int) -> str:
         """Returns the answer to what told nothing of the device."""
-        reading, silent_ns = self.reading, now_ns - self._heard_ns
-        if reading is None or silent_ns > SILENT_NS:
-            self.fall_silent()
+        reading = self.reading
+        if reading is None:
             return ASK_FOR_DEVICES
-        # One message that is lost must not be felt.
-        F_BH = self._gate.step(reading.X_BH, reading.V_BH, now_ns)
-        return self._format(F_BH)
+        is_silent = self._start_over_after_silence(now_ns)
+        if is_silent:
+            self.fall_silent()
+            self._obeyed = command  # What is asked of nobody is never shown.
+        # For a while the handle is taken to be where it was: one message that is lost
+        # must not be felt.
+        F_BH = self._pass(command, reading.X_BH, reading.V_BH, now_ns)
+        return ASK_FOR_DEVICES if is_silent else self._format(F_BH)
+
+    def _start_over_after_silence(self, now_ns: int) -> bool:
+        """Returns whether the service was silent; a force ends at once then."""
+        is_silent = now_ns - self._heard_ns > SILENT_NS
+        if is_silent and not self.is_released:
+            self._gate.fail()
+            self.release()
+        return is_silent
 
     def _calc_motion(
         self, state: HaplyState, time_s: float
