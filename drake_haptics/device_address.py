@@ -97,6 +97,43 @@ def _split_host(parts: SplitResult, default_port: int | None) -> tuple[str, int]
     return parts.hostname, port
 
 
+def _open_meshcat(
+    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+) -> DeviceBackend:
+    from drake_haptics.device.meshcat_device import MeshcatDevice
+
+    return MeshcatDevice(
+        _require_page(parts, meshcat),
+        X_WB=site.X_WB,
+        X_BH=site.X_BH,
+        workspace_radius_m=site.workspace_radius_m,
+    )
+
+
+def _open_mouse(
+    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+) -> DeviceBackend:
+    from drake_haptics.device.mouse_device import MouseDevice
+
+    return MouseDevice(
+        _require_page(parts, meshcat),
+        X_WB=site.X_WB,
+        X_BH=site.X_BH,
+        workspace_radius_m=site.workspace_radius_m,
+        max_force_N=site.max_force_N,
+        max_torque_Nm=site.max_torque_Nm,
+    )
+
+
+def _require_page(parts: SplitResult, meshcat: Meshcat | None) -> Meshcat:
+    if meshcat is None:
+        raise DeviceError(
+            f"device {parts.geturl()!r} is moved on a page, and a run without one has"
+            " none: leave --headless out"
+        )
+    return meshcat
+
+
 def _open_replay(
     parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
 ) -> DeviceBackend:
@@ -109,6 +146,8 @@ def _open_replay(
 _OPENERS: dict[str, _Opener] = {
     "haply": _open_haply,
     "lcm": _open_lcm,
+    "meshcat": _open_meshcat,
+    "mouse": _open_mouse,
     "replay": _open_replay,
     "udp": _open_udp,
 }

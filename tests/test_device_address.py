@@ -1,9 +1,12 @@
 """Addresses of devices, right and wrong."""
 
 import pytest
+from pydrake.geometry import Meshcat
 
 from drake_haptics.device.backend import DeviceError
 from drake_haptics.device_address import open_device
+from drake_haptics.device_site import find_device_site, wait_for_reading
+from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
 
@@ -29,3 +32,18 @@ def test_a_network_device_needs_host_and_port(scene, address):
 def test_a_port_must_be_one(scene, port):
     with pytest.raises(DeviceError, match=r"udp://127.0.0.1:.*[Pp]ort"):
         open_device(f"udp://127.0.0.1:{port}", scene)
+
+
+@pytest.mark.parametrize("address", ["meshcat:", "mouse:"])
+def test_what_is_moved_on_a_page_needs_one(scene, address):
+    with pytest.raises(DeviceError, match="leave --headless out"):
+        open_device(address, scene)
+
+
+@pytest.mark.parametrize("address", ["meshcat:", "mouse:"])
+def test_what_is_moved_on_a_page_starts_where_the_scene_has_its_hand(scene, address):
+    with open_device(address, scene, Meshcat()) as device:
+        reading = wait_for_reading(device)
+        expected = find_device_site(scene).X_BH
+        assert vector_to_pose(reading.X_BH).IsNearlyEqualTo(expected, 1e-12)
+        assert (device.url is not None) == (address == "mouse:")
