@@ -108,6 +108,27 @@ def test_csv_has_every_tick(log, tmp_path):
     assert invoke("log", "csv", log, "-").output == text
 
 
+LOOKS_WITHOUT_DRAKE = """
+import sys
+from click.testing import CliRunner
+from drake_haptics.cli import main
+for words in (["info", "LOG"], ["csv", "LOG", "-"], ["diff", "LOG", "LOG"]):
+    words = ["log"] + [sys.argv[1] if word == "LOG" else word for word in words]
+    assert CliRunner().invoke(main, words).exit_code == 0
+print(sorted({"pydrake", "matplotlib"} & sys.modules.keys()))
+"""
+
+
+def test_to_look_into_a_log_needs_no_drake(log):
+    answer = subprocess.run(
+        [sys.executable, "-c", LOOKS_WITHOUT_DRAKE, str(log)],
+        capture_output=True,
+        text=True,
+        timeout=LONG_S,
+    )
+    assert answer.stdout == "[]\n", answer.stderr
+
+
 def test_a_damaged_log_is_used_as_far_as_it_goes(log, tmp_path):
     data = bytearray(log.read_bytes())
     data[len(data) // 2] ^= 0x10
