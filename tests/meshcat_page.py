@@ -68,16 +68,19 @@ class MeshcatPage:
         matrix = np.eye(4)
         matrix[:3, :3] = R_TW @ X_WC.rotation().matrix() @ np.diag([1, -1, -1])
         matrix[:3, 3] = R_TW @ X_WC.translation()
-        elements = matrix.T.ravel().tolist()
-        self._send(
-            type="camera_pose", name="", camera_pose=elements, is_perspective=True
-        )
+        self.send_camera_numbers(matrix.T.ravel().tolist())
 
         def known() -> bool:
             X = self._meshcat.GetTrackedCameraPose()
             return X is not None and X.IsNearlyEqualTo(X_WC, 1e-9)
 
         self._wait(known)
+
+    def send_camera_numbers(self, elements: list[float]) -> None:
+        """Says that the camera's matrix, column by column, is this."""
+        self._send(
+            type="camera_pose", name="", camera_pose=elements, is_perspective=True
+        )
 
     def _send(self, **message: Any) -> None:
         self._socket.send_binary(umsgpack.packb(message))

@@ -160,6 +160,25 @@ def test_the_pointer_goes_with_the_camera(meshcat, device, clock):
     np.testing.assert_allclose(p, HEIGHT_M / 2 * np.array([0.02, -0.1, 0]), atol=1e-9)
 
 
+@pytest.mark.parametrize("position", [np.nan, np.inf, 1e300])
+def test_a_camera_out_of_this_world_changes_nothing(meshcat, device, clock, position):
+    elements = np.eye(4)
+    elements[3, :3] = position
+    with MeshcatPage(meshcat) as view, Page(device) as page:
+        view.send_camera_numbers(elements.ravel().tolist())
+        end = time.monotonic() + 0.3
+        while time.monotonic() < end:
+            clock.now_s += 0.1
+            device.read()
+            time.sleep(0.02)
+        page.say({"do": "move", "by": [0.05, 0.0, 0.0]})
+        page.say({"do": "turn", "by": [0.1, 0.2, 0.0]})
+        report = page.hear(lambda report: True)
+        p, _ = settle(device, clock)
+    np.testing.assert_allclose(p, [0.05 * HEIGHT_M, 0, 0], atol=1e-9)
+    assert np.isfinite(report["handle"]).all()
+
+
 def test_a_leap_of_the_pointer_is_no_leap_of_the_handle(device, clock):
     with Page(device) as page:
         page.say({"do": "move", "by": [0.1, 0.0, 0.0]})

@@ -26,6 +26,8 @@ _CAMERA_PERIOD_S = 0.05
 _NUDGE = "/mouse_device"
 # Until a page tells, the camera is this many radii in front of the workspace: at -y.
 _FIRST_DISTANCE = 4.0
+# What a page tells may be any number; Drake looks at the rotation itself.
+_FARTHEST_CAMERA_M = 1e4
 
 
 class MouseDevice(DeviceBackend):
@@ -136,6 +138,8 @@ class MouseDevice(DeviceBackend):
         """Notes where the page's camera is."""
         X_WC = self._meshcat.GetTrackedCameraPose()
         if X_WC is None or X_WC.IsExactlyEqualTo(self._pilot.X_WC):
+            return
+        if not np.abs(X_WC.translation()).max() <= _FARTHEST_CAMERA_M:
             return
         self._pilot.X_WC = X_WC
         # A page tells the camera of the picture before: make it draw one more.

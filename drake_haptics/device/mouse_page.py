@@ -15,8 +15,6 @@ _COLORS = {
     "torque": colors.SLIDING_CONTACT,
     "active": colors.NEAR_CONTACT,
     "fault": colors.PENETRATING_CONTACT,
-    "tool": colors.TOOL,
-    "top": colors.BACKGROUND_TOP,
     "bottom": colors.BACKGROUND_BOTTOM,
 }
 
