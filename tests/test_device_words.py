@@ -5,7 +5,7 @@ import dataclasses
 from fake_device import make_reading
 
 from drake_haptics.cli.device_words import (
-    describe_faults,
+    describe_device,
     describe_gate,
     describe_lateness,
     describe_link,
@@ -36,8 +36,10 @@ def test_the_link_tells_what_went_wrong_only():
     assert words == "0 lost, 7 refused, servo late 0.01/0.10/1.00 ms"
 
 
-def test_faults_are_counted_by_name():
-    assert describe_faults({}) == "faults: none"
-    assert describe_faults({"STALE": 2, "OVERSPEED": 1}) == (
-        "faults: 2 stale, 1 overspeed"
-    )
+def test_faults_are_counted_by_name_and_a_link_only_where_there_is_one():
+    figures = {"faults": {}, "received": 0, "lost": 0, "rejected": 0}
+    assert describe_device(figures) == "faults: none"
+    figures["faults"] = {"STALE": 2, "OVERSPEED": 1}
+    assert describe_device(figures) == "faults: 2 stale, 1 overspeed"
+    figures["received"] = 1000
+    assert describe_device(figures).startswith("1000 readings, 0 lost, 0 refused; ")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from drake_haptics.device.backend import DeviceReading, GateState, LinkStatus
 
@@ -46,7 +47,16 @@ def describe_link(link: LinkStatus) -> str:
     return words
 
 
-def describe_faults(counts: Mapping[str, int]) -> str:
-    """Returns how often a device was at fault, by the names of the faults."""
-    words = [f"{n} {name.lower().replace('_', ' ')}" for name, n in counts.items()]
-    return f"faults: {', '.join(words) or 'none'}"
+def describe_device(figures: Mapping[str, Any]) -> str:
+    """Returns `DeviceWatch.to_dict` in a line; of a link only if there is one."""
+    faults = [
+        f"{n} {name.lower().replace('_', ' ')}" for name, n in figures["faults"].items()
+    ]
+    words = [f"faults: {', '.join(faults) or 'none'}"]
+    if figures["received"]:
+        words.insert(
+            0,
+            f"{figures['received']} readings, {figures['lost']} lost,"
+            f" {figures['rejected']} refused",
+        )
+    return "; ".join(words)

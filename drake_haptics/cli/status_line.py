@@ -13,7 +13,7 @@ from rich.table import Table
 
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.cli.device_words import (
-    describe_faults,
+    describe_device,
     describe_gate,
     describe_lateness,
     describe_link,
@@ -136,11 +136,7 @@ def make_summary(figures: dict[str, Any]) -> Table:
     )
     table.add_row("device limit", f"{figures['limit_hits']} ticks at it")
     if device := figures.get("device"):
-        table.add_row(
-            "device",
-            f"{device['received']} readings, {device['lost']} lost,"
-            f" {device['rejected']} refused; {describe_faults(device['faults'])}",
-        )
+        table.add_row("device", describe_device(device))
     if figures["energy_J"]:
         table.add_row("energy", _describe_energy(figures["energy_J"]))
     return table
