@@ -45,8 +45,8 @@ class TickLogSink(Diagram):
     It notes them in a periodic discrete update, from 0 s on, though it has no state:
     there, and nowhere else, all of it is what the other updates of the tick sample.
     A publish event or a monitor comes before a device is read, or after the tool has
-    moved on. Two Contexts of this system write to the one log there is, and a diagram with
-    it does not convert to AutoDiffXd.
+    moved on. Two Contexts of this system write to the one log there is, and a diagram
+    with it does not convert to AutoDiffXd.
     """
 
     def __init__(
