@@ -93,9 +93,9 @@ def add_host(builder, lcm, law):
     return receiver
 
 
-def make_simulator(diagram):
+def make_simulator(diagram, context=None):
     """A simulator of one fixed step per tick, as `make_simulator` of the package."""
-    simulator = Simulator(diagram)
+    simulator = Simulator(diagram, context)
     ResetIntegratorFromFlags(simulator, "runge_kutta2", PERIOD_S)
     simulator.get_mutable_integrator().set_fixed_step_mode(True)
     return simulator

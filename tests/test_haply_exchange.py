@@ -28,10 +28,10 @@ def command(force):
 class Conversation:
     """An exchange and what it talks to, a millisecond after the other."""
 
-    def __init__(self, *, grips=None, **options):
+    def __init__(self, *, grips=None, ttl_s=TTL_S, **options):
         self.devices = {"049D": Inverse3(mass_kg=1e3), "04EA": Inverse3(mass_kg=1e3)}
         self.service = HaplyService(self.devices, grips)
-        gate = LocalGate(max_force_N=MAX_FORCE_N, max_torque_Nm=0.0, ttl_s=TTL_S)
+        gate = LocalGate(max_force_N=MAX_FORCE_N, max_torque_Nm=0.0, ttl_s=ttl_s)
         names = {"device_id": None, "grip_id": None, "force_field": "vector"}
         self.exchange = HaplyExchange(gate, **(names | options))
         self.now_ns = 10**9
@@ -170,12 +170,14 @@ def test_a_command_that_fell_into_a_silence_is_not_shown_after_it():
     assert talk.state == (GateState.IDLE, Fault.NONE)
 
 
-def test_after_a_silence_force_ramps_in_from_nothing():
-    talk = Conversation()
+@pytest.mark.parametrize("ttl_s", [0.05, 0.5, 1.0])
+@pytest.mark.parametrize("silence_ns", [101_000_000, 500_000_000, 2_000_000_000])
+def test_after_a_silence_force_ramps_in_from_nothing(ttl_s, silence_ns):
+    talk = Conversation(ttl_s=ttl_s)
     talk.tick()
     talk.push((1.0, 0.0, 0.0), 300)
     talk.written = command((1.0, 0.0, 0.0))
-    assert not talk.tick(after_ns=500_000_000).any()
+    assert not talk.tick(after_ns=silence_ns).any()
     again = talk.push((1.0, 0.0, 0.0), 400)[:, 0]
     assert again[0] == 0.0
     assert np.diff(again).max() <= 1.01e-3 / RAMP_IN_S

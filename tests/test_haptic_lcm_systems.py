@@ -225,7 +225,7 @@ def test_a_handle_that_is_too_fast_is_a_fault():
 
 
 @pytest.mark.parametrize(
-    "fields", [{"session": 8}, {"sequence": 1}, {"time_to_live": -1}]
+    "fields", [{"session": 8}, {"sequence": 1}, {"time_to_live": -50_000}]
 )
 def test_what_is_foreign_old_or_dead_is_not_shown(fields):
     gate = Gate()
@@ -250,15 +250,23 @@ def test_a_session_that_cannot_be_one_is_ignored(session):
 def test_a_copied_context_has_a_gate_of_its_own():
     gate = Gate()
     gate.start()
-    root = gate.simulator.get_context()
-    twin = root.Clone()
+    twin = gate.simulator.get_context().Clone()
     for _ in range(100):
         gate.tick()
     assert gate.state == (GateState.FAULT, Fault.STALE)
-    status = gate.receiver.get_gate_status_output_port().Eval(
-        gate.receiver.GetMyContextFromRoot(twin)
-    )
-    assert status.state is GateState.ACTIVE
+    gate.simulator = make_simulator(gate.simulator.get_system(), twin)
+    gate.ticks -= 100
+    assert gate.tick()[3] == pytest.approx(1.0)
+    assert gate.state == (GateState.ACTIVE, Fault.NONE)
+
+
+def test_a_message_that_is_shown_for_many_ticks_is_taken_once():
+    gate = Gate()
+    gate.start()
+    for i in range(100):
+        gate.tick(1.0 if i % 10 == 0 else None)
+    assert gate.get_status().F_BH[3] == pytest.approx(1.0)
+    assert gate.get_status().rejected == 0
 
 
 def test_a_command_is_released_at_first_and_while_it_is_not_enabled():

@@ -168,7 +168,7 @@ class HaplyExchange:
             self._obeyed = command
         elif command is not self._obeyed:
             self._obeyed = command
-            if command is not None and self._gate.state is not GateState.FAULT:
+            if command is not None:
                 self._gate.show(command.F_BH, now_ns)
         F_BH = self._gate.step(X_BH, V_BH, now_ns)
         if self._gate.state is GateState.IDLE:
