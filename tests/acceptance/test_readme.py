@@ -1,7 +1,11 @@
 """What the README says to type works, and what it shows exists."""
 
+import json
 import re
 import shlex
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +15,8 @@ from drake_haptics.cli import main
 from drake_haptics.scene_library import list_scenes
 
 ROOT = Path(__file__).parents[2]
+# The installed command, beside the interpreter.
+COMMAND = Path(sys.executable).with_name("drake-haptics")
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = [
     line.split("#")[0].strip()
@@ -19,9 +25,11 @@ COMMANDS = [
     if line.strip()
 ]
 HAPTICS = [line for line in COMMANDS if line.startswith("drake-haptics")]
+TWO_TERMINALS = [line for line in HAPTICS if "device" in line.split()[1:]]
+TWO_TERMINALS += [line for line in HAPTICS if "--device" in line]
 
 
-@pytest.mark.parametrize("line", HAPTICS)
+@pytest.mark.parametrize("line", [x for x in HAPTICS if x not in TWO_TERMINALS])
 def test_command_runs(line, tmp_path, monkeypatch):
     # Files that the command reads are in the checkout; what it writes goes elsewhere.
     (tmp_path / "models").symlink_to(ROOT / "models")
@@ -41,6 +49,32 @@ def test_command_runs(line, tmp_path, monkeypatch):
     for option in ("--record", "--json"):
         if option in arguments:
             assert Path(arguments[arguments.index(option) + 1]).stat().st_size > 0
+
+
+def test_two_commands_close_a_loop_over_two_processes(tmp_path):
+    first, second = (shlex.split(line)[1:] for line in TWO_TERMINALS)
+    assert second[-1] == "udp://127.0.0.1:7400", "the port that the first one has"
+    # The one of the README may be taken here.
+    driver = subprocess.Popen(
+        [COMMAND, *first, "--port", "0"], stdout=subprocess.PIPE, text=True
+    )
+    try:
+        address = None
+        while address is None:
+            address = re.search(r"udp://[\d.:]+", driver.stdout.readline())
+        second[-1] = address.group()
+        file = tmp_path / "figures.json"
+        subprocess.run(
+            [COMMAND, *second, "--headless", "--duration", "2", "--json", file],
+            check=True,
+            timeout=120,
+        )
+        figures = json.loads(file.read_text())
+        assert figures["device"]["received"] > 100
+        assert figures["max_force_N"] > 0.3, "the spoon has met the cup"
+    finally:
+        driver.send_signal(signal.SIGINT)
+        assert driver.wait(30) == 0
 
 
 def test_the_other_commands_are_targets_of_the_makefile():
