@@ -38,7 +38,7 @@ class NotingArm:
 class Rig:
     """A driver and its arm, in a time that only the test moves on."""
 
-    def __init__(self, port=0, bind="127.0.0.1"):
+    def __init__(self, port=0, bind="127.0.0.1", rate_hz=1000.0):
         self.now_ns = 10**9
         self.arm = NotingArm()
         self.driver = DeviceDriver(
@@ -46,7 +46,7 @@ class Rig:
             max_force_N=8.5,
             max_torque_Nm=0.188,
             max_ttl_s=TTL_S,
-            rate_hz=1000.0,
+            rate_hz=rate_hz,
             bind=bind,
             port=port,
             clock_ns=lambda: self.now_ns,
@@ -228,6 +228,12 @@ def test_a_run_ends_at_zero_force_when_the_arm_breaks(rig):
         rig.driver.run()
     assert not np.any(rig.arm.calls[-1])
     assert not any(host.receive(5.0).F_BH)
+
+
+@pytest.mark.parametrize("rate_hz", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_rate_that_is_none_is_refused(rate_hz):
+    with pytest.raises(ValueError, match="rate_hz must be positive"):
+        Rig(rate_hz=rate_hz)
 
 
 def test_stop_ends_a_run(rig):

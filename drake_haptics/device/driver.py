@@ -76,6 +76,8 @@ class DeviceDriver:
         port: int,
         clock_ns: Callable[[], int] = time.monotonic_ns,
     ):
+        if not 0.0 < rate_hz < math.inf:
+            raise ValueError(f"rate_hz must be positive and finite, is {rate_hz}")
         self._arm = arm
         self._limits = (max_force_N, max_torque_Nm)
         self._gate = _core.DeviceGate(
@@ -137,10 +139,11 @@ class DeviceDriver:
             duration_s: For how long, s; until `stop` where not given.
             on_tick: Called after every tick.
         """
-        end_s = math.inf if duration_s is None else time.monotonic() + duration_s
         # Collecting garbage over all objects of a simulation takes many ticks.
         gc.collect()
         gc.freeze()
+        self._pace = TickClock(1.0 / self._rate_hz)
+        end_s = math.inf if duration_s is None else time.monotonic() + duration_s
         try:
             while not self._stops and time.monotonic() < end_s:
                 self._largest_late_s = max(self._largest_late_s, self._pace.wait())
@@ -149,8 +152,14 @@ class DeviceDriver:
                     on_tick()
         finally:
             gc.unfreeze()
-            fault = Fault(self._gate.fault)
+            self._end()
+
+    def _end(self) -> None:
+        """Shows no force, says so and gives the port up, whatever the arm does."""
+        fault = Fault(self._gate.fault)
+        try:
             self._show(np.zeros(6), GateState.FAULT if fault else GateState.IDLE, fault)
+        finally:
             self._socket.close()
 
     def tick(self) -> None:
