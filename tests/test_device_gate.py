@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from gate_rig import AT_REST, MAX_FORCE_N, MAX_TORQUE_NM, MS, X_BH, GateRig
@@ -55,6 +57,16 @@ def test_a_wrench_over_the_limits_keeps_its_direction(active: GateRig) -> None:
     np.testing.assert_allclose(F, expected, rtol=1e-12)
     assert np.linalg.norm(F[3:]) <= MAX_FORCE_N
     assert np.linalg.norm(F[:3]) <= MAX_TORQUE_NM
+
+
+def test_what_is_shown_is_within_the_limits_to_the_last_bit(active: GateRig) -> None:
+    """By exact arithmetic, so that no round-off of the norm can hide or feign it."""
+    wrenches = np.random.default_rng(0).normal(size=(2000, 6)) * 100
+    for wrench in wrenches:
+        active.send(wrench=tuple(wrench))
+        F = [Fraction(float(x)) for x in active.step()]
+        assert sum(x * x for x in F[:3]) <= Fraction(MAX_TORQUE_NM) ** 2
+        assert sum(x * x for x in F[3:]) <= Fraction(MAX_FORCE_N) ** 2
 
 
 @pytest.mark.parametrize("huge", [1e308, 1.7976931348623157e308, 1e155])

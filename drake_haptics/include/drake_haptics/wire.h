@@ -106,18 +106,23 @@ static inline int dh_is_finite(double x) {
   return ((bits >> 52) & 0x7ff) != 0x7ff;
 }
 
-/* CRC-32 of zlib, PNG and Ethernet (reflected polynomial 0xEDB88320). */
+/* CRC-32 of zlib, PNG and Ethernet (reflected polynomial 0xEDB88320), a byte at
+ * a time: the remainder of a byte is that of its two halves, exclusively ored.
+ */
 static inline uint32_t dh_crc32(const uint8_t* bytes, size_t size) {
-  static const uint32_t kOfNibble[16] = {
+  static const uint32_t kOfLowHalf[16] = {
+      0x00000000, 0x77073096, 0xee0e612c, 0x990951ba, 0x076dc419, 0x706af48f,
+      0xe963a535, 0x9e6495a3, 0x0edb8832, 0x79dcb8a4, 0xe0d5e91e, 0x97d2d988,
+      0x09b64c2b, 0x7eb17cbd, 0xe7b82d07, 0x90bf1d91};
+  static const uint32_t kOfHighHalf[16] = {
       0x00000000, 0x1db71064, 0x3b6e20c8, 0x26d930ac, 0x76dc4190, 0x6b6b51f4,
       0x4db26158, 0x5005713c, 0xedb88320, 0xf00f9344, 0xd6d6a3e8, 0xcb61b38c,
       0x9b64c2b0, 0x86d3d2d4, 0xa00ae278, 0xbdbdf21c};
   uint32_t crc = UINT32_C(0xffffffff);
   size_t i;
   for (i = 0; i < size; ++i) {
-    crc ^= bytes[i];
-    crc = (crc >> 4) ^ kOfNibble[crc & 15];
-    crc = (crc >> 4) ^ kOfNibble[crc & 15];
+    const uint32_t byte = (crc ^ bytes[i]) & 0xff;
+    crc = (crc >> 8) ^ kOfLowHalf[byte & 15] ^ kOfHighHalf[byte >> 4];
   }
   return ~crc;
 }
