@@ -258,6 +258,14 @@ def test_what_queued_up_while_the_driver_slept_does_not_hide_the_silence(
     assert_latched(active, Fault.STALE)
 
 
+def test_a_late_step_falls_by_the_time_since_the_command_went_stale(
+    active: GateRig,
+) -> None:
+    active.send()
+    active.ms += 25
+    assert active.step()[5] == pytest.approx(5.0 * 0.75)
+
+
 def test_a_late_step_does_not_jump_to_full_force(rig: GateRig) -> None:
     rig.send(enable=False)
     rig.send(ttl_s=0.1)
@@ -335,6 +343,14 @@ def test_a_fault_left_by_one_host_does_not_enable_another(active: GateRig) -> No
     active.send(session=2, enable=False)
     assert active.state is IDLE
     assert active.send(session=1) == "not_disabled_first"
+
+
+def test_a_fault_takes_back_what_an_earlier_disable_allowed(rig: GateRig) -> None:
+    rig.send(session=1, enable=False)
+    rig.gate.fail()
+    rig.send(session=2, enable=False)
+    assert rig.state is IDLE
+    assert rig.send(session=1) == "not_disabled_first"
 
 
 def test_of_two_hosts_the_second_waits_and_begins_anew(rig: GateRig) -> None:
