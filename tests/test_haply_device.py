@@ -237,6 +237,16 @@ def test_an_address_as_a_person_writes_it():
             open_device_at(f"{address}?{options}", scene)
 
 
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [("rate_hz", 0.0), ("max_force_N", -1.0), ("ttl_s", 0.0), ("ttl_s", float("nan"))],
+)
+def test_arguments_out_of_range(argument, value):
+    name = argument.removesuffix("_s")
+    with pytest.raises(ValueError, match=name):
+        HaplyDevice("ws://127.0.0.1:1", **{argument: value})
+
+
 def test_what_is_not_a_wrench_is_refused():
     with make_service() as service, open_device(service) as device:
         with pytest.raises(ValueError, match=r"F_BH must be \(6,\), is \(3,\)"):

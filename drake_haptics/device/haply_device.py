@@ -88,6 +88,8 @@ class HaplyDevice(DeviceBackend):
             raise ValueError(
                 f"force_field must be vector or values, is {force_field!r}"
             )
+        if not rate_hz > 0.0:
+            raise ValueError(f"rate_hz must be positive, is {rate_hz}")
         self._uri = uri
         self._exchange = HaplyExchange(
             LocalGate(max_force_N=max_force_N, max_torque_Nm=0.0, ttl_s=ttl_s),

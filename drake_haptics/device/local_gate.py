@@ -24,8 +24,7 @@ class LocalGate:
         ttl_s: How long a wrench holds without a newer one, s.
 
     Raises:
-        ValueError: A limit is negative or not finite, or the time not positive or
-            over 10 s.
+        ValueError: A limit or the time is out of the bounds of `DeviceGate`.
     """
 
     def __init__(self, *, max_force_N: float, max_torque_Nm: float, ttl_s: float):
