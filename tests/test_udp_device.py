@@ -65,6 +65,7 @@ def test_a_wrench_is_shown_with_its_slopes(driver, device):
     assert not driver.exchange().enable
     K = np.diag([0, 0, 0, 50.0, 0, 0])
     device.write(DeviceCommand(PUSH.F_BH, AT_REST, STILL, K, np.eye(6)))
+    wait_for(lambda: driver.exchange(gate=IDLE).enable)
     wait_for(lambda: driver.exchange(gate=ACTIVE).F_BH[3] == 2.0)
     X_BH, V_BH = (1, 0, 0, 0, 0.01, 0, 0), (0, 0, 0, 0.2, 0, 0)
     command = driver.exchange(X_BH=X_BH, V_BH=V_BH)
