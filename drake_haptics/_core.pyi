@@ -1807,7 +1807,9 @@ class UdpServoStatus:
 
     @property
     def silences(self) -> int:
-        """Times that no state came for longer than the time to live."""
+        """
+        Times that the driver was silent for so long that it was looked for anew.
+        """
 
     @property
     def refused(self) -> int:
@@ -1861,7 +1863,7 @@ class UdpServo:
         Args:
             host: name or number, IPv4 or IPv6.
             port: UDP.
-            ttl_s: how long the device shows a command that is not renewed; silence of the driver for longer is a fault.
+            ttl_s: how long the device shows a command that is not renewed. Silence of the driver for twice that, and half a second at least, is a fault.
             max_rate_hz: of commands.
             hold_s, release_s, engage_s: of the `ServoLaw`.
 

@@ -129,7 +129,8 @@ void BindStatus(nb::module_& m) {
         "States without a finite pose, velocity and wrench.");
   count("restarts", &LinkCounts::restarts, "Of the driver.");
   count("silences", &LinkCounts::silences,
-        "Times that no state came for longer than the time to live.");
+        "Times that the driver was silent for so long that it was looked for "
+        "anew.");
   count("refused", &LinkCounts::refused,
         "Packets that the driver refused, by its own count.");
   status.def_ro("sent", &Status::sent, "Commands.")
@@ -173,8 +174,10 @@ void BindUdpServo(nb::module_& m) {
           "Args:\n"
           "    host: name or number, IPv4 or IPv6.\n"
           "    port: UDP.\n"
-          "    ttl_s: how long the device shows a command that is not renewed; "
-          "silence of the driver for longer is a fault.\n"
+          "    ttl_s: how long the device shows a command that is not renewed. "
+          "Silence of the driver for twice that, and half a second at least, "
+          "is "
+          "a fault.\n"
           "    max_rate_hz: of commands.\n"
           "    hold_s, release_s, engage_s: of the `ServoLaw`.\n\n"
           "Raises:\n"

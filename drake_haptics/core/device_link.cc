@@ -86,7 +86,7 @@ bool DeviceLink::AcceptBoot(std::uint32_t boot) {
 }
 
 void DeviceLink::Tick(double now) {
-  if (is_heard_ && now - heard_at_ > time_to_live_) {
+  if (is_heard_ && now - heard_at_ > longest_silence_) {
     is_heard_ = false;
     ++counts_.silences;
     if (mode_ == Mode::kActive) Latch(DH_FAULT_STALE);

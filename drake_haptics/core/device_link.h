@@ -33,7 +33,7 @@ struct LinkCounts {
   std::int64_t damaged = 0;     ///< not a whole state of this version
   std::int64_t not_finite = 0;  ///< a state that says no pose or velocity
   std::int64_t restarts = 0;    ///< of the driver
-  std::int64_t silences = 0;    ///< longer than the time to live
+  std::int64_t silences = 0;    ///< so long that the driver counts as gone
   std::int64_t refused = 0;     ///< of our commands, as the driver counts
 };
 
@@ -45,8 +45,11 @@ struct LinkCounts {
 /// each latched until `Recover`.
 class DeviceLink {
  public:
-  /// @param time_to_live s of silence after which the device counts as gone.
-  explicit DeviceLink(double time_to_live) : time_to_live_(time_to_live) {}
+  /// @param longest_silence s after which the device counts as gone. The device
+  ///        itself ends its force much sooner, by the commands' time to live,
+  ///        and may go on by itself after a short pause.
+  explicit DeviceLink(double longest_silence)
+      : longest_silence_(longest_silence) {}
 
   /// Takes a packet from the driver that came at `now`, s.
   /// @returns whether it is a newer state than the last.
@@ -83,7 +86,7 @@ class DeviceLink {
   bool AcceptBoot(std::uint32_t boot);
   void Follow();
 
-  double time_to_live_;
+  double longest_silence_;
   Mode mode_ = Mode::kWaiting;
   bool asked_ = false;
   bool is_heard_ = false;

@@ -16,6 +16,7 @@ namespace drake_haptics {
 namespace {
 
 constexpr double kHandshakePeriod = 0.05;  // s, of commands to a silent driver
+constexpr double kSilence = 0.5;           // s until a driver is gone
 constexpr double kPatience = 0.01;         // s until the thread looks around
 constexpr int kMostPackets = 256;          // taken at once
 constexpr int kDisables = 5;  // commands at the end, in case of loss
@@ -57,7 +58,7 @@ UdpServo::UdpServo(const std::string& host, std::uint16_t port,
       process_(getpid()),
       epoch_(std::chrono::steady_clock::now()),
       socket_(host, port),
-      link_(options.time_to_live),
+      link_(std::max(kSilence, 2 * options.time_to_live)),
       law_(options.times) {
   report_.is_running = true;
   Report();

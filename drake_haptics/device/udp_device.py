@@ -24,8 +24,8 @@ class UdpDevice(DeviceBackend):
     that wrench is shown for `hold_s` more and then released, and it comes back
     gently.
 
-    A fault of the device, the restart of its driver and its silence for longer than
-    the time to live are each held as `GateState.FAULT` until `recover`.
+    A fault of the device, the restart of its driver and its silence for half a second
+    are each held as `GateState.FAULT` until `recover`.
     """
 
     def __init__(
