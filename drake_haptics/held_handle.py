@@ -25,7 +25,17 @@ def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
         A sentence for each bound that is broken, as `check_coupling` has it.
     """
     held = calc_scene_handle(scene, device)
-    return check_coupling(scene.coupling, held, 1.0 / scene.device.rate_hz)
+    period_s = 1.0 / scene.device.rate_hz
+    return check_coupling(scene.coupling, held, period_s, calc_force_delay(scene))
+
+
+def calc_force_delay(scene: Scene) -> float:
+    """Returns how late a scene's simulated device shows a wrench, s.
+
+    That is the delay t_d on top of the hold, as the laws of stability count it.
+    """
+    delay = scene.device.twin.delay
+    return 0.0 if delay is None else delay.samples / scene.device.rate_hz
 
 
 def calc_scene_handle(

@@ -13,6 +13,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.parsing import PackageMap
 
 import drake_haptics
+from drake_haptics.device_preset import is_preset_file
 from drake_haptics.scene_check import SceneError, check_keys, check_values
 from drake_haptics.scene_effects import (
     Braking,
@@ -23,6 +24,13 @@ from drake_haptics.scene_effects import (
     Passivity,
     Shading,
 )
+from drake_haptics.scene_twin import (
+    Encoder,
+    ForceDelay,
+    JointFriction,
+    Saturation,
+    Twin,
+)
 
 __all__ = [
     "Braking",
@@ -30,18 +38,23 @@ __all__ = [
     "Coupling",
     "Device",
     "Effects",
+    "Encoder",
     "EnvironmentObject",
+    "ForceDelay",
     "Friction",
     "Gravity",
     "Hand",
     "HandPath",
+    "JointFriction",
     "Material",
     "Passivity",
     "Pose",
+    "Saturation",
     "Scene",
     "SceneError",
     "Shading",
     "Tool",
+    "Twin",
     "Waypoint",
     "load_scene",
 ]
@@ -157,12 +170,14 @@ class Device:
     """The device that is held.
 
     Attributes:
-        preset: Name of a file in models/devices.
+        preset: Name of a file in models/devices (see `drake-haptics devices`), or a
+            file of one's own (*.yaml), relative to the scene file.
         base: X_WB, the pose of the device's base in the world. Where not given,
             the middle of its workspace is put at the middle of the hand's path.
         rate_hz: Ticks per second of the haptic loop, Hz.
         max_force_N: Largest force shown, N; the preset's where not given.
         max_torque_Nm: Largest torque shown, N·m; the preset's where not given.
+        twin: What a simulated device has of a real one's faults.
     """
 
     preset: str = "phantom_premium_1_5_6dof"
@@ -170,6 +185,7 @@ class Device:
     rate_hz: float = 1000.0
     max_force_N: float | None = None
     max_torque_Nm: float | None = None
+    twin: Twin = field(default_factory=Twin)
 
 
 @dataclass
@@ -275,10 +291,10 @@ def load_scene(path: str | Path) -> Scene:
     """Reads and checks a scene file.
 
     Args:
-        path: The YAML file. Relative mesh paths in it are taken from its folder.
+        path: The YAML file. Relative paths in it are taken from its folder.
 
     Returns:
-        The scene, with mesh paths that no longer depend on the folder.
+        The scene, with paths that no longer depend on the folder.
 
     Raises:
         SceneError: The file cannot be read, has a key or a value that means
@@ -299,20 +315,22 @@ def load_scene(path: str | Path) -> Scene:
     parts: list[Tool | EnvironmentObject] = [scene.tool, *scene.environment]
     for part in parts:
         part.mesh = _absolute(part.mesh, path.parent)
+    if is_preset_file(scene.device.preset):
+        scene.device.preset = _absolute(scene.device.preset, path.parent)
     return scene
 
 
-def _absolute(mesh: str, folder: Path) -> str:
-    """Returns a mesh path that holds from any folder."""
-    if not mesh.startswith("package://"):
-        return str((folder / mesh).resolve())
+def _absolute(file: str, folder: Path) -> str:
+    """Returns the path of a mesh or a preset that holds from any folder."""
+    if not file.startswith("package://"):
+        return str((folder / file).resolve())
     packages = PackageMap()
     packages.Add("drake_haptics", str(Path(drake_haptics.__file__).parent))
-    name, _, rest = mesh.removeprefix("package://").partition("/")
+    name, _, rest = file.removeprefix("package://").partition("/")
     if not packages.Contains(name):
         known = ", ".join(packages.GetPackageNames())
-        raise SceneError(f"{mesh}: there is no package {name!r}; known: {known}")
+        raise SceneError(f"{file}: there is no package {name!r}; known: {known}")
     try:
         return str(Path(packages.GetPath(name)) / rest)
     except RuntimeError as error:  # A package that Drake would have to download.
-        raise SceneError(f"{mesh}: {error}") from error
+        raise SceneError(f"{file}: {error}") from error

@@ -14,6 +14,7 @@ from drake_haptics.errors import UserError
 if TYPE_CHECKING:
     from drake_haptics.scene import Contact, HandPath, Scene
     from drake_haptics.scene_effects import Effects, Material
+    from drake_haptics.scene_twin import Twin
 
 _CLUSTERINGS = ("shared", "octree")
 
@@ -30,7 +31,7 @@ def check_keys(schema: Any, data: Any, where: str = "") -> None:
     """Checks that data, as YAML gives it, has the shape of a schema.
 
     Args:
-        schema: A dataclass, `float`, `str`, `bool`, `list[...]` or `... | None`.
+        schema: A dataclass, `float`, `int`, `str`, `bool`, `list[...]` or `... | None`.
         data: What stands in its place.
         where: Key of the place, for messages.
 
@@ -55,13 +56,18 @@ def check_keys(schema: Any, data: Any, where: str = "") -> None:
         _check_scalar(schema, data, where)
 
 
+def _join(where: str, key: str) -> str:
+    """Returns the key of what is in a part, which may be the whole file."""
+    return f"{where}.{key}" if where else key
+
+
 def _check_mapping(schema: Any, data: Any, where: str) -> None:
     """Checks the keys of a mapping, then what stands under them."""
     if not isinstance(data, dict):
         raise SceneError(f"{where or 'the file'}: expected keys, found {data!r}")
     types = typing.get_type_hints(schema)
     for key, item in data.items():
-        place = f"{where}.{key}" if where else str(key)
+        place = _join(where, str(key))
         if key not in types:
             raise SceneError(f"{place}: unknown key; {_make_hint(str(key), types)}")
         check_keys(types[key], item, place)
@@ -83,6 +89,8 @@ def _check_scalar(schema: Any, data: Any, where: str) -> None:
             finite = False
         if not finite:
             raise SceneError(f"{where}: expected a finite number, found {data!r}")
+    elif schema is int and (isinstance(data, bool) or not isinstance(data, int)):
+        raise SceneError(f"{where}: expected a whole number, found {data!r}")
     elif schema is bool and not isinstance(data, bool):
         raise SceneError(f"{where}: expected true or false, found {data!r}")
     elif schema is str and isinstance(data, list | dict | None):
@@ -95,42 +103,43 @@ def check_values(scene: Scene) -> None:
     Raises:
         SceneError: A value out of its range.
     """
-    _require(bool(scene.tool.mesh), "tool.mesh", "is missing")
-    _require_all_positive(scene.tool, "tool", ["scale", "mass_kg"])
+    require(bool(scene.tool.mesh), "tool.mesh", "is missing")
+    require_all_positive(scene.tool, "tool", ["scale", "mass_kg"])
     _check_pose(scene.tool.grasp, "tool.grasp")
-    _require(bool(scene.environment), "environment", "needs at least one object")
+    require(bool(scene.environment), "environment", "needs at least one object")
     names = [item.name for item in scene.environment]
     for i, item in enumerate(scene.environment):
         where = f"environment[{i}]"
-        _require(item.name.isidentifier(), f"{where}.name", "must be a plain name")
-        _require(names.count(item.name) == 1, f"{where}.name", "is used twice")
-        _require(bool(item.mesh), f"{where}.mesh", "is missing")
-        _require_all_positive(item, where, ["scale"])
+        require(item.name.isidentifier(), f"{where}.name", "must be a plain name")
+        require(names.count(item.name) == 1, f"{where}.name", "is used twice")
+        require(bool(item.mesh), f"{where}.mesh", "is missing")
+        require_all_positive(item, where, ["scale"])
         _check_pose(item.pose, f"{where}.pose")
         _check_material(item.material, f"{where}.material", scene.effects)
     _check_contact(scene.contact)
     _check_effects(scene.effects)
-    _require_none_negative(
+    require_none_negative(
         scene.coupling, "coupling", [f.name for f in dataclasses.fields(scene.coupling)]
     )
-    _require_all_positive(scene.device, "device", ["rate_hz"])
-    _require_none_negative(scene.device, "device", ["max_force_N", "max_torque_Nm"])
+    require_all_positive(scene.device, "device", ["rate_hz"])
+    require_none_negative(scene.device, "device", ["max_force_N", "max_torque_Nm"])
     if scene.device.base is not None:
         _check_pose(scene.device.base, "device.base")
+    _check_twin(scene.device.twin)
     _check_path(scene.hand.path)
 
 
 def _check_contact(contact: Contact) -> None:
     """Checks how contact is found and answered."""
-    _require_all_positive(contact, "contact", ["stiffness_N_per_m", "cluster_size_m"])
-    _require_none_negative(contact, "contact", ["tolerance_m", "damping_Ns_per_m"])
-    _require(
+    require_all_positive(contact, "contact", ["stiffness_N_per_m", "cluster_size_m"])
+    require_none_negative(contact, "contact", ["tolerance_m", "damping_Ns_per_m"])
+    require(
         contact.clustering in _CLUSTERINGS,
         "contact.clustering",
         f"is '{contact.clustering}'; {_make_hint(contact.clustering, _CLUSTERINGS)}",
     )
     octree = contact.clustering == "octree"
-    _require(
+    require(
         octree == (contact.cluster_size_m is not None),
         "contact.cluster_size_m",
         "is missing" if octree else "is only for clustering: octree",
@@ -139,12 +148,10 @@ def _check_contact(contact: Contact) -> None:
 
 def _check_material(material: Material, where: str, effects: Effects) -> None:
     """Checks a material, and that the scene names the effects it speaks of."""
-    _require_all_positive(material, where, ["stiffness_N_per_m"])
-    _require_none_negative(
-        material, where, ["damping_Ns_per_m", "friction_coefficient"]
-    )
+    require_all_positive(material, where, ["stiffness_N_per_m"])
+    require_none_negative(material, where, ["damping_Ns_per_m", "friction_coefficient"])
     for key, effect in [("friction_coefficient", "friction"), ("shading", "shading")]:
-        _require(
+        require(
             getattr(material, key) is None or getattr(effects, effect) is not None,
             f"{where}.{key}",
             f"means nothing without effects.{effect}",
@@ -154,37 +161,54 @@ def _check_material(material: Material, where: str, effects: Effects) -> None:
 def _check_effects(effects: Effects) -> None:
     """Checks the values of the effects that there are."""
     if (shading := effects.shading) is not None:
-        _require(
+        require(
             0.0 <= shading.crease_angle_deg <= 180.0,
             "effects.shading.crease_angle_deg",
             f"must be between 0 and 180, is {shading.crease_angle_deg}",
         )
     if (friction := effects.friction) is not None:
-        _require_none_negative(friction, "effects.friction", ["coefficient"])
-        _require_all_positive(friction, "effects.friction", ["break_away_m"])
+        require_none_negative(friction, "effects.friction", ["coefficient"])
+        require_all_positive(friction, "effects.friction", ["break_away_m"])
     if (braking := effects.braking) is not None:
-        _require_none_negative(braking, "effects.braking", ["damping_Ns_per_m"])
-        _require_all_positive(braking, "effects.braking", ["distance_m"])
+        require_none_negative(braking, "effects.braking", ["damping_Ns_per_m"])
+        require_all_positive(braking, "effects.braking", ["distance_m"])
     if (gravity := effects.gravity) is not None:
-        _require(
+        require(
             len(gravity.acceleration_m_per_s2) == 3,
             "effects.gravity.acceleration_m_per_s2",
             "needs three numbers",
         )
     if (passivity := effects.passivity) is not None:
         keys = [f.name for f in dataclasses.fields(passivity)]
-        _require_none_negative(passivity, "effects.passivity", keys)
+        require_none_negative(passivity, "effects.passivity", keys)
+
+
+def _check_twin(twin: Twin) -> None:
+    """Checks the values of the parts that there are."""
+    where = "device.twin"
+    if (encoder := twin.encoder) is not None:
+        require_each(encoder, f"{where}.encoder", "step_rad", 6, positive=True)
+        require_all_positive(encoder, f"{where}.encoder", ["velocity_window"])
+    if (friction := twin.friction) is not None:
+        for key in ("coulomb_Nm", "viscous_Nms_per_rad"):
+            require_each(friction, f"{where}.friction", key, 6, positive=False)
+    if (delay := twin.delay) is not None:
+        require_all_positive(delay, f"{where}.delay", ["samples"])
+    if (saturation := twin.saturation) is not None:
+        require_each(
+            saturation, f"{where}.saturation", "peak_torque_Nm", 6, positive=True
+        )
 
 
 def _check_path(path: HandPath) -> None:
     """Checks a path's times; its poses are checked where they are made."""
     where = "hand.path.waypoints"
-    _require(bool(path.waypoints), where, "is empty")
-    _require(path.waypoints[0].time_s == 0.0, f"{where}[0].time_s", "must be 0")
+    require(bool(path.waypoints), where, "is empty")
+    require(path.waypoints[0].time_s == 0.0, f"{where}[0].time_s", "must be 0")
     for i, waypoint in enumerate(path.waypoints):
         _check_pose(waypoint, f"{where}[{i}]")
         if i > 0:
-            _require(
+            require(
                 waypoint.time_s > path.waypoints[i - 1].time_s,
                 f"{where}[{i}].time_s",
                 "must be later than the one before",
@@ -194,31 +218,57 @@ def _check_path(path: HandPath) -> None:
 def _check_pose(pose: Any, where: str) -> None:
     """Checks the lengths of a position and a rotation."""
     for key in ("position_m", "rpy_deg"):
-        _require(len(getattr(pose, key)) == 3, f"{where}.{key}", "needs three numbers")
+        require(len(getattr(pose, key)) == 3, f"{where}.{key}", "needs three numbers")
 
 
-def _require_all_positive(part: Any, where: str, keys: list[str]) -> None:
-    """Checks those of the values that are given."""
+def require_all_positive(part: Any, where: str, keys: list[str]) -> None:
+    """Raises SceneError unless those of the values that are given are positive."""
     for key in keys:
         value = getattr(part, key)
-        _require(
+        require(
             value is None or value > 0.0,
-            f"{where}.{key}",
+            _join(where, key),
             f"must be positive, is {value}",
         )
 
 
-def _require_none_negative(part: Any, where: str, keys: list[str]) -> None:
-    """Checks those of the values that are given."""
+def require_none_negative(part: Any, where: str, keys: list[str]) -> None:
+    """Raises SceneError if one of the values that are given is negative."""
     for key in keys:
         value = getattr(part, key)
-        _require(
+        require(
             value is None or value >= 0.0,
-            f"{where}.{key}",
+            _join(where, key),
             f"must not be negative, is {value}",
         )
 
 
-def _require(condition: bool, where: str, complaint: str) -> None:
+def require_each(
+    part: Any, where: str, key: str, count: int, *, positive: bool
+) -> None:
+    """Raises SceneError unless a list, if given, has so many numbers in range.
+
+    Args:
+        part: Holds the list.
+        where: Key of the part, for messages.
+        key: Of the list in it.
+        count: How many numbers there must be.
+        positive: Whether 0 is out of range, as what is negative always is.
+    """
+    values = getattr(part, key)
+    if values is None:
+        return
+    place = _join(where, key)
+    require(len(values) == count, place, f"needs {count} numbers")
+    for i, value in enumerate(values):
+        require(
+            value > 0.0 or (value == 0.0 and not positive),
+            f"{place}[{i}]",
+            f"must {'be positive' if positive else 'not be negative'}, is {value}",
+        )
+
+
+def require(condition: bool, where: str, complaint: str) -> None:
+    """Raises SceneError about a key unless a condition holds."""
     if not condition:
         raise SceneError(f"{where} {complaint}")

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from pydrake.math import RigidTransform
 
-from drake_haptics.device_preset import load_device_preset
+from drake_haptics.device_preset import DevicePreset, load_device_preset
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.scene import HandPath as ScenePath
-from drake_haptics.scene import Pose, Scene, SceneError
+from drake_haptics.scene import Pose, Scene, SceneError, Twin
 from drake_haptics.systems.arm_inverse_kinematics import UnreachableError
+from drake_haptics.systems.arm_twin import ArmTwin
 from drake_haptics.systems.hand_grip import HAND_GRIPS
 from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.haptic_device import HapticDevice
@@ -42,28 +45,34 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
         path: Where the hand wants the tool.
 
     Raises:
-        SceneError: There is no such preset or grip, or the path leaves the
+        SceneError: There is no such preset or grip, the preset has no model or one
+            that is no arm, a part of the twin lacks figures, or the path leaves the
             device's workspace.
     """
     device = scene.device
     preset = load_device_preset(device.preset)
+    model = preset.model_path
     if scene.hand.grip not in HAND_GRIPS:
         raise SceneError(
             f"hand.grip: '{scene.hand.grip}' is none of {', '.join(HAND_GRIPS)}"
         )
     X_TH = scene.tool.grasp.to_rigid_transform().inverse()
     X_WB = place_base(scene, path)
+    twin = _make_arm_twin(device.twin, preset, 1.0 / device.rate_hz)
     try:
         arm = SimulatedArm(
-            preset.model_path,
+            model,
             preset.handle_link,
             X_WB,
             path,
             X_TH,
             HAND_GRIPS[scene.hand.grip],
+            twin,
         )
     except UnreachableError as error:
         raise SceneError(f"hand.path.waypoints[0]: {error}") from error
+    except (ValueError, RuntimeError) as error:  # Drake's parser raises the latter.
+        raise SceneError(f"{model}: {error}") from error
     arm.set_name("simulated_arm")
     force, torque = device.max_force_N, device.max_torque_Nm
     return HapticDevice(
@@ -104,3 +113,42 @@ def place_base(scene: Scene, path: HandPath) -> RigidTransform:
             f" its radius is {preset.workspace_radius_m} m"
         )
     return X_WB
+
+
+def _make_arm_twin(twin: Twin, preset: DevicePreset, period_s: float) -> ArmTwin | None:
+    """Returns the parts of a twin with the preset's figures, None if there is none."""
+    if twin == Twin():
+        return None
+    motors = preset.motors
+    parts: dict[str, Any] = {}
+    if (encoder := twin.encoder) is not None:
+        parts["encoder_step_rad"] = _find_figures(
+            "encoder.step_rad", encoder.step_rad, motors.encoder_step_rad
+        )
+        parts["velocity_window"] = encoder.velocity_window
+    if (friction := twin.friction) is not None:
+        parts["coulomb_Nm"] = _find_figures(
+            "friction.coulomb_Nm", friction.coulomb_Nm, motors.coulomb_friction_Nm
+        )
+        parts["viscous_Nms_per_rad"] = np.array(friction.viscous_Nms_per_rad)
+    if (delay := twin.delay) is not None:
+        parts["delay_samples"] = delay.samples
+    if (saturation := twin.saturation) is not None:
+        parts["peak_torque_Nm"] = _find_figures(
+            "saturation.peak_torque_Nm",
+            saturation.peak_torque_Nm,
+            motors.peak_torque_Nm,
+        )
+    return ArmTwin(period_s, np.array(motors.joint_per_motor), **parts)
+
+
+def _find_figures(
+    key: str, given: list[float] | None, known: list[float] | None
+) -> np.ndarray:
+    """Returns a scene's figures of six motors, or else the preset's."""
+    figures = known if given is None else given
+    if figures is None:
+        raise SceneError(
+            f"device.twin.{key} is missing: the device's preset has no such figures"
+        )
+    return np.array(figures)

@@ -77,7 +77,7 @@ class HandImpedance(DifferentiableSystem):
             ValueError: The arm is no such chain.
         """
         super().__init__()
-        self._arm = _make_held_arm(plant, handle, path, X_PH, gains or _LETS_GO)
+        self._arm = make_held_arm(plant, handle, path, X_PH, gains)
         self._arm_state = self.DeclareVectorInputPort("arm_state", 2 * _NUM_JOINTS)
         self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
         from_arm = {self._arm_state.ticket()}
@@ -126,14 +126,25 @@ class HandImpedance(DifferentiableSystem):
         return self._arm.calc_joint_torques(at.time_s, at["arm_state"], at["F_applied"])
 
 
-def _make_held_arm(
+def make_held_arm(
     plant: MultibodyPlant,
     handle: RigidBody,
     path: HandPath,
     X_PH: RigidTransform,
-    gains: CouplingGains,
+    gains: CouplingGains | None,
 ) -> HeldArm:
-    """Reads the arm's kinematics off its plant and holds them against it."""
+    """Reads an arm's kinematics off its plant and holds them against it.
+
+    Args:
+        plant: The arm, finalized: six revolute joints in a chain.
+        handle: Its body that is held, at the end of the chain.
+        path: Where the hand wants P to go.
+        X_PH: Where it wants the handle in P.
+        gains: Of the hand; None lets go.
+
+    Raises:
+        ValueError: The arm is no such chain.
+    """
     if (plant.num_positions(), plant.num_velocities()) != (_NUM_JOINTS, _NUM_JOINTS):
         raise ValueError(f"the arm must have {_NUM_JOINTS} revolute joints")
     context = plant.CreateDefaultContext()
@@ -151,7 +162,13 @@ def _make_held_arm(
         return plant.EvalBodyPoseInWorld(context, handle), J_WH
 
     X_WH, J_WH = kinematics(np.zeros(2 * _NUM_JOINTS))
-    arm = HeldArm(J_WH, pose_to_vector(X_WH), path.core, pose_to_vector(X_PH), gains)
+    arm = HeldArm(
+        J_WH,
+        pose_to_vector(X_WH),
+        path.core,
+        pose_to_vector(X_PH),
+        gains or _LETS_GO,
+    )
     X_WH, J_WH = kinematics(_PROBE)
     handle_state = arm.calc_handle_state(_PROBE)
     V_difference = handle_state[7:] - J_WH @ _PROBE[_NUM_JOINTS:]

@@ -12,8 +12,9 @@ from pydrake.multibody.tree import SpatialInertia, UnitInertia
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from drake_haptics.systems.arm_inverse_kinematics import solve_arm_positions
+from drake_haptics.systems.arm_twin import ArmTwin, add_arm_twin
 from drake_haptics.systems.hand_grip import HandGrip
-from drake_haptics.systems.hand_impedance import HandImpedance
+from drake_haptics.systems.hand_impedance import HandImpedance, make_held_arm
 from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.vector_ports import export_parts
 
@@ -23,7 +24,8 @@ class SimulatedArm(Diagram):
 
     The arm moves in continuous time: a discrete plant would hide the instability of
     a sampled loop. It starts at rest with its handle where the hand wants it.
-    Gravity is off, as on a device that compensates its own weight.
+    Gravity is off, as on a device that compensates its own weight. It shows every
+    wrench at once and tells its true pose, but for what an `ArmTwin` names.
 
     .. pydrake_system::
 
@@ -48,6 +50,7 @@ class SimulatedArm(Diagram):
         path: HandPath,
         X_PH: RigidTransform,
         grip: HandGrip | None,
+        twin: ArmTwin | None = None,
     ):
         """Constructs the arm.
 
@@ -58,9 +61,12 @@ class SimulatedArm(Diagram):
             path: Where the hand wants P to go.
             X_PH: Where it wants the handle in P.
             grip: How it holds; None leaves the arm free.
+            twin: What it has of a real arm's faults; none if not given.
 
         Raises:
             UnreachableError: The path starts out of the arm's reach.
+            ValueError: The arm is no chain of six revolute joints, or a figure of the
+                twin is out of its range.
         """
         super().__init__()
         builder = DiagramBuilder()
@@ -90,16 +96,17 @@ class SimulatedArm(Diagram):
         builder.Connect(
             plant.get_state_output_port(), hand_impedance.get_arm_state_input_port()
         )
-        builder.Connect(
-            hand_impedance.get_generalized_force_output_port(),
-            plant.get_applied_generalized_force_input_port(),
-        )
-        builder.ExportInput(hand_impedance.get_applied_wrench_input_port(), "F_applied")
-        export_parts(
-            builder,
-            hand_impedance.get_handle_state_output_port(),
-            {"X_WH": 7, "V_WH": 6},
-        )
+        wrench = hand_impedance.get_applied_wrench_input_port()
+        force = hand_impedance.get_generalized_force_output_port()
+        handle_state = hand_impedance.get_handle_state_output_port()
+        if twin is not None:
+            free_arm = make_held_arm(plant, handle, path, X_PH, None)
+            wrench, force, handle_state = add_arm_twin(
+                builder, twin, plant, hand_impedance, free_arm
+            )
+        builder.Connect(force, plant.get_applied_generalized_force_input_port())
+        builder.ExportInput(wrench, "F_applied")
+        export_parts(builder, handle_state, {"X_WH": 7, "V_WH": 6})
         builder.BuildInto(self)
 
 

@@ -251,5 +251,5 @@ def test_what_cannot_be_is_refused(arguments, message):
 
 
 def test_a_device_that_is_not_known_is_refused():
-    with pytest.raises(SceneError, match=r"device\.preset: 'falcon' is none of"):
-        suggest_coupling("falcon", 1000.0)
+    with pytest.raises(SceneError, match=r"device\.preset: 'flacon' is none of"):
+        suggest_coupling("flacon", 1000.0)

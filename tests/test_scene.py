@@ -233,7 +233,7 @@ def test_an_unknown_scene_is_answered_with_those_there_are():
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [
-        ({"preset": "omega"}, r"device\.preset: 'omega' is none of phantom"),
+        ({"preset": "omega"}, r"device\.preset: 'omega' is none of delta_6, "),
         ({"base": Pose([1.0, 0, 0])}, "from the middle of the device's workspace"),
     ],
 )

@@ -91,6 +91,12 @@ def make_delayed_map(loop: HeldLoop, delay: float) -> np.ndarray:
 
 
 def find_shown_wrench(names: tuple[str, ...]) -> np.ndarray:
-    """Returns where F_applied (6) of the device's hold is in a state with names."""
+    """Returns where the wrench (6) that the handle feels is in a state with names.
+
+    That of the device's hold, or of the last sample of a simulated device's delay.
+    """
+    delayed = [i for i, name in enumerate(names) if "force_delay" in name]
+    if delayed:
+        return np.array(delayed[-6:])
     hold = [i for i, name in enumerate(names) if "display_force_hold" in name]
     return np.array(hold[:6])

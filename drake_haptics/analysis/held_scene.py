@@ -12,6 +12,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.framework import Context
 
 from drake_haptics.analysis.equilibrium import find_equilibrium
+from drake_haptics.analysis.sampled_preconditions import check_conversion
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.scene import Coupling, HandPath, Pose, Scene, Waypoint
@@ -86,10 +87,13 @@ def hold_scene(
         progress: Called with what is done and its share in [0, 1].
 
     Raises:
-        ValueError: The time is not on the path, or the tool does not come to rest.
+        ValueError: The time is not on the path, the tool does not come to rest, or a
+            part of the scene has no derivatives.
         SceneError: The scene cannot be built.
     """
     report = progress or (lambda what, share: None)
+    # An equilibrium could not be found, and why is not seen in a search that fails.
+    check_conversion(build_quietly(scene).diagram)
     report("looking for the firmest contact", 0.0)
     places = _find_firm_places(scene) if time_s is None else [time_s]
     coupling = scene.coupling

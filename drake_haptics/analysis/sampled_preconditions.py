@@ -40,13 +40,24 @@ def check_abstract_state(system: System) -> None:
 
 
 def check_conversion(system: System) -> None:
-    """Raises ValueError if a system has no AutoDiffXd twin, and names it."""
+    """Raises ValueError if a system has no AutoDiffXd twin, and names it.
+
+    A system that can have none says in its `no_derivatives` why, and what to do.
+    """
+    found = [
+        leaf
+        for leaf in walk_leaves(system)
+        if not leaf.get_system_scalar_converter().IsConvertible[AutoDiffXd, float]()
+    ]
+    reasons = [
+        f"{calc_path(system, leaf)} {leaf.no_derivatives}"
+        for leaf in found
+        if hasattr(leaf, "no_derivatives")
+    ]
+    if reasons:
+        raise ValueError(f"no derivatives: {'; '.join(reasons)}")
     lacking = sorted(
-        {
-            f"{calc_path(system, leaf)} ({type(leaf).__name__})"
-            for leaf in walk_leaves(system)
-            if not leaf.get_system_scalar_converter().IsConvertible[AutoDiffXd, float]()
-        }
+        {f"{calc_path(system, leaf)} ({type(leaf).__name__})" for leaf in found}
     )
     if lacking:
         raise ValueError(

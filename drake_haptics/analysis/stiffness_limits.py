@@ -17,7 +17,7 @@ from drake_haptics.analysis.motion_words import describe_motion
 from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
 from drake_haptics.analysis.stability_limit import find_stability_limit
 from drake_haptics.coupling_check import HeldHandle
-from drake_haptics.held_handle import calc_scene_handle
+from drake_haptics.held_handle import calc_force_delay, calc_scene_handle
 from drake_haptics.passivity_bounds import calc_stable_stiffness
 from drake_haptics.scene import Coupling
 
@@ -57,7 +57,7 @@ class StiffnessLimits:
         one_axis: The exact limit of one axis with the least inertia and damping that
             device and hand have in any direction where they hold the tool, against a
             rigid wall (`SampledWall`).
-        formula: (b + B) / (T/2) of the same axis (Gil et al. 2004).
+        formula: (b + B) / (T/2 + t_d) of the same axis (Gil et al. 2004).
         limited_by: The motion that starts to grow there: its frequency and what moves.
     """
 
@@ -156,7 +156,9 @@ def find_stiffness_limits(
         eigenvalue=limit,
         simulated=simulated,
         one_axis=calc_largest_stiffness(wall),
-        formula=calc_stable_stiffness(wall.damping, damping, wall.period_s),
+        formula=calc_stable_stiffness(
+            wall.damping, damping, wall.period_s, wall.delay_s
+        ),
         limited_by=words,
     )
 
@@ -200,6 +202,7 @@ def _make_wall(
             damping=handle.damping_Ns_per_m,
             period_s=period_s,
             wall_damping=damping,
+            delay_s=calc_force_delay(held.scene),
             hand_stiffness=handle.stiffness_N_per_m,
             true_velocity=True,
         )
@@ -208,6 +211,7 @@ def _make_wall(
         damping=handle.rotational_damping_Nms_per_rad,
         period_s=period_s,
         wall_damping=damping,
+        delay_s=calc_force_delay(held.scene),
         hand_stiffness=handle.rotational_stiffness_Nm_per_rad,
         true_velocity=True,
     )

@@ -1,0 +1,56 @@
+"""A wrench that reaches the motors whole ticks late."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from pydrake.systems.framework import Diagram, DiagramBuilder
+from pydrake.systems.primitives import ZeroOrderHold
+
+
+class ForceDelay(Diagram):
+    """Delays a wrench by whole periods, on top of the hold before it.
+
+    Each of its holds samples what the one before it held until then, so that the
+    wrench that leaves is that of `samples` ticks ago, exactly.
+
+    .. pydrake_system::
+
+        name: ForceDelay
+        input_ports:
+        - F_applied
+        output_ports:
+        - F_delayed
+
+    Both are wrenches (6) [τ; f], N·m and N.
+
+    The state is one discrete group (6) per sample, the newest first, the last one
+    `F_delayed`; zero at first. The holds are Drake's own: they take no Python and have
+    derivatives, so that a stability analysis sees the delay.
+    """
+
+    def __init__(self, period_s: float, samples: int):
+        """Constructs the system.
+
+        Args:
+            period_s: The tick, s.
+            samples: Ticks, at least 1.
+
+        Raises:
+            ValueError: The period is not positive or there is no sample.
+        """
+        super().__init__()
+        if not period_s > 0.0:
+            raise ValueError(f"period_s must be positive, is {period_s}")
+        if samples < 1:
+            raise ValueError(f"samples must be at least 1, is {samples}")
+        builder = DiagramBuilder()
+        holds = [
+            builder.AddNamedSystem(f"hold_{i}", ZeroOrderHold(period_s, 6))
+            for i in range(samples)
+        ]
+        builder.ExportInput(holds[0].get_input_port(), "F_applied")
+        for before, hold in pairwise(holds):
+            builder.Connect(before.get_output_port(), hold.get_input_port())
+        builder.ExportOutput(holds[-1].get_output_port(), "F_delayed")
+        builder.BuildInto(self)

@@ -1,0 +1,126 @@
+"""Encoders on an arm's motors, and the handle as a driver knows it from them."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import (
+    Context,
+    DiscreteValues,
+    InputPort,
+    LeafSystem,
+    OutputPort,
+    State,
+)
+
+from drake_haptics._core import HeldArm
+
+
+class JointEncoder(LeafSystem):
+    """Counts the motors' angles and estimates the handle's pose and velocity.
+
+    At each tick the angle of each motor is rounded to the step Δ of its encoder. The
+    speed is the difference of counted angles over a window of W ticks, a moving average
+    of W backward differences: it comes in steps of Δ/(W T) and is late by W T/2.
+
+    .. pydrake_system::
+
+        name: JointEncoder
+        input_ports:
+        - arm_state
+        output_ports:
+        - handle_state
+
+    * `arm_state` (12) is [q; v] of the arm's plant, rad and rad/s; v is not used.
+    * `handle_state` (13) is [X_WH; V_WH] of the counted angles and estimated speeds:
+      pose [qw qx qy qz x y z], m, and spatial velocity [ω; v], rad/s and m/s, in the
+      world.
+
+    The state is the handle's (13) and the counted angles of the last W + 1 ticks,
+    newest first, 6 each. An unrestricted update writes it every period from 0 s on:
+    such come before all discrete updates of the same time, so that counting adds no
+    tick of delay. When a simulation begins the window is filled with the first count.
+    """
+
+    no_derivatives = "rounds angles: leave device.twin.encoder out"
+
+    def __init__(
+        self,
+        plant: MultibodyPlant,
+        arm: HeldArm,
+        period_s: float,
+        joint_per_motor: np.ndarray,
+        step_rad: np.ndarray,
+        velocity_window: int,
+    ):
+        """Constructs the system.
+
+        Args:
+            plant: The arm, finalized; before the first tick it is at its default
+                angles.
+            arm: Its kinematics.
+            period_s: The tick T, s.
+            joint_per_motor: S (6, 6) in q = S q_motor, invertible.
+            step_rad: Δ of each motor after its gear (6,), rad.
+            velocity_window: W, ticks, at least 1.
+
+        Raises:
+            ValueError: The period or a step is not positive, or the window is empty.
+        """
+        super().__init__()
+        if not period_s > 0.0:
+            raise ValueError(f"period_s must be positive, is {period_s}")
+        if not (np.asarray(step_rad) > 0.0).all():
+            raise ValueError(f"step_rad must be positive, is {step_rad}")
+        if velocity_window < 1:
+            raise ValueError(
+                f"velocity_window must be at least 1, is {velocity_window}"
+            )
+        self._arm = arm
+        self._num_kept = velocity_window + 1
+        self._window_s = velocity_window * period_s
+        self._S = np.array(joint_per_motor, dtype=float)
+        self._motor_per_joint = np.linalg.inv(self._S)
+        self._step_rad = np.array(step_rad, dtype=float)
+        self._arm_state = self.DeclareVectorInputPort("arm_state", 12)
+        counted = self._count(plant.GetPositions(plant.CreateDefaultContext()))
+        window = np.tile(counted, (self._num_kept, 1))
+        self._handle = self.DeclareDiscreteState(self._calc_handle_state(window))
+        self._window = self.DeclareDiscreteState(window.ravel())
+        self.DeclareInitializationDiscreteUpdateEvent(self._fill)
+        self.DeclarePeriodicUnrestrictedUpdateEvent(period_s, 0.0, self._sample)
+        self.DeclareStateOutputPort("handle_state", self._handle)
+
+    def get_arm_state_input_port(self) -> InputPort:
+        """Returns the input `arm_state`."""
+        return self.get_input_port()
+
+    def get_handle_state_output_port(self) -> OutputPort:
+        """Returns the output `handle_state`."""
+        return self.get_output_port()
+
+    def _count(self, q: np.ndarray) -> np.ndarray:
+        """Returns the motors' angles (6,) as their encoders count them."""
+        counts = np.round(self._motor_per_joint @ q / self._step_rad)
+        return counts * self._step_rad
+
+    def _calc_handle_state(self, window: np.ndarray) -> np.ndarray:
+        """Returns the handle's state (13,) for counted angles, newest first."""
+        speeds = (window[0] - window[-1]) / self._window_s
+        return self._arm.calc_handle_state(
+            np.concatenate([self._S @ window[0], self._S @ speeds])
+        )
+
+    def _fill(self, context: Context, next_state: DiscreteValues) -> None:
+        counted = self._count(self._arm_state.Eval(context)[:6])
+        self._write(next_state, np.tile(counted, (self._num_kept, 1)))
+
+    def _sample(self, context: Context, state: State) -> None:
+        kept = context.get_discrete_state(int(self._window)).value().reshape(-1, 6)
+        counted = self._count(self._arm_state.Eval(context)[:6])
+        self._write(state.get_mutable_discrete_state(), np.vstack([counted, kept[:-1]]))
+
+    def _write(self, values: DiscreteValues, window: np.ndarray) -> None:
+        handle_state = self._calc_handle_state(window)
+        values.get_mutable_vector(int(self._handle)).SetFromVector(handle_state)
+        values.get_mutable_vector(int(self._window)).SetFromVector(window.ravel())
