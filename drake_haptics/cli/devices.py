@@ -1,0 +1,70 @@
+"""`drake-haptics devices`."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+import click
+from rich.console import Console
+from rich.table import Table
+
+from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.device_preset import (
+    DevicePreset,
+    list_device_presets,
+    load_device_preset,
+)
+
+
+@click.command()
+@json_option
+def devices(json_file: str | None) -> None:
+    """List the devices whose limits come along.
+
+    Forces, torques and stiffnesses are the largest that the device is rated for. A
+    device with a twin can be simulated; the others are used with
+    `drake-haptics run --device`. A file of your own takes the place of a name: see
+    docs/device-twin.md.
+    """
+    presets = {name: load_device_preset(name) for name in list_device_presets()}
+    if json_file is not None:
+        write_json(
+            {name: _to_dict(preset) for name, preset in presets.items()}, json_file
+        )
+    if json_file != "-":
+        _print(presets)
+
+
+def _to_dict(preset: DevicePreset) -> dict[str, object]:
+    """Returns the preset's figures, its model as yes or no."""
+    figures = asdict(preset)
+    del figures["model"]
+    return figures | {"has_twin": preset.has_model}
+
+
+def _print(presets: dict[str, DevicePreset]) -> None:
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    table.add_column("device", no_wrap=True)
+    for heading in ["N", "N·m", "N/m", "N·m/rad", "radius, m", "axes", "twin"]:
+        table.add_column(heading, justify="right", no_wrap=True)
+    for name, preset in presets.items():
+        table.add_row(
+            name,
+            f"{preset.max_force_N:g}",
+            f"{preset.max_torque_Nm:g}",
+            _format(preset.max_stiffness_N_per_m),
+            _format(preset.max_rotational_stiffness_Nm_per_rad),
+            f"{preset.workspace_radius_m:g}",
+            f"{preset.actuated_axes}",
+            "yes" if preset.has_model else "no",
+        )
+    console = Console(highlight=False)
+    console.print(table)
+    console.print("\naxes: how many of the handle's six have motors", style="dim")
+    for source in sorted({preset.source for preset in presets.values()}):
+        named = [name for name, preset in presets.items() if preset.source == source]
+        console.print(f"{', '.join(named)}: {source}", style="dim")
+
+
+def _format(value: float | None) -> str:
+    return "" if value is None else f"{value:g}"

@@ -1,0 +1,49 @@
+"""`drake-haptics devices` from end to end."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+from click.testing import CliRunner
+
+from drake_haptics.cli import main
+from drake_haptics.device_preset import list_device_presets
+
+# The installed command, beside the interpreter.
+COMMAND = Path(sys.executable).with_name("drake-haptics")
+
+
+def test_the_table_has_every_device_and_its_source():
+    # As a terminal of 80 columns would show it.
+    result = subprocess.run(
+        [COMMAND, "devices"], capture_output=True, text=True, timeout=120, check=True
+    )
+    rows = {
+        line.split()[0]: line.split() for line in result.stdout.splitlines() if line
+    }
+    assert set(list_device_presets()) <= set(rows)
+    assert (
+        rows["phantom_premium_1_5_6dof"][1:] == "8.5 0.188 800 0.3 0.12 6 yes".split()
+    )
+    assert rows["omega_6"][1:] == "12 0 5000 0.075 3 no".split()
+    assert "CPhantomDevices.cpp" in result.stdout
+    assert max(map(len, result.stdout.splitlines())) <= 80
+
+
+def test_json_has_the_figures_of_each():
+    result = CliRunner().invoke(main, ["devices", "--json", "-"])
+    assert result.exit_code == 0, result.output
+    devices = json.loads(result.output)
+    assert set(devices) == set(list_device_presets())
+    premium = devices["phantom_premium_1_5_6dof"]
+    assert premium["has_twin"] and premium["motors"]["peak_torque_Nm"][0] == 1.716
+    assert not devices["falcon"]["has_twin"]
+    assert devices["falcon"]["max_force_N"] == 8.0
+
+
+def test_json_goes_to_a_file_beside_the_table(tmp_path):
+    path = tmp_path / "devices.json"
+    result = CliRunner().invoke(main, ["devices", "--json", str(path)])
+    assert result.exit_code == 0 and "omega_6" in result.output
+    assert "omega_6" in json.loads(path.read_text())
