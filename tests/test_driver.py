@@ -147,8 +147,8 @@ def test_only_the_host_that_is_served_gets_answers(rig):
     rig.bring_to_force(served, 2.0)
     before = served.state
     for enable in (False, True):
-        other.send(-8.0, enable=enable)
         served.send(2.0)
+        other.send(-8.0, enable=enable)
         rig.tick()
     assert other.receive(0.05) is None
     state = served.receive(5.0)
