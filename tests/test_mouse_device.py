@@ -297,6 +297,7 @@ def test_close_ends_at_no_force_and_tells_the_page(meshcat, clock):
         report = page.hear(lambda report: report["gate"] == "idle")
         assert report["force_N"] == [0, 0, 0]
     device.close()
+    device.write(DeviceCommand(np.ones(6), reading.X_BH, reading.V_BH))
     reading = device.read()
     assert reading.gate is GateState.IDLE
     np.testing.assert_array_equal(reading.F_BH, np.zeros(6))

@@ -36,6 +36,7 @@ class FollowedHandle:
         self._sequence = 0
         self._gate = GateState.IDLE
         self._F_BH = np.zeros(6)
+        self._released = False
 
     @property
     def gate(self) -> GateState:
@@ -56,13 +57,19 @@ class FollowedHandle:
         self._filter.set_goal(X_BG, time_s)
 
     def show(self, command: DeviceCommand) -> None:
-        """Shows a wrench from now on; one that is not finite as zero."""
+        """Shows a wrench from now on; one that is not finite as zero.
+
+        After `release` it shows none.
+        """
+        if self._released:
+            return
         self._gate = GateState.ACTIVE
         F_BH = np.array(command.F_BH, dtype=float)
         self._F_BH = F_BH if np.isfinite(F_BH).all() else np.zeros(6)
 
     def release(self) -> None:
         """Shows no force any more."""
+        self._released = True
         self._gate = GateState.IDLE
         self._F_BH = np.zeros(6)
 

@@ -133,10 +133,7 @@ class MeshcatDevice(DeviceBackend):
         """Adds sliders and buttons."""
         for i, (name, less, more) in enumerate(_SLIDERS):
             largest = float(self._largest[i])
-            self._shown[i] = self._meshcat.AddSlider(
-                name, -largest, largest, 1.0, 0.0, less, more
-            )
-        self._offsets = np.array(self._shown)
+            self._meshcat.AddSlider(name, -largest, largest, 1.0, 0.0, less, more)
         self._meshcat.AddButton(_HOME, "Home")
         self._show_wrench()
 
