@@ -1,6 +1,5 @@
 #include "handle_model.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "passive_part.h"

@@ -1,5 +1,6 @@
 #include "passive_part.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 namespace drake_haptics {
@@ -7,6 +8,14 @@ namespace {
 
 // Below this part of the largest entry a difference is round-off.
 constexpr double kRoundOff = 1e-9;
+// An eigenvalue below zero by this part of it is that of a singular matrix.
+constexpr double kSingular = 1e-13;
+
+// By a Cholesky decomposition, which costs a fraction of the eigenvalues.
+bool IsPassive(const Mat6& symmetric, double size) {
+  const Mat6 lifted = symmetric + kSingular * size * Mat6::Identity();
+  return lifted.llt().info() == Eigen::Success;
+}
 
 }  // namespace
 
@@ -17,11 +26,11 @@ Mat6 PassivePart(const Mat6& matrix, bool* changed) {
   const double size = even.cwiseAbs().maxCoeff();
   if (size == 0) return Mat6::Zero();
   const Mat6 symmetric = 0.5 * (even + even.transpose());
-  Eigen::SelfAdjointEigenSolver<Mat6> solver(symmetric);
-  const Vec6 values = solver.eigenvalues();
   Mat6 passive = symmetric;
-  if (values.minCoeff() < 0) {
-    passive = solver.eigenvectors() * values.cwiseMax(0).asDiagonal() *
+  if (!IsPassive(symmetric, size)) {
+    const Eigen::SelfAdjointEigenSolver<Mat6> solver(symmetric);
+    passive = solver.eigenvectors() *
+              solver.eigenvalues().cwiseMax(0).asDiagonal() *
               solver.eigenvectors().transpose();
   }
   if ((passive - even).cwiseAbs().maxCoeff() > kRoundOff * size) {

@@ -129,8 +129,8 @@ void UdpServo::Run() {
 void UdpServo::Serve() {
   while (!closing_.load(std::memory_order_relaxed)) {
     socket_.Wait(kPatience);
-    const double rest = sent_at_ + 1 / options_.max_rate - Now();
-    if (rest > 0 && sent_at_ >= 0) {
+    const double rest = allowed_at_ - Now();
+    if (rest > 0) {
       std::this_thread::sleep_for(std::chrono::duration<double>(rest));
     }
     const bool renewed = Drain();
@@ -211,6 +211,10 @@ void UdpServo::Send(const Vec6& F, bool enable) {
   dh_pack_command(&command, packet.data());
   socket_.Send(packet);
   sent_at_ = Now();
+  // A state may come early by one period, so that jitter at the largest rate
+  // does not delay the answers.
+  const double period = 1 / options_.max_rate;
+  allowed_at_ = std::max(allowed_at_, sent_at_ - period) + period;
   ++report_.sent;
 }
 

@@ -116,6 +116,7 @@ class UdpServo {
   std::uint32_t sequence_ = 0;
   std::int64_t restarts_ = 0;
   double sent_at_ = -1;
+  double allowed_at_ = 0;
   UdpServoStatus report_;
 
   std::thread thread_;
