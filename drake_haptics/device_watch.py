@@ -35,6 +35,7 @@ class DeviceWatch:
         fault = reading.fault if reading.gate == GateState.FAULT else Fault.NONE
         if fault != self._fault:
             self._note(fault)
+            return
         if fault != Fault.NONE and not self._asked and self._wants_it_back():
             self._asked = True
             self._backend.recover()
@@ -45,6 +46,8 @@ class DeviceWatch:
             self._recoveries += 1
         else:
             self._faults[fault.name] += 1
+            # A wish from before the fault was for something else.
+            self._wants_it_back()
         self._fault, self._asked = fault, False
 
     def to_dict(self) -> dict[str, object]:

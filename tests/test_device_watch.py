@@ -40,9 +40,18 @@ def test_a_fault_lasts_until_somebody_wants_the_device_back():
 
 def test_a_wish_is_passed_on_once_for_each_fault():
     _, backend = watch_states(
-        STALE, STALE, ACTIVE, ACTIVE, FAST, FAST, wants_it_back=lambda: True
+        STALE, STALE, STALE, ACTIVE, FAST, FAST, FAST, wants_it_back=lambda: True
     )
     assert backend.recovered == 2
+
+
+def test_a_wish_from_before_the_fault_does_not_count():
+    """As the Enter key is: pressed once, at some time before anybody asks."""
+    typed = [True]
+    _, backend = watch_states(
+        ACTIVE, *[STALE] * 20, wants_it_back=lambda: bool(typed and typed.pop())
+    )
+    assert backend.recovered == 0
 
 
 def test_nobody_is_asked_while_all_is_well():

@@ -26,6 +26,12 @@ def test_it_is_pressed_once(keyboard):
     assert not is_enter_pressed()
 
 
+def test_pressed_many_times_is_pressed_once(keyboard):
+    os.write(keyboard, b"\n\nabc\n")
+    assert is_enter_pressed()
+    assert not is_enter_pressed()
+
+
 def test_other_keys_are_not_enter(keyboard):
     os.write(keyboard, b"abc")
     assert not is_enter_pressed()

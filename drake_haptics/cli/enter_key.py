@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import select
 import sys
+
+# Of what a person may have typed at once.
+_BUFFER_BYTES = 4096
 
 
 def is_enter_pressed() -> bool:
@@ -13,7 +17,11 @@ def is_enter_pressed() -> bool:
     """
     if sys.stdin is None or not sys.stdin.isatty():
         return False
-    ready, _, _ = select.select([sys.stdin], [], [], 0.0)
-    if not ready:
-        return False
-    return bool(sys.stdin.readline())
+    keys = sys.stdin.fileno()
+    pressed = False
+    while select.select([keys], [], [], 0.0)[0]:
+        # Not by sys.stdin, which would keep further lines to itself.
+        if not os.read(keys, _BUFFER_BYTES):
+            break  # the terminal has gone
+        pressed = True
+    return pressed
