@@ -73,8 +73,8 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
     while (reading := backend.read()) is None:
         if time.monotonic() > end_s:
             raise DeviceError(
-                f"the device has said nothing for {timeout_s:g} s: is its driver running"
-                " at the address given? `drake-haptics device` is one to try"
+                f"the device has said nothing for {timeout_s:g} s: is its driver"
+                " running at the address given? `drake-haptics device` is one to try"
             )
         time.sleep(_LOOK_AGAIN_S)
     return reading
