@@ -32,6 +32,7 @@ class Scheme:
         slopes: Whether the wrench has its slopes.
         hold_s: Time after which a wrench is released, s.
         brakes: Whether a wrench that comes back is damped.
+        one_sided: Whether the force stays on the side of the wrench that was given.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Scheme:
     slopes: bool = True
     hold_s: float = HOLD_S
     brakes: bool = True
+    one_sided: bool = False
 
 
 HELD = Scheme("held force", slopes=False, hold_s=FOREVER_S)
@@ -46,6 +48,7 @@ LOCAL = Scheme("local wrench", hold_s=FOREVER_S)
 SERVO = Scheme("servo, 1 kHz")
 FAST_SERVO = Scheme("servo, 4 kHz", servo_hz=4000.0)
 UNBRAKED = Scheme("servo, unbraked", brakes=False)
+ONE_SIDED = Scheme("servo, one-sided", one_sided=True)
 SCHEMES = (HELD, LOCAL, SERVO, FAST_SERVO)
 
 
@@ -140,6 +143,8 @@ def simulate(
         force = law.step(now, X, V)[3]
         if not scheme.brakes:
             force += 16.0 * law.scale * (1.0 - law.scale) * v
+        if scheme.one_sided and force * F[3] < 0.0:
+            force = 0.0
         waiting.append(force)
         force = waiting.pop(0)
         out[i] = x, force, now - last_tick

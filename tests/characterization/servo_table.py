@@ -18,6 +18,7 @@ from servo_loop import (
     HELD,
     LOCAL,
     NOMINAL_HAND,
+    ONE_SIDED,
     SCHEMES,
     SERVO,
     UNBRAKED,
@@ -40,8 +41,8 @@ BUZZ_M, STALE_N = 1e-4, 0.05
 WILD_M = 0.02
 
 
-def way_back_rows() -> Iterator[list[str]]:
-    """The way back from a release, without the link's sample of delay."""
+def part_rows() -> Iterator[list[str]]:
+    """What the parts of the law do, without the link's sample of delay."""
     yield ["scheme", "K, N/m", "stalls of", "motion at the end", "farthest"]
     for scheme, K, stall_s in [
         (HELD, 500, 0.0),
@@ -50,6 +51,7 @@ def way_back_rows() -> Iterator[list[str]]:
         (SERVO, 500, 0.2),
         (UNBRAKED, 1500, 0.2),
         (SERVO, 1500, 0.2),
+        (ONE_SIDED, 1500, 0.0),
     ]:
         run = simulate(scheme, K, 100, stall_s, delay=0, stall_period_s=0.5)
         last = run.x_m[run.time_s >= run.time_s[-1] - 0.5]
@@ -90,7 +92,7 @@ def to_markdown(rows: Iterator[list[str]]) -> str:
 
 
 TABLES: dict[str, Callable[[], Iterator[list[str]]]] = {
-    "way back": way_back_rows,
+    "parts": part_rows,
     "stalls": stall_rows,
 }
 
