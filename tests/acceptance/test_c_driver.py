@@ -8,15 +8,21 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 import pytest
 from c_compiler import compile_c, require_c_compiler
 from struct_host import ACTIVE, FAULT, IDLE, StructHost
 
+from drake_haptics.device.backend import DeviceCommand, GateState
+from drake_haptics.device.udp_device import UdpDevice
+
 TESTS = Path(__file__).parents[1]
 SOURCE = TESTS.parent / "examples" / "device_driver.c"
 MAX_FORCE_N, HAND_N_PER_M = 3.3, 300.0
+PUSH = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.5])
 
 
 @pytest.fixture(scope="module")
@@ -30,10 +36,12 @@ def program(tmp_path_factory):
     )
 
 
-@pytest.fixture
-def driver(program):
-    """The driver, running; gives its process and its port."""
-    process = subprocess.Popen([program, "0", "0.5"], stdout=subprocess.PIPE, text=True)
+@contextmanager
+def running(program, port=0):
+    """Runs the driver; gives its process and its port."""
+    process = subprocess.Popen(
+        [program, str(port), "0.5"], stdout=subprocess.PIPE, text=True
+    )
     timer = threading.Timer(60.0, process.kill)
     timer.start()
     try:
@@ -44,6 +52,13 @@ def driver(program):
         process.kill()
         process.wait(10)
         process.stdout.close()
+
+
+@pytest.fixture
+def driver(program):
+    """The driver's process and port."""
+    with running(program) as driver:
+        yield driver
 
 
 @pytest.fixture
@@ -126,6 +141,35 @@ def test_a_silent_host_is_told_of_the_fault_and_recovers(host):
     again = host.exchange(lambda s: s.rejected > state.rejected, force_z=2.0)
     assert (again.gate, again.force_N) == (FAULT, 0.0)
     assert host.enable(2.0).force_N == 2.0
+
+
+def test_a_driver_that_is_restarted_shows_no_force_by_itself(program, driver, host):
+    process, port = driver
+    boot = host.enable(2.0).boot
+    process.kill()
+    process.wait(10)
+    with running(program, port):
+        state = host.exchange(lambda s: s.boot != boot, force_z=2.0)
+        for _ in range(50):
+            assert (state.gate, state.force_N) == (IDLE, 0.0)
+            before = state.rejected
+            state = host.exchange(lambda s, n=before: s.rejected > n, force_z=2.0)
+        assert host.enable(2.0).force_N == 2.0
+
+
+def test_the_host_of_the_package_holds_it(driver):
+    with UdpDevice("127.0.0.1", driver[1], ttl_s=0.4, hold_s=0.4) as device:
+        end_s = time.monotonic() + 20.0
+        reading = None
+        while time.monotonic() < end_s:
+            reading = device.read() or reading
+            if reading is not None:
+                device.write(DeviceCommand(PUSH, reading.X_BH, reading.V_BH))
+                if abs(reading.X_BH[6] - PUSH[5] / HAND_N_PER_M) < 1e-5:
+                    break
+            time.sleep(0.001)
+        assert reading.gate is GateState.ACTIVE
+        assert reading.X_BH[6] == pytest.approx(PUSH[5] / HAND_N_PER_M, abs=1e-5)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
