@@ -22,12 +22,12 @@ lint: $(STAMP)-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/clang-format --dry-run -Werror drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h examples/*.c tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
+	$(BIN)/clang-format --dry-run -Werror drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h examples/*.c tests/benchmarks/*.c tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
 
 format: $(STAMP)-test
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
-	$(BIN)/clang-format -i drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h examples/*.c tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
+	$(BIN)/clang-format -i drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h examples/*.c tests/benchmarks/*.c tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
 
 # Rebuilds the C++ core after an edit, without a fresh build environment.
 build:
