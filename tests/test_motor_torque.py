@@ -103,6 +103,23 @@ def test_the_third_motor_turns_the_fore_link_against_the_base():
     np.testing.assert_allclose((S.T @ torque)[:3], [0, -0.215, 0], atol=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("axis", "force", "motor"), [(0, 8.5, 2), (1, 7.98, 0), (2, 6.72, 1)]
+)
+def test_the_forces_that_the_middle_of_the_workspace_allows(axis, force, motor):
+    # Torque per lever: 1.445 N·m / 0.170 m, 1.716 / 0.215 and 1.445 / 0.215.
+    F = np.zeros(6)
+    F[3 + axis] = 20.0
+    torque = S.T @ calc_torque(make_motors(), np.zeros(12), F)
+    assert abs(torque[motor]) == PEAK[motor]
+    assert PEAK[motor] / (0.170 if axis == 0 else 0.215) == pytest.approx(
+        force, rel=1e-3
+    )
+    F[3 + axis] = 0.99 * force
+    torque = S.T @ calc_torque(make_motors(), np.zeros(12), F)
+    assert (np.abs(torque) < PEAK).all()
+
+
 @pytest.mark.parametrize(("size", "limited"), [(0.1, 0), (8.0, 5)])
 def test_its_twin_has_the_derivatives_of_the_motors_below_their_limits(size, limited):
     state = sample_states(1)[0]
