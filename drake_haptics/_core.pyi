@@ -1856,7 +1856,7 @@ class UdpServo:
     A thread that answers every state of a device's driver with the wrench of a `ServoLaw`. It runs without Python; no method but `close` waits for it. One thread of the program may use it.
     """
 
-    def __init__(self, host: str, port: int, *, ttl_s: float = 0.05, max_rate_hz: float = 4000.0, hold_s: float = 0.02, release_s: float = 0.02, engage_s: float = 0.2) -> None:
+    def __init__(self, host: str, port: int, *, ttl_s: float = 0.05, max_rate_hz: float = 4000.0, max_force_N: float = float('inf'), max_torque_Nm: float = float('inf'), hold_s: float = 0.02, release_s: float = 0.02, engage_s: float = 0.2) -> None:
         """
         Starts to look for the driver at that address.
 
@@ -1865,10 +1865,11 @@ class UdpServo:
             port: UDP.
             ttl_s: how long the device shows a command that is not renewed. Silence of the driver for twice that, and half a second at least, is a fault.
             max_rate_hz: of commands.
+            max_force_N, max_torque_Nm: largest norms, where the device allows more.
             hold_s, release_s, engage_s: of the `ServoLaw`.
 
         Raises:
-            ValueError: an option is not finite and above zero.
+            ValueError: a time or the rate is not finite and above zero, or a limit is negative or NaN.
             RuntimeError: there is no such host, or no socket to be had.
         """
 

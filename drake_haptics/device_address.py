@@ -63,7 +63,9 @@ def _open_udp(
     from drake_haptics.device.udp_device import UdpDevice
 
     host, port = _split_host(parts, None)
-    return UdpDevice(host, port)
+    return UdpDevice(
+        host, port, max_force_N=site.max_force_N, max_torque_Nm=site.max_torque_Nm
+    )
 
 
 def _open_haply(

@@ -135,6 +135,25 @@ def test_the_device_says_what_the_limits_are(driver, servo):
     assert command.F_BH == (0.0,) * 6
 
 
+def test_the_host_may_allow_less_than_the_device(driver):
+    servo = UdpServo(
+        "127.0.0.1", driver.port, max_force_N=1.5, max_torque_Nm=0.1, **LONG
+    )
+    try:
+        connect(driver, servo)
+        # Within the limits when it was given, beyond them further in.
+        publish(servo, F=np.array([0, 0, 0, 1.4, 0, 0]), K=1e3 * np.eye(6))
+        engage(driver, servo, gate=ACTIVE)
+        command = driver.exchange(X_BH=(1, 0, 0, 0, -0.01, 0, 0))
+        np.testing.assert_allclose(command.F_BH, [0, 0, 0, 1.5, 0, 0])
+        command = driver.exchange(X_BH=(np.cos(0.1), np.sin(0.1), 0, 0, 0, 0, 0))
+        np.testing.assert_allclose(command.F_BH, [-0.1, 0, 0, 1.4, 0, 0], atol=1e-12)
+        command = driver.exchange(max_force_N=float("nan"), max_torque_Nm=float("nan"))
+        assert command.F_BH == (0.0,) * 6
+    finally:
+        servo.close()
+
+
 def test_a_wrench_that_is_not_renewed_is_released(driver):
     servo = UdpServo("127.0.0.1", driver.port, ttl_s=5.0, hold_s=0.2)
     try:
@@ -409,6 +428,13 @@ def test_it_answers_while_python_is_stalled_and_shows_nothing_stale():
 )
 def test_options_must_be_positive(name, value):
     with pytest.raises(ValueError, match=f"{name}.*above 0"):
+        UdpServo("127.0.0.1", 7400, **{name: value})
+
+
+@pytest.mark.parametrize("value", [-1.0, float("nan")])
+@pytest.mark.parametrize("name", ["max_force_N", "max_torque_Nm"])
+def test_limits_must_not_be_negative(name, value):
+    with pytest.raises(ValueError, match=r"max_force_N and max_torque_Nm.*at least 0"):
         UdpServo("127.0.0.1", 7400, **{name: value})
 
 

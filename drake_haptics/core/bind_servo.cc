@@ -159,14 +159,20 @@ void BindUdpServo(nb::module_& m) {
       .def(
           "__init__",
           [](UdpServo* self, const std::string& host, std::uint16_t port,
-             double ttl, double max_rate, double hold, double release,
-             double engage) {
-            new (self)
-                UdpServo(host, port, {ttl, max_rate, {hold, release, engage}});
+             double ttl, double max_rate, double max_force, double max_torque,
+             double hold, double release, double engage) {
+            new (self) UdpServo(host, port,
+                                {ttl,
+                                 max_rate,
+                                 max_force,
+                                 max_torque,
+                                 {hold, release, engage}});
           },
           nb::arg("host"), nb::arg("port"), nb::kw_only(),
           nb::arg("ttl_s") = defaults.time_to_live,
           nb::arg("max_rate_hz") = defaults.max_rate,
+          nb::arg("max_force_N") = defaults.max_force,
+          nb::arg("max_torque_Nm") = defaults.max_torque,
           nb::arg("hold_s") = defaults.times.hold,
           nb::arg("release_s") = defaults.times.release,
           nb::arg("engage_s") = defaults.times.engage,
@@ -179,9 +185,12 @@ void BindUdpServo(nb::module_& m) {
           "is "
           "a fault.\n"
           "    max_rate_hz: of commands.\n"
+          "    max_force_N, max_torque_Nm: largest norms, where the device "
+          "allows more.\n"
           "    hold_s, release_s, engage_s: of the `ServoLaw`.\n\n"
           "Raises:\n"
-          "    ValueError: an option is not finite and above zero.\n"
+          "    ValueError: a time or the rate is not finite and above zero, or "
+          "a limit is negative or NaN.\n"
           "    RuntimeError: there is no such host, or no socket to be had.")
       .def(
           "read",

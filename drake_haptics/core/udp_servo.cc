@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "drake_haptics/wire.h"
 #include "realtime.h"
@@ -48,6 +49,11 @@ class BlockedSignals {
 void UdpServoOptions::Check() const {
   RequirePositive(time_to_live, "ttl_s");
   RequirePositive(max_rate, "max_rate_hz");
+  if (!(max_force >= 0 && max_torque >= 0)) {
+    throw std::invalid_argument(
+        "max_force_N and max_torque_Nm must be at least 0, are " +
+        std::to_string(max_force) + " and " + std::to_string(max_torque));
+  }
   times.Check();
 }
 
@@ -181,7 +187,9 @@ void UdpServo::Answer() {
   const HandleState& state = link_.state();
   Vec6 F = Vec6::Zero();
   if (link_.IsActive()) {
-    law_.SetLimits(state.max_force, state.max_torque);
+    // In this order what is NaN stays so, and lets nothing through.
+    law_.SetLimits(std::min(state.max_force, options_.max_force),
+                   std::min(state.max_torque, options_.max_torque));
     F = law_.Step(Now(), Eigen::Map<const PoseVector>(state.X.data()),
                   Eigen::Map<const Vec6>(state.V.data()));
   } else {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <thread>
 
@@ -20,9 +21,13 @@ namespace drake_haptics {
 struct UdpServoOptions {
   double time_to_live = 0.05;  ///< s that the device shows a command unrenewed
   double max_rate = 4000;      ///< Hz, of commands
+  /// Largest norms, N and N·m, where the device allows more.
+  double max_force = std::numeric_limits<double>::infinity();
+  double max_torque = std::numeric_limits<double>::infinity();
   ServoTimes times;
 
-  /// @throws std::invalid_argument unless all are finite and above zero.
+  /// @throws std::invalid_argument unless the times and the rate are finite and
+  ///         above zero and no limit is negative or NaN.
   void Check() const;
 };
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import weakref
 
 from drake_haptics._core import HandleState, UdpServo
@@ -33,6 +34,8 @@ class UdpDevice(DeviceBackend):
         host: str,
         port: int,
         *,
+        max_force_N: float = math.inf,
+        max_torque_Nm: float = math.inf,
         ttl_s: float = 0.05,
         hold_s: float = 0.02,
         max_rate_hz: float = 4000.0,
@@ -43,19 +46,27 @@ class UdpDevice(DeviceBackend):
             host: Name or number of the driver's machine, IPv4 or IPv6. A name is
                 looked up here.
             port: Its UDP port.
+            max_force_N: Largest force asked for, where the device allows more, N.
+            max_torque_Nm: Largest torque, N·m.
             ttl_s: How long the device shows a wrench that no packet renews, s.
             hold_s: How long a wrench is shown that no `write` renews, s.
             max_rate_hz: Largest rate of packets to the device, Hz.
 
         Raises:
-            ValueError: The port or a time is out of range.
+            ValueError: The port, a time or a limit is out of range.
             DeviceError: There is no such host.
         """
         if not 0 < port < 65536:
             raise ValueError(f"port must be from 1 to 65535, is {port}")
         try:
             self._servo = UdpServo(
-                host, port, ttl_s=ttl_s, hold_s=hold_s, max_rate_hz=max_rate_hz
+                host,
+                port,
+                ttl_s=ttl_s,
+                max_rate_hz=max_rate_hz,
+                max_force_N=max_force_N,
+                max_torque_Nm=max_torque_Nm,
+                hold_s=hold_s,
             )
         except RuntimeError as error:
             raise DeviceError(
