@@ -15,6 +15,7 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics.device.backend import DeviceBackend, DeviceCommand, DeviceReading
+from drake_haptics.frame_change import FrameChange
 from drake_haptics.systems.vector_ports import export_parts
 
 
@@ -87,34 +88,21 @@ class _Frame:
     """What is said in a device's base frame, in the world, and back."""
 
     def __init__(self, X_WB: RigidTransform):
-        w, x, y, z = X_WB.rotation().ToQuaternion().wxyz()
-        self._R6 = np.kron(np.eye(2), X_WB.rotation().matrix())
-        # The product of quaternions is linear in the second one.
-        self._slope = np.zeros((13, 13))
-        self._slope[:4, :4] = [
-            [w, -x, -y, -z],
-            [x, w, -z, y],
-            [y, z, w, -x],
-            [z, -y, x, w],
-        ]
-        self._slope[4:7, 4:7] = X_WB.rotation().matrix()
-        self._slope[7:, 7:] = self._R6
-        self._offset = np.zeros(13)
-        self._offset[4:7] = X_WB.translation()
+        self._to_world = FrameChange(X_WB)
 
     def to_world(self, reading: DeviceReading) -> np.ndarray:
         """Returns [X_WH; V_WH] (13,)."""
-        return self._slope @ np.concatenate((reading.X_BH, reading.V_BH)) + self._offset
+        return self._to_world.change_motion(reading.X_BH, reading.V_BH)
 
     def to_base(
         self, F_W: np.ndarray, slopes_W: np.ndarray | None, at: DeviceReading
     ) -> DeviceCommand:
         """Returns a command for the handle that was read."""
-        R_BW = self._R6.T
-        F_B = R_BW @ F_W
+        turn_WB = self._to_world.turn
+        F_B = turn_WB.T @ F_W
         if slopes_W is None:
             return DeviceCommand(F_B, at.X_BH, at.V_BH)
-        K_B, B_B = R_BW @ slopes_W.reshape(2, 6, 6) @ self._R6
+        K_B, B_B = turn_WB.T @ slopes_W.reshape(2, 6, 6) @ turn_WB
         return DeviceCommand(F_B, at.X_BH, at.V_BH, K_B, B_B)
 
 

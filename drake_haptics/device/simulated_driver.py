@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from pydrake.math import RigidTransform
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 
 from drake_haptics.device.driver import DeviceDriver
-from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.frame_change import FrameChange
 from drake_haptics.scene import Scene
 from drake_haptics.simulated_device import (
     make_hand_path,
@@ -51,10 +50,7 @@ class SimulatedDriverArm:
         )
         self._X_WH = device.get_handle_pose_output_port()
         self._V_WH = device.get_handle_velocity_output_port()
-        X_BW = place_base(scene, path).inverse()
-        self._pose_map = _calc_pose_map(X_BW)
-        self._p_BW = np.concatenate([np.zeros(4), X_BW.translation()])
-        self._turn = np.kron(np.eye(2), X_BW.rotation().matrix())
+        self._to_base = FrameChange(place_base(scene, path).inverse())
 
     @property
     def max_force_N(self) -> float:
@@ -84,24 +80,16 @@ class SimulatedDriverArm:
             self._ticks += 1
             # The wrench stays as it is over the period, as motors hold it.
             self._F_WH.GetMutableData().get_mutable_value().SetFromVector(
-                self._turn.T @ F_BH
+                self._to_base.turn.T @ F_BH
             )
             try:
                 self._simulator.AdvanceTo(self._ticks * self._period_s)
             except FloatingPointError:
                 return np.full(7, np.nan), np.full(6, np.nan)
-        X_WH, V_WH = self._X_WH.Eval(self._context), self._V_WH.Eval(self._context)
-        return self._pose_map @ X_WH + self._p_BW, self._turn @ V_WH
-
-
-def _calc_pose_map(X_BW: RigidTransform) -> np.ndarray:
-    """Returns (7, 7): [q_BH; p_WoHo_B] from [q_WH; p_WoHo_W], both linear."""
-    w, x, y, z = pose_to_vector(X_BW)[:4]
-    pose_map = np.zeros((7, 7))
-    # The product of quaternions q_BW q_WH.
-    pose_map[:4, :4] = [[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]]
-    pose_map[4:, 4:] = X_BW.rotation().matrix()
-    return pose_map
+        motion = self._to_base.change_motion(
+            self._X_WH.Eval(self._context), self._V_WH.Eval(self._context)
+        )
+        return motion[:7], motion[7:]
 
 
 def make_simulated_driver(
