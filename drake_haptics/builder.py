@@ -36,6 +36,7 @@ from drake_haptics.scene import (
 from drake_haptics.scene_check import SceneWarning
 from drake_haptics.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.handle_model import HandleModel
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.haptic_tool import HapticTool
@@ -272,16 +273,7 @@ def BuildHapticDiagram(
     path = make_hand_path(scene.hand.path)
     X_HT = scene.tool.grasp.to_rigid_transform()
     X_WT = path.start
-    backend = device if isinstance(device, DeviceBackend) else None
-    if isinstance(device, HapticDevice):
-        port = device
-    elif device is None or load_device_preset(scene.device.preset).model:
-        # A real device is held to what is known of its kind.
-        port = make_simulated_device(scene, path)
-        for sentence in check_scene_coupling(scene, port):
-            warnings.warn(f"coupling.{sentence}", SceneWarning, stacklevel=2)
-    if backend is not None:
-        wait_for_reading(backend)
+    port = _find_port(scene, path, device)
     tool = _decompose("tool", scene.tool, progress)
     environment = tuple(
         _decompose(item.name, item, progress) for item in scene.environment
@@ -291,10 +283,11 @@ def BuildHapticDiagram(
         for item, part in zip(scene.environment, environment, strict=True)
     ]
     p_TTcm, I_TTcm_T = calc_mass_properties(tool.mesh, scene.tool.mass_kg)
-    if backend is not None:
+    if isinstance(device, DeviceBackend):
         # Only now: while meshes are cut, a hand moves on.
-        port, X_WH = make_haptic_device(scene, backend)
+        port, X_WH = make_haptic_device(scene, device)
         X_WT = X_WH @ X_HT
+    assert port is not None
     builder = DiagramBuilder()
     loop = AddHapticLoop(
         builder,
@@ -336,8 +329,26 @@ def BuildHapticDiagram(
         tool=tool,
         environment=environment,
         visualizer=visualizer,
-        backend=backend,
+        backend=device if isinstance(device, DeviceBackend) else None,
     )
+
+
+def _find_port(
+    scene: Scene, path: HandPath, device: DeviceBackend | HapticDevice | None
+) -> HapticDevice | None:
+    """Returns the port of all but a backend, which must be read when all is ready."""
+    if isinstance(device, HapticDevice):
+        return device
+    port = None
+    if device is None or load_device_preset(scene.device.preset).model:
+        # A real device is held to what is known of its kind.
+        port = make_simulated_device(scene, path)
+        for sentence in check_scene_coupling(scene, port):
+            warnings.warn(f"coupling.{sentence}", SceneWarning, stacklevel=3)
+    if device is None:
+        return port
+    wait_for_reading(device)
+    return None
 
 
 def _decompose(
