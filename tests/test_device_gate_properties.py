@@ -175,10 +175,11 @@ class GateMachine(RuleBasedStateMachine):
     )
     def go_wrong(self, V, back_us):
         """A handle that runs or is lost, and a clock that may go back."""
-        state = GateState(self.gate.state)
         self.now_us = max(self.now_us - back_us, 0)
+        at_rest = self.gate.__deepcopy__({})
+        at_rest.step(self.now_us * US, X_BH, AT_REST)
         self.gate.step(self.now_us * US, X_BH, np.array(V))
-        if state is GateState.ACTIVE or np.isnan(V).any():
+        if GateState(at_rest.state) is not GateState.IDLE or np.isnan(V).any():
             assert GateState(self.gate.state) is GateState.FAULT
         self.note_fault()
 
