@@ -49,6 +49,10 @@ if TYPE_CHECKING:
     from drake_haptics.scene_library import find_scene, list_scenes
     from drake_haptics.simulation import RunError, make_simulator, run
     from drake_haptics.tick_clock import TickClock
+    from drake_haptics.tick_log.loop_log import make_log_header
+    from drake_haptics.tick_log.replay import replay
+    from drake_haptics.tick_log.tick_log import read_tick_log
+    from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 __all__ = [
     "AddAppliedSpatialForce",
@@ -80,6 +84,7 @@ __all__ = [
     "Scene",
     "SceneTracker",
     "TickClock",
+    "TickRecorder",
     "UserError",
     "decompose",
     "find_scene",
@@ -87,8 +92,11 @@ __all__ = [
     "list_scenes",
     "load_mesh",
     "load_scene",
+    "make_log_header",
     "make_simulator",
     "open_device",
+    "read_tick_log",
+    "replay",
     "run",
 ]
 
@@ -122,6 +130,7 @@ _MODULE_OF = {
     "Scene": "scene",
     "SceneTracker": "_core",
     "TickClock": "tick_clock",
+    "TickRecorder": "tick_log.tick_recorder",
     "UserError": "errors",
     "decompose": "decomposition",
     "find_scene": "scene_library",
@@ -129,8 +138,11 @@ _MODULE_OF = {
     "list_scenes": "scene_library",
     "load_mesh": "mesh",
     "load_scene": "scene",
+    "make_log_header": "tick_log.loop_log",
     "make_simulator": "simulation",
     "open_device": "device_address",
+    "read_tick_log": "tick_log.tick_log",
+    "replay": "tick_log.replay",
     "run": "simulation",
 }
 
