@@ -166,6 +166,22 @@ def test_an_idle_driver_answers_whoever_spoke_last(rig):
     assert second.receive(5.0) is not None
 
 
+def test_a_host_that_may_not_enable_hears_how_the_device_stands(rig):
+    """As after a restart of the driver, or of the host of a device at fault."""
+    stranger = rig.make_host()
+    stranger.send(2.0)
+    rig.tick()
+    assert stranger.receive(5.0).gate == IDLE
+    host = rig.make_host()
+    rig.bring_to_force(host, 2.0)
+    rig.tick(200)
+    stranger.send(2.0)
+    rig.tick()
+    state = stranger.receive(5.0)
+    assert (state.gate, state.fault) == (FAULT, "STALE")
+    assert not any(state.F_BH)
+
+
 def test_silence_ends_in_a_fault_at_zero(rig):
     host = rig.make_host()
     rig.bring_to_force(host, 3.0)

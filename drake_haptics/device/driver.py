@@ -22,6 +22,9 @@ from drake_haptics.tick_clock import TickClock
 # flood must not keep the loop from its next tick.
 _MAX_PACKETS_PER_TICK = 64
 _WRAP = 1 << 32
+# Whoever sends what is judged so is answered. The last two come to pass only while no
+# force is shown, and their sender must learn why.
+_ANSWERED = frozenset({"accepted", "not_disabled_first", "at_fault"})
 
 
 class DrivenArm(Protocol):
@@ -167,7 +170,7 @@ class DeviceDriver:
         gate, reading = self._gate, self._reading
         now_ns = self._clock_ns()
         for packet, sender in self._socket.receive(_MAX_PACKETS_PER_TICK):
-            if gate.receive(now_ns, packet) == "accepted":
+            if gate.receive(now_ns, packet) in _ANSWERED:
                 self._peer = sender
             # A packet may take back a fault that the one before it brought to light.
             self._statistics.note_fault(self._to_s(now_ns), gate.fault)
