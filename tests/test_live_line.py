@@ -1,6 +1,13 @@
 """The line at the foot of the terminal."""
 
 import io
+import itertools
+import os
+import pty
+import threading
+import time
+from contextlib import suppress
+from termios import TCOOFF, TCOON, tcflow
 
 from rich.console import Console
 
@@ -19,6 +26,8 @@ def show(times, *, terminal):
     with LiveLine(console, make_line, clock=lambda: next(clock)) as line:
         for _ in times[1:]:
             line.update()
+            while asked and f"line {len(asked)}" not in text.getvalue():
+                time.sleep(1e-3)  # as a thread of its own writes it
     return text.getvalue(), asked
 
 
@@ -30,3 +39,46 @@ def test_it_is_written_five_times_per_second_and_told_the_time_between():
 
 def test_a_file_gets_nothing():
     assert show([0.0, 1.0, 2.0], terminal=False) == ("", [])
+
+
+def test_a_terminal_that_takes_nothing_does_not_stop_the_loop():
+    """Ctrl-S, or a connection to the terminal that hangs: force must not stay on."""
+    ours, terminal = pty.openpty()
+    tcflow(terminal, TCOOFF)
+    times = itertools.count()
+    updates = []
+
+    def loop(console):
+        with LiveLine(console, lambda _: "line", clock=lambda: next(times)) as line:
+            for _ in range(20):
+                line.update()
+                updates.append(line)
+
+    with open(terminal, "w") as file:
+        console = Console(file=file, force_terminal=True, width=60)
+        thread = threading.Thread(target=loop, args=(console,), daemon=True)
+        thread.start()
+        try:
+            thread.join(20.0)
+            assert len(updates) == 20
+            assert not thread.is_alive()
+        finally:
+            tcflow(terminal, TCOON)
+            for each in threading.enumerate():
+                if each is thread or each.name == "live_line":
+                    each.join(20.0)
+    os.close(ours)
+
+
+def test_a_terminal_that_has_gone_does_not_stop_the_loop():
+    ours, terminal = pty.openpty()
+    times = itertools.count()
+    file = open(terminal, "w")
+    console = Console(file=file, force_terminal=True, width=60)
+    with LiveLine(console, lambda _: "line", clock=lambda: next(times)) as line:
+        os.close(ours)
+        for _ in range(20):
+            line.update()
+            time.sleep(1e-3)
+    with suppress(OSError):
+        file.close()

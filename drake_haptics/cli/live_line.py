@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
+from queue import SimpleQueue
 from types import TracebackType
 
 from rich.console import Console
 from rich.live import Live
 
 _PERIOD_S = 0.2
+# A terminal that takes nothing for so long is left as it is.
+_END_S = 0.5
 
 
 class LiveLine:
-    """Shows what a loop does, without a thread of its own that would disturb it.
+    """Shows what a loop does, and never keeps it waiting.
 
-    Where the output is not a terminal it writes nothing.
+    Only a thread of its own writes: at Ctrl-S, or where the connection to the terminal
+    hangs, a write does not return, and a loop that hangs leaves its last force on. A
+    line that the terminal does not take is followed by no other until it does. Where
+    the output is not a terminal nothing is written.
 
     Args:
         console: Where to write.
@@ -34,10 +42,15 @@ class LiveLine:
         self._live = Live(console=console, auto_refresh=False, transient=True)
         self._shown = console.is_terminal
         self._last_s = clock()
+        # Lines on their way to the terminal; None is the end.
+        self._lines: SimpleQueue[str | None] = SimpleQueue()
+        self._thread = threading.Thread(
+            target=self._write, name="live_line", daemon=True
+        )
 
     def __enter__(self) -> LiveLine:
         """Starts the line."""
-        self._live.start()
+        self._thread.start()
         return self
 
     def __exit__(
@@ -47,12 +60,24 @@ class LiveLine:
         traceback: TracebackType | None,
     ) -> None:
         """Takes the line away."""
-        self._live.stop()
+        self._lines.put(None)
+        self._thread.join(_END_S)
 
     def update(self) -> None:
-        """Writes the line anew, if it is time; a call costs well under 1 µs else."""
+        """Makes the line anew, if it is time; a call costs well under 1 µs else."""
         now_s = self._clock()
         if not self._shown or now_s < self._last_s + _PERIOD_S:
             return
-        self._live.update(self._make_line(now_s - self._last_s), refresh=True)
+        if not self._lines.empty():
+            return
+        self._lines.put(self._make_line(now_s - self._last_s))
         self._last_s = now_s
+
+    def _write(self) -> None:
+        """Is the thread."""
+        # A terminal that has gone is no matter for the loop.
+        with suppress(OSError):
+            self._live.start()
+            for line in iter(self._lines.get, None):
+                self._live.update(line, refresh=True)
+            self._live.stop()
