@@ -182,6 +182,21 @@ def test_a_host_that_may_not_enable_hears_how_the_device_stands(rig):
     assert not any(state.F_BH)
 
 
+def test_a_host_that_has_gone_is_sent_no_more(rig):
+    host = rig.make_host()
+    host.send(enable=False)
+    rig.tick()
+    assert host.receive(5.0).gate == IDLE
+    rig.now_ns += 5 * 10**9
+    rig.tick()
+    before = host.receive(0.05)
+    rig.tick(5)
+    assert host.receive(0.05) is before
+    host.send(enable=False)
+    rig.tick()
+    assert host.receive(5.0) is not before, "until it speaks again"
+
+
 def test_silence_ends_in_a_fault_at_zero(rig):
     host = rig.make_host()
     rig.bring_to_force(host, 3.0)

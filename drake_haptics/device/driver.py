@@ -25,6 +25,9 @@ _WRAP = 1 << 32
 # Whoever sends what is judged so is answered. The last two come to pass only while no
 # force is shown, and their sender must learn why.
 _ANSWERED = frozenset({"accepted", "not_disabled_first", "at_fault"})
+# A host that is silent for longer has gone, or never was: a forged address must not be
+# sent states for ever.
+_FORGETS_AFTER_NS = 5_000_000_000
 
 
 class DrivenArm(Protocol):
@@ -95,6 +98,7 @@ class DeviceDriver:
         # Tells a host that this is another run of the driver than before.
         self._boot = 1 + secrets.randbelow(_WRAP - 1)
         self._peer: Peer | None = None
+        self._heard_ns = 0
         self._arm_started = False
         self._stops = False
         self._reading = self._move_arm(np.zeros(6), GateState.IDLE, Fault.NONE)
@@ -171,9 +175,11 @@ class DeviceDriver:
         now_ns = self._clock_ns()
         for packet, sender in self._socket.receive(_MAX_PACKETS_PER_TICK):
             if gate.receive(now_ns, packet) in _ANSWERED:
-                self._peer = sender
+                self._peer, self._heard_ns = sender, now_ns
             # A packet may take back a fault that the one before it brought to light.
             self._statistics.note_fault(self._to_s(now_ns), gate.fault)
+        if now_ns - self._heard_ns > _FORGETS_AFTER_NS:
+            self._peer = None
         F_BH = gate.step(now_ns, reading.X_BH, reading.V_BH)
         self._show(F_BH, GateState(gate.state), Fault(gate.fault))
 
