@@ -280,7 +280,9 @@ def test_a_paused_driver_shows_nothing_of_what_queued_up(device, link, host):
     assert all(s.F_BH[5] >= 0.0 for s in link.states[seen:])
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP]
+)
 def test_the_driver_ends_at_zero_force(tmp_path, number):
     file = tmp_path / "figures.json"
     with running(device_command(file, "--ttl-ms", TTL_MS), file) as driver:
