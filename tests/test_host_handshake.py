@@ -71,11 +71,49 @@ def test_recovery_without_a_fault_changes_nothing():
     assert handshake.choose(3) is True
 
 
-def test_a_device_that_was_started_anew_is_released_at_once():
+def check_left_alone(handshake, boot=1):
+    """Nothing is asked, whatever the device says, until somebody wants it back."""
+    assert handshake.is_at_fault
+    for status in (IDLE, ACTIVE, FAULT, heard(IDLE, 2)):
+        handshake.hear(replace(status, boot=boot), 9.0)
+        assert handshake.choose(3) is None
+    handshake.recover()
+    assert not handshake.is_at_fault
+    assert handshake.choose(3) is False
+    handshake.hear(replace(heard(IDLE, 3), boot=boot), 9.0)
+    assert handshake.choose(4) is True
+
+
+def test_a_device_that_was_started_anew_is_left_alone_until_recovery():
     handshake = make_enabled()
     handshake.hear(ACTIVE, 0.1)
     handshake.hear(replace(IDLE, boot=2), 0.101)
-    assert handshake.choose(3) is False
+    check_left_alone(handshake, boot=2)
+
+
+def test_a_device_that_was_started_anew_at_fault_is_at_fault_still():
+    handshake = make_enabled()
+    handshake.hear(FAULT, 0.1)
+    handshake.hear(replace(IDLE, boot=2), 0.101)
+    check_left_alone(handshake, boot=2)
+
+
+def test_a_device_that_fell_silent_is_left_alone_until_recovery():
+    handshake = make_enabled()
+    handshake.hear(ACTIVE, 0.1)
+    handshake.fall_silent()
+    check_left_alone(handshake)
+
+
+def test_a_device_that_falls_silent_before_it_was_asked_is_waited_for():
+    handshake = HostHandshake()
+    handshake.hear(IDLE, 0.0)
+    assert handshake.choose(1) is False
+    handshake.fall_silent()
+    handshake.hear(replace(heard(IDLE, 1), boot=2), 9.0)
+    assert handshake.choose(2) is False
+    handshake.hear(replace(heard(IDLE, 2), boot=2), 9.0)
+    assert handshake.choose(3) is True
 
 
 def test_a_device_that_stays_idle_is_asked_again():

@@ -149,27 +149,35 @@ def test_a_wrench_that_is_not_finite_is_a_fault():
     assert not loop.device.read().F_BH.any()
 
 
-def test_a_device_that_starts_again_is_taken_up_again():
+def test_a_device_that_starts_again_shows_nothing_before_somebody_wants_it():
     loop = Loop()
     loop.press(400, push_N=1.0)
     before = loop.device.read()
     loop.start_device()
+    assert not loop.press(600, push_N=1.0).any()
+    assert loop.state == (GateState.FAULT, Fault.DEVICE)
+    assert loop.device.read().sequence > before.sequence
+    assert loop.device.read().time_s < before.time_s + 0.3
+    loop.device.recover()
     shown = loop.press(600, push_N=1.0)
-    reading = loop.device.read()
     assert loop.state == (GateState.ACTIVE, Fault.NONE)
-    assert reading.sequence > before.sequence
-    assert reading.time_s < before.time_s + 0.3
     assert shown.max() <= MAX_FORCE_N
 
 
-def test_a_device_that_says_nothing_is_at_fault_until_it_does():
-    loop = Loop()
-    loop.press(400, push_N=1.0)
+def fall_silent(loop):
+    """Lets the device say nothing for longer than it may; returns the reading."""
     before = loop.device.read()
     loop.time_s += 0.2
     assert loop.device.read() is before
     loop.time_s += 0.1
-    silent = loop.device.read()
+    return loop.device.read()
+
+
+def test_a_device_that_says_nothing_is_at_fault_until_somebody_wants_it():
+    loop = Loop()
+    loop.press(400, push_N=1.0)
+    before = loop.device.read()
+    silent = fall_silent(loop)
     assert (silent.gate, silent.fault) == (GateState.FAULT, Fault.DEVICE)
     assert not silent.F_BH.any()
     assert not silent.V_BH.any()
@@ -177,7 +185,24 @@ def test_a_device_that_says_nothing_is_at_fault_until_it_does():
     assert silent.sequence == before.sequence
     assert loop.device.read() is silent
     loop.press(20, push_N=1.0)
+    assert loop.state == (GateState.FAULT, Fault.DEVICE)
+    loop.press(400, push_N=1.0)
+    assert loop.state == (GateState.FAULT, Fault.STALE)
+    loop.device.recover()
+    loop.press(20, push_N=1.0)
     assert loop.state == (GateState.ACTIVE, Fault.NONE)
+
+
+def test_no_force_is_asked_for_a_handle_that_is_not_heard():
+    """Only its words are lost; it would show the same force for ever."""
+    loop = Loop()
+    loop.press(400, push_N=1.0)
+    fall_silent(loop)
+    sent = len(loop.sent)
+    for _ in range(100):
+        loop.device.write(command(1.0))
+        loop.lcm.HandleSubscriptions(0)
+    assert not any(command.enable for command in loop.sent[sent:])
 
 
 def test_a_closed_device_is_released():

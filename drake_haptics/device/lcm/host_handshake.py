@@ -22,8 +22,8 @@ class HostHandshake:
 
     A device takes force only from a host that it has heard ask for none, and one at
     fault only after that. So a host releases until the device has answered a release,
-    and then enables. It starts over when the device does, and once a fault is to be
-    left; until then, a fault is left alone.
+    and then enables. A fault after that, a device that is started anew and one that
+    falls silent are left alone until somebody wants the device back.
     """
 
     def __init__(self) -> None:
@@ -33,6 +33,18 @@ class HostHandshake:
         self._last_release = 0
         self._boot = 0
         self._enabled_s = 0.0
+
+    @property
+    def is_at_fault(self) -> bool:
+        """Whether the device is left alone."""
+        return self._phase is _Phase.AT_FAULT
+
+    def fall_silent(self) -> None:
+        """Leaves a device alone that says nothing any more: what it would be asked for
+        is computed from where its handle was.
+        """
+        if self._phase is _Phase.ENABLES:
+            self._phase = _Phase.AT_FAULT
 
     def recover(self) -> None:
         """Leaves a fault, by starting over."""
@@ -48,7 +60,12 @@ class HostHandshake:
         """
         if status.boot != self._boot:
             self._boot = status.boot
-            self._start_over()
+            if self._phase is _Phase.RELEASES:
+                self._start_over()
+            else:
+                self._phase = _Phase.AT_FAULT
+        elif self._phase is _Phase.AT_FAULT:
+            pass
         elif self._phase is _Phase.RELEASES:
             is_heard = (
                 0 < self._first_release <= status.command_sequence <= self._last_release

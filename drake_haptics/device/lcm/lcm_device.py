@@ -115,13 +115,15 @@ class LcmDevice(DeviceBackend):
     def read(self) -> DeviceReading | None:
         """Returns the newest reading that has come; its time is the device's clock.
 
-        After 0.25 s without any it says `Fault.DEVICE`, until the next one comes.
+        After 0.25 s without any, and where the device was started anew, it says
+        `Fault.DEVICE`, until `recover`; nothing is asked of the device meanwhile.
         """
         if not self._is_closed:
             self._lcm.HandleSubscriptions(0)
             if self._reading and self._clock() - self._heard_s > _SILENT_S:
                 self._reading = make_silent(self._reading)
                 self._heard_s = math.inf
+                self._handshake.fall_silent()
         return self._reading
 
     def write(self, command: DeviceCommand) -> None:
@@ -189,6 +191,9 @@ class LcmDevice(DeviceBackend):
         self._status = status
         self._heard_s = self._clock()
         self._handshake.hear(status, self._heard_s)
+        gate, fault = GateState(status.gate), Fault(status.fault)
+        if self._handshake.is_at_fault and gate is not GateState.FAULT:
+            gate, fault = GateState.FAULT, Fault.DEVICE
         self._reading = DeviceReading(
             sequence=self._received,
             time_s=1e-6 * status.utime,
@@ -196,8 +201,8 @@ class LcmDevice(DeviceBackend):
             V_BH=np.array(status.velocity),
             F_BH=np.array(status.wrench),
             buttons=status.buttons,
-            gate=GateState(status.gate),
-            fault=Fault(status.fault),
+            gate=gate,
+            fault=fault,
         )
 
 
