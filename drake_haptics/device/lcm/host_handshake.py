@@ -40,8 +40,9 @@ class HostHandshake:
         return self._phase is _Phase.AT_FAULT
 
     def fall_silent(self) -> None:
-        """Leaves a device alone that says nothing any more: what it would be asked for
-        is computed from where its handle was.
+        """Leaves a device alone that says nothing any more.
+
+        What it would be asked for is computed from where its handle was.
         """
         if self._phase is _Phase.ENABLES:
             self._phase = _Phase.AT_FAULT
