@@ -110,7 +110,7 @@ def test_a_loop_that_stops_ends_at_zero_force_and_can_recover():
 
 
 @pytest.mark.parametrize("how", ["restarted", "silent"])
-def test_a_service_that_goes_is_reported_and_comes_back_from_no_force(how):
+def test_a_service_that_went_is_felt_again_only_when_it_is_wanted(how):
     with make_service() as service:
         mass = service.devices["049D"]
         with open_device(service) as device:
@@ -126,6 +126,11 @@ def test_a_service_that_goes_is_reported_and_comes_back_from_no_force(how):
             count = len(mass.forces)
             assert not device.read().F_BH.any()
             service.start() if how == "restarted" else service.answers.set()
+            # A first answer after the silence, then more.
+            wait_until(lambda: len(mass.forces) > count + 100, lambda: press(device))
+            assert is_in(device, GateState.FAULT, Fault.DEVICE)
+            assert not any(force.any() for _, force in mass.forces[count + 1 :])
+            device.recover()
             wait_until(
                 lambda: is_in(device, GateState.ACTIVE) and mass.forces[-1][1][2] > 0.9,
                 lambda: press(device),

@@ -53,7 +53,8 @@ class HaplyDevice(DeviceBackend):
     `has_grip` is False.
 
     A service that says nothing usable for 0.1 s, or has gone, is `Fault.DEVICE` in
-    the readings. When it is back, force ramps in again from nothing.
+    the readings. When it is back, a device that showed force stays at fault until
+    `recover`.
     """
 
     def __init__(

@@ -97,7 +97,7 @@ class HaplyExchange:
                 self.complaint = f"it has no Inverse3 {self._device_id or ''}".rstrip()
         if state is None:
             return self._answer_blindly(command, now_ns)
-        self._start_over_after_silence(now_ns)
+        self._fail_after_silence(now_ns)
         self._heard_ns = now_ns
         X_BH, V_BH = self._calc_motion(state, 1e-9 * now_ns)
         F_BH = self._pass(command, X_BH, V_BH, now_ns)
@@ -124,7 +124,7 @@ class HaplyExchange:
         reading = self.reading
         if reading is None:
             return ASK_FOR_DEVICES
-        is_silent = self._start_over_after_silence(now_ns)
+        is_silent = self._fail_after_silence(now_ns)
         if is_silent:
             self.fall_silent()
             self._obeyed = command  # What is asked of nobody is never shown.
@@ -133,12 +133,11 @@ class HaplyExchange:
         F_BH = self._pass(command, reading.X_BH, reading.V_BH, now_ns)
         return ASK_FOR_DEVICES if is_silent else self._format(F_BH)
 
-    def _start_over_after_silence(self, now_ns: int) -> bool:
-        """Returns whether the service was silent; a force ends at once then."""
+    def _fail_after_silence(self, now_ns: int) -> bool:
+        """Returns whether the service was silent; then force ends, and is a fault."""
         is_silent = now_ns - self._heard_ns > SILENT_NS
         if is_silent and not self.is_released:
             self._gate.fail()
-            self.release()
         return is_silent
 
     def _calc_motion(
