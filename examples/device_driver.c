@@ -89,6 +89,20 @@ static void show_wrench(handle* device, const double F_BH[6]) {
   }
 }
 
+/* What a person may send a driver ends it, at zero force: a terminal that is
+ * closed too (unless it was started to outlive it, as by nohup), and Ctrl-Z, as
+ * what stands still cannot take its force away. */
+static void catch_signals(void) {
+  struct sigaction action, before;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = interrupt;
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGTSTP, &action, NULL);
+  sigaction(SIGHUP, NULL, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
+}
+
 static int open_socket(uint16_t port) {
   struct sockaddr_in address;
   socklen_t size = sizeof address;
@@ -179,7 +193,6 @@ int main(int argc, char** argv) {
   /* The device's own: 3.3 N, and no torque. */
   dh_gate_limits limits = dh_gate_default_limits(3.3, 0);
   const char* problem;
-  struct sigaction action;
   dh_gate gate;
   handle device;
   int fd;
@@ -189,10 +202,7 @@ int main(int argc, char** argv) {
     fprintf(stderr, "device_driver: %s\n", problem);
     return 2;
   }
-  memset(&action, 0, sizeof action);
-  action.sa_handler = interrupt;
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
+  catch_signals();
   fd = open_socket((uint16_t)(argc > 1 ? atoi(argv[1]) : 7400));
   if (fd < 0) return 1;
   if (!open_handle(&device)) {

@@ -172,7 +172,9 @@ def test_the_host_of_the_package_holds_it(driver):
         assert reading.X_BH[6] == pytest.approx(PUSH[5] / HAND_N_PER_M, abs=1e-5)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP]
+)
 def test_an_interrupt_ends_it_at_zero_force(driver, host, number):
     process, _ = driver
     host.enable(2.0)
