@@ -8,6 +8,7 @@ Whenever the device is at fault it takes it up again by the documented step,
 """
 
 import json
+import signal
 import sys
 import time
 
@@ -42,6 +43,8 @@ class Person:
 
 def main():
     """Runs the scene."""
+    # A shell's background job is born deaf to Ctrl-C.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     scene = load_scene(find_scene(sys.argv[1]))
     with open_device(sys.argv[2], scene, None) as backend:
         haptic = BuildHapticDiagram(scene, device=backend)
