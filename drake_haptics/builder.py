@@ -14,6 +14,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from drake_haptics import _core
 from drake_haptics.builder_effects import EffectSite, add_effects, find_springs
+from drake_haptics.builder_picture import add_picture
 from drake_haptics.contact_systems import add_contact_systems
 from drake_haptics.decomposition import Decomposition, Method, decompose
 from drake_haptics.device.backend import DeviceBackend
@@ -309,18 +310,7 @@ def BuildHapticDiagram(
         AddTickLog(builder, loop, recorder, period_s)
     visualizer = None
     if meshcat is not None:
-        visualizer = builder.AddNamedSystem(
-            "haptic_visualizer",
-            HapticVisualizer(
-                meshcat,
-                tool.core,
-                objects,
-                X_HT,
-                period_s,
-                has_friction=scene.effects.friction is not None,
-            ),
-        )
-        _connect_visualizer(builder, loop, visualizer)
+        visualizer = add_picture(builder, loop, meshcat, tool.core, objects, period_s)
     return HapticDiagram(
         diagram=builder.Build(),
         scene=scene,
@@ -364,35 +354,3 @@ def _decompose(
         cast(Method, item.decomposition),
         progress=partial(progress, name) if progress else None,
     )
-
-
-def _connect_visualizer(
-    builder: DiagramBuilder, loop: HapticLoop, visualizer: HapticVisualizer
-) -> None:
-    """Connects what is drawn."""
-    for output, input in [
-        (
-            loop.device.get_handle_pose_output_port(),
-            visualizer.get_handle_pose_input_port(),
-        ),
-        (
-            loop.haptic_tool.get_pose_output_port(),
-            visualizer.get_tool_pose_input_port(),
-        ),
-        (loop.contacts, visualizer.get_contacts_input_port()),
-        (
-            loop.contact_clustering.get_clusters_output_port(),
-            visualizer.get_clusters_input_port(),
-        ),
-        (
-            loop.penalty_force.get_contact_wrench_output_port(),
-            visualizer.get_contact_wrench_input_port(),
-        ),
-        (loop.display_wrench, visualizer.get_display_wrench_input_port()),
-    ]:
-        builder.Connect(output, input)
-    if loop.effects.friction is not None:
-        builder.Connect(
-            loop.effects.friction.get_friction_force_output_port(),
-            visualizer.get_friction_force_input_port(),
-        )
