@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import click
 
 from drake_haptics.cli.log_words import warn_of_gaps
 from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.errors import UserError
 from drake_haptics.tick_log.csv_export import write_csv
 from drake_haptics.tick_log.tick_log import TickLogReader
 
@@ -20,6 +22,8 @@ def csv(file: Path, out: str) -> None:
 
     OUT is a file, or - for stdout. The numbers read back as the very same doubles.
     """
+    if os.path.exists(out) and os.path.exists(file) and os.path.samefile(out, file):
+        raise UserError(f"{out} is the log itself; give another file")
     reader = TickLogReader(file)
     try:
         with (

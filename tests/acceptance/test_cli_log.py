@@ -108,6 +108,13 @@ def test_csv_has_every_tick(log, tmp_path):
     assert invoke("log", "csv", log, "-").output == text
 
 
+def test_a_table_does_not_take_the_place_of_its_log(log):
+    before = log.read_bytes()
+    answer = invoke("log", "csv", log, log)
+    assert answer.exit_code == 1 and "is the log itself" in answer.output
+    assert log.read_bytes() == before
+
+
 LOOKS_WITHOUT_DRAKE = """
 import sys
 from click.testing import CliRunner
