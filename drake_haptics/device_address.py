@@ -63,6 +63,8 @@ def _open_udp(
     from drake_haptics.device.udp_device import UdpDevice
 
     host, port = _split_host(parts, None)
+    if parts.path or parts.query or parts.fragment:
+        raise DeviceError(f"device {parts.geturl()!r}: nothing may follow the port")
     return UdpDevice(
         host, port, max_force_N=site.max_force_N, max_torque_Nm=site.max_torque_Nm
     )
@@ -142,7 +144,10 @@ def _open_replay(
     from drake_haptics.device.replay_device import ReplayDevice
     from drake_haptics.tick_log.tick_log import read_tick_log
 
-    return ReplayDevice(read_tick_log(parts.geturl().removeprefix("replay:")))
+    file = parts.geturl().removeprefix("replay:")
+    if not file:
+        raise DeviceError("device 'replay:': give the log's file, like replay:run.tick")
+    return ReplayDevice(read_tick_log(file))
 
 
 _OPENERS: dict[str, _Opener] = {

@@ -67,14 +67,21 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
         timeout_s: How long to wait for it, s.
 
     Raises:
-        DeviceError: None has come.
+        DeviceError: None has come, or none that could be used.
     """
     end_s = time.monotonic() + timeout_s
     while (reading := backend.read()) is None:
         if time.monotonic() > end_s:
+            rejected = backend.get_link_status().rejected
             raise DeviceError(
-                f"the device has said nothing for {timeout_s:g} s: is its driver"
-                " running at the address given? `drake-haptics device` is one to try"
+                f"the device has said nothing that can be used for {timeout_s:g} s:"
+                f" {rejected} packets came and were refused. Is each state packed as"
+                " docs/device-protocol.md says, all of it finite, the quaternion of"
+                " the pose of length 1?"
+                if rejected
+                else f"the device has said nothing for {timeout_s:g} s: is its driver"
+                " running at the address given, and does it serve no other host?"
+                " `drake-haptics device` is a driver to try, at udp://127.0.0.1:7400"
             )
         time.sleep(_LOOK_AGAIN_S)
     return reading

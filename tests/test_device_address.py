@@ -34,6 +34,17 @@ def test_a_port_must_be_one(scene, port):
         open_device(f"udp://127.0.0.1:{port}", scene)
 
 
+@pytest.mark.parametrize("end", ["/x", "?ttl_ms=5", "#a"])
+def test_nothing_follows_a_drivers_port(scene, end):
+    with pytest.raises(DeviceError, match="nothing may follow the port"):
+        open_device(f"udp://127.0.0.1:7400{end}", scene)
+
+
+def test_a_replay_needs_a_file(scene):
+    with pytest.raises(DeviceError, match=r"like replay:run\.tick"):
+        open_device("replay:", scene)
+
+
 @pytest.mark.parametrize("address", ["meshcat:", "mouse:"])
 def test_what_is_moved_on_a_page_needs_one(scene, address):
     with pytest.raises(DeviceError, match="leave --headless out"):

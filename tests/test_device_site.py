@@ -7,7 +7,7 @@ from fake_device import ScriptedDevice, make_reading
 from pydrake.math import RigidTransform
 
 from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.device.backend import DeviceError
+from drake_haptics.device.backend import DeviceError, LinkStatus
 from drake_haptics.device_preset import load_device_preset
 from drake_haptics.device_site import find_device_site, wait_for_reading
 from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
@@ -120,6 +120,15 @@ def test_a_silent_device_is_an_error_that_says_what_to_do():
     with pytest.raises(DeviceError, match=r"said nothing for 0.05 s.*driver running"):
         wait_for_reading(silent, timeout_s=0.05)
     assert silent.reads > 1
+
+
+def test_a_device_whose_words_are_all_refused_is_not_called_silent():
+    class Garbled(ScriptedDevice):
+        def get_link_status(self):
+            return LinkStatus(rejected=7)
+
+    with pytest.raises(DeviceError, match=r"7 packets came and were refused.*length 1"):
+        wait_for_reading(Garbled(lambda _: None), timeout_s=0.05)
 
 
 def test_the_first_reading_is_waited_for():
