@@ -27,6 +27,8 @@ _SHORTEST_FORCE_ARROW = 0.07
 _LONGEST_FORCE_ARROW = 0.45
 _GRIP_RADIUS = 0.022
 _LINE_RADIUS = 0.006
+# A line that is shorter has no direction.
+_NO_LENGTH_M = 1e-9
 
 
 class HapticPicture:
@@ -75,6 +77,8 @@ class HapticPicture:
         meshcat.SetObject(
             f"{_ROOT}/coupling/line", Cylinder(_LINE_RADIUS * self._size_m, 1.0), line
         )
+        # Not to be seen, where handle and tool are never apart.
+        meshcat.SetProperty(f"{_ROOT}/coupling/line", "scale", [1.0, 1.0, _NO_LENGTH_M])
         self._force = ArrowPool(meshcat, f"{_ROOT}/force", 1, [line])
         pair = [Rgba(*colors.NEAR_CONTACT), Rgba(*colors.PENETRATING_CONTACT)]
         self._contacts = ArrowPool(meshcat, f"{_ROOT}/contacts", _MAX_CONTACTS, pair)
@@ -113,7 +117,7 @@ class HapticPicture:
         p_WH = X_WH.translation()
         line = X_WTool @ self._p_TH - p_WH
         length = float(np.linalg.norm(line))
-        if length > 1e-9:
+        if length > _NO_LENGTH_M:
             X_WLine = RigidTransform(
                 RotationMatrix.MakeFromOneVector(line, 2), p_WH + line / 2
             )

@@ -180,6 +180,13 @@ def test_the_line_joins_the_handle_and_the_point_of_the_tool_that_it_holds():
     )
 
 
+def test_no_line_is_seen_while_handle_and_tool_were_never_apart():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    visualizer.ForcedPublish(make_context(visualizer))
+    assert meshcat.properties["/haptics/coupling/line", "scale"][2] < 1e-6
+
+
 def assert_tip_is_at(meshcat, path, p_W):
     """Checks where an arrow of length 1 along z, scaled and placed, ends."""
     tip = [0, 0, meshcat.properties[f"{path}/arrow", "scale"][2]]
