@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from drake_haptics.cli.log_words import print_diff, warn_of_gaps
-from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
 from drake_haptics.tick_log.log_diff import compare_logs
@@ -23,6 +23,7 @@ _DIFFER = 3
     "--plot",
     type=click.Path(dir_okay=False, path_type=Path),
     metavar="FILE",
+    callback=require_folder,
     help="Draw forces, depths and where the tools part, as PNG, SVG or PDF.",
 )
 @json_option

@@ -1,13 +1,15 @@
-"""What `check` and `decompose` share: reading a mesh, writing JSON."""
+"""What commands share: the unit of a mesh, files to write, JSON."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from drake_haptics.errors import UserError
 from drake_haptics.units import METRES_PER_UNIT
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -32,8 +34,22 @@ def json_option(function: _Function) -> _Function:
         "json_file",
         type=click.Path(dir_okay=False, allow_dash=True),
         metavar="FILE",
+        callback=require_folder,
         help="Also write the report as JSON; - writes it to stdout, alone.",
     )(function)
+
+
+def require_folder(
+    _: click.Context, option: click.Parameter, file: str | Path | None
+) -> str | Path | None:
+    """Returns the file of an option, so that no result is computed for nowhere.
+
+    Raises:
+        UserError: There is no such folder.
+    """
+    if file is not None and not Path(file).absolute().parent.is_dir():
+        raise UserError(f"{option.opts[0]}: there is no folder {Path(file).parent}")
+    return file
 
 
 def write_json(data: dict[str, Any], file: str) -> None:

@@ -9,7 +9,7 @@ from pydrake.geometry import Meshcat
 from rich.console import Console
 
 from drake_haptics.builder import HapticDiagram
-from drake_haptics.cli.mesh_options import write_json
+from drake_haptics.cli.mesh_options import require_folder, write_json
 from drake_haptics.cli.parts_table import make_parts_table
 from drake_haptics.cli.run_session import run_session
 from drake_haptics.cli.status_line import make_summary
@@ -40,8 +40,8 @@ _EXPLAINED_S = 2.0
     "--device",
     metavar="ADDRESS",
     help="Hold a device instead of the simulated one: udp://HOST:PORT of a driver (try"
-    " `drake-haptics device`), haply://HOST, lcm:, or without one meshcat: (sliders,"
-    " gamepad) and mouse:.",
+    " `drake-haptics device`), haply://HOST, lcm:, replay:FILE of --log, or without one"
+    " mouse: and meshcat: (sliders below Open Controls on the page, gamepad).",
 )
 @click.option(
     "--duration",
@@ -63,12 +63,14 @@ _EXPLAINED_S = 2.0
     "--record",
     type=click.Path(dir_okay=False, path_type=Path),
     metavar="FILE",
+    callback=require_folder,
     help="Write what is to be seen as one HTML file that plays in any browser.",
 )
 @click.option(
     "--log",
     type=click.Path(dir_okay=False, path_type=Path),
     metavar="FILE",
+    callback=require_folder,
     help="Note every tick in a file, for `drake-haptics log`.",
 )
 @click.option(
@@ -76,6 +78,7 @@ _EXPLAINED_S = 2.0
     "json_file",
     type=click.Path(dir_okay=False, allow_dash=True),
     metavar="FILE",
+    callback=require_folder,
     help="Write the figures as JSON; - writes them to stdout, alone.",
 )
 @click.option("--pieces", is_flag=True, help="Colour the convex pieces.")
@@ -116,8 +119,9 @@ def run(
         headless = True
         duration = duration or _EXPLAINED_S
     chosen = _choose_scene(scene, tool, environment, tool_scale, environment_scale)
-    if record is not None and not record.absolute().parent.is_dir():
-        raise UserError(f"--record: there is no folder {record.parent}")
+    files = [Path(file).absolute() for file in (record, log, json_file) if file]
+    if len(set(files)) < len(files):
+        raise UserError("--record, --log and --json: each needs a file of its own")
     if log is not None and device == f"replay:{log}":
         raise UserError(f"--log: {log} is the log that is replayed; give another file")
     console = Console(highlight=False, stderr=json_file == "-")

@@ -74,7 +74,9 @@ def test_errors_of_the_user_are_one_message(l_file, tmp_path):
     )
     nowhere = tmp_path / "absent" / "out.json"
     failed = run("check", l_file, "--json", nowhere)
-    assert fails_with_one_message(failed, 1, "out.json", "No such file")
+    assert fails_with_one_message(
+        failed, 1, f"--json: there is no folder {nowhere.parent}"
+    )
     failed = run("decompose", l_file, "--no-cache", "-o", nowhere)
     assert fails_with_one_message(failed, 1, f"{nowhere}: No such file")
 

@@ -164,6 +164,7 @@ def test_a_damaged_log_is_used_as_far_as_it_goes(log, tmp_path):
         (["replay", "LOG", "--set", "contact.stifness=1"], "did you mean"),
         (["replay", "LOG", "no_such_scene"], "neither a scene file nor"),
         (["replay", "LOG", "--log", "none/out.tick"], "No such file or directory"),
+        (["diff", "LOG", "LOG", "--plot", "none/a.png"], "--plot: there is no folder"),
         (["diff", "LOG", "LOG", "--plot", "a.xyz"], "--plot: Format 'xyz'"),
         (["csv", "LOG", "none/out.csv"], "No such file or directory"),
         (["csv", "LOG", "/dev/full"], "/dev/full: No space left"),

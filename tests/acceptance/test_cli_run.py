@@ -247,6 +247,12 @@ def test_pieces_are_coloured_in_a_recording(tmp_path):
         (["run", "cup_spoon", "--headless", "--port", "7001"], 2, ["--port"]),
         (["run", "cup_spoon", "--explain", "--pieces"], 2, ["--explain", "--pieces"]),
         (["run", "cup_spoon", "--headless", "--record", "no/x.html"], 1, ["folder no"]),
+        (["run", "cup_spoon", "--headless", "--json", "no/x.json"], 1, ["folder no"]),
+        (
+            ["run", "cup_spoon", "--headless", "--json", "no.one", "--log", "no.one"],
+            1,
+            ["a file of its own"],
+        ),
     ],
 )  # fmt: skip
 def test_errors_are_for_people(arguments, code, words):
