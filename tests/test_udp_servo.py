@@ -271,6 +271,23 @@ def test_a_driver_that_is_silent_is_looked_for_disabled(driver):
         servo.close()
 
 
+def test_a_driver_that_has_gone_is_not_active_because_it_is_wanted_back(driver):
+    servo = UdpServo("127.0.0.1", driver.port, ttl_s=0.3, hold_s=5.0)
+    try:
+        connect(driver, servo)
+        engage(driver, servo, gate=ACTIVE)
+        wait_for(lambda: not driver.receive().enable)
+        servo.recover()
+        # The thread has seen it by its second command from here on.
+        for _ in range(3):
+            assert not driver.receive().enable
+        assert (servo.read().gate, servo.read().fault) == (FAULT, STALE)
+        wait_for(lambda: driver.exchange(gate=IDLE, boot=8).enable)
+        wait_for(lambda: servo.read().gate == IDLE)
+    finally:
+        servo.close()
+
+
 def test_after_a_flood_only_the_newest_state_is_answered(driver):
     servo = UdpServo("127.0.0.1", driver.port, max_rate_hz=20.0, **LONG)
     try:

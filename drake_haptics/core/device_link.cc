@@ -90,6 +90,7 @@ void DeviceLink::Tick(double now) {
     is_heard_ = false;
     ++counts_.silences;
     if (mode_ == Mode::kActive) Latch(DH_FAULT_STALE);
+    Follow();
   }
 }
 
@@ -113,9 +114,12 @@ void DeviceLink::Follow() {
              device_gate_ == DH_IDLE) {
     mode_ = Mode::kActive;
   }
-  const bool latched = mode_ == Mode::kLatched;
-  state_.gate = latched ? DH_FAULT : device_gate_;
-  state_.fault = latched ? latched_fault_ : device_fault_;
+  // Wanted back is not yet there: what a driver said last no longer holds.
+  const bool is_gone =
+      mode_ == Mode::kWaiting && !is_heard_ && latched_fault_ != DH_FAULT_NONE;
+  const bool at_fault = mode_ == Mode::kLatched || is_gone;
+  state_.gate = at_fault ? DH_FAULT : device_gate_;
+  state_.fault = at_fault ? latched_fault_ : device_fault_;
 }
 
 bool DeviceLink::IsEnabling() const {
