@@ -2,16 +2,20 @@
 
 import io
 import itertools
+from dataclasses import replace
 
 import pytest
+from fake_device import ScriptedDevice, make_reading
 from rich.console import Console
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cli.status_line import StatusLine, make_summary
+from drake_haptics.device.backend import GateState
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import run
+from drake_haptics.tick_clock import TickClock
 
 
 @pytest.fixture(scope="module")
@@ -35,6 +39,21 @@ def test_a_terminal_sees_time_contacts_and_force(haptic):
     assert "x real time" in text
     assert " N " in text and "mm deep" in text
     assert "-0.00" not in text
+
+
+@pytest.mark.parametrize("gate", GateState)
+def test_a_force_that_the_device_does_not_show_is_said_to_be_none(gate):
+    device = ScriptedDevice(lambda call: replace(make_reading(call), gate=gate))
+    scene = load_scene(find_scene("sphere_pen"))
+    haptic = BuildHapticDiagram(scene, device=device)
+    text = io.StringIO()
+    console = Console(file=text, force_terminal=True, width=200, color_system=None)
+    clock = itertools.count(0.0, 0.1)
+    pace = TickClock(haptic.period_s)
+    with StatusLine(console, haptic, pace, clock=lambda: next(clock)) as status:
+        run(haptic, 0.05, pace=pace, on_tick=status.end_tick)
+    assert f"{gate.name}" in text.getvalue()
+    assert ("(not shown)" in text.getvalue()) == (gate != GateState.ACTIVE)
 
 
 def test_a_file_gets_no_status(haptic):

@@ -19,6 +19,7 @@ from drake_haptics.cli.device_words import (
     describe_link,
 )
 from drake_haptics.cli.live_line import LiveLine
+from drake_haptics.device.backend import DeviceReading, GateState
 from drake_haptics.tick_clock import TickClock
 
 # Energies below are rounding: a nanojoule lifts a milligram by a tenth of a
@@ -78,7 +79,10 @@ class StatusLine(LiveLine):
                 f"{ticks / passed_s:.0f} ticks/s, late {describe_lateness(late_s)}",
                 describe_link(backend.get_link_status()),
             ]
-        return " · ".join([*parts, self._describe_touch(self._context)])
+        parts.append(self._describe_touch(self._context))
+        if backend is not None and not _shows_force(backend.read()):
+            parts[-1] += " [dim](not shown)[/]"
+        return " · ".join(parts)
 
     def _describe_touch(self, context: Context) -> str:
         """Returns what is felt, and by how many contacts."""
@@ -98,6 +102,11 @@ class StatusLine(LiveLine):
             f" · [bold]{np.linalg.norm(F_display[3:]):4.1f} N[/]"
             f" {1e3 * np.linalg.norm(F_display[:3]):4.0f} mN·m"
         )
+
+
+def _shows_force(reading: DeviceReading | None) -> bool:
+    """Whether the device shows what it is asked for."""
+    return reading is not None and reading.gate == GateState.ACTIVE
 
 
 def make_summary(figures: dict[str, Any]) -> Table:
