@@ -16,6 +16,7 @@ from drake_haptics.builder import HapticDiagram
 from drake_haptics.callback_timer import CallbackTimer
 from drake_haptics.cli.build_scene import build_scene
 from drake_haptics.cli.enter_key import is_enter_pressed
+from drake_haptics.cli.lasting_interrupt import lasting_interrupt
 from drake_haptics.cli.status_line import StatusLine
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.device_address import open_device
@@ -75,6 +76,7 @@ def run_session(
     """
     timer = CallbackTimer() if explained else None
     with ExitStack() as closing:
+        check_interrupt = closing.enter_context(lasting_interrupt())
         backend: DeviceBackend | None = None
         recorder = None
         if log is not None:
@@ -92,6 +94,7 @@ def run_session(
         ends = [part.end_tick for part in (status, watch, timer) if part is not None]
 
         def end_tick(context: Context) -> None:
+            check_interrupt()
             for end in ends:
                 end(context)
 
