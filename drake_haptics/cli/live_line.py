@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
 from collections.abc import Callable
@@ -50,7 +51,11 @@ class LiveLine:
 
     def __enter__(self) -> LiveLine:
         """Starts the line."""
-        self._thread.start()
+        if self._shown:
+            # Drake ends the process if a Meshcat dies in another thread than its own.
+            # One that is dead already must not meet its end by chance in the thread.
+            gc.collect()
+            self._thread.start()
         return self
 
     def __exit__(
@@ -60,8 +65,9 @@ class LiveLine:
         traceback: TracebackType | None,
     ) -> None:
         """Takes the line away."""
-        self._lines.put(None)
-        self._thread.join(_END_S)
+        if self._shown:
+            self._lines.put(None)
+            self._thread.join(_END_S)
 
     def update(self) -> None:
         """Makes the line anew, if it is time; a call costs well under 1 µs else."""
