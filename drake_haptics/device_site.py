@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
+import numpy as np
 from pydrake.math import RigidTransform
 
 from drake_haptics.device.backend import DeviceBackend, DeviceError, DeviceReading
@@ -16,6 +17,7 @@ from drake_haptics.systems.device_io import DeviceIo
 from drake_haptics.systems.haptic_device import HapticDevice
 
 _LOOK_AGAIN_S = 0.01
+_QUATERNION_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,7 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
 
     Raises:
         DeviceError: None has come, or none that could be used.
+        ValueError: Its pose or velocity is none.
     """
     end_s = time.monotonic() + timeout_s
     while (reading := backend.read()) is None:
@@ -84,7 +87,25 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
                 " `drake-haptics device` is a driver to try, at udp://127.0.0.1:7400"
             )
         time.sleep(_LOOK_AGAIN_S)
+    _check_reading(reading)
     return reading
+
+
+def _check_reading(reading: DeviceReading) -> None:
+    """Raises ValueError where a backend tells what no handle can do."""
+    for name, size in (("X_BH", 7), ("V_BH", 6)):
+        values = np.asarray(getattr(reading, name), dtype=float)
+        if values.shape != (size,) or not np.isfinite(values).all():
+            raise ValueError(
+                f"{name} of a device's reading must be {size} finite numbers, is"
+                f" {values}"
+            )
+    length = np.linalg.norm(reading.X_BH[:4])
+    if abs(length - 1.0) > _QUATERNION_TOLERANCE:
+        raise ValueError(
+            "the quaternion in X_BH of a device's reading must have length 1, has"
+            f" {length:g}"
+        )
 
 
 def make_haptic_device(

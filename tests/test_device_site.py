@@ -1,5 +1,7 @@
 """A device of one's own in a scene: where it stands, and that the loop closes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
@@ -129,6 +131,21 @@ def test_a_device_whose_words_are_all_refused_is_not_called_silent():
 
     with pytest.raises(DeviceError, match=r"7 packets came and were refused.*length 1"):
         wait_for_reading(Garbled(lambda _: None), timeout_s=0.05)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"X_BH": np.zeros(3)}, "X_BH .* must be 7 finite numbers"),
+        ({"V_BH": np.full(6, np.nan)}, "V_BH .* must be 6 finite numbers"),
+        ({"X_BH": np.zeros(7)}, "quaternion .* length 1, has 0"),
+        ({"X_BH": np.array([0.9, 0, 0, 0, 0, 0, 0])}, "length 1, has 0.9"),
+    ],
+)
+def test_a_backend_that_tells_no_pose_or_velocity_is_told_so(wrong, words):
+    device = ScriptedDevice(lambda call: replace(make_reading(call), **wrong))
+    with pytest.raises(ValueError, match=words):
+        wait_for_reading(device)
 
 
 def test_the_first_reading_is_waited_for():
