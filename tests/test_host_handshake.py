@@ -2,11 +2,14 @@
 
 from dataclasses import replace
 
+import pytest
+
 from drake_haptics.device.backend import GateState
 from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status
 from drake_haptics.device.lcm.host_handshake import HostHandshake
 
 IDLE = lcmt_haptic_status(boot=1, gate=GateState.IDLE)
+SESSION = 5
 ACTIVE = lcmt_haptic_status(boot=1, gate=GateState.ACTIVE)
 FAULT = lcmt_haptic_status(boot=1, gate=GateState.FAULT)
 
@@ -17,7 +20,7 @@ def heard(status, sequence):
 
 def make_enabled():
     """A handshake that has come to enabling with its second command, at 0 s."""
-    handshake = HostHandshake()
+    handshake = HostHandshake(SESSION)
     handshake.hear(IDLE, 0.0)
     assert handshake.choose(1) is False
     handshake.hear(heard(IDLE, 1), 0.0)
@@ -26,7 +29,7 @@ def make_enabled():
 
 
 def test_it_releases_until_a_release_was_heard():
-    handshake = HostHandshake()
+    handshake = HostHandshake(SESSION)
     assert handshake.choose(1) is False
     handshake.hear(IDLE, 0.0)
     for sequence in range(2, 10):
@@ -37,7 +40,7 @@ def test_it_releases_until_a_release_was_heard():
 
 
 def test_what_others_released_does_not_count():
-    handshake = HostHandshake()
+    handshake = HostHandshake(SESSION)
     handshake.hear(IDLE, 0.0)
     handshake.choose(1)
     for status in (heard(IDLE, 99), heard(FAULT, 1), heard(ACTIVE, 1)):
@@ -46,7 +49,7 @@ def test_what_others_released_does_not_count():
 
 
 def test_a_fault_before_the_first_command_is_left_by_itself():
-    handshake = HostHandshake()
+    handshake = HostHandshake(SESSION)
     handshake.hear(FAULT, 0.0)
     assert handshake.choose(1) is False
     handshake.hear(heard(IDLE, 1), 0.0)
@@ -105,8 +108,17 @@ def test_a_device_that_fell_silent_is_left_alone_until_recovery():
     check_left_alone(handshake)
 
 
+@pytest.mark.parametrize("now", [IDLE, replace(ACTIVE, session=6)])
+def test_a_device_that_was_taken_away_is_left_alone_until_recovery(now):
+    """Its fault was left by another host before it was told."""
+    handshake = make_enabled()
+    handshake.hear(replace(ACTIVE, session=SESSION), 0.1)
+    handshake.hear(now, 0.101)
+    check_left_alone(handshake)
+
+
 def test_a_device_that_falls_silent_before_it_was_asked_is_waited_for():
-    handshake = HostHandshake()
+    handshake = HostHandshake(SESSION)
     handshake.hear(IDLE, 0.0)
     assert handshake.choose(1) is False
     handshake.fall_silent()

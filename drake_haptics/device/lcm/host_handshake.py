@@ -22,11 +22,16 @@ class HostHandshake:
 
     A device takes force only from a host that it has heard ask for none, and one at
     fault only after that. So a host releases until the device has answered a release,
-    and then enables. A fault after that, a device that is started anew and one that
-    falls silent are left alone until somebody wants the device back.
+    and then enables. A fault after that, and a device that is started anew, falls
+    silent or serves this host no more, are left alone until somebody wants it back.
+
+    Args:
+        session: This host's, as in its commands.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, session: int) -> None:
+        self._session = session
+        self._is_served = False
         self._phase = _Phase.RELEASES
         # The commands that released since the phase began.
         self._first_release = 0
@@ -76,7 +81,10 @@ class HostHandshake:
                 self._enabled_s = now_s
         elif status.gate == GateState.FAULT:
             self._phase = _Phase.AT_FAULT
+        elif self._is_served and status.session != self._session:
+            self._phase = _Phase.AT_FAULT
         elif status.gate == GateState.ACTIVE:
+            self._is_served = status.session == self._session
             self._enabled_s = now_s
         elif now_s - self._enabled_s > _UNHEARD_S:
             self._start_over()
@@ -98,4 +106,5 @@ class HostHandshake:
     def _start_over(self) -> None:
         """Goes back to the first phase."""
         self._phase = _Phase.RELEASES
+        self._is_served = False
         self._first_release = 0

@@ -78,8 +78,8 @@ class LcmDevice(DeviceBackend):
         self._channel = command_channel
         self._time_to_live = round(1e6 * ttl_s)
         self._clock = clock
-        self._handshake = HostHandshake()
         self._session = secrets.randbelow(2**32 - 1) + 1
+        self._handshake = HostHandshake(self._session)
         self._sequence = 0
         self._status: lcmt_haptic_status | None = None
         self._reading: DeviceReading | None = None
