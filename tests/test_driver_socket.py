@@ -65,6 +65,11 @@ def test_an_address_of_another_machine_is_the_users_error(address):
         DriverSocket(address, 0)
 
 
+def test_no_address_is_not_taken_for_every_address():
+    with pytest.raises(UserError, match="--bind is empty"):
+        DriverSocket("", 0)
+
+
 def test_a_port_is_free_again_after_close():
     first = DriverSocket("127.0.0.1", 0)
     port = first.address[1]

@@ -25,6 +25,8 @@ class DriverSocket:
     """
 
     def __init__(self, host: str, port: int):
+        if not host:  # which would be every address that this machine has
+            raise UserError("--bind is empty: give an address, such as 127.0.0.1")
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         try:
