@@ -112,8 +112,13 @@ def test_host_paused_and_device_killed(url, start_device):
         last = device.read()
         wait_until(lambda: is_in(GateState.FAULT, Fault.DEVICE), lambda: press(device))
         start_device()
+        wait_until(
+            lambda: device.read().sequence > last.sequence + 100, lambda: press(device)
+        )
+        assert is_in(GateState.FAULT, Fault.DEVICE)
+        assert not device.read().F_BH.any()
+        device.recover()
         wait_until(is_felt, lambda: press(device))
-        assert device.read().sequence > last.sequence
         assert np.linalg.norm(device.read().F_BH[3:]) <= 1.0 + 1e-9
 
 
