@@ -18,7 +18,6 @@ from drake_haptics.builder_picture import add_picture
 from drake_haptics.contact_systems import add_contact_systems
 from drake_haptics.decomposition import Decomposition, Method, decompose
 from drake_haptics.device.backend import DeviceBackend
-from drake_haptics.device_preset import load_device_preset
 from drake_haptics.device_site import make_haptic_device, wait_for_reading
 from drake_haptics.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.held_handle import check_scene_coupling
@@ -34,7 +33,7 @@ from drake_haptics.scene import (
     Scene,
     Tool,
 )
-from drake_haptics.scene_check import SceneWarning
+from drake_haptics.scene_check import SceneError, SceneWarning
 from drake_haptics.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.hand_path import HandPath
@@ -329,14 +328,22 @@ def _find_port(
     """Returns the port of all but a backend, which must be read when all is ready."""
     if isinstance(device, HapticDevice):
         return device
-    port = None
-    if device is None or load_device_preset(scene.device.preset).model:
+    if device is not None and not isinstance(device, DeviceBackend):
+        raise TypeError(
+            "device must be a DeviceBackend or a HapticDevice, is a"
+            f" {type(device).__name__}; `open_device` opens an address"
+        )
+    try:
         # A real device is held to what is known of its kind.
         port = make_simulated_device(scene, path)
+    except SceneError:
+        if device is None:
+            raise
+    else:
         for sentence in check_scene_coupling(scene, port):
             warnings.warn(f"coupling.{sentence}", SceneWarning, stacklevel=3)
-    if device is None:
-        return port
+        if device is None:
+            return port
     wait_for_reading(device)
     return None
 

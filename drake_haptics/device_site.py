@@ -12,7 +12,7 @@ from drake_haptics.device.backend import DeviceBackend, DeviceError, DeviceReadi
 from drake_haptics.device_preset import load_device_preset
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.scene import Scene
-from drake_haptics.simulated_device import make_hand_path, place_base
+from drake_haptics.simulated_device import find_base, make_hand_path
 from drake_haptics.systems.device_io import DeviceIo
 from drake_haptics.systems.haptic_device import HapticDevice
 
@@ -45,10 +45,10 @@ def find_device_site(scene: Scene) -> DeviceSite:
     """Returns where a scene has its device.
 
     Raises:
-        SceneError: There is no such preset, or the hand's path leaves the workspace.
+        SceneError: There is no such preset, or the hand's path is none.
     """
     path = make_hand_path(scene.hand.path)
-    X_WB = place_base(scene, path)
+    X_WB = find_base(scene, path)
     X_TH = scene.tool.grasp.to_rigid_transform().inverse()
     preset = load_device_preset(scene.device.preset)
     force, torque = scene.device.max_force_N, scene.device.max_torque_Nm
@@ -124,7 +124,8 @@ def make_haptic_device(
     site = find_device_site(scene)
     period_s = 1.0 / scene.device.rate_hz
     reading = wait_for_reading(backend)
-    io = DeviceIo(backend, site.X_WB, period_s, reading)
+    X_WB = _place(scene, backend, site, vector_to_pose(reading.X_BH))
+    io = DeviceIo(backend, X_WB, period_s, reading)
     io.set_name("device_io")
     device = HapticDevice(
         io,
@@ -132,4 +133,19 @@ def make_haptic_device(
         max_force_N=site.max_force_N,
         max_torque_Nm=site.max_torque_Nm,
     )
-    return device, site.X_WB @ vector_to_pose(reading.X_BH)
+    return device, X_WB @ vector_to_pose(reading.X_BH)
+
+
+def _place(
+    scene: Scene, backend: DeviceBackend, site: DeviceSite, X_BH: RigidTransform
+) -> RigidTransform:
+    """Returns X_WB.
+
+    Where nobody says where the base stands, the handle, wherever it is held at first,
+    is put where the scene's hand would start: beside the objects and in none.
+    """
+    if scene.device.base is not None or backend.is_placed:
+        return site.X_WB
+    R_WB = site.X_WB.rotation()
+    p_WH = (site.X_WB @ site.X_BH).translation()
+    return RigidTransform(R_WB, p_WH - R_WB @ X_BH.translation())

@@ -173,7 +173,8 @@ class Device:
         preset: Name of a file in models/devices (see `drake-haptics devices`), or a
             file of one's own (*.yaml), relative to the scene file.
         base: X_WB, the pose of the device's base in the world. Where not given,
-            the middle of its workspace is put at the middle of the hand's path.
+            the middle of its workspace is put at the middle of the hand's path, and
+            a device that is not simulated begins where the path does.
         rate_hz: Ticks per second of the haptic loop, Hz.
         max_force_N: Largest force shown, N; the preset's where not given.
         max_torque_Nm: Largest torque shown, N·m; the preset's where not given.

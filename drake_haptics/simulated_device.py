@@ -83,27 +83,31 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
     )
 
 
-def place_base(scene: Scene, path: HandPath) -> RigidTransform:
+def find_base(scene: Scene, path: HandPath) -> RigidTransform:
     """Returns X_WB, where the base of a scene's device stands.
 
     Args:
-        scene: Names the device and, if it does, the place.
+        scene: Names the device and, if it does, the place. If not, the middle of the
+            preset's workspace is put at the middle of the path.
         path: Where the hand wants the tool.
+    """
+    if scene.device.base is not None:
+        return scene.device.base.to_rigid_transform()
+    p_WH = _sample_handle(scene, path)[1]
+    middle = (p_WH.min(axis=0) + p_WH.max(axis=0)) / 2.0
+    center = load_device_preset(scene.device.preset).workspace_center_m
+    return RigidTransform(middle - np.array(center))
+
+
+def place_base(scene: Scene, path: HandPath) -> RigidTransform:
+    """Returns `find_base`, from where the device reaches the hand's whole path.
 
     Raises:
         SceneError: The handle's path leaves the workspace.
     """
     preset = load_device_preset(scene.device.preset)
-    base, X_TH = scene.device.base, scene.tool.grasp.to_rigid_transform().inverse()
-    times = np.linspace(0.0, path.duration_s, _PATH_SAMPLES)
-    p_WH = np.array(
-        [(vector_to_pose(path.calc(t)[0]) @ X_TH).translation() for t in times]
-    )
-    if base is not None:
-        X_WB = base.to_rigid_transform()
-    else:
-        middle = (p_WH.min(axis=0) + p_WH.max(axis=0)) / 2.0
-        X_WB = RigidTransform(middle - np.array(preset.workspace_center_m))
+    X_WB = find_base(scene, path)
+    times, p_WH = _sample_handle(scene, path)
     center = X_WB @ np.array(preset.workspace_center_m)
     distance = np.linalg.norm(p_WH - center, axis=1)
     if distance.max() > preset.workspace_radius_m:
@@ -113,6 +117,14 @@ def place_base(scene: Scene, path: HandPath) -> RigidTransform:
             f" its radius is {preset.workspace_radius_m} m"
         )
     return X_WB
+
+
+def _sample_handle(scene: Scene, path: HandPath) -> tuple[np.ndarray, np.ndarray]:
+    """Returns times (n,), s, and where the handle would be then, (n, 3), m."""
+    X_TH = scene.tool.grasp.to_rigid_transform().inverse()
+    times = np.linspace(0.0, path.duration_s, _PATH_SAMPLES)
+    poses = [vector_to_pose(path.calc(t)[0]) @ X_TH for t in times]
+    return times, np.array([X_WH.translation() for X_WH in poses])
 
 
 def _make_arm_twin(twin: Twin, preset: DevicePreset, period_s: float) -> ArmTwin | None:

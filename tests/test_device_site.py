@@ -13,7 +13,7 @@ from drake_haptics.device.backend import DeviceError, LinkStatus
 from drake_haptics.device_preset import load_device_preset
 from drake_haptics.device_site import find_device_site, wait_for_reading
 from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.scene import Pose, Scene
+from drake_haptics.scene import Pose, Scene, Waypoint
 from drake_haptics.simulation import run
 
 START = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
@@ -109,6 +109,47 @@ def test_a_device_of_which_no_model_is_known_needs_none(scene):
     haptic = BuildHapticDiagram(scene, device=backend)
     assert haptic.backend is backend
     assert haptic.loop.device.max_torque_Nm == 0.0
+
+
+def test_without_a_base_the_handle_starts_where_the_path_does(scene):
+    """Wherever on its desk an unknown arm is held; its axes stay those of the world."""
+    scene.device.base = None
+    read_first = make_reading(position=(3.0, -2.0, 1.0), wxyz=(0.6, 0.0, 0.0, 0.8))
+    haptic = BuildHapticDiagram(scene, device=ScriptedDevice(lambda _: read_first))
+    device = haptic.loop.device
+    context = device.GetMyContextFromRoot(haptic.diagram.CreateDefaultContext())
+    q_WH = device.get_handle_pose_output_port().Eval(context)
+    X_TH = scene.tool.grasp.to_rigid_transform().inverse()
+    start = RigidTransform([0.0, 0.0, START[3] + PLATE_TOP]) @ X_TH
+    np.testing.assert_allclose(q_WH[4:], start.translation(), atol=1e-12)
+    np.testing.assert_allclose(q_WH[:4], [0.6, 0.0, 0.0, 0.8], atol=1e-12)
+
+
+def test_a_device_that_knows_its_place_is_left_there(scene):
+    class Placed(ScriptedDevice):
+        is_placed = True
+
+    scene.device.base = None
+    reading = make_reading(position=(0.3, -0.2, 0.1))
+    haptic = BuildHapticDiagram(scene, device=Placed(lambda _: reading))
+    device = haptic.loop.device
+    context = device.GetMyContextFromRoot(haptic.diagram.CreateDefaultContext())
+    expected = find_device_site(scene).X_WB @ np.array([0.3, -0.2, 0.1])
+    q_WH = device.get_handle_pose_output_port().Eval(context)
+    np.testing.assert_allclose(q_WH[4:], expected, atol=1e-12)
+
+
+def test_a_small_device_is_not_refused_for_a_path_that_nobody_follows(scene):
+    scene.device.base = None
+    scene.device.preset = "falcon"
+    far = Waypoint(time_s=5.0, position_m=[0.3, 0.0, 0.1])
+    scene.hand.path.waypoints.append(far)
+    BuildHapticDiagram(scene, device=ScriptedDevice())
+
+
+def test_an_address_is_no_device_yet(scene):
+    with pytest.raises(TypeError, match=r"is a str; `open_device` opens an address"):
+        BuildHapticDiagram(scene, device="udp://127.0.0.1:7400")
 
 
 def test_no_energy_is_booked_for_a_device_that_nobody_simulates(scene):

@@ -133,6 +133,11 @@ class DeviceBackend(ABC):
         """Page on which the device is moved, if there is one."""
         return None
 
+    @property
+    def is_placed(self) -> bool:
+        """Whether it was told where its base stands in the world, and relies on it."""
+        return False
+
     @abstractmethod
     def read(self) -> DeviceReading | None:
         """Returns the newest reading; None before the first has come."""

@@ -101,6 +101,11 @@ class MeshcatDevice(DeviceBackend):
         self._is_open = True
         self._add_controls()
 
+    @property
+    def is_placed(self) -> bool:
+        """True."""
+        return True
+
     def read(self) -> DeviceReading:
         """Returns where the handle is now."""
         now_s = monotonic()

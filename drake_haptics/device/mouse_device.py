@@ -98,6 +98,11 @@ class MouseDevice(DeviceBackend):
         """Address of the page."""
         return self._server.url
 
+    @property
+    def is_placed(self) -> bool:
+        """True."""
+        return True
+
     def read(self) -> DeviceReading:
         """Returns where the handle is now."""
         now_s = monotonic()

@@ -50,6 +50,11 @@ class ReplayDevice(DeviceBackend):
         self._tick = 0
         self._gate = GateState.IDLE
 
+    @property
+    def is_placed(self) -> bool:
+        """True."""
+        return True
+
     def read(self) -> DeviceReading:
         """Returns the recorded handle at the present tick."""
         tick = self._tick
