@@ -1,7 +1,8 @@
-"""Watches a device during a run: counts its faults, takes it up again when asked."""
+"""Watches a device during a run: its faults, its largest loads, its return."""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable
 
@@ -9,7 +10,7 @@ from drake_haptics.device.backend import DeviceBackend, Fault, GateState
 
 
 class DeviceWatch:
-    """The book of a device's faults.
+    """The book of a device's faults and of what it showed.
 
     A device at fault shows no force until somebody asks for it again: whoever holds
     it must not be surprised.
@@ -26,12 +27,17 @@ class DeviceWatch:
         self._faults: Counter[str] = Counter()
         self._recoveries = 0
         self._asked = False
+        self._max_force_N = 0.0
+        self._max_torque_Nm = 0.0
 
     def end_tick(self, _context: object = None) -> None:
         """Looks at the device; made to be called after every tick."""
         reading = self._backend.read()
         if reading is None:
             return
+        torque, force = reading.F_BH.reshape(2, 3).tolist()
+        self._max_force_N = max(self._max_force_N, math.hypot(*force))
+        self._max_torque_Nm = max(self._max_torque_Nm, math.hypot(*torque))
         fault = reading.fault if reading.gate == GateState.FAULT else Fault.NONE
         if fault != self._fault:
             self._note(fault)
@@ -54,17 +60,22 @@ class DeviceWatch:
         """Returns the figures for a report, ready for JSON.
 
         Keys: `gate` (the last state), `faults` (how often, by kind), `recoveries`,
-        `received`, `lost` and `rejected` (readings), `servo_lateness_us` (p50, p99,
-        p99.9 of the backend's own thread; None where it has none).
+        `max_force_N` and `max_torque_Nm` (that the device said it showed), `received`,
+        `lost` and `rejected` (readings), `servo_lateness_us` (of the backend's own
+        thread, `p50`, `p99`, `p99_9`; empty where it has none).
         """
         link, reading = self._backend.get_link_status(), self._backend.read()
-        late_s = link.lateness_s
+        late_us = [1e6 * late_s for late_s in link.lateness_s or ()]
         return {
             "gate": None if reading is None else reading.gate.name,
             "faults": dict(self._faults),
             "recoveries": self._recoveries,
+            "max_force_N": self._max_force_N,
+            "max_torque_Nm": self._max_torque_Nm,
             "received": link.received,
             "lost": link.lost,
             "rejected": link.rejected,
-            "servo_lateness_us": late_s and [1e6 * late for late in late_s],
+            "servo_lateness_us": dict(
+                zip(("p50", "p99", "p99_9"), late_us, strict=False)
+            ),
         }

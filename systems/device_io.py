@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
@@ -47,7 +49,8 @@ class DeviceIo(Diagram):
     * `reading` (abstract) is the `DeviceReading` that both are of.
 
     The state is one discrete group (13), [X_WH; V_WH], and the reading, both replaced
-    by an unrestricted update every period from 0 s on.
+    by an unrestricted update every period from 0 s on. It raises FloatingPointError
+    where a reading is not finite.
     """
 
     def __init__(
@@ -135,7 +138,10 @@ class _Exchange(LeafSystem):
         reading = self._backend.read()
         if reading is None:
             return
-        state.get_mutable_discrete_state().set_value(self._frame.to_world(reading))
+        motion = self._frame.to_world(reading)
+        if not math.isfinite(sum(motion.tolist())):
+            raise FloatingPointError("the device's reading is not finite")
+        state.get_mutable_discrete_state().set_value(motion)
         state.get_mutable_abstract_state(int(self._reading)).set_value(reading)
 
     def _write(self, context: Context) -> EventStatus:

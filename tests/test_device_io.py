@@ -134,6 +134,13 @@ def test_a_device_with_nothing_new_stays_where_it_was():
     )
 
 
+def test_a_handle_that_is_nowhere_ends_the_simulation():
+    lost = make_reading(position=(0.0, np.nan, 0.0))
+    diagram, _ = make_diagram(ScriptedDevice(lambda _: lost))
+    with pytest.raises(FloatingPointError, match="device's reading is not finite"):
+        Simulator(diagram).AdvanceTo(PERIOD)
+
+
 def test_the_period_must_be_positive():
     with pytest.raises(ValueError, match="period_s must be positive, is 0"):
         DeviceIo(ScriptedDevice(), X_WB, 0.0, make_reading())

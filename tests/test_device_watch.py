@@ -2,6 +2,8 @@
 
 import dataclasses
 
+import numpy as np
+import pytest
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.device.backend import Fault, GateState, LinkStatus
@@ -71,4 +73,21 @@ def test_the_way_to_the_device_is_reported():
     backend.get_link_status = lambda: LinkStatus(100, 2, 1, (1e-5, 2e-4, 3e-3))
     figures = DeviceWatch(backend, lambda: False).to_dict()
     assert (figures["received"], figures["lost"], figures["rejected"]) == (100, 2, 1)
-    assert [round(x) for x in figures["servo_lateness_us"]] == [10, 200, 3000]
+    assert figures["servo_lateness_us"] == pytest.approx(
+        {"p50": 10.0, "p99": 200.0, "p99_9": 3000.0}
+    )
+
+
+def test_loads_are_those_that_the_device_showed():
+    wrenches = [[0, 0, 0, 3, 0, 4], [0, 0.3, 0.4, 0, 0, 1]]
+
+    def read(call):
+        wrench = np.array(wrenches[min(call, 2) - 1], dtype=float)
+        return dataclasses.replace(make_reading(call), F_BH=wrench)
+
+    watch = DeviceWatch(ScriptedDevice(read), lambda: False)
+    watch.end_tick()
+    watch.end_tick()
+    figures = watch.to_dict()
+    assert figures["max_force_N"] == 5.0
+    assert figures["max_torque_Nm"] == 0.5

@@ -37,6 +37,21 @@ def test_it_is_written_five_times_per_second_and_told_the_time_between():
     assert "line 1" in text and "line 2" in text
 
 
+def test_a_narrow_terminal_cuts_the_line():
+    text, times = io.StringIO(), itertools.count()
+    console = Console(file=text, force_terminal=True, width=20, color_system=None)
+    with LiveLine(
+        console,
+        lambda _: "[bold]most[/] important first, then the rest",
+        lambda: next(times),
+    ) as line:
+        line.update()
+        while "most" not in text.getvalue():
+            time.sleep(1e-3)
+    assert "most important firs…" in text.getvalue()
+    assert "rest" not in text.getvalue()
+
+
 def test_a_file_gets_nothing():
     assert show([0.0, 1.0, 2.0], terminal=False) == ("", [])
 

@@ -34,7 +34,7 @@ def describe_gate(
 
 def describe_lateness(late_s: Sequence[float]) -> str:
     """Returns p50, p99 and p99.9, given in s, in ms."""
-    return "/".join(f"{1e3 * late:.2f}" for late in late_s) + " ms"
+    return "/".join(f"{1e3 * late:.2f}" for late in late_s) + " ms (p50/p99/p99.9)"
 
 
 def describe_link(link: LinkStatus) -> str:
@@ -52,7 +52,11 @@ def describe_device(figures: Mapping[str, Any]) -> str:
     faults = [
         f"{n} {name.lower().replace('_', ' ')}" for name, n in figures["faults"].items()
     ]
-    words = [f"faults: {', '.join(faults) or 'none'}"]
+    words = [
+        f"showed at most {figures['max_force_N']:.2f} N,"
+        f" {1e3 * figures['max_torque_Nm']:.0f} mN·m",
+        f"faults: {', '.join(faults) or 'none'}",
+    ]
     if figures["received"]:
         words.insert(
             0,

@@ -12,6 +12,7 @@ from types import TracebackType
 
 from rich.console import Console
 from rich.live import Live
+from rich.text import Text
 
 _PERIOD_S = 0.2
 # A terminal that takes nothing for so long is left as it is.
@@ -85,5 +86,12 @@ class LiveLine:
         with suppress(OSError):
             self._live.start()
             for line in iter(self._lines.get, None):
-                self._live.update(line, refresh=True)
+                self._live.update(_make_text(line), refresh=True)
             self._live.stop()
+
+
+def _make_text(line: str) -> Text:
+    """Returns a line that a narrow terminal cuts, and does not break into several."""
+    text = Text.from_markup(line, overflow="ellipsis")
+    text.no_wrap = True
+    return text

@@ -66,25 +66,27 @@ class StatusLine(LiveLine):
         assert self._context is not None
         time_s = self._context.get_time()
         run_s, self._before_s = time_s - self._before_s, time_s
-        parts = [f"[bold]{time_s:7.1f} s[/]"]
         backend = self._haptic.backend
+        force, contacts = self._describe_touch(self._context)
         if backend is None or self._pace is None:
-            parts.append(f"{run_s / passed_s:5.2f} x real time")
+            parts = [f"{run_s / passed_s:5.2f} x real time", contacts, force]
         else:
+            reading = backend.read()
+            if not _shows_force(reading):
+                force += " [dim](not shown)[/]"
             ticks = run_s / self._haptic.period_s
             late_s = self._pace.calc_lateness(_LATEST)
+            # What a person acts on comes first: a narrow terminal cuts the line.
             parts = [
-                describe_gate(backend.read()),
-                *parts,
+                describe_gate(reading),
+                force,
                 f"{ticks / passed_s:.0f} ticks/s, late {describe_lateness(late_s)}",
                 describe_link(backend.get_link_status()),
+                contacts,
             ]
-        parts.append(self._describe_touch(self._context))
-        if backend is not None and not _shows_force(backend.read()):
-            parts[-1] += " [dim](not shown)[/]"
-        return " · ".join(parts)
+        return " · ".join([f"[bold]{time_s:7.1f} s[/]", *parts])
 
-    def _describe_touch(self, context: Context) -> str:
+    def _describe_touch(self, context: Context) -> tuple[str, str]:
         """Returns what is felt, and by how many contacts."""
         loop = self._haptic.loop
         query = loop.contact_query.GetMyContextFromRoot(context)
@@ -97,10 +99,10 @@ class StatusLine(LiveLine):
         )
         deepest_mm = 1e3 * max(0.0, -contacts.distance.min(initial=0.0))
         return (
+            f"[bold]{np.linalg.norm(F_display[3:]):4.1f} N[/]"
+            f" {1e3 * np.linalg.norm(F_display[:3]):4.0f} mN·m",
             f"{len(contacts):3d} contacts in {len(clusters):2d} clusters"
-            f" · {deepest_mm:4.2f} mm deep"
-            f" · [bold]{np.linalg.norm(F_display[3:]):4.1f} N[/]"
-            f" {1e3 * np.linalg.norm(F_display[:3]):4.0f} mN·m"
+            f" · {deepest_mm:4.2f} mm deep",
         )
 
 
@@ -138,7 +140,7 @@ def make_summary(figures: dict[str, Any]) -> Table:
         f" median {clusters['median']:.0f}, at most {clusters['max']}",
     )
     table.add_row(
-        "largest",
+        "largest asked for" if figures.get("device") else "largest",
         f"force {figures['max_force_N']:.2f} N,"
         f" torque {1e3 * figures['max_torque_Nm']:.0f} mN·m,"
         f" penetration {1e3 * figures['max_penetration_m']:.3f} mm",
