@@ -60,6 +60,16 @@ def numbers(pattern, text):
     return np.array(re.findall(pattern, text), dtype=float)
 
 
+def test_ones_own_device_comes_to_rest_between_three_springs(run):
+    printed = run("device_of_your_own.py")
+    (height_mm,) = numbers(r"handle (\S+) mm", printed)
+    (force_N,) = numbers(r"with (\S+) N", printed)
+    # From 10 mm below the block's top to 2 mm above it, where contact begins.
+    expected_N = 12e-3 / (1 / 300.0 + 1 / 800.0 + 1 / 2e4)
+    assert force_N == pytest.approx(expected_N, abs=1e-3)
+    assert height_mm == pytest.approx(-10.0 + 1e3 * expected_N / 300.0, abs=0.01)
+
+
 def test_the_arms_pen_leans_on_the_inside_of_the_ring(run):
     printed = run("arm_holding_a_tool.py")
     (free, pressed) = numbers(
