@@ -34,7 +34,7 @@ def describe_gate(
 
 def describe_lateness(late_s: Sequence[float]) -> str:
     """Returns p50, p99 and p99.9, given in s, in ms."""
-    return "/".join(f"{1e3 * late:.2f}" for late in late_s) + " ms (p50/p99/p99.9)"
+    return "/".join(f"{1e3 * late:.2f}" for late in late_s) + " ms"
 
 
 def describe_link(link: LinkStatus) -> str:
@@ -43,7 +43,7 @@ def describe_link(link: LinkStatus) -> str:
     if link.rejected:
         words += f", {link.rejected} refused"
     if link.lateness_s is not None:
-        words += f", servo late {describe_lateness(link.lateness_s)}"
+        words += f", servo {describe_lateness(link.lateness_s)}"
     return words
 
 

@@ -47,12 +47,12 @@ class DriverStatusLine(LiveLine):
         return " · ".join(
             [
                 describe_gate(reading, "until the host disables it"),
-                f"{rate:.0f} ticks/s, late"
-                f" {describe_lateness(driver.pace.calc_lateness(_LATEST))}",
-                f"{taken} commands, {sum(packets.values())} refused",
-                f"{math.hypot(*reading.V_BH[3:]):.2f} m/s",
                 f"[bold]{math.hypot(*reading.F_BH[3:]):4.1f} N[/]"
                 f" {1e3 * math.hypot(*reading.F_BH[:3]):4.0f} mN·m",
+                f"{math.hypot(*reading.V_BH[3:]):.2f} m/s",
+                f"{rate:.0f} Hz, late p50/p99/p99.9"
+                f" {describe_lateness(driver.pace.calc_lateness(_LATEST))}",
+                f"{taken} commands, {sum(packets.values())} refused",
             ]
         )
 

@@ -80,7 +80,8 @@ class StatusLine(LiveLine):
             parts = [
                 describe_gate(reading),
                 force,
-                f"{ticks / passed_s:.0f} ticks/s, late {describe_lateness(late_s)}",
+                f"{ticks / passed_s:.0f} Hz, late p50/p99/p99.9"
+                f" {describe_lateness(late_s)}",
                 describe_link(backend.get_link_status()),
                 contacts,
             ]
