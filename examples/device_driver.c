@@ -33,9 +33,17 @@ static void interrupt(int signal_number) {
   interrupted = 1;
 }
 
+/* Goes on while the machine is suspended, where there is such a clock: what was
+ * commanded before is stale after that. */
+#ifdef CLOCK_BOOTTIME
+#define DRIVER_CLOCK CLOCK_BOOTTIME
+#else
+#define DRIVER_CLOCK CLOCK_MONOTONIC
+#endif
+
 static uint64_t clock_ns(void) {
   struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(DRIVER_CLOCK, &now);
   return UINT64_C(1000000000) * (uint64_t)now.tv_sec + (uint64_t)now.tv_nsec;
 }
 

@@ -1,13 +1,14 @@
 """The driver's tick, in simulated time and with packets of an independent host."""
 
 import socket
+import time
 
 import numpy as np
 import pytest
 from struct_host import ACTIVE, FAULT, IDLE, StructHost
 
 from drake_haptics.device.backend import GateState
-from drake_haptics.device.driver import DeviceDriver
+from drake_haptics.device.driver import DeviceDriver, read_clock_ns
 from drake_haptics.errors import UserError
 
 TTL_S = 0.05
@@ -195,6 +196,15 @@ def test_a_host_that_has_gone_is_sent_no_more(rig):
     host.send(enable=False)
     rig.tick()
     assert host.receive(5.0) is not before, "until it speaks again"
+
+
+@pytest.mark.skipif(
+    not hasattr(time, "CLOCK_BOOTTIME"), reason="this system has no such clock"
+)
+def test_the_time_of_a_suspended_machine_counts():
+    before = time.clock_gettime_ns(time.CLOCK_BOOTTIME)
+    now = read_clock_ns()
+    assert before <= now <= time.clock_gettime_ns(time.CLOCK_BOOTTIME)
 
 
 def test_silence_ends_in_a_fault_at_zero(rig):

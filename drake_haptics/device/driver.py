@@ -22,12 +22,25 @@ from drake_haptics.tick_clock import TickClock
 # flood must not keep the loop from its next tick.
 _MAX_PACKETS_PER_TICK = 64
 _WRAP = 1 << 32
+# Linux's.
+_SUSPENDED_CLOCK: int | None = getattr(time, "CLOCK_BOOTTIME", None)
 # Whoever sends what is judged so is answered. The last two come to pass only while no
 # force is shown, and their sender must learn why.
 _ANSWERED = frozenset({"accepted", "not_disabled_first", "at_fault"})
 # A host that is silent for longer has gone, or never was: a forged address must not be
 # sent states for ever.
 _FORGETS_AFTER_NS = 5_000_000_000
+
+
+def read_clock_ns() -> int:
+    """Returns the time, ns, by a clock that goes on while the machine is suspended.
+
+    What was commanded before is stale after that. Systems that have no such clock have
+    one that rests, or count the time by their monotonic clock anyway.
+    """
+    if _SUSPENDED_CLOCK is None:
+        return time.monotonic_ns()
+    return time.clock_gettime_ns(_SUSPENDED_CLOCK)
 
 
 class DrivenArm(Protocol):
@@ -63,7 +76,7 @@ class DeviceDriver:
         rate_hz: Ticks per second, Hz.
         bind: Address to listen at; only this machine can reach 127.0.0.1.
         port: UDP port to listen at; 0 lets the system choose.
-        clock_ns: Reads a clock that never goes back, ns.
+        clock_ns: Reads a clock that never goes back, nor rests with the machine, ns.
 
     Raises:
         UserError: The address or port cannot be had.
@@ -80,7 +93,7 @@ class DeviceDriver:
         rate_hz: float,
         bind: str,
         port: int,
-        clock_ns: Callable[[], int] = time.monotonic_ns,
+        clock_ns: Callable[[], int] = read_clock_ns,
     ):
         if not 0.0 < rate_hz < math.inf:
             raise ValueError(f"rate_hz must be positive and finite, is {rate_hz}")
