@@ -50,7 +50,9 @@ _EXPLAINED_S = 2.0
     help="Stop after so many simulated seconds.  [default: at Ctrl-C]",
 )
 @click.option(
-    "--headless", is_flag=True, help="No page, and as fast as the computer can."
+    "--headless",
+    is_flag=True,
+    help="No page, and without --device as fast as the computer can.",
 )
 @click.option(
     "--explain",
