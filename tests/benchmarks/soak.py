@@ -108,7 +108,6 @@ def soak(options, injections, watch, hosts, console):
 def make_rows(figures, host, watch, link, troubles):
     """Returns what came of it, in words and figures."""
     made, came, stayed = troubles
-    servo = host["device"]["servo_lateness_us"]
     return {
         "ran": f"{figures['duration_s']:.0f} s, {figures['ticks']} ticks",
         "limit violations": f"{figures['limit_violations']}"
@@ -124,19 +123,17 @@ def make_rows(figures, host, watch, link, troubles):
         "not recovered after": _count(stayed),
         "packets at the device": _count(figures["packets"]),
         "packets on the way": _count(link.counts),
-        "driver late": _describe_lateness(*_percentiles(figures)),
-        "host late": _describe_lateness(*_percentiles(host)),
-        "servo late": _describe_lateness(*servo),
+        "driver late": _describe_lateness(figures["lateness_us"]),
+        "host late": _describe_lateness(host["lateness_us"]),
+        "servo late": _describe_lateness(host["device"]["servo_lateness_us"]),
     }
 
 
-def _percentiles(figures):
-    late = figures["lateness_us"]
-    return late["p50"], late["p99"], late["p99_9"]
-
-
-def _describe_lateness(p50, p99, p99_9):
-    return f"p50 {p50:.0f} µs, p99 {p99:.0f} µs, p99.9 {p99_9:.0f} µs"
+def _describe_lateness(late_us):
+    return (
+        f"p50 {late_us['p50']:.0f} µs, p99 {late_us['p99']:.0f} µs,"
+        f" p99.9 {late_us['p99_9']:.0f} µs"
+    )
 
 
 def _count(counts):
