@@ -2,7 +2,10 @@
 
 import signal
 
-# A shell's background job is born deaf to Ctrl-C, and so would be the programs that
-# tests start and end by it.
+# A job in a shell's background is born deaf to Ctrl-C, one under nohup to the end of
+# its terminal, and so would be the programs that tests start and end by these signals.
+# What is caught here is not ignored there.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+    signal.signal(signal.SIGHUP, lambda *_: None)
