@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from hand_clock import HandClock
 from meshcat_page import MeshcatPage
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 
@@ -19,20 +20,9 @@ SLIDERS = ["x (mm)", "y (mm)", "z (mm)", "roll (deg)", "pitch (deg)", "yaw (deg)
 HOME = "bring the handle home"
 
 
-class Clock:
-    """Time as the test wants it."""
-
-    def __init__(self):
-        self.now_s = 100.0
-
-    def __call__(self):
-        """Returns it, s."""
-        return self.now_s
-
-
 @pytest.fixture
 def clock(monkeypatch):
-    clock = Clock()
+    clock = HandClock()
     monkeypatch.setattr(meshcat_device, "monotonic", clock)
     return clock
 

@@ -8,6 +8,7 @@ import weakref
 import numpy as np
 import pytest
 import websocket
+from hand_clock import HandClock
 from meshcat_page import MeshcatPage
 from pydrake.math import RigidTransform, RollPitchYaw
 from scipy.spatial.transform import Rotation
@@ -26,20 +27,9 @@ BOUND_S = 20.0
 HEIGHT_M = 2 * 4 * RADIUS_M * np.tan(np.deg2rad(37.5))
 
 
-class Clock:
-    """Time as the test wants it."""
-
-    def __init__(self):
-        self.now_s = 100.0
-
-    def __call__(self):
-        """Returns it, s."""
-        return self.now_s
-
-
 @pytest.fixture
 def clock(monkeypatch):
-    clock = Clock()
+    clock = HandClock()
     monkeypatch.setattr(mouse_device, "monotonic", clock)
     return clock
 
