@@ -1,0 +1,87 @@
+"""How handle and tool moved in a run: what all settings are compared on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.systems.framework import Context
+
+from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.scene import Scene
+from drake_haptics.simulated_device import make_hand_path
+from drake_haptics.simulation import run
+
+# A lap that is longer is cut: some thousand ticks show what a setting does.
+_LONGEST_S = 5.0
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedMotion:
+    """How handle H and tool moved in the world W, tick by tick.
+
+    Poses are [qw qx qy qz x y z], m; velocities are [ω; v] of the frame's origin in the
+    world, rad/s and m/s. Row k is what the updates of tick k + 1 of the run saw.
+
+    Attributes:
+        period_s: The tick, s.
+        X_WTool: (n, 7) poses of the tool.
+        V_WTool: (n, 6) its spatial velocities.
+        X_WH: (n, 7) poses of the handle.
+        V_WH: (n, 6) its spatial velocities.
+    """
+
+    period_s: float
+    X_WTool: np.ndarray
+    V_WTool: np.ndarray
+    X_WH: np.ndarray
+    V_WH: np.ndarray
+
+    def __len__(self) -> int:
+        """Returns the number of ticks n."""
+        return len(self.X_WTool)
+
+    @property
+    def times_s(self) -> np.ndarray:
+        """(n,) times, s, the first row's is 0."""
+        return self.period_s * np.arange(len(self))
+
+
+def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMotion:
+    """Runs a scene in its simulated hand and records how handle and tool move.
+
+    Args:
+        scene: What to run. The same scene gives the same motion, bit for bit.
+        duration_s: Simulated time, s; one lap of the hand's path, or 5 s of a longer
+            one, where not given.
+
+    Raises:
+        SceneError: The scene cannot be built.
+        MeshError: A mesh cannot be treated.
+        drake_haptics.simulation.RunError: The loop diverges.
+        KeyboardInterrupt: At Ctrl-C.
+    """
+    if duration_s is None:
+        duration_s = min(make_hand_path(scene.hand.path).duration_s, _LONGEST_S)
+    haptic = build_quietly(scene)
+    loop = haptic.loop
+    sources = [
+        (system.GetMyContextFromRoot, port)
+        for system, port in [
+            (loop.haptic_tool, loop.haptic_tool.get_pose_output_port()),
+            (loop.haptic_tool, loop.haptic_tool.get_velocity_output_port()),
+            (loop.device, loop.device.get_handle_pose_output_port()),
+            (loop.device, loop.device.get_handle_velocity_output_port()),
+        ]
+    ]
+    rows: list[np.ndarray] = []
+
+    def note(root: Context) -> None:
+        rows.append(np.concatenate([port.Eval(find(root)) for find, port in sources]))
+
+    run(haptic, duration_s, on_tick=note)
+    if len(rows) < round(duration_s / haptic.period_s):
+        # A run takes Ctrl-C for its end, but half a motion is none.
+        raise KeyboardInterrupt
+    X_WTool, V_WTool, X_WH, V_WH = np.split(np.array(rows), [7, 13, 20], axis=1)
+    return RecordedMotion(haptic.period_s, X_WTool, V_WTool, X_WH, V_WH)

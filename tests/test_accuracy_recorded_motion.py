@@ -1,0 +1,63 @@
+"""A recorded motion: what a run does, tick by tick."""
+
+import numpy as np
+import pytest
+
+from drake_haptics.accuracy.recorded_motion import record_motion
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+from drake_haptics.simulation import make_simulator
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return load_scene(find_scene("hammer_block"))
+
+
+@pytest.fixture(scope="module")
+def motion(scene):
+    return record_motion(scene, 0.3)
+
+
+def test_has_a_row_for_each_tick(scene, motion):
+    assert len(motion) == 300
+    assert motion.period_s == 1.0 / scene.device.rate_hz
+    np.testing.assert_allclose(motion.times_s, np.arange(300) / 1000.0, atol=1e-12)
+    for X in (motion.X_WTool, motion.X_WH):
+        assert X.shape == (300, 7)
+        np.testing.assert_allclose(np.linalg.norm(X[:, :4], axis=1), 1.0, atol=1e-9)
+    assert motion.V_WTool.shape == motion.V_WH.shape == (300, 6)
+
+
+def test_is_the_same_again(scene, motion):
+    again = record_motion(scene, 0.3)
+    np.testing.assert_array_equal(again.X_WTool, motion.X_WTool)
+    np.testing.assert_array_equal(again.V_WH, motion.V_WH)
+
+
+def test_is_where_a_simulator_has_tool_and_handle(scene, motion):
+    haptic = BuildHapticDiagram(scene)
+    simulator = make_simulator(haptic)
+    simulator.AdvanceTo(0.25)
+    for port, X_WF in [
+        (haptic.loop.haptic_tool.get_pose_output_port(), motion.X_WTool[249]),
+        (haptic.loop.device.get_handle_pose_output_port(), motion.X_WH[249]),
+    ]:
+        context = port.get_system().GetMyContextFromRoot(simulator.get_context())
+        np.testing.assert_allclose(port.Eval(context), X_WF, atol=1e-12)
+
+
+def test_velocity_is_the_change_of_the_pose(motion):
+    # Linearized backward Euler: the tick's displacement is the period times the
+    # velocity at its end.
+    moved = np.diff(motion.X_WTool[:, 4:], axis=0)
+    v = motion.V_WTool[1:, 3:]
+    np.testing.assert_allclose(moved, motion.period_s * v, atol=2e-6)
+    assert np.abs(moved).max() > 2e-5
+
+
+def test_default_is_one_lap(scene):
+    assert len(record_motion(scene)) == round(
+        1000 * scene.hand.path.waypoints[-1].time_s
+    )
