@@ -86,6 +86,15 @@ class CallbackTimer:
         tick_s, *own_s = ticks[usual].mean(axis=0).tolist()
         return dict(zip(self._systems, own_s, strict=True)), tick_s
 
+    def calc_times(self) -> tuple[dict[System, np.ndarray], np.ndarray]:
+        """Returns the time of each system and of the whole, tick by tick, s.
+
+        Each is (n,), of the latest n ticks that ended.
+        """
+        ticks = np.array(self._ticks).reshape(-1, 1 + len(self._systems))
+        tick_s, *own_s = ticks.T
+        return dict(zip(self._systems, own_s, strict=True)), tick_s
+
     def _timed_declaration(self, declare: Callable[..., Any]) -> Callable[..., Any]:
         """Returns a declaration that takes the callback and declares a timed one."""
 
