@@ -91,9 +91,13 @@ def find_base(scene: Scene, path: HandPath) -> RigidTransform:
             preset's workspace is put at the middle of the path.
         path: Where the hand wants the tool.
     """
+    return _find_base(scene, _sample_handle(scene, path)[1])
+
+
+def _find_base(scene: Scene, p_WH: np.ndarray) -> RigidTransform:
+    """Returns `find_base` for places (n, 3) of the handle on its path, m."""
     if scene.device.base is not None:
         return scene.device.base.to_rigid_transform()
-    p_WH = _sample_handle(scene, path)[1]
     middle = (p_WH.min(axis=0) + p_WH.max(axis=0)) / 2.0
     center = load_device_preset(scene.device.preset).workspace_center_m
     return RigidTransform(middle - np.array(center))
@@ -106,8 +110,8 @@ def place_base(scene: Scene, path: HandPath) -> RigidTransform:
         SceneError: The handle's path leaves the workspace.
     """
     preset = load_device_preset(scene.device.preset)
-    X_WB = find_base(scene, path)
     times, p_WH = _sample_handle(scene, path)
+    X_WB = _find_base(scene, p_WH)
     center = X_WB @ np.array(preset.workspace_center_m)
     distance = np.linalg.norm(p_WH - center, axis=1)
     if distance.max() > preset.workspace_radius_m:
