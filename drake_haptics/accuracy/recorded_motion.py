@@ -65,19 +65,17 @@ def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMoti
         duration_s = min(make_hand_path(scene.hand.path).duration_s, _LONGEST_S)
     haptic = build_quietly(scene)
     loop = haptic.loop
-    sources = [
-        (system.GetMyContextFromRoot, port)
-        for system, port in [
-            (loop.haptic_tool, loop.haptic_tool.get_pose_output_port()),
-            (loop.haptic_tool, loop.haptic_tool.get_velocity_output_port()),
-            (loop.device, loop.device.get_handle_pose_output_port()),
-            (loop.device, loop.device.get_handle_velocity_output_port()),
-        ]
+    ports = [
+        loop.haptic_tool.get_pose_output_port(),
+        loop.haptic_tool.get_velocity_output_port(),
+        loop.device.get_handle_pose_output_port(),
+        loop.device.get_handle_velocity_output_port(),
     ]
+    readers = [(port, port.get_system().GetMyContextFromRoot) for port in ports]
     rows: list[np.ndarray] = []
 
     def note(root: Context) -> None:
-        rows.append(np.concatenate([port.Eval(find(root)) for find, port in sources]))
+        rows.append(np.concatenate([port.Eval(find(root)) for port, find in readers]))
 
     run(haptic, duration_s, on_tick=note)
     if len(rows) < round(duration_s / haptic.period_s):

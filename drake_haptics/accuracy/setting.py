@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
-from typing import Any
+from dataclasses import asdict, dataclass, field, is_dataclass
+from typing import Any, get_args, get_type_hints
 
 from drake_haptics.scene import Scene
 
@@ -23,7 +23,8 @@ class Setting:
         label: The value in words, with its unit, such as "1 mm".
         changes: Keys of the scene with dots (`contact.depth`, `tool.max_triangles`;
             `environment.chord_error_m` is that of each object) and their values, which
-            are plain data. None of them: the scene as it is.
+            are plain data, of a part such as `effects.gravity` its keys. None of them:
+            the scene as it is.
     """
 
     knob: str
@@ -62,4 +63,12 @@ def _assign(item: Any, key: str, value: Any) -> None:
     for step in path:
         item = getattr(item, step)
     getattr(item, name)
+    if isinstance(value, Mapping):
+        value = _find_part(type(item), name)(**value)
     setattr(item, name, copy.deepcopy(value))
+
+
+def _find_part(owner: type, name: str) -> Any:
+    """Returns the dataclass of a part that may be None, such as an effect."""
+    hint = get_type_hints(owner)[name]
+    return next(kind for kind in get_args(hint) if is_dataclass(kind))

@@ -1,0 +1,96 @@
+"""What a setting does to the loop: energy from nothing, and how stiff it may be."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_scene import build_quietly, hold_scene
+from drake_haptics.analysis.stability_limit import find_stability_limit
+from drake_haptics.scene import Scene
+from drake_haptics.simulation import RunError, run
+
+# The whole; all other accounts are its parts.
+_WHOLE = "device"
+# Stiffnesses are tried within this factor of the scene's, and told to this share.
+_RANGE = 1e4
+_TOLERANCE = 1e-2
+
+
+@dataclass(frozen=True)
+class StableStiffness:
+    """The largest stable stiffness of a coupling, or why none is told.
+
+    Attributes:
+        stiffness_N_per_m: N/m; infinite where there is no limit, None where it is not
+            known.
+        why_not: Why; empty where it is known.
+    """
+
+    stiffness_N_per_m: float | None
+    why_not: str = ""
+
+
+def measure_created_energy(scene: Scene, duration_s: float) -> float:
+    """Returns the energy that a scene's loop makes of nothing in a run, J.
+
+    It is the sum over all parts of the loop of what an `EnergyLedger` says they have
+    created. What the sampling of forces explains is in it, because a slower rate makes
+    more of it; the account of the whole loop is not, because there dampers hide what
+    another part makes.
+
+    Args:
+        scene: Runs in its simulated hand.
+        duration_s: Simulated time, s.
+
+    Returns:
+        J; infinite where the loop diverges.
+
+    Raises:
+        KeyboardInterrupt: At Ctrl-C.
+    """
+    haptic = build_quietly(scene)
+    try:
+        statistics = run(haptic, duration_s, energy=True)
+    except RunError:
+        return math.inf
+    if statistics.ticks < round(duration_s / haptic.period_s):
+        raise KeyboardInterrupt
+    books = statistics.to_dict()["energy_J"]
+    assert isinstance(books, dict)
+    return float(
+        sum(account["created"] for name, account in books.items() if name != _WHOLE)
+    )
+
+
+def find_stable_stiffness(scene: Scene, time_s: float) -> StableStiffness:
+    """Finds the largest stable stiffness of a coupling, held against its contact.
+
+    It is the translation's, at which an eigenvalue of one tick reaches magnitude 1.
+
+    Args:
+        scene: Its other gains stay.
+        time_s: When the hand stops on its path, s.
+    """
+    try:
+        held = hold_scene(scene, time_s)
+        stiffness = scene.coupling.stiffness_N_per_m
+
+        def growth(value: float) -> float:
+            coupling = replace(scene.coupling, stiffness_N_per_m=value)
+            try:
+                return analyse_held_scene(held, coupling).growth
+            except ValueError:
+                return math.nan
+
+        limit = find_stability_limit(
+            growth,
+            stiffness,
+            lowest=stiffness / _RANGE,
+            highest=stiffness * _RANGE,
+            relative_tolerance=_TOLERANCE,
+        )
+    except (ValueError, RunError) as error:
+        return StableStiffness(None, str(error))
+    return StableStiffness(limit.value)

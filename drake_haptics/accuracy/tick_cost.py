@@ -1,0 +1,39 @@
+"""What the whole ticks of a scene take, as `drake-haptics run --headless` has them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from drake_haptics.accuracy.figures import TickTimes
+from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.scene import Scene
+from drake_haptics.simulation import run
+
+
+def time_ticks(scene: Scene, duration_s: float) -> TickTimes:
+    """Runs a scene once and returns what its ticks took.
+
+    Raises:
+        RunError: The loop diverges.
+        KeyboardInterrupt: At Ctrl-C.
+    """
+    haptic = build_quietly(scene)
+    statistics = run(haptic, duration_s)
+    if statistics.ticks < round(duration_s / haptic.period_s):
+        raise KeyboardInterrupt
+    times = statistics.to_dict()["tick_us"]
+    assert isinstance(times, dict)
+    return TickTimes(times["median"], times["p99"], times["p99_9"])
+
+
+def combine(repeats: Sequence[TickTimes]) -> TickTimes:
+    """Returns the middle of several runs: of each figure the median.
+
+    Each run has its own percentiles, as a user's has, interruptions by the system
+    included; the median drops a run that something else disturbed.
+    """
+    table = np.array([[r.median_us, r.p99_us, r.p99_9_us] for r in repeats])
+    median, p99, p99_9 = np.median(table, axis=0).tolist()
+    return TickTimes(median, p99, p99_9)
