@@ -57,18 +57,20 @@ class HapticVisualizer(DifferentiableSystem):
         - contact_wrench
         - F_display
         - friction_force (with friction)
+        - relief (with load shedding)
         - X_WO_<name of each object that moves>
 
     Poses are [qw qx qy qz x y z], m. `F_display` is the wrench [τ; f] on the handle
     at Ho in the world, N·m and N. `contacts`, `clusters` and `contact_wrench` are the
     outputs of `ContactQuery`, `ContactClustering` and `PenaltyForce`; `friction_force`
-    is that of `StickSlipFriction`.
+    is that of `StickSlipFriction`, `relief` that of `LoadShedding`.
 
     It draws about 32 times per simulated second, at ticks of the loop, while a browser
     is connected. So that drawing delays no tick, a frame is drawn in slices of 60 µs
     spread over the ticks that follow; and drawing takes at most one twentieth of clock
-    time: after a frame that was slow to draw, the next ones are left out. A recording
-    is complete, whatever time that takes. Of scalar type AutoDiffXd it draws nothing.
+    time: after a frame that was slow to draw, the next ones are left out. Where the
+    loop sheds load, drawing stops at once. A recording is complete, whatever time that
+    takes. Of scalar type AutoDiffXd it draws nothing.
     """
 
     def __init__(
@@ -80,6 +82,7 @@ class HapticVisualizer(DifferentiableSystem):
         tick_s: float,
         *,
         has_friction: bool = False,
+        sheds_load: bool = False,
     ):
         """Constructs the system and sends the geometry.
 
@@ -90,6 +93,7 @@ class HapticVisualizer(DifferentiableSystem):
             X_HT: Pose of the tool in the handle at rest.
             tick_s: Period of the loop, s.
             has_friction: Whether there is friction to draw, and a port for it.
+            sheds_load: Whether the loop sheds load, and there is a port for that.
         """
         super().__init__()
         # A power of two of ticks is exact: a frame is never a round-off away from a
@@ -118,6 +122,7 @@ class HapticVisualizer(DifferentiableSystem):
             if has_friction
             else None
         )
+        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
         self._X_WO = {
             item.name: self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
             for item in objects
@@ -156,6 +161,10 @@ class HapticVisualizer(DifferentiableSystem):
         """Returns the input `friction_force`, with friction."""
         return self.GetInputPort("friction_force")
 
+    def get_relief_input_port(self) -> InputPort:
+        """Returns the input `relief`, with load shedding."""
+        return self.GetInputPort("relief")
+
     def get_object_pose_input_port(self, name: str) -> InputPort:
         """Returns the input `X_WO_<name>` of an object that moves."""
         return self.GetInputPort(f"X_WO_{name}")
@@ -191,10 +200,15 @@ class HapticVisualizer(DifferentiableSystem):
         if self._recording:
             if self._is_due(context.get_time()):
                 self._record(context)
-        elif self._frame is not None or (
-            self._is_due(context.get_time()) and self._begin(context)
+        elif not self._must_save(context) and (
+            self._frame is not None
+            or (self._is_due(context.get_time()) and self._begin(context))
         ):
             self._go_on(_SLICE_S)
+
+    def _must_save(self, context: Context) -> bool:
+        """Whether the loop has no time for drawing."""
+        return self._relief is not None and self._relief.Eval(context)[0] > 0.0
 
     def _is_due(self, time_s: float) -> bool:
         """Whether a frame belongs to this slice."""

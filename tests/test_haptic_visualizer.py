@@ -105,8 +105,10 @@ X_HT = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [0.01, 0.02, 0.03])
 X_WH = RigidTransform(RollPitchYaw(-0.5, 0.0, 0.7), [0.1, 0.0, 0.2])
 
 
-def make_visualizer(meshcat, objects=()):
-    return HapticVisualizer(meshcat, make_mesh(), objects, X_HT, tick_s=1 / 1024)
+def make_visualizer(meshcat, objects=(), **options):
+    return HapticVisualizer(
+        meshcat, make_mesh(), objects, X_HT, tick_s=1 / 1024, **options
+    )
 
 
 def make_context(
@@ -361,6 +363,24 @@ def test_a_frame_is_drawn_in_slices_that_no_tick_notices(monkeypatch):
     per_tick = np.bincount([tick for tick, _ in calls])
     assert per_tick.max() * 20e-6 <= 60e-6 + 4 * 20e-6
     assert np.count_nonzero(per_tick) > 15
+
+
+@pytest.mark.parametrize("recording", [False, True])
+def test_a_loop_that_sheds_load_draws_nothing_but_a_recording(recording):
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat, sheds_load=True)
+    if recording:
+        visualizer.StartRecording()
+    context = make_context(visualizer, [-1e-3])
+    relief = visualizer.get_relief_input_port()
+    relief.FixValue(context, [0.02, 1.0, 0.0])
+    simulator = Simulator(visualizer, context)
+    simulator.Initialize()
+    simulator.AdvanceTo(0.125)
+    assert ("/haptics/tool" in meshcat.transforms) == recording
+    relief.FixValue(context, [0.0, 1.0, 0.0])
+    simulator.AdvanceTo(0.25)
+    assert "/haptics/tool" in meshcat.transforms
 
 
 def test_a_recording_is_complete_though_nobody_looks():
