@@ -46,6 +46,7 @@ class PreContactBraking(DifferentiableSystem):
         - V_WTool
         - X_WO_<name of each object that moves>
         - V_WO_<name of each object that moves>
+        - relief (with load shedding)
         output_ports:
         - wrench_model
         - F_O_W (with objects that move)
@@ -53,6 +54,7 @@ class PreContactBraking(DifferentiableSystem):
     `contacts` is a `drake_haptics.ContactSet`; contacts must have been looked for up
     to D at least. Poses are [qw qx qy qz x y z], m. `V_WTool` and `V_WO_<name>` are
     spatial velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
+    `relief` is that of `LoadShedding`: D is as much less as it says.
 
     `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
     documents it. K is zero: the braking changes with the pose only as the speed does.
@@ -71,6 +73,7 @@ class PreContactBraking(DifferentiableSystem):
         *,
         damping_Ns_per_m: float,
         distance_m: float,
+        sheds_load: bool = False,
     ):
         """Constructs the system.
 
@@ -78,6 +81,7 @@ class PreContactBraking(DifferentiableSystem):
             objects: Those of the `ContactQuery`, in the same order.
             damping_Ns_per_m: b, the damping half-way to the surface, N·s/m.
             distance_m: D, where braking begins, m.
+            sheds_load: Whether the loop sheds load, and there is a port for that.
 
         Raises:
             ValueError: The damping is negative, the distance not positive, or one of
@@ -85,10 +89,13 @@ class PreContactBraking(DifferentiableSystem):
         """
         super().__init__()
         self._gains = BrakingGains(damping_Ns_per_m, distance_m)
+        self._damping_Ns_per_m = damping_Ns_per_m
+        self._distance_m = distance_m
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
         self._motions = ObjectMotions(self, objects)
+        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
         from_inputs = {self.all_input_ports_ticket()}
         self._wrench_model = self.DeclareVectorOutputPort(
             "wrench_model", 78, self._calc_wrench_model, from_inputs
@@ -135,6 +142,10 @@ class PreContactBraking(DifferentiableSystem):
         """Returns the input `V_WO_<name>` of an object that moves."""
         return self.GetInputPort(f"V_WO_{name}")
 
+    def get_relief_input_port(self) -> InputPort:
+        """Returns the input `relief`, with load shedding."""
+        return self.GetInputPort("relief")
+
     def get_wrench_model_output_port(self) -> OutputPort:
         """Returns the output `wrench_model`."""
         return self._wrench_model
@@ -151,7 +162,9 @@ class PreContactBraking(DifferentiableSystem):
             AutoDiffVector(X_WTool.value[4:], X_WTool.gradient[4:]),
             at["V_WTool"],
             *self._motions.differentiate(at),
-            self._gains,
+            self._gains
+            if self._relief is None
+            else self._relieve(float(at["relief"].value[1])),
         )
         rows = self._moving if port == "F_O_W" else slice(78)
         return AutoDiffVector(wrenches.value[rows], wrenches.gradient[rows])
@@ -165,8 +178,14 @@ class PreContactBraking(DifferentiableSystem):
             self._V_WTool.Eval(context),
             p_WO,
             V_WO,
-            self._gains,
+            self._gains
+            if self._relief is None
+            else self._relieve(self._relief.Eval(context)[1]),
         )
+
+    def _relieve(self, reach_share: float) -> BrakingGains:
+        """Returns the gains where braking begins only at a share of D."""
+        return BrakingGains(self._damping_Ns_per_m, reach_share * self._distance_m)
 
     def _keep_wrenches(self, context: Context, value: AbstractValue) -> None:
         value.set_value(self._calc_wrenches(context))

@@ -31,8 +31,8 @@ def plate():
     return box_core(0.2, 0.2, 0.02)
 
 
-def make_braking(objects):
-    return PreContactBraking(objects, damping_Ns_per_m=B, distance_m=D)
+def make_braking(objects, **options):
+    return PreContactBraking(objects, damping_Ns_per_m=B, distance_m=D, **options)
 
 
 def test_topology(plate):
@@ -64,6 +64,19 @@ def test_a_box_that_comes_down_on_a_plate_is_pushed_up(cube, plate):
     np.testing.assert_allclose(model[3:6], [0, 0, 0.75 * B * 0.2], atol=1e-9)
     assert not model[6:42].any()
     assert model[42:].reshape(6, 6)[5, 5] == pytest.approx(0.75 * B)
+
+
+def test_a_loop_that_sheds_load_brakes_later(cube, plate):
+    objects = [ContactObject("plate", plate, RigidTransform())]
+    query = ContactQuery(cube, objects, D)
+    braking = make_braking(objects, sheds_load=True)
+    # Half-way to the surface of half the distance, the profile is at its top.
+    height = TOUCH + 0.25 * D
+    contacts = query_at(query, query.CreateDefaultContext(), height)
+    context = fixed(braking, contacts, height, 0.2 * DOWN)
+    braking.get_relief_input_port().FixValue(context, [1.5, 0.5, 0.0])
+    model = braking.get_wrench_model_output_port().Eval(context)
+    np.testing.assert_allclose(model[3:6], [0, 0, B * 0.2], atol=1e-9)
 
 
 def test_only_the_motion_between_the_two_counts(cube, plate):
