@@ -1,0 +1,36 @@
+"""Which settings are another model of contact, and so no error of one model."""
+
+from __future__ import annotations
+
+from drake_haptics.accuracy.setting import Setting
+
+# Beginning of a key: what differs.
+_MODELS = {
+    "effects.": "what is felt besides contact",
+    "contact.clustering": "how contacts that are near count together",
+    "contact.cluster_size_m": "how far contacts count as one",
+    "contact.depth": "whether depth is the way back or the shortest way out",
+    "contact.tolerance_m": "how far from a surface it begins to push",
+}
+_EFFECTS = "effects."
+
+
+def find_model_change(setting: Setting) -> str:
+    """Returns what a setting changes of the model, empty if nothing.
+
+    What differs then is what is felt, not how exactly it is computed: the "error" is
+    the difference between two models.
+    """
+    return next(
+        (
+            words
+            for beginning, words in _MODELS.items()
+            if any(key.startswith(beginning) for key in setting.changes)
+        ),
+        "",
+    )
+
+
+def is_effect(setting: Setting) -> bool:
+    """Whether a setting takes away or changes an effect that a scene names."""
+    return any(key.startswith(_EFFECTS) for key in setting.changes)

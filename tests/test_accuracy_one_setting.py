@@ -1,0 +1,85 @@
+"""Settings come back from a command line as they were, and mistakes are told."""
+
+import shlex
+
+import pytest
+
+from drake_haptics.accuracy.one_setting import (
+    apply_checked,
+    format_setting,
+    parse_setting,
+)
+from drake_haptics.accuracy.setting import Setting
+from drake_haptics.errors import UserError
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+
+
+@pytest.fixture
+def scene():
+    return load_scene(find_scene("rubbed_sphere"))
+
+
+CHANGES = [
+    {},
+    {"contact.tolerance_m": 5e-4},
+    {"contact.tolerance_m": 1e-17, "contact.depth": "global"},
+    {"effects.friction": None},
+    {"hand.path.periodic": True, "tool.max_triangles": 200},
+    {"tool.mesh": "a name with 'quotes' & $signs"},
+    {"tool.mesh": "12"},
+    {"tool.mesh": "null"},
+    {"tool.grasp.rpy_deg": [0.0, 1.5, -3.0]},
+]
+
+
+@pytest.mark.parametrize("changes", CHANGES)
+def test_a_setting_comes_back_from_a_shell(changes):
+    options = shlex.split(format_setting(Setting("k", "l", changes)))
+    assert set(options[::2]) == {"--only"}
+    back = parse_setting(options[1::2])
+    assert back.changes == changes
+    assert [type(v) for v in back.changes.values()] == [
+        type(v) for v in changes.values()
+    ]
+
+
+def test_a_known_setting_brings_its_words():
+    known = [Setting("contact.tolerance_m", "0.5 mm", {"contact.tolerance_m": 5e-4})]
+    assert parse_setting(["contact.tolerance_m=0.0005"], known) is known[0]
+    other = parse_setting(["contact.tolerance_m=0.0006"], known)
+    assert (other.knob, other.label) == ("contact.tolerance_m", "0.0006")
+
+
+@pytest.mark.parametrize("words", [["contact.depth"], ["=3"], ["scene", "a=1"], [""]])
+def test_a_word_that_is_no_setting(words):
+    with pytest.raises(UserError, match="is not KEY=VALUE"):
+        parse_setting(words)
+
+
+def test_a_key_that_is_there_twice():
+    with pytest.raises(UserError, match=r"contact\.depth is given twice"):
+        parse_setting(["contact.depth=global", "contact.depth=tracked"])
+
+
+@pytest.mark.parametrize(
+    ("word", "complaint"),
+    [
+        ("contact.tolerance=1", "no such key: .*tolerance"),
+        ("tool.mass_kg=heavy", "tool.mass_kg: expected a finite number"),
+        ("tool.mass_kg=-1", "tool.mass_kg must be positive, is -1"),
+        ("effects.friction=null", "friction_coefficient means nothing without"),
+        ("environment.scale=[1]", r"environment\[0\].scale: expected a finite number"),
+    ],
+)
+def test_a_setting_that_makes_no_scene(scene, word, complaint):
+    with pytest.raises(UserError, match=complaint):
+        apply_checked(parse_setting([word]), scene)
+
+
+def test_a_setting_is_applied_to_a_copy(scene):
+    setting = parse_setting(["environment.scale=2", "contact.tolerance_m=0"])
+    changed = apply_checked(setting, scene)
+    assert [item.scale for item in changed.environment] == [2]
+    assert changed.contact.tolerance_m == 0
+    assert scene.contact.tolerance_m == 1e-3 and scene.environment[0].scale == 1.0
