@@ -1,0 +1,181 @@
+"""Draws what accuracy costs: error over time, the front, its knees, and peers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from drake_haptics.accuracy.figures import AccuracyStudy, PeerRow, Row
+from drake_haptics.accuracy.pareto import (
+    ERROR_FLOOR_N,
+    find_front,
+    get_force_error_N,
+    get_native_us,
+    get_tick_us,
+)
+from drake_haptics.accuracy.plot_labels import label_points
+from drake_haptics.accuracy.table import format_N, group_rows
+from drake_haptics.accuracy.words import describe_machine
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_SIZE_INCH = (13.0, 8.0)
+_MARKERS = "osD^vP<>Xhpd8"
+# Axes end this factor beyond what they show, so that labels have room.
+_MARGIN_TIME, _MARGIN_ERROR = 1.25, 2.0
+
+
+def draw_study(study: AccuracyStudy) -> Figure:
+    """Draws on a figure of its own, which no window shows.
+
+    On the left is time inside the core, which other libraries have too; on the right
+    that of the whole tick. Rows that were not measured are left out.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=_SIZE_INCH, layout="constrained")
+    left, right = figure.subplots(
+        1, 2, sharey=True, gridspec_kw={"width_ratios": [3, 2]}
+    )
+    _draw_rows(study, left, get_native_us)
+    _draw_peers(study.peers, left)
+    _draw_rows(study, right, get_tick_us)
+    left.set_ylabel(f"force error, rms, N   (below {1e3 * ERROR_FLOOR_N:g} mN: exact)")
+    left.set_xlabel("contact inside the core, median of a tick, µs")
+    right.set_xlabel("whole tick, median, µs")
+    _limit_errors(left)
+    figure.suptitle(f"What accuracy costs in {study.scene}: lower left is better")
+    _make_legend(figure, left, study)
+    figure.draw_without_rendering()  # settles where everything is
+    for axes, get_time_us in ((left, get_native_us), (right, get_tick_us)):
+        label_points(
+            axes,
+            [
+                (get_time_us(row), get_force_error_N(row), _describe_knee(row))
+                for row in find_front(study, get_time_us).knees
+            ],
+        )
+    return figure
+
+
+def _draw_rows(
+    study: AccuracyStudy, axes: Axes, get_time_us: Callable[[Row], float]
+) -> None:
+    """Draws every row, the front behind them and the scene's own star above them."""
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    for i, (knob, rows) in enumerate(group_rows(study)):
+        points = [
+            (get_time_us(row), get_force_error_N(row))
+            for row in rows
+            if row.cost is not None and row.errors is not None
+        ]
+        if points and not all(row.is_scene for row in rows):
+            axes.plot(
+                *zip(*sorted(points), strict=True),
+                _MARKERS[i % len(_MARKERS)] + ":",
+                color=f"C{i % 10}",
+                linewidth=0.8,
+                markersize=7,
+                label=knob,
+                zorder=3,
+            )
+    front = find_front(study, get_time_us)
+    axes.step(
+        [get_time_us(row) for row in front.rows],
+        [get_force_error_N(row) for row in front.rows],
+        where="post",
+        color="0.2",
+        linewidth=1.8,
+        label="front: nothing is better in both",
+        zorder=2,
+    )
+    for rows, marker, size, colour, label in (
+        (_take_scene(study), "*", 20, "gold", "the scene as it is"),
+        (_take_reference(study), "s", 15, "none", "reference"),
+    ):
+        axes.plot(
+            [get_time_us(row) for row in rows],
+            [get_force_error_N(row) for row in rows],
+            marker,
+            markersize=size,
+            markerfacecolor=colour,
+            markeredgecolor="black",
+            label=label,
+            zorder=4,
+        )
+    axes.grid(which="major", color="0.9")
+    _write_plain_numbers(axes)
+
+
+def _take_scene(study: AccuracyStudy) -> list[Row]:
+    return [row for row in study.rows if row.is_scene and row.cost and row.errors][:1]
+
+
+def _take_reference(study: AccuracyStudy) -> list[Row]:
+    """Returns the reference's own row, where it is one of the rows."""
+    return [
+        row
+        for row in study.rows
+        if row.setting.changes == study.reference.changes and row.cost and row.errors
+    ][:1]
+
+
+def _draw_peers(peers: Sequence[PeerRow], axes: Axes) -> None:
+    """Draws other libraries as hollow markers, each with its name."""
+    shown = [peer for peer in peers if peer.native and peer.errors]
+    for i, peer in enumerate(shown):
+        assert peer.native is not None and peer.errors is not None
+        axes.plot(
+            peer.native.median_us,
+            max(peer.errors.force_rms_N, ERROR_FLOOR_N),
+            _MARKERS[i % len(_MARKERS)],
+            markersize=9,
+            markerfacecolor="none",
+            markeredgecolor="0.35",
+            markeredgewidth=1.6,
+            label=f"{peer.library}, {peer.method}",
+            zorder=3,
+        )
+
+
+def _write_plain_numbers(axes: Axes) -> None:
+    """Writes 20 and not 2·10¹."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def _limit_errors(axes: Axes) -> None:
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, ERROR_FLOOR_N / _MARGIN_ERROR), high * _MARGIN_ERROR)
+
+
+def _make_legend(figure: Figure, axes: Axes, study: AccuracyStudy) -> None:
+    """Puts all names below the panels, where no data are, and what was measured."""
+    handles, labels = axes.get_legend_handles_labels()
+    legend = figure.legend(
+        handles,
+        labels,
+        loc="outside lower center",
+        ncols=4,
+        fontsize=8,
+        markerscale=0.7,
+        title=f"Error against {study.reference.label}, at the same {study.ticks} poses."
+        f"\n{describe_machine(study)}",
+        title_fontsize=8,
+    )
+    legend.get_title().set_color("0.35")
+    legend.get_title().set_multialignment("center")
+
+
+def _describe_knee(row: Row) -> str:
+    assert row.errors is not None
+    return (
+        f"{row.setting.knob}\n{row.setting.label}: {format_N(row.errors.force_rms_N)}"
+    )

@@ -1,0 +1,159 @@
+"""What a study of accuracy says, in sentences."""
+
+from __future__ import annotations
+
+import math
+
+from drake_haptics.accuracy.figures import AccuracyStudy, Row
+from drake_haptics.accuracy.model_changes import find_model_change
+from drake_haptics.accuracy.pareto import (
+    ERROR_FLOOR_N,
+    Front,
+    find_front,
+    get_force_error_N,
+    get_native_us,
+)
+from drake_haptics.accuracy.table import format_N, format_us
+
+# Times must differ by this share to be worth a sentence.
+_NOISE = 0.05
+
+
+def find_scene_row(study: AccuracyStudy) -> Row | None:
+    """Returns the row of the scene as it is, if it was measured."""
+    return next((row for row in study.rows if row.is_scene and row.cost), None)
+
+
+def name_setting(row: Row) -> str:
+    """Returns knob and value."""
+    return f"{row.setting.knob} {row.setting.label}"
+
+
+def describe_verdict(study: AccuracyStudy) -> list[str]:
+    """Says what the scene as it is costs, how wrong it is, and what beats it."""
+    scene = find_scene_row(study)
+    if scene is None or scene.cost is None or scene.errors is None:
+        return ["The scene as it is could not be measured."]
+    tick = scene.cost.tick
+    wrong = scene.errors.force_rms_N
+    sentences = [
+        f"The scene as it is takes {format_us(tick.median_us)} µs a tick (p99"
+        f" {format_us(tick.p99_us)}), {format_us(scene.cost.native.median_us)} of them"
+        " for contact inside the core. Its force is "
+        + (
+            f"exact to {format_N(ERROR_FLOOR_N)}."
+            if wrong < ERROR_FLOOR_N
+            else f"off by {format_N(wrong)} rms, {format_N(scene.errors.force_max_N)}"
+            " at most."
+        )
+    ]
+    better = _find_better(study, scene)
+    if better is None:
+        sentences.append("No setting here is both faster and more exact.")
+    else:
+        sentences.append(
+            f"{name_setting(better)} is both faster and more exact:"
+            f" {_describe_price(better)}."
+        )
+    return sentences
+
+
+def describe_knees(study: AccuracyStudy, front: Front) -> list[str]:
+    """Says of each knee what it costs beside the scene, and what lies beyond it."""
+    scene = find_scene_row(study)
+    sentences = []
+    stops = [front.rows[0], *front.knees, front.rows[-1]] if front.rows else []
+    for before, knee, after in zip(stops, stops[1:], stops[2:], strict=False):
+        share = ""
+        if scene is not None and not knee.is_scene:
+            ratio = get_native_us(knee) / get_native_us(scene)
+            share = f", {_describe_ratio(ratio)} the scene's time there"
+        sentences.append(
+            f"{name_setting(knee)}: {_describe_price(knee)}{share}. Up to it a tenth"
+            f" of the error costs {_price_of_tenth(before, knee)} µs, beyond it"
+            f" {_price_of_tenth(knee, after)}."
+        )
+    return sentences
+
+
+def describe_reference(study: AccuracyStudy) -> str:
+    """Says what errors are measured against, and on what motion."""
+    return (
+        f"Errors are against {study.reference.label}, at the same poses:"
+        f" {study.ticks} ticks of the scene's own motion, {study.contact_ticks} of"
+        " them in contact."
+    )
+
+
+def describe_models(study: AccuracyStudy) -> list[str]:
+    """Says which knobs are differences of model, each with what differs."""
+    words = {
+        row.setting.knob: change
+        for row in study.rows
+        if (change := find_model_change(row.setting))
+    }
+    return [f"{knob}: {change}" for knob, change in words.items()]
+
+
+def describe_missing(study: AccuracyStudy) -> list[str]:
+    """Says what was not measured, and why."""
+    rows = [f"{name_setting(row)}: {row.why_not}" for row in study.rows if row.why_not]
+    peers = [
+        f"{peer.library}, {peer.method}: {peer.why_not}"
+        for peer in study.peers
+        if peer.why_not
+    ]
+    return rows + peers
+
+
+def describe_machine(study: AccuracyStudy) -> str:
+    """Says what it was measured on, and how far to trust the times."""
+    machine = study.machine
+    return (
+        f"{machine['processor']}, {machine['cores']} cores, {machine['system']},"
+        f" Python {machine['python']}, drake_haptics {machine['drake_haptics']}."
+        " Whatever else runs on the machine disturbs the times: read ratios, not"
+        " microseconds."
+    )
+
+
+def _find_better(study: AccuracyStudy, scene: Row) -> Row | None:
+    """Returns the fastest row that beats the scene in time and error, if one does."""
+    better = [
+        row
+        for row in study.rows
+        if row.cost is not None
+        and row.errors is not None
+        and not find_model_change(row.setting)
+        and get_native_us(row) < (1.0 - _NOISE) * get_native_us(scene)
+        and get_force_error_N(row) <= get_force_error_N(scene)
+    ]
+    return min(better, key=get_native_us, default=None)
+
+
+def _describe_price(row: Row) -> str:
+    assert row.cost is not None and row.errors is not None
+    return (
+        f"{format_us(row.cost.native.median_us)} µs in the core, a tick of"
+        f" {format_us(row.cost.tick.median_us)}, for {format_N(row.errors.force_rms_N)}"
+        " rms"
+    )
+
+
+def _describe_ratio(ratio: float) -> str:
+    """Returns a ratio as people say it."""
+    for value, words in ((0.5, "half"), (1.0 / 3.0, "a third of"), (1.0, "as much as")):
+        if abs(ratio - value) < _NOISE * value:
+            return words
+    return f"{ratio:.2g} times"
+
+
+def _price_of_tenth(cheap: Row, dear: Row) -> str:
+    """Returns what a tenfold smaller error costs between two rows, µs."""
+    decades = math.log10(get_force_error_N(cheap) / get_force_error_N(dear))
+    return format_us((get_native_us(dear) - get_native_us(cheap)) / decades)
+
+
+def make_front(study: AccuracyStudy) -> Front:
+    """Returns the front over time inside the core, which noise disturbs least."""
+    return find_front(study, get_native_us)
