@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from drake_haptics.accuracy.built_scenes import build_once
 from drake_haptics.analysis.held_loop import analyse_held_scene
-from drake_haptics.analysis.held_scene import build_quietly, hold_scene
+from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.analysis.stability_limit import find_stability_limit
 from drake_haptics.scene import Scene
 from drake_haptics.simulation import RunError, run
@@ -16,6 +17,19 @@ _WHOLE = "device"
 # Stiffnesses are tried within this factor of the scene's, and told to this share.
 _RANGE = 1e4
 _TOLERANCE = 1e-2
+
+
+@dataclass(frozen=True)
+class PressedPlace:
+    """Where a scene's hand stops, or why there is no such place.
+
+    Attributes:
+        time_s: When it stops on its path, s; None where the tool rests nowhere.
+        why_not: Why; empty where there is one.
+    """
+
+    time_s: float | None
+    why_not: str = ""
 
 
 @dataclass(frozen=True)
@@ -50,7 +64,7 @@ def measure_created_energy(scene: Scene, duration_s: float) -> float:
     Raises:
         KeyboardInterrupt: At Ctrl-C.
     """
-    haptic = build_quietly(scene)
+    haptic = build_once(scene)
     try:
         statistics = run(haptic, duration_s, energy=True)
     except RunError:
@@ -64,24 +78,34 @@ def measure_created_energy(scene: Scene, duration_s: float) -> float:
     )
 
 
-def find_stable_stiffness(scene: Scene, time_s: float) -> StableStiffness:
+def find_pressed_place(scene: Scene) -> PressedPlace:
+    """Returns where a scene's tool is pressed most and comes to rest."""
+    try:
+        return PressedPlace(hold_scene(scene).time_s)
+    except (ValueError, RunError) as error:
+        return PressedPlace(None, str(error))
+
+
+def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
     """Finds the largest stable stiffness of a coupling, held against its contact.
 
     It is the translation's, at which an eigenvalue of one tick reaches magnitude 1.
 
     Args:
         scene: Its other gains stay.
-        time_s: When the hand stops on its path, s.
+        place: Where its hand stops.
     """
+    if place.time_s is None:
+        return StableStiffness(None, place.why_not)
+    stiffness = scene.coupling.stiffness_N_per_m
     try:
-        held = hold_scene(scene, time_s)
-        stiffness = scene.coupling.stiffness_N_per_m
+        held = hold_scene(scene, place.time_s)
 
         def growth(value: float) -> float:
             coupling = replace(scene.coupling, stiffness_N_per_m=value)
             try:
                 return analyse_held_scene(held, coupling).growth
-            except ValueError:
+            except ValueError:  # Beyond it nothing can be told: that is the limit.
                 return math.nan
 
         limit = find_stability_limit(

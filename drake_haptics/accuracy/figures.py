@@ -55,8 +55,9 @@ class Errors:
             next, beyond the reference's own, degrees.
         energy_created_J: What the loop made of nothing while it ran, J.
         stable_stiffness_N_per_m: Largest stable stiffness of the coupling against
-            this contact, N/m; None where it was not sought, infinite where there is no
+            this contact, N/m; None where it is not known, infinite where there is no
             limit.
+        stiffness_why_not: Why it is not known, empty otherwise.
     """
 
     force_rms_N: float
@@ -67,6 +68,7 @@ class Errors:
     normal_jump_deg: float
     energy_created_J: float
     stable_stiffness_N_per_m: float | None = None
+    stiffness_why_not: str = ""
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,9 @@ _CLUSTERS = (1.0, 4.0, 16.0)
 _RATES_HZ = (250.0, 500.0, 1000.0, 2000.0)
 _EFFECTS = ("shading", "friction", "braking", "gravity", "passivity")
 
+# The scene as it is.
+AS_IT_IS = Setting("scene", "as it is")
+
 
 @dataclass(frozen=True)
 class Knob:
@@ -31,22 +34,22 @@ class Knob:
     list_settings: Callable[[Scene], list[Setting]]
 
 
-def list_settings(scene: Scene) -> list[Setting]:
+def list_settings(scene: Scene) -> tuple[Setting, ...]:
     """Returns the scene as it is and then each setting of each knob that changes it."""
-    settings = [Setting("the scene", "as it is")]
+    settings = [AS_IT_IS]
     for knob in KNOBS:
         settings += [
             setting
             for setting in knob.list_settings(scene)
             if setting.apply(scene) != scene
         ]
-    return settings
+    return tuple(settings)
 
 
-def list_few_settings(scene: Scene) -> list[Setting]:
+def list_few_settings(scene: Scene) -> tuple[Setting, ...]:
     """Returns the scene as it is and of each knob the fastest setting."""
     last = {setting.knob: setting for setting in list_settings(scene)}
-    return list(last.values())
+    return tuple(last.values())
 
 
 def make_reference(scene: Scene) -> Setting:

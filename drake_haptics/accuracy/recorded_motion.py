@@ -13,7 +13,9 @@ from drake_haptics.simulated_device import make_hand_path
 from drake_haptics.simulation import run
 
 # A lap that is longer is cut: some thousand ticks show what a setting does.
-_LONGEST_S = 5.0
+_LONGEST_S = 4.0
+# Ticks at the same time differ by round-off of their numbers.
+_SAME_TICK = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,13 +48,38 @@ class RecordedMotion:
         """(n,) times, s, the first row's is 0."""
         return self.period_s * np.arange(len(self))
 
+    def find_ticks(self, period_s: float) -> list[tuple[int, int]]:
+        """Returns which ticks of a loop fall on this motion.
+
+        Args:
+            period_s: The tick of the loop, s.
+
+        Returns:
+            The row and the number of the last tick of the loop up to it, for each row
+            at which that is another one than at the row before.
+        """
+        numbers = (self.times_s / period_s + _SAME_TICK).astype(int)
+        rows = np.flatnonzero(np.diff(numbers, prepend=-1))
+        return list(zip(rows.tolist(), numbers[rows].tolist(), strict=True))
+
+    def sample(self, period_s: float) -> RecordedMotion:
+        """Returns the rows at which a loop of another tick has one, s."""
+        rows = [row for row, _ in self.find_ticks(period_s)]
+        return RecordedMotion(
+            max(period_s, self.period_s),
+            self.X_WTool[rows],
+            self.V_WTool[rows],
+            self.X_WH[rows],
+            self.V_WH[rows],
+        )
+
 
 def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMotion:
     """Runs a scene in its simulated hand and records how handle and tool move.
 
     Args:
         scene: What to run. The same scene gives the same motion, bit for bit.
-        duration_s: Simulated time, s; one lap of the hand's path, or 5 s of a longer
+        duration_s: Simulated time, s; one lap of the hand's path, or 4 s of a longer
             one, where not given.
 
     Raises:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from drake_haptics.accuracy.built_scenes import build_once
 from drake_haptics.accuracy.figures import TickTimes
-from drake_haptics.analysis.held_scene import build_quietly
 from drake_haptics.scene import Scene
 from drake_haptics.simulation import run
 
@@ -19,7 +19,7 @@ def time_ticks(scene: Scene, duration_s: float) -> TickTimes:
         RunError: The loop diverges.
         KeyboardInterrupt: At Ctrl-C.
     """
-    haptic = build_quietly(scene)
+    haptic = build_once(scene)
     statistics = run(haptic, duration_s)
     if statistics.ticks < round(duration_s / haptic.period_s):
         raise KeyboardInterrupt

@@ -18,9 +18,6 @@ from drake_haptics.simulation import make_simulator
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.replayed_handle import ReplayedHandle
 
-# Ticks at the same time differ by round-off of their numbers.
-_SAME_TICK = 1e-6
-
 
 @dataclass(frozen=True, eq=False)
 class ToolReplay:
@@ -85,17 +82,12 @@ def walk_tool(scene: Scene, motion: RecordedMotion) -> Iterator[ReplayedTick]:
     root = simulator.get_mutable_context()
     tool = haptic.loop.haptic_tool.GetMyMutableContextFromRoot(root)
     states = np.hstack([motion.X_WTool, motion.V_WTool])
-    last = -1
-    for row, time_s in enumerate(motion.times_s):
-        number = int(time_s / haptic.period_s + _SAME_TICK)
-        if number == last:
-            continue
+    for row, number in motion.find_ticks(haptic.period_s):
         if row > 0:
             simulator.AdvanceTo(number * haptic.period_s)
         tool.SetDiscreteState(0, states[row])
         if row == 0:
             simulator.Initialize()
-        last = number
         yield ReplayedTick(row, haptic, root)
 
 

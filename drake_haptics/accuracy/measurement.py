@@ -1,0 +1,85 @@
+"""What is measured of one setting: the tasks of a study."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from drake_haptics.accuracy.built_scenes import build_once
+from drake_haptics.accuracy.closed_loop import (
+    PressedPlace,
+    StableStiffness,
+    find_stable_stiffness,
+    measure_created_energy,
+)
+from drake_haptics.accuracy.figures import Errors
+from drake_haptics.accuracy.native_cost import make_native_part, time_native
+from drake_haptics.accuracy.open_loop import measure_open_loop
+from drake_haptics.accuracy.recorded_motion import RecordedMotion
+from drake_haptics.accuracy.setting import Setting
+from drake_haptics.accuracy.tick_cost import time_ticks
+from drake_haptics.accuracy.truth import Truth
+from drake_haptics.errors import UserError
+from drake_haptics.scene import Scene
+from drake_haptics.simulation import RunError
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """Measures one thing of a setting; for a `run_study`.
+
+    Attributes:
+        scene: As it is.
+        motion: Of its tool.
+        truth: On that motion.
+        place: Where its hand stops to press, for the stable stiffness; None where that
+            is not sought.
+    """
+
+    scene: Scene
+    motion: RecordedMotion
+    truth: Truth
+    place: PressedPlace | None
+
+    def __call__(self, task: dict[str, Any]) -> dict[str, Any]:
+        """Returns what is asked for, or why it cannot be had.
+
+        Args:
+            task: `what` ("errors", "ticks" or "native") and the `setting`; of times
+                also the machine and the number of the repeat.
+        """
+        scene = Setting.from_dict(task["setting"]).apply(self.scene)
+        measure = getattr(self, f"_measure_{task['what']}")
+        try:
+            result: dict[str, Any] = measure(scene)
+        except (UserError, ValueError, RunError) as error:
+            return {"why_not": str(error)}
+        return result
+
+    @property
+    def duration_s(self) -> float:
+        """Of the motion, s."""
+        return len(self.motion) * self.motion.period_s
+
+    def _measure_errors(self, scene: Scene) -> dict[str, Any]:
+        haptic = build_once(scene)
+        stiffness = StableStiffness(None, "not sought")
+        if self.place is not None:
+            stiffness = find_stable_stiffness(scene, self.place)
+        errors = Errors(
+            **asdict(measure_open_loop(scene, self.motion, self.truth)),
+            energy_created_J=measure_created_energy(scene, self.duration_s),
+            stable_stiffness_N_per_m=stiffness.stiffness_N_per_m,
+            stiffness_why_not=stiffness.why_not,
+        )
+        num_objects = sum(len(part.pieces) for part in haptic.environment)
+        pieces = [len(haptic.tool.pieces), num_objects]
+        return {"errors": asdict(errors), "pieces": pieces}
+
+    def _measure_ticks(self, scene: Scene) -> dict[str, Any]:
+        return asdict(time_ticks(scene, self.duration_s))
+
+    def _measure_native(self, scene: Scene) -> dict[str, Any]:
+        haptic = build_once(scene)
+        motion = self.motion.sample(haptic.period_s)
+        return asdict(time_native(make_native_part(haptic), motion))
