@@ -5,6 +5,7 @@
 
 #include "bind.h"
 #include "bind_autodiff_set.h"
+#include "contact_thinning.h"
 #include "shared_stiffness.h"
 
 namespace nb = nanobind;
@@ -43,6 +44,15 @@ void BindClusters(nb::module_& m) {
       },
       "(k k,) derivative of `compression` by the depths.");
   DefDifferentiated(&set, "The `ClusterSet`.");
+  m.def(
+      "thin_contacts",
+      [](const AutoDiffContactSet& contacts, double cell) {
+        AutoDiffContactSet thinned{{}, contacts.num_derivatives};
+        ThinContacts(contacts.set.contacts, cell, &thinned.set.contacts);
+        return thinned;
+      },
+      nb::arg("contacts"), nb::arg("cell"),
+      "The same with derivatives; which contacts stay is fixed.");
   m.def(
       "cluster_contacts",
       [](const AutoDiffContactSet& contacts, double delta, double tolerance) {

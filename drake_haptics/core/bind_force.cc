@@ -6,6 +6,7 @@
 #include "bind.h"
 #include "bind_columns.h"
 #include "clustering.h"
+#include "contact_thinning.h"
 #include "penalty_force.h"
 #include "shared_stiffness.h"
 #include "wrench_model.h"
@@ -64,6 +65,18 @@ void BindClustering(nb::module_& m) {
       "(k, k) derivative of `compression` by the depths tolerance − distance; "
       "symmetric, positive semidefinite.");
   DefFrozenCopy(&set);
+  m.def(
+      "thin_contacts",
+      [](const ContactSet& contacts, double cell) {
+        ContactSet thinned{{}, contacts.query_seconds};
+        ThinContacts(contacts.contacts, cell, &thinned.contacts);
+        return thinned;
+      },
+      nb::arg("contacts"), nb::arg("cell"),
+      "Leaves out contacts that a deeper one of the same object, nearer than "
+      "`cell` (m) and with a normal that differs by less than 45°, stands for. "
+      "It takes over their extents; 0 leaves nothing out.\n\n"
+      "Raises:\n    ValueError: cell < 0.");
   m.def(
       "cluster_contacts",
       [](const ContactSet& contacts, double delta, double tolerance) {
