@@ -726,6 +726,19 @@ class ClusterSet:
     def __copy__(self) -> object: ...
 
 @overload
+def thin_contacts(contacts: ContactSet, cell: float) -> ContactSet:
+    """
+    Leaves out contacts that a deeper one of the same object, nearer than `cell` (m) and with a normal that differs by less than 45°, stands for. It takes over their extents; 0 leaves nothing out.
+
+    Raises:
+        ValueError: cell < 0.
+    """
+
+@overload
+def thin_contacts(contacts: AutoDiffContactSet, cell: float) -> AutoDiffContactSet:
+    """The same with derivatives; which contacts stay is fixed."""
+
+@overload
 def cluster_contacts(contacts: ContactSet, delta: float, tolerance: float) -> ClusterSet:
     """
     Groups contacts nearer than `tolerance` (m) with an octree of leaf size `delta` (m) and represents each group by one contact (paper, 4.2, Eq. 1 to 5). Members weigh `tolerance` − distance.
