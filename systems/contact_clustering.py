@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Literal, get_args, overload
 
+import numpy as np
 from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import Context, InputPort, OutputPort
 
@@ -15,6 +16,7 @@ from drake_haptics._core import (
     ContactSet,
     cluster_contacts,
     share_stiffness,
+    thin_contacts,
 )
 from drake_haptics.systems.differentiable_system import (
     AutoDiffPoint,
@@ -43,11 +45,15 @@ class ContactClustering(DifferentiableSystem):
         name: ContactClustering
         input_ports:
         - contacts
+        - relief (with load shedding)
         output_ports:
         - clusters
 
     `contacts` is a `drake_haptics.ContactSet`, `clusters` a
     `drake_haptics._core.ClusterSet`; both are immutable and in the world frame.
+    `relief` is that of `LoadShedding`: contacts push only below its share of the
+    tolerance, and those that are nearer than its cell to a deeper one along the same
+    direction are left out.
     Under AutoDiffXd they are an `AutoDiffContactSet` and an `AutoDiffClusterSet` of
     `drake_haptics._core`: which contacts are together or push stays.
     """
@@ -57,6 +63,8 @@ class ContactClustering(DifferentiableSystem):
         method: ClusteringMethod,
         tolerance_m: float,
         delta_m: float | None = None,
+        *,
+        sheds_load: bool = False,
     ):
         """Constructs the system.
 
@@ -64,6 +72,7 @@ class ContactClustering(DifferentiableSystem):
             method: "shared" or "octree".
             tolerance_m: The distance t below which contacts push, m.
             delta_m: Cluster size δ of the octree, m.
+            sheds_load: Whether the loop sheds load, and there is a port for that.
 
         Raises:
             ValueError: There is no such method, the tolerance is negative, or δ is
@@ -84,11 +93,12 @@ class ContactClustering(DifferentiableSystem):
         self._delta_m = delta_m
         self._tolerance_m = tolerance_m
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
+        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
         self._clusters = self.DeclareAbstractOutputPort(
             "clusters",
             Value[object],
-            self._calc_clusters,
-            {self._contacts.ticket()},
+            self._calc_clusters if self._relief is None else self._calc_fewer,
+            {self.all_input_ports_ticket()},
         )
 
     @property
@@ -100,26 +110,62 @@ class ContactClustering(DifferentiableSystem):
         """Returns the input `contacts`."""
         return self._contacts
 
+    def get_relief_input_port(self) -> InputPort:
+        """Returns the input `relief`, with load shedding."""
+        return self.GetInputPort("relief")
+
     def get_clusters_output_port(self) -> OutputPort:
         """Returns the output `clusters`."""
         return self._clusters
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffClusterSet:
         """Returns the clusters with their derivatives."""
-        return self._cluster(at["contacts"])
+        if self._relief is None:
+            return self._cluster(at["contacts"], self._tolerance_m)
+        return self._cluster_fewer(at["contacts"], at["relief"].value)
 
     def _calc_clusters(self, context: Context, clusters: AbstractValue) -> None:
-        clusters.set_value(self._cluster(self._contacts.Eval(context)))
+        clusters.set_value(
+            self._cluster(self._contacts.Eval(context), self._tolerance_m)
+        )
+
+    def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:
+        assert self._relief is not None
+        clusters.set_value(
+            self._cluster_fewer(
+                self._contacts.Eval(context), self._relief.Eval(context)
+            )
+        )
 
     @overload
-    def _cluster(self, contacts: ContactSet) -> ClusterSet: ...
+    def _cluster_fewer(
+        self, contacts: ContactSet, relief: np.ndarray
+    ) -> ClusterSet: ...
 
     @overload
-    def _cluster(self, contacts: AutoDiffContactSet) -> AutoDiffClusterSet: ...
+    def _cluster_fewer(
+        self, contacts: AutoDiffContactSet, relief: np.ndarray
+    ) -> AutoDiffClusterSet: ...
+
+    def _cluster_fewer(
+        self, contacts: ContactSet | AutoDiffContactSet, relief: np.ndarray
+    ) -> ClusterSet | AutoDiffClusterSet:
+        _, reach_share, cell_m = relief
+        if cell_m > 0.0:
+            contacts = thin_contacts(contacts, cell_m)
+        return self._cluster(contacts, reach_share * self._tolerance_m)
+
+    @overload
+    def _cluster(self, contacts: ContactSet, tolerance_m: float) -> ClusterSet: ...
+
+    @overload
+    def _cluster(
+        self, contacts: AutoDiffContactSet, tolerance_m: float
+    ) -> AutoDiffClusterSet: ...
 
     def _cluster(
-        self, contacts: ContactSet | AutoDiffContactSet
+        self, contacts: ContactSet | AutoDiffContactSet, tolerance_m: float
     ) -> ClusterSet | AutoDiffClusterSet:
         if self._delta_m is None:
-            return share_stiffness(contacts, self._tolerance_m)
-        return cluster_contacts(contacts, self._delta_m, self._tolerance_m)
+            return share_stiffness(contacts, tolerance_m)
+        return cluster_contacts(contacts, self._delta_m, tolerance_m)

@@ -65,6 +65,42 @@ def test_shared_keeps_each_contact_and_each_object_by_itself(contacts):
         assert pressed == pytest.approx(TOLERANCE - 5e-4)
 
 
+def relieved(contacts, method, reach_share, cell):
+    delta = 5e-3 if method == "octree" else None
+    clustering = ContactClustering(method, TOLERANCE, delta, sheds_load=True)
+    context = clustering.CreateDefaultContext()
+    clustering.GetInputPort("contacts").FixValue(context, Value[object](contacts))
+    clustering.get_relief_input_port().FixValue(context, [2.0, reach_share, cell])
+    return clustering.GetOutputPort("clusters").Eval(context)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_relief_shortens_the_reach_of_contacts(contacts, method):
+    clusters = relieved(contacts, method, 0.5, 0.0)
+    delta = 5e-3 if method == "octree" else None
+    short = evaluate(ContactClustering(method, 0.5 * TOLERANCE, delta), contacts)
+    assert len(short)
+    np.testing.assert_array_equal(clusters.compression, short.compression)
+    # They are 0.5 mm away.
+    assert len(relieved(contacts, method, 0.2, 0.0)) == 0
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_relief_leaves_one_contact_of_many_that_push_alike(contacts, method):
+    clusters = relieved(contacts, method, 1.0, 0.05)
+    assert sorted(clusters.object_index) == [0, 1]
+    np.testing.assert_allclose(clusters.compression, TOLERANCE - 5e-4, atol=1e-12)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_no_relief_changes_nothing(contacts, method):
+    clusters, all_of_them = (
+        relieved(contacts, method, 1.0, 0.0),
+        evaluate(make(method), contacts),
+    )
+    np.testing.assert_array_equal(clusters.compression, all_of_them.compression)
+
+
 def test_nothing_gives_nothing(contacts):
     tool = box_core(0.02, 0.02, 0.02)
     query = ContactQuery(tool, [ContactObject("a", tool, RigidTransform())], TOLERANCE)
