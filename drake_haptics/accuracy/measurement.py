@@ -13,6 +13,7 @@ from drake_haptics.accuracy.closed_loop import (
     measure_created_energy,
 )
 from drake_haptics.accuracy.figures import Errors
+from drake_haptics.accuracy.instruction_count import count_native
 from drake_haptics.accuracy.native_cost import make_native_part, time_native
 from drake_haptics.accuracy.open_loop import measure_open_loop
 from drake_haptics.accuracy.recorded_motion import RecordedMotion
@@ -45,8 +46,8 @@ class Measurement:
         """Returns what is asked for, or why it cannot be had.
 
         Args:
-            task: `what` ("errors", "ticks" or "native") and the `setting`; of times
-                also the machine and the number of the repeat.
+            task: `what` ("errors", "instructions", "native" or "ticks") and the
+                `setting`; of times also the machine and the number of the repeat.
         """
         scene = Setting.from_dict(task["setting"]).apply(self.scene)
         measure = getattr(self, f"_measure_{task['what']}")
@@ -78,6 +79,12 @@ class Measurement:
 
     def _measure_ticks(self, scene: Scene) -> dict[str, Any]:
         return asdict(time_ticks(scene, self.duration_s))
+
+    def _measure_instructions(self, scene: Scene) -> dict[str, Any]:
+        haptic = build_once(scene)
+        motion = self.motion.sample(haptic.period_s)
+        part = make_native_part(haptic)
+        return {"instructions": count_native(part, motion.X_WTool, motion.V_WTool)}
 
     def _measure_native(self, scene: Scene) -> dict[str, Any]:
         haptic = build_once(scene)

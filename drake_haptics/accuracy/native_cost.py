@@ -25,8 +25,8 @@ def make_native_part(haptic: HapticDiagram) -> NativePart:
     damping = [item.material.damping_Ns_per_m for item in items]
     braking_m = 0.0 if effects.braking is None else effects.braking.distance_m
     return NativePart(
-        tool=haptic.tool.core,
-        objects=tuple(part.core for part in haptic.environment),
+        tool=haptic.tool,
+        objects=haptic.environment,
         X_WO=np.array(
             [pose_to_vector(item.pose.to_rigid_transform()) for item in items]
         ),

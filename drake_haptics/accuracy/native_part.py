@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from drake_haptics import _core
+from drake_haptics.decomposition import Decomposition
 
 
 @dataclass(frozen=True, eq=False)
 class NativePart:
-    """What the core is asked in each tick, without Drake.
+    """What the core is asked in each tick, without Drake. Pickles.
 
     Attributes:
         tool: Pieces of the tool.
@@ -27,8 +28,8 @@ class NativePart:
         damping_Ns_per_m: (m,) of each object, N·s/m.
     """
 
-    tool: _core.Decomposition
-    objects: tuple[_core.Decomposition, ...]
+    tool: Decomposition
+    objects: tuple[Decomposition, ...]
     X_WO: np.ndarray
     search_m: float
     tolerance_m: float

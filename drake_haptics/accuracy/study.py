@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import Any
 
 from drake_haptics.accuracy.closed_loop import find_pressed_place
 from drake_haptics.accuracy.figures import AccuracyStudy
@@ -17,12 +19,18 @@ from drake_haptics.accuracy.knobs import (
 from drake_haptics.accuracy.measurement import Measurement
 from drake_haptics.accuracy.recorded_motion import record_motion
 from drake_haptics.accuracy.setting import Setting
-from drake_haptics.accuracy.study_rows import list_timing_tasks, make_row, make_task
+from drake_haptics.accuracy.study_rows import (
+    Task,
+    list_timing_tasks,
+    make_row,
+    make_task,
+)
 from drake_haptics.accuracy.truth import find_truth
 from drake_haptics.analysis.study import run_study
 from drake_haptics.analysis.study_chunk import one_blas_thread
 from drake_haptics.analysis.study_pool import SerialExecutor
 from drake_haptics.bench.machine import describe_machine
+from drake_haptics.bench.valgrind import require_valgrind
 from drake_haptics.scene import Scene
 
 Progress = Callable[[str, float], None]
@@ -31,8 +39,38 @@ Progress = Callable[[str, float], None]
 _REPEATS = 3
 # Of a quick study.
 _QUICK_S = 1.5
-# Shares of all work that is done when a stage begins.
-_TRUTH, _PRESS, _ERRORS, _TIMES = 0.01, 0.03, 0.05, 0.35
+# Shares of all work that are done when something begins.
+_TRUTH, _PRESS = 0.01, 0.03
+# Those of stages, from where to where.
+_ERRORS, _COUNTS, _TIMES = (0.05, 0.3), (0.3, 0.35), (0.35, 1.0)
+
+
+@dataclass(frozen=True)
+class _Stage:
+    """Tasks that are done one after or beside the other.
+
+    Attributes:
+        what: Is done.
+        tasks: Of the `Measurement`.
+        executor: As `run_study` has it.
+        shares: Of all work, when they begin and end.
+    """
+
+    what: str
+    tasks: list[Task]
+    executor: Executor | None
+    shares: tuple[float, float]
+
+    def make_progress(self, report: Progress) -> Callable[[int, int], None]:
+        """Returns what reports how far the tasks are as a share of all work."""
+        begin, end = self.shares
+
+        def progress(done: int, total: int) -> None:
+            if total:
+                share = begin + (end - begin) * done / total
+                report(f"{self.what}: {done} of {total}", share)
+
+        return progress
 
 
 def run_accuracy_study(
@@ -62,71 +100,65 @@ def run_accuracy_study(
         store: File that keeps each result; a call with the same scene and file goes on.
         progress: Called with what is done now and the share of all, in [0, 1].
         quick: One setting per knob and a short motion, without stable stiffnesses.
-        count_instructions: Whether to count the core's instructions, with valgrind.
+        count_instructions: Whether to count the core's instructions, for some ten
+            seconds each.
         stability: Whether to look for the largest stable stiffness of each setting.
 
     Raises:
+        UserError: Instructions are asked for, but valgrind is not installed.
         SceneError: The scene itself cannot be built.
         drake_haptics.simulation.RunError: It diverges.
         KeyboardInterrupt: At Ctrl-C; what is done is in the store.
     """
     report = progress or (lambda what, share: None)
-    report("recording the motion", 0.0)
-    motion = record_motion(scene, _QUICK_S if quick else None)
-    report("finding the truth", _TRUTH)
-    reference = make_reference(scene)
-    truth = find_truth(reference.apply(scene), motion)
-    place = None
-    if stability and not quick:
-        report("looking for the firmest contact", _PRESS)
-        # As in a task: the same bits on any number of cores.
-        with one_blas_thread():
-            place = find_pressed_place(scene)
+    if count_instructions:
+        require_valgrind()
+    measurement = _prepare(scene, report, quick, stability and not quick)
     if settings is None:
         settings = list_few_settings(scene) if quick else list_settings(scene)
     elif AS_IT_IS not in settings:
         settings = (AS_IT_IS, *settings)
-    measurement = Measurement(scene, motion, truth, place)
     machine = describe_machine()
-    stages = [
-        ([make_task("errors", s) for s in settings], executor, "errors", _ERRORS),
-        (
-            list_timing_tasks(settings, 1 if quick else _REPEATS, machine),
-            SerialExecutor(),
-            "times",
-            _TIMES,
-        ),
-    ]
-    tasks, results = [], []
-    for some_tasks, some_executor, what, begin in stages:
-        tasks += some_tasks
-        results += run_study(
+    timing = list_timing_tasks(settings, 1 if quick else _REPEATS, machine)
+    counts = [make_task("instructions", s) for s in settings if count_instructions]
+    done: list[tuple[Task, dict[str, Any]]] = []
+    for stage in (
+        _Stage("errors", [make_task("errors", s) for s in settings], executor, _ERRORS),
+        _Stage("instructions", counts, executor, _COUNTS),
+        # Nothing else runs meanwhile.
+        _Stage("times", timing, SerialExecutor(), _TIMES),
+    ):
+        results = run_study(
             measurement,
-            some_tasks,
-            executor=some_executor,
+            stage.tasks,
+            executor=stage.executor,
             store=store,
-            progress=_make_stage(report, what, begin),
+            progress=stage.make_progress(report),
         )
-    done = list(zip(tasks, results, strict=True))
+        done += zip(stage.tasks, results, strict=True)
     return AccuracyStudy(
         scene=name,
         description=scene.description,
         machine=machine,
-        ticks=len(motion),
-        contact_ticks=truth.num_contact_ticks,
-        reference=reference,
+        ticks=len(measurement.motion),
+        contact_ticks=measurement.truth.num_contact_ticks,
+        reference=make_reference(scene),
         rows=tuple(make_row(setting, done) for setting in settings),
     )
 
 
-def _make_stage(
-    report: Progress, what: str, begin: float
-) -> Callable[[int, int], None]:
-    """Returns what reports the tasks of a stage that begins at a share."""
-    end = 1.0 if begin == _TIMES else _TIMES
-
-    def stage(done: int, total: int) -> None:
-        share = begin + (end - begin) * done / max(total, 1)
-        report(f"{what}: {done} of {total}", share)
-
-    return stage
+def _prepare(
+    scene: Scene, report: Progress, quick: bool, stability: bool
+) -> Measurement:
+    """Finds all that the settings of a scene are compared on."""
+    report("recording the motion", 0.0)
+    motion = record_motion(scene, _QUICK_S if quick else None)
+    report("finding the truth", _TRUTH)
+    truth = find_truth(make_reference(scene).apply(scene), motion)
+    place = None
+    if stability:
+        report("looking for the firmest contact", _PRESS)
+        # As in a task: the same bits on any number of cores.
+        with one_blas_thread():
+            place = find_pressed_place(scene)
+    return Measurement(scene, motion, truth, place)

@@ -46,7 +46,12 @@ def make_row(setting: Setting, done: Sequence[tuple[Task, Mapping[str, Any]]]) -
         setting: Its setting.
         done: All tasks of the study with their results.
     """
-    own: dict[str, list[Mapping[str, Any]]] = {"errors": [], "native": [], "ticks": []}
+    own: dict[str, list[Mapping[str, Any]]] = {
+        "errors": [],
+        "instructions": [],
+        "native": [],
+        "ticks": [],
+    }
     for task, result in done:
         if task["setting"] == setting.to_dict():
             own[task["what"]].append(result)
@@ -67,12 +72,13 @@ def make_row(setting: Setting, done: Sequence[tuple[Task, Mapping[str, Any]]]) -
 
 
 def _make_cost(own: Mapping[str, Sequence[Mapping[str, Any]]]) -> Cost | None:
-    times = [*own["native"], *own["ticks"]]
-    if any("why_not" in result for result in times):
+    counts = own["instructions"]
+    if any("why_not" in result for result in [*own["native"], *own["ticks"], *counts]):
         return None
     return Cost(
         tick=combine([TickTimes(**result) for result in own["ticks"]]),
         native=combine([TickTimes(**result) for result in own["native"]]),
+        instructions=counts[0]["instructions"] if counts else None,
     )
 
 

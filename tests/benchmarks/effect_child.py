@@ -18,9 +18,8 @@ from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
-from valgrind import counted
-
 from drake_haptics import _core
+from drake_haptics.bench.valgrind import counted
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.scene import Effects, Material, Scene, load_scene
 from drake_haptics.scene_library import find_scene

@@ -19,8 +19,8 @@ from pathlib import Path
 
 from effect_child import CORE_CALLS, EFFECTS, TICKS, WARM_UP, make_scene
 from effect_rows import make_rows
-from valgrind import count_instructions
 
+from drake_haptics.bench.valgrind import count_instructions
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.simulation import make_simulator
 

@@ -16,8 +16,7 @@ import time
 from contextlib import ExitStack
 from pathlib import Path
 
-from valgrind import count_instructions, counted
-
+from drake_haptics.bench.valgrind import count_instructions, counted
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene, list_scenes

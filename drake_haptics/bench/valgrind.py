@@ -8,10 +8,26 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+
+from drake_haptics.errors import UserError
+
+
+def require_valgrind() -> None:
+    """Checks that instructions can be counted.
+
+    Raises:
+        UserError: valgrind is not installed.
+    """
+    if shutil.which("valgrind") is None:
+        raise UserError(
+            "instructions are counted with valgrind, which is not installed here:"
+            " install it (apt-get install valgrind), or do without instructions"
+        )
 
 
 def count_instructions(arguments: Sequence[str]) -> int:
