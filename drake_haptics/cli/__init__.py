@@ -38,9 +38,17 @@ _COMMANDS = {
         "drake_haptics.cli.log",
         "Look into, replay, compare and export recorded runs.",
     ),
+    "accuracy": (
+        "drake_haptics.cli.accuracy",
+        "Say what each step of accuracy costs in time, and hold a time budget.",
+    ),
     "bench": (
         "drake_haptics.cli.bench",
         "Measure the contact query on this machine, beside other libraries.",
+    ),
+    "paper": (
+        "drake_haptics.cli.paper",
+        "Make the evaluation of the paper again, and compare.",
     ),
 }
 

@@ -7,11 +7,14 @@ import numpy as np
 from drake_haptics.shapes.surface import Surface
 
 
-def make_sphere() -> Surface:
+def make_sphere(divisions: int = 3) -> Surface:
     """Returns a sphere of radius 40 mm about the origin, as 1280 even triangles.
 
     An icosahedron whose triangles are divided three times: no poles, so the contact
     does not change its character along a path.
+
+    Args:
+        divisions: how often; each makes four triangles of one.
     """
     golden = (1 + np.sqrt(5)) / 2
     vertices = [
@@ -28,7 +31,7 @@ def make_sphere() -> Surface:
             i, j, k = triple
             outwards = np.cross(b - a, c - a) @ a > 0
             triangles.append((i, j, k) if outwards else (i, k, j))
-    for _ in range(3):
+    for _ in range(divisions):
         triangles = _divide(vertices, triangles)
     unit = np.array([v / np.linalg.norm(v) for v in vertices])
     return Surface(np.round(0.040 * unit, 9), np.array(triangles, dtype=np.int32))

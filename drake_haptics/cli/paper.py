@@ -1,0 +1,103 @@
+"""`drake-haptics paper`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import cast
+
+import click
+from rich.console import Console
+from rich.table import Table as RichTable
+
+from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
+from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.paper.evaluation import (
+    PARTS,
+    QUICK,
+    Effort,
+    PaperEvaluation,
+    Part,
+    evaluate_paper,
+)
+from drake_haptics.paper.page import summarize, write_paper_page
+from drake_haptics.paper.report import describe_machine_line, make_sections
+
+_STYLES = {
+    "agrees": "green",
+    "passes": "bold green",
+    "differs": "red",
+    "lacks": "yellow",
+}
+
+
+@click.command()
+@click.argument("parts", nargs=-1, type=click.Choice(PARTS))
+@click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
+@click.option(
+    "--meshes",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    metavar="FOLDER",
+    help="Measure these meshes too, as many as there are (cup_500.obj, ...).",
+)
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, path_type=Path),
+    default=Path("paper.html"),
+    show_default=True,
+    metavar="FILE",
+    callback=require_folder,
+    help="The page; its pictures are written beside it.",
+)
+@json_option
+def paper(
+    parts: tuple[str, ...],
+    quick: bool,
+    meshes: Path | None,
+    out: Path,
+    json_file: str | None,
+) -> None:
+    """Make the evaluation of the paper again, and say where we agree and differ.
+
+    PARTS are table1 (convex pieces), figure11 (time of each tick), figure12 (a pen
+    passes over a sphere) and analysis (section 6.3); all if none is named. Some two
+    minutes. The paper is Kim, Otaduy, Lin, Manocha 2003.
+    """
+    effort = QUICK if quick else Effort()
+    with progress_bar() as show:
+        evaluation = evaluate_paper(
+            cast(tuple[Part, ...], parts) or PARTS, effort, meshes, show
+        )
+    write_paper_page(evaluation, out)
+    if json_file is not None:
+        write_json(evaluation.to_dict(), json_file)
+    if json_file != "-":
+        _print(evaluation, out)
+
+
+def _print(evaluation: PaperEvaluation, out: Path) -> None:
+    console = Console(highlight=False)
+    sections = make_sections(evaluation)
+    for section in sections:
+        console.print(f"[bold]{section.title}[/]")
+        for table in section.tables:
+            shown = RichTable(box=None, title=table.title, title_justify="left")
+            first, *others = table.header
+            shown.add_column(first, no_wrap=True)
+            for heading in others:
+                shown.add_column(heading, justify="right", no_wrap=True)
+            for row in table.rows:
+                shown.add_row(*row)
+            # A wider one is read on the page.
+            if console.measure(shown).maximum <= console.width:
+                console.print(shown)
+                console.print(table.note, style="dim")
+        for statement in section.statements:
+            style = _STYLES[statement.verdict]
+            console.print(f"[{style}]{statement.verdict:>7}[/]  {statement.text}")
+        console.print()
+    console.print(summarize(sections))
+    console.print(describe_machine_line(evaluation), style="dim")
+    console.print(
+        f"Wrote [bold]{out}[/] with all tables, and its pictures beside it.",
+        soft_wrap=True,
+    )

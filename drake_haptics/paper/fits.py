@@ -1,0 +1,68 @@
+"""Straight lines and powers through measured points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class LineFit:
+    """y = intercept + slope x, by least squares.
+
+    Attributes:
+        slope: In y's unit per x's.
+        intercept: In y's unit.
+        r_squared: Share of y's variance that it explains, at most 1.
+    """
+
+    slope: float
+    intercept: float
+    r_squared: float
+
+
+@dataclass(frozen=True)
+class PowerFit:
+    """y = factor x ** exponent, by least squares of the logarithms.
+
+    Attributes:
+        exponent: Below 1 y grows less than in proportion.
+        factor: In y's unit.
+        r_squared: Of the logarithms.
+    """
+
+    exponent: float
+    factor: float
+    r_squared: float
+
+
+def fit_line(x: np.ndarray, y: np.ndarray) -> LineFit:
+    """Fits a line to two points or more.
+
+    Raises:
+        ValueError: There are fewer than two different x.
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    if len(np.unique(x)) < 2:
+        raise ValueError(f"x must have two different values or more, is {x}")
+    design = np.column_stack([x, np.ones_like(x)])
+    (slope, intercept), *_ = np.linalg.lstsq(design, y, rcond=None)
+    left = ((y - slope * x - intercept) ** 2).sum()
+    spread = ((y - y.mean()) ** 2).sum()
+    # A constant is explained whole.
+    r_squared = 1.0 - left / spread if spread > 0.0 else 1.0
+    return LineFit(float(slope), float(intercept), float(r_squared))
+
+
+def fit_power(x: np.ndarray, y: np.ndarray) -> PowerFit:
+    """Fits a power to two points or more.
+
+    Raises:
+        ValueError: A value is not positive, or there are fewer than two different x.
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    if not ((x > 0.0).all() and (y > 0.0).all()):
+        raise ValueError(f"x and y must be positive, are {x} and {y}")
+    line = fit_line(np.log(x), np.log(y))
+    return PowerFit(line.slope, float(np.exp(line.intercept)), line.r_squared)

@@ -1,0 +1,220 @@
+"""Says of each figure whether it agrees with the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from drake_haptics.paper.evaluation import Analysis, Run
+from drake_haptics.paper.force_scaling import ForceScaling
+from drake_haptics.paper.pen_pass import OURS, PenPass
+from drake_haptics.paper.profile_figures import ProfileFigures
+from drake_haptics.paper.published import (
+    CUP_SPOON_CONTACTS,
+    CUP_SPOON_RATE_HZ,
+    DEPTH_SECONDS,
+    FEW_CONTACTS_RATE_HZ,
+    ROOM_OBJECTS,
+    ROOM_TRIANGLES,
+    TOUCHED_OBJECTS,
+)
+from drake_haptics.paper.statement import Statement, Verdict
+from drake_haptics.paper.table1 import ModelFigures
+
+# "Five to fifty times the paper's rate" is a pass.
+_PASSING_RATE = 5.0
+# So much more for depth is "a very small amount of overhead".
+_SMALL_OVERHEAD = 1.25
+# A power below this is "almost constant" over more than two decades.
+_CONSTANT_EXPONENT = 0.2
+_LINEAR_R_SQUARED = 0.95
+# Counts this near to each other are the same.
+_NEAR = 0.02
+# Round-off in a corner that a normal turns over.
+_CORNER_SLACK = 1.02
+
+
+def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:
+    """Returns what Table 1 comes to."""
+    found = [row for row in rows if row.source]
+    fewer = [row for row in found if row.pieces <= row.paper_pieces]
+    more = [row for row in found if row.pieces > row.paper_pieces]
+    statements = []
+    if fewer:
+        statements.append(
+            Statement("passes", f"No more pieces than the paper: {_list_rows(fewer)}.")
+        )
+    if more:
+        statements.append(
+            Statement("differs", f"More pieces than the paper: {_list_rows(more)}.")
+        )
+    for row in rows:
+        if not row.source:
+            text = f"{row.model}: there is no such shape; --meshes FOLDER names one."
+            statements.append(Statement("lacks", text))
+    return statements
+
+
+def _list_rows(rows: Sequence[ModelFigures]) -> str:
+    return "; ".join(
+        f"{row.model} ({row.source}) {row.pieces:,} for {row.paper_pieces:,}"
+        for row in rows
+    )
+
+
+def judge_figure11(runs: Sequence[Run]) -> list[Statement]:
+    """Returns what the runs of Figure 11 come to."""
+    statements = []
+    for run in runs:
+        figures = run.figures
+        statements.append(_judge_rate(figures))
+        if figures.figure == "11-(a)":
+            statements.append(_judge_contacts(figures))
+        if figures.figure == "11-(c)":
+            statements.append(_judge_room(figures))
+        statements += _judge_overhead(figures)
+    return statements
+
+
+def _judge_rate(figures: ProfileFigures) -> Statement:
+    is_cup = figures.figure == "11-(a)"
+    paper_Hz = CUP_SPOON_RATE_HZ if is_cup else FEW_CONTACTS_RATE_HZ
+    times = figures.rate_Hz / paper_Hz
+    said = (
+        "the paper's 500 Hz"
+        if is_cup
+        else "the kilohertz that the paper reaches with few contacts"
+    )
+    verdict: Verdict = "passes" if times >= _PASSING_RATE else "agrees"
+    if times < 1.0:
+        verdict = "differs"
+    return Statement(
+        verdict,
+        f"{figures.name}: 99 of 100 ticks take less than"
+        f" {figures.all_ticks.tick.p99_us:,.0f} µs, which is {figures.rate_Hz:,.0f} Hz,"
+        f" {times:.1f} times {said}; {100.0 * figures.in_time:.2f} % of the ticks hold"
+        " 1 kHz.",
+    )
+
+
+def _judge_contacts(figures: ProfileFigures) -> Statement:
+    most = figures.most_contacts
+    share = most / CUP_SPOON_CONTACTS
+    text = (
+        f"{figures.name}: up to {most} contacts at a time; the paper has up to"
+        f" {CUP_SPOON_CONTACTS}."
+    )
+    return Statement("agrees" if 0.5 <= share <= 2.0 else "differs", text)
+
+
+def _judge_room(figures: ProfileFigures) -> Statement:
+    triangles = figures.triangles[1]
+    is_near = (
+        abs(figures.objects / ROOM_OBJECTS - 1.0) <= _NEAR
+        and abs(triangles / ROOM_TRIANGLES - 1.0) <= _NEAR
+        and figures.most_touched == TOUCHED_OBJECTS
+    )
+    return Statement(
+        "agrees" if is_near else "differs",
+        f"{figures.name}: {figures.objects} objects of {triangles:,} triangles, of"
+        f" which the tool touches {figures.most_touched} at once with up to"
+        f" {figures.most_contacts} contacts; the paper: {ROOM_OBJECTS},"
+        f" {ROOM_TRIANGLES:,} and {TOUCHED_OBJECTS}.",
+    )
+
+
+def _judge_overhead(figures: ProfileFigures) -> list[Statement]:
+    overhead = figures.depth_overhead
+    if overhead is None:
+        return []
+    change = 100.0 * (overhead - 1.0)
+    text = (
+        f"{figures.name}: at the same number of contacts the query takes"
+        f" {abs(change):.0f} % {'more' if change >= 0.0 else 'less'} where objects"
+        " penetrate; the paper: a very small overhead."
+    )
+    return [Statement("agrees" if overhead <= _SMALL_OVERHEAD else "differs", text)]
+
+
+def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
+    """Returns what the passes of the pen come to."""
+    statements = []
+    for passed in passes:
+        ours = passed.smoothness[OURS]
+        on = f"on a sphere of {passed.triangles:,} triangles"
+        crosses = ours.crossing_step_m <= ours.true_distance_step_m
+        statements.append(
+            Statement(
+                "agrees" if crosses else "differs",
+                f"Distance {on}: where the pen goes in or out, a tick changes it by"
+                f" {1e6 * ours.crossing_step_m:.2f} µm beyond the motion, anywhere by"
+                f" {1e6 * ours.distance_step_m:.2f} µm at most; the motion itself by"
+                f" {1e6 * ours.true_distance_step_m:.2f} µm.",
+            )
+        )
+        smooth = ours.normal_step_deg <= _CORNER_SLACK * passed.corner_deg
+        bound = "no more than" if smooth else "more than"
+        statements.append(
+            Statement(
+                "agrees" if smooth else "differs",
+                f"Normal {on}: a tick turns it by {ours.normal_step_deg:.2f}° at most"
+                f" beyond the motion, {bound} the {passed.corner_deg:.2f}° between two"
+                f" faces; the contact point steps by {1e3 * ours.point_step_m:.2f} mm"
+                " at most.",
+            )
+        )
+        statements += [
+            _judge_peer(passed, name) for name in passed.smoothness if name != OURS
+        ]
+    return statements
+
+
+def _judge_peer(passed: PenPass, name: str) -> Statement:
+    ours, theirs = passed.smoothness[OURS], passed.smoothness[name]
+    verdict: Verdict = (
+        "passes" if ours.normal_step_deg <= theirs.normal_step_deg else "differs"
+    )
+    return Statement(
+        verdict,
+        f"For comparison, {name} on {passed.triangles:,} triangles: steps of"
+        f" {theirs.normal_step_deg:.2f}° and {1e6 * theirs.distance_step_m:.2f} µm.",
+    )
+
+
+def judge_analysis(analysis: Analysis) -> list[Statement]:
+    """Returns what section 6.3 comes to."""
+    depths, line = analysis.depths, analysis.pairs.line
+    growth = depths.instruction_growth or depths.growth
+    unit = "instructions" if depths.instruction_growth is not None else "times"
+    rows = depths.rows
+    times = 1e6 * DEPTH_SECONDS / depths.typical_us
+    statements = [
+        Statement(
+            "agrees" if growth.exponent <= _CONSTANT_EXPONENT else "differs",
+            f"Depth over triangles: from {rows[0].triangles} to"
+            f" {rows[-1].triangles:,} the {unit} grow with the power"
+            f" {growth.exponent:.2f} of the triangles; the paper: almost constant.",
+        ),
+        Statement(
+            "passes" if times > 1.0 else "differs",
+            f"One depth: {depths.typical_us:.2f} µs, {times:,.0f} times less than the"
+            " paper's 0.1 ms. Two decades of processors are in that.",
+        ),
+        Statement(
+            "agrees" if line.r_squared >= _LINEAR_R_SQUARED else "differs",
+            f"Query over penetrating pairs: {line.slope:.2f} µs for each, a straight"
+            f" line with R² = {line.r_squared:.3f}; the paper: linear.",
+        ),
+    ]
+    return statements + [_judge_force(forces) for forces in analysis.forces]
+
+
+def _judge_force(forces: ForceScaling) -> Statement:
+    exponent = forces.time_growth.exponent
+    whose = "the paper's clusters" if forces.method == "octree" else "shared stiffness"
+    growth = "sub-linear" if exponent < 1.0 else "not sub-linear"
+    return Statement(
+        "agrees" if exponent < 1.0 else "differs",
+        f"Force over contacts, {whose}: {forces.forces[-1]} forces for"
+        f" {forces.contacts[-1]} contacts, and a time that grows with the power"
+        f" {exponent:.2f} of them: {growth}; the paper: sub-linear.",
+    )
