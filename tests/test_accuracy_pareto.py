@@ -112,3 +112,11 @@ def test_what_was_not_measured_is_not_on_the_front():
     assert find_front(make_study(missing, row)).rows == (row,)
     with pytest.raises(ValueError, match="b was not measured: not installed"):
         get_native_us(missing)
+
+
+def test_effects_are_not_on_the_front():
+    row = make_row("contact.depth", "tracked", 9.0, 9.0, 1.0)
+    off = make_row(
+        "effects.friction", "no friction", 1.0, 1.0, 0.0, effects__friction=None
+    )
+    assert find_front(make_study(row, off)).rows == (row,)

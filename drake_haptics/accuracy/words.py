@@ -17,6 +17,8 @@ from drake_haptics.accuracy.table import format_N, format_us
 
 # Times must differ by this share to be worth a sentence.
 _NOISE = 0.05
+# Of a stiffness that nobody asked for.
+_NOT_SOUGHT = "not sought"
 
 
 def find_scene_row(study: AccuracyStudy) -> Row | None:
@@ -41,7 +43,7 @@ def describe_verdict(study: AccuracyStudy) -> list[str]:
         f" {format_us(tick.p99_us)}), {format_us(scene.cost.native.median_us)} of them"
         " for contact inside the core. Its force is "
         + (
-            f"exact to {format_N(ERROR_FLOOR_N)}."
+            f"the reference's to {format_N(ERROR_FLOOR_N)}."
             if wrong < ERROR_FLOOR_N
             else f"off by {format_N(wrong)} rms, {format_N(scene.errors.force_max_N)}"
             " at most."
@@ -76,6 +78,17 @@ def describe_knees(study: AccuracyStudy, front: Front) -> list[str]:
     return sentences
 
 
+def describe_peers(study: AccuracyStudy) -> list[str]:
+    """Says what other libraries take and how far they differ."""
+    return [
+        f"{peer.library}, {peer.method}: {format_us(peer.native.median_us)} µs, p99"
+        f" {format_us(peer.native.p99_us)}, for"
+        f" {format_N(peer.errors.force_rms_N)} rms"
+        for peer in study.peers
+        if peer.native is not None and peer.errors is not None
+    ]
+
+
 def describe_reference(study: AccuracyStudy) -> str:
     """Says what errors are measured against, and on what motion."""
     return (
@@ -98,12 +111,19 @@ def describe_models(study: AccuracyStudy) -> list[str]:
 def describe_missing(study: AccuracyStudy) -> list[str]:
     """Says what was not measured, and why."""
     rows = [f"{name_setting(row)}: {row.why_not}" for row in study.rows if row.why_not]
+    # Many rows have the same reason.
+    reasons = dict.fromkeys(
+        row.errors.stiffness_why_not
+        for row in study.rows
+        if row.errors is not None
+        and row.errors.stiffness_why_not not in ("", _NOT_SOUGHT)
+    )
     peers = [
         f"{peer.library}, {peer.method}: {peer.why_not}"
         for peer in study.peers
         if peer.why_not
     ]
-    return rows + peers
+    return rows + [f"stable stiffness: {reason}" for reason in reasons] + peers
 
 
 def describe_machine(study: AccuracyStudy) -> str:

@@ -1,0 +1,56 @@
+"""Writes a scene as a file that `load_scene` reads from anywhere."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from pathlib import Path
+
+from pydrake.common.yaml import yaml_dump_typed
+
+import drake_haptics
+from drake_haptics.device_preset import is_preset_file
+from drake_haptics.scene import EnvironmentObject, Scene, Tool
+
+_PACKAGE = Path(drake_haptics.__file__).parent
+# Links of the source tree are where their targets are.
+_SHIPPED = _PACKAGE / "models"
+
+
+def write_scene(scene: Scene, path: Path, comments: Sequence[str] = ()) -> None:
+    """Writes all of a scene, defaults too.
+
+    Meshes and presets that the package ships are named `package://drake_haptics/...`,
+    those below the file's folder relative to it, others by their whole path.
+
+    Args:
+        scene: From `load_scene`, or with such paths.
+        path: Of the file, which is replaced.
+        comments: Lines for people, at its head.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    named = copy.deepcopy(scene)
+    parts: list[Tool | EnvironmentObject] = [named.tool, *named.environment]
+    for part in parts:
+        part.mesh = _name_file(part.mesh, path.absolute().parent)
+    if is_preset_file(named.device.preset):
+        named.device.preset = _name_file(named.device.preset, path.absolute().parent)
+    head = "".join(
+        f"# {line}\n" for comment in comments for line in comment.split("\n")
+    )
+    path.write_text(head + yaml_dump_typed(named), encoding="utf-8")
+
+
+def _name_file(file: str, folder: Path) -> str:
+    """Returns how a file is named in a scene file of a folder."""
+    if file.startswith("package://"):
+        return file
+    whole = Path(file).resolve()
+    if whole.is_relative_to(_SHIPPED.resolve()):
+        rest = whole.relative_to(_SHIPPED.resolve())
+        return f"package://{_PACKAGE.name}/{_SHIPPED.name}/{rest.as_posix()}"
+    if whole.is_relative_to(folder.resolve()):
+        return whole.relative_to(folder.resolve()).as_posix()
+    return str(whole)

@@ -1,0 +1,180 @@
+"""`drake-haptics accuracy`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+
+from drake_haptics.accuracy.budget import RUNS, BudgetChoice, choose_setting
+from drake_haptics.accuracy.budget_words import describe_file, to_budget_data
+from drake_haptics.accuracy.figures import AccuracyStudy
+from drake_haptics.accuracy.fresh_run import measure_p99
+from drake_haptics.accuracy.knobs import list_settings
+from drake_haptics.accuracy.one_setting import apply_checked, parse_setting
+from drake_haptics.accuracy.page import check_page_path, write_accuracy_page
+from drake_haptics.accuracy.scene_file import write_scene
+from drake_haptics.accuracy.setting import Setting
+from drake_haptics.accuracy.study import run_accuracy_study
+from drake_haptics.accuracy.study_json import to_json_data
+from drake_haptics.analysis.study_error import StudyError
+from drake_haptics.cli.accuracy_output import make_console, print_choice, print_study
+from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
+from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.errors import UserError
+from drake_haptics.scene import Scene, load_scene
+from drake_haptics.scene_library import find_scene
+from drake_haptics.simulation import RunError
+
+_FILE: dict[str, Any] = {
+    "type": click.Path(dir_okay=False, path_type=Path),
+    "metavar": "FILE",
+    "callback": require_folder,
+}
+
+
+@click.command()
+@click.argument("scene", default="cup_spoon")
+@click.option(
+    "--quick", is_flag=True, help="Measure less: one setting of each knob, once."
+)
+@click.option(
+    "--only",
+    "words",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Measure this setting alone, such as contact.tolerance_m=0.0005; once more for"
+    " each further key of it. `scene` is the scene as it is. Writes no page.",
+)
+@click.option(
+    "--instructions", is_flag=True, help="Also count the core's, with valgrind."
+)
+@click.option(
+    "--out",
+    **_FILE,
+    help="The page; its picture is written beside it.  [default: SCENE-accuracy.html]",
+)
+@click.option("--store", **_FILE, help="Keep results here, and go on from them.")
+@click.option(
+    "--budget-us",
+    type=click.FloatRange(0, min_open=True),
+    metavar="N",
+    help="Instead of a page: pick the most accurate setting whose ticks take at most N"
+    " µs, 99th percentile, and write it as a scene file.",
+)
+@click.option("--write", **_FILE, help="That file.  [default: SCENE-N-us.yaml]")
+@json_option
+def accuracy(
+    scene: str,
+    quick: bool,
+    words: tuple[str, ...],
+    instructions: bool,
+    out: Path | None,
+    store: Path | None,
+    budget_us: float | None,
+    write: Path | None,
+    json_file: str | None,
+) -> None:
+    """Say what each step of accuracy costs in time, on this machine.
+
+    SCENE is the name of a shipped scene (see `drake-haptics scenes`) or a scene file;
+    cup_spoon if not given. The hand moves along its path once. Every setting of every
+    knob answers the same motion, is compared with exact contacts, and is timed. Prints
+    the price list and writes a page with a picture. Some minutes.
+
+    Exits with 1 if something given cannot be used or no setting holds the budget.
+    """
+    if budget_us is None and write is not None:
+        raise click.UsageError("--write needs --budget-us")
+    if budget_us is not None and (out is not None or words):
+        raise click.UsageError("--budget-us goes with neither --out nor --only")
+    chosen, name = load_scene(find_scene(scene)), Path(scene).stem
+    page = out or Path(f"{name}-accuracy.html")
+    settings = _find_settings(chosen, words)
+
+    def measure(show: Callable[[str, float], None]) -> AccuracyStudy:
+        return run_accuracy_study(
+            chosen,
+            name,
+            settings=settings,
+            store=store,
+            progress=show,
+            quick=quick,
+            count_instructions=instructions,
+        )
+
+    with _errors_in_a_line(), progress_bar() as show:
+        if budget_us is None:
+            check_page_path(page)
+            study = measure(show)
+        else:
+            choice = choose_setting(
+                chosen,
+                budget_us,
+                make_study=lambda: measure(show),
+                measure_p99=measure_p99,
+                progress=show,
+                runs=1 if quick else RUNS,
+            )
+    if budget_us is None:
+        _show_study(study, scene, None if words else page, json_file)
+    else:
+        file = write or Path(f"{name}-{budget_us:g}-us.yaml")
+        _show_choice(choice, chosen, name, file, json_file)
+
+
+@contextmanager
+def _errors_in_a_line() -> Iterator[None]:
+    """Turns what may go wrong while it is measured into messages."""
+    try:
+        yield
+    except (ValueError, RunError, StudyError) as error:
+        raise UserError(str(error)) from error
+    except KeyboardInterrupt as stop:
+        # What a study was asked to keep is kept; its words say how to go on.
+        raise click.ClickException(str(stop) or "stopped") from stop
+
+
+def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None:
+    """Returns the setting that --only names; None for those of all knobs."""
+    if not words:
+        return None
+    setting = parse_setting(words, list_settings(scene))
+    apply_checked(setting, scene)
+    return [setting]
+
+
+def _show_study(
+    study: AccuracyStudy, scene: str, page: Path | None, json_file: str | None
+) -> None:
+    """Prints and writes the price list."""
+    if page is not None:
+        write_accuracy_page(study, page, scene)
+    if json_file is not None:
+        write_json(to_json_data(study), json_file)
+    if json_file == "-":
+        return
+    console = make_console()
+    print_study(console, study)
+    if page is not None:
+        console.print(f"Wrote {page} and {page.with_suffix('.png')}.", soft_wrap=True)
+
+
+def _show_choice(
+    choice: BudgetChoice, scene: Scene, name: str, file: Path, json_file: str | None
+) -> None:
+    """Prints what came of a budget, and writes the scene that holds it."""
+    if choice.holds:
+        write_scene(choice.scene, file, describe_file(choice, scene, name))
+    if json_file is not None:
+        write_json(to_budget_data(choice, scene), json_file)
+    if json_file != "-":
+        console = make_console()
+        print_choice(console, choice, scene, name)
+        if choice.holds:
+            console.print(f"Wrote {file}: drake-haptics run {file}", soft_wrap=True)
+    if not choice.holds:
+        raise click.exceptions.Exit(1)
