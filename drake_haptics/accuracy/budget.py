@@ -15,6 +15,8 @@ from drake_haptics.scene import Scene
 # A budget is kept if later runs keep it within this factor.
 PROMISE = 1.1
 RUNS = 5
+# Something else may disturb one in so many runs.
+_SPARED = 5
 
 
 @dataclass(frozen=True)
@@ -44,11 +46,10 @@ class Trial:
     def holds(self, budget_us: float) -> bool:
         """Whether it keeps a budget, and will in later runs but for 10 %.
 
-        The median of the runs must keep it, and all of them but the worst must within
-        10 %.
+        The median of the runs must keep it, and four fifths of them must within 10 %.
         """
-        nearly_worst = sorted(self.p99_us)[-2:][0]
-        return self.middle_us <= budget_us and nearly_worst <= PROMISE * budget_us
+        nearly_worst_us = sorted(self.p99_us)[-1 - len(self.p99_us) // _SPARED]
+        return self.middle_us <= budget_us and nearly_worst_us <= PROMISE * budget_us
 
 
 @dataclass(frozen=True)
@@ -158,7 +159,8 @@ def _try_out(
 ) -> Trial:
     """Runs a combination and the scene in turns; what cannot be run holds nothing."""
     changed = combination.setting.apply(scene)
-    own, scenes = [], []
+    own: list[float] = []
+    scenes: list[float] = []
     for _ in range(runs):
         try:
             own.append(measure_p99(changed))

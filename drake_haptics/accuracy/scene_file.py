@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from pydrake.common.yaml import yaml_dump_typed
+from pydrake.multibody.parsing import PackageMap
 
 import drake_haptics
 from drake_haptics.device_preset import is_preset_file
@@ -20,8 +21,8 @@ _SHIPPED = _PACKAGE / "models"
 def write_scene(scene: Scene, path: Path, comments: Sequence[str] = ()) -> None:
     """Writes all of a scene, defaults too.
 
-    Meshes and presets that the package ships are named `package://drake_haptics/...`,
-    those below the file's folder relative to it, others by their whole path.
+    Meshes and presets of this package and of Drake are named `package://...`, those
+    below the file's folder relative to it, others by their whole path.
 
     Args:
         scene: From `load_scene`, or with such paths.
@@ -48,9 +49,14 @@ def _name_file(file: str, folder: Path) -> str:
     if file.startswith("package://"):
         return file
     whole = Path(file).resolve()
-    if whole.is_relative_to(_SHIPPED.resolve()):
-        rest = whole.relative_to(_SHIPPED.resolve())
-        return f"package://{_PACKAGE.name}/{_SHIPPED.name}/{rest.as_posix()}"
-    if whole.is_relative_to(folder.resolve()):
-        return whole.relative_to(folder.resolve()).as_posix()
+    for place, name in _list_places(folder):
+        if whole.is_relative_to(place.resolve()):
+            return name + whole.relative_to(place.resolve()).as_posix()
     return str(whole)
+
+
+def _list_places(folder: Path) -> Iterator[tuple[Path, str]]:
+    """Yields folders with what a file in them is named by."""
+    yield _SHIPPED, f"package://{_PACKAGE.name}/{_SHIPPED.name}/"
+    yield Path(PackageMap().GetPath("drake")), "package://drake/"
+    yield folder, ""

@@ -99,13 +99,13 @@ def describe_reference(study: AccuracyStudy) -> str:
 
 
 def describe_models(study: AccuracyStudy) -> list[str]:
-    """Says which knobs are differences of model, each with what differs."""
-    words = {
-        row.setting.knob: change
-        for row in study.rows
-        if (change := find_model_change(row.setting))
-    }
-    return [f"{knob}: {change}" for knob, change in words.items()]
+    """Says which knobs are differences of model, with what differs."""
+    knobs: dict[str, list[str]] = {}
+    for row in study.rows:
+        change = find_model_change(row.setting)
+        if change and row.setting.knob not in knobs.setdefault(change, []):
+            knobs[change].append(row.setting.knob)
+    return [f"{', '.join(names)}: {change}" for change, names in knobs.items()]
 
 
 def describe_missing(study: AccuracyStudy) -> list[str]:
