@@ -14,7 +14,7 @@ from drake_haptics.accuracy.knobs import (
     make_reference,
 )
 from drake_haptics.accuracy.not_knobs import NOT_KNOBS
-from drake_haptics.scene import Scene, load_scene
+from drake_haptics.scene import Gravity, Scene, load_scene
 from drake_haptics.scene_check import check_values
 from drake_haptics.scene_library import find_scene, list_scenes
 
@@ -66,15 +66,22 @@ def test_no_line_is_of_a_key_that_is_gone():
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_every_setting_is_another_possible_scene(name):
+def test_every_setting_is_a_possible_scene(name):
     scene = _load(name)
-    settings = list_settings(scene)
-    assert settings[0] == AS_IT_IS and settings[0].apply(scene) == scene
-    changed = [setting.apply(scene) for setting in settings]
-    for one in changed:
-        check_values(one)
-    for i, one in enumerate(changed):
-        assert all(one != other for other in changed[:i]), settings[i]
+    assert list_settings(scene)[0] == AS_IT_IS
+    for setting in list_settings(scene):
+        check_values(setting.apply(scene))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_knob_has_the_scenes_own_setting_once(name):
+    scene = _load(name)
+    for knob in KNOBS:
+        changed = [setting.apply(scene) for setting in knob.list_settings(scene)]
+        for i, one in enumerate(changed):
+            assert all(one != other for other in changed[:i]), knob.keys
+        if changed:
+            assert changed.count(scene) == 1, knob.keys
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -87,14 +94,32 @@ def test_every_knob_sets_its_own_keys_only(name):
             assert dataclasses.asdict(scene) == before
 
 
-def test_the_scene_has_a_setting_of_every_effect():
-    changed = {s.knob: s for s in list_settings(_load("rubbed_sphere"))}
-    for name in ("shading", "friction", "braking", "gravity", "passivity"):
-        assert changed[f"effects.{name}"].label == f"no {name}"
-        assert changed[f"effects.{name}"].changes[f"effects.{name}"] is None
-    added = {s.knob: s for s in list_settings(_load("cup_spoon"))}
-    applied = added["effects.gravity"].apply(_load("cup_spoon"))
-    assert applied.effects.gravity.acceleration_m_per_s2 == [0.0, 0.0, -9.81]
+def test_values_of_ones_own_are_among_the_settings():
+    scene = _load("cup_spoon")
+    scene.device.rate_hz = 800.0
+    scene.contact.clustering, scene.contact.cluster_size_m = "octree", 7e-3
+    scene.contact.tolerance_m = 0.0
+    scene.effects.gravity = Gravity([0.0, 1.0, -3.0])
+    for knob in KNOBS:
+        settings = knob.list_settings(scene)
+        if settings:
+            assert [s.apply(scene) for s in settings].count(scene) == 1, knob.keys
+    rates = [s.label for s in list_settings(scene) if s.knob == "device.rate_hz"]
+    assert rates == ["2000 Hz", "1000 Hz", "800 Hz", "500 Hz", "250 Hz"]
+
+
+@pytest.mark.parametrize("name", ["rubbed_sphere", "cup_spoon"])
+def test_an_effect_is_there_and_not_there(name):
+    scene = _load(name)
+    for effect in ("shading", "friction", "braking", "gravity", "passivity"):
+        with_it, without = (
+            setting.apply(scene)
+            for setting in list_settings(scene)
+            if setting.knob == f"effects.{effect}"
+        )
+        assert getattr(without.effects, effect) is None
+        assert getattr(with_it.effects, effect) is not None
+        check_values(without)
 
 
 def test_labels_have_values_with_units():

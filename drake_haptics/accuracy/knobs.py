@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.util import find_spec
-from typing import Any
+from functools import partial
 
+from drake_haptics.accuracy.contact_knobs import (
+    list_clusterings,
+    list_depths,
+    list_effect,
+    list_query_rates,
+    list_rates,
+    list_tolerances,
+    list_walk_steps,
+)
+from drake_haptics.accuracy.mesh_knobs import (
+    list_chord_errors,
+    list_decompositions,
+    list_triangle_counts,
+)
 from drake_haptics.accuracy.setting import Setting
-from drake_haptics.scene import Scene
-
-# Lengths are chosen in relation to the tolerance, or to this where a scene has none.
-_LENGTH_M = 1e-3
-_TOLERANCES = (0.0, 0.25, 0.5, 2.0, 4.0)
-_CLUSTERS = (1.0, 4.0, 16.0)
-_RATES_HZ = (250.0, 500.0, 1000.0, 2000.0)
-_EFFECTS = ("shading", "friction", "braking", "gravity", "passivity")
+from drake_haptics.scene import EnvironmentObject, Scene
 
 # The scene as it is.
 AS_IT_IS = Setting("scene", "as it is")
+_EFFECTS = ("shading", "friction", "braking", "gravity", "passivity")
 
 
 @dataclass(frozen=True)
@@ -27,7 +34,8 @@ class Knob:
 
     Attributes:
         keys: Of the scene that it sets.
-        list_settings: Its settings for a scene, from accurate to fast.
+        list_settings: Its settings for a scene, from accurate to fast. The one that the
+            scene has is among them.
     """
 
     keys: tuple[str, ...]
@@ -35,104 +43,73 @@ class Knob:
 
 
 def list_settings(scene: Scene) -> tuple[Setting, ...]:
-    """Returns the scene as it is and then each setting of each knob that changes it."""
+    """Returns the scene as it is, and then all settings of each knob in their order."""
     settings = [AS_IT_IS]
     for knob in KNOBS:
-        settings += [
-            setting
-            for setting in knob.list_settings(scene)
-            if setting.apply(scene) != scene
-        ]
+        settings += knob.list_settings(scene)
     return tuple(settings)
 
 
 def list_few_settings(scene: Scene) -> tuple[Setting, ...]:
-    """Returns the scene as it is and of each knob the fastest setting."""
-    last = {setting.knob: setting for setting in list_settings(scene)}
-    return tuple(last.values())
+    """Returns the scene as it is, and of each knob the fastest setting but its own."""
+    fastest = {
+        setting.knob: setting
+        for setting in list_settings(scene)
+        if setting == AS_IT_IS or setting.apply(scene) != scene
+    }
+    return tuple(fastest.values())
 
 
 def make_reference(scene: Scene) -> Setting:
     """Returns the finest exact setting: what wrenches are compared with.
 
-    Tolerance, gains, effects and depth stay the scene's.
+    Tolerance, gains, effects and the kind of depth stay the scene's.
     """
-    changes = {"tool.decomposition": "surface", "environment.decomposition": "surface"}
+    changes = {
+        "tool.decomposition": "surface",
+        "environment.decomposition": "surface",
+    }
     return Setting("reference", "all triangles in exact pieces, every tick", changes)
 
 
-def _list_decompositions(scene: Scene, where: str) -> list[Setting]:
-    methods = {"surface": "exact pieces", "coacd": "CoACD's pieces", "hull": "one hull"}
-    if find_spec("coacd") is None:
-        del methods["coacd"]
-    key = f"{where}.decomposition"
-    return [Setting(key, label, {key: name}) for name, label in methods.items()]
+def _mesh_knob(
+    where: str, names: tuple[str, ...], list_some: Callable[[Scene, str], list[Setting]]
+) -> Knob:
+    keys = tuple(f"{where}.{name}" for name in names)
+    return Knob(keys, lambda scene: list_some(scene, where))
 
 
-def _list_tolerances(scene: Scene) -> list[Setting]:
-    key, base_m = "contact.tolerance_m", scene.contact.tolerance_m or _LENGTH_M
-    return [
-        Setting(key, format_length(share * base_m), {key: share * base_m})
-        for share in reversed(_TOLERANCES)
-    ]
+def _is_there(key: str) -> bool:
+    # GUARD: until all keys are in scene.py.
+    part: object = Scene(environment=[EnvironmentObject()])
+    *path, name = key.split(".")
+    for step in path:
+        part = getattr(part, step)
+        part = part[0] if isinstance(part, list) else part
+    return hasattr(part, name)
 
 
-def _list_clusterings(scene: Scene) -> list[Setting]:
-    knob, base_m = "contact.clustering", scene.contact.tolerance_m or _LENGTH_M
-    shared: Mapping[str, Any] = {knob: "shared", "contact.cluster_size_m": None}
-    return [
-        Setting(knob, "shared", shared),
-        *(
-            Setting(
-                knob,
-                f"octree of {format_length(factor * base_m)}",
-                {knob: "octree", "contact.cluster_size_m": factor * base_m},
-            )
-            for factor in _CLUSTERS
-        ),
-    ]
+_ALL_KNOBS: tuple[Knob, ...] = (
+    Knob(("contact.depth",), list_depths),
+    Knob(("contact.max_walk_steps",), list_walk_steps),
+    *(
+        _mesh_knob(where, names, list_some)
+        for names, list_some in (
+            (("decomposition", "decomposition_error_m"), list_decompositions),
+            (("max_triangles",), list_triangle_counts),
+            (("chord_error_m",), list_chord_errors),
+        )
+        for where in ("tool", "environment")
+    ),
+    Knob(("contact.tolerance_m",), list_tolerances),
+    Knob(("contact.clustering", "contact.cluster_size_m"), list_clusterings),
+    *(Knob((f"effects.{name}",), partial(list_effect, name=name)) for name in _EFFECTS),
+    Knob(("contact.query_rate_hz",), list_query_rates),
+    Knob(("device.rate_hz",), list_rates),
+)
 
-
-def _list_effect(scene: Scene, name: str) -> list[Setting]:
-    key = f"effects.{name}"
-    if getattr(scene.effects, name) is None:
-        return [Setting(key, f"with {name}", {key: {}})]
-    changes: dict[str, Any] = {key: None}
-    # What a material says of an effect must go with it.
-    of_material = {"shading": "shading", "friction": "friction_coefficient"}
-    if name in of_material:
-        changes[f"environment.material.{of_material[name]}"] = None
-    return [Setting(key, f"no {name}", changes)]
-
-
-def _list_rates(scene: Scene) -> list[Setting]:
-    key = "device.rate_hz"
-    return [
-        Setting(key, f"{rate_hz:g} Hz", {key: rate_hz})
-        for rate_hz in reversed(_RATES_HZ)
-    ]
-
-
-def format_length(length_m: float) -> str:
-    """Returns a length in mm, in few digits."""
-    return f"{1e3 * length_m:.3g} mm"
-
-
-def _decomposition_knob(where: str) -> Knob:
-    return Knob(
-        (f"{where}.decomposition",), lambda scene: _list_decompositions(scene, where)
-    )
-
-
-def _effect_knob(name: str) -> Knob:
-    return Knob((f"effects.{name}",), lambda scene: _list_effect(scene, name))
-
-
-KNOBS: tuple[Knob, ...] = (
-    _decomposition_knob("tool"),
-    _decomposition_knob("environment"),
-    Knob(("contact.tolerance_m",), _list_tolerances),
-    Knob(("contact.clustering", "contact.cluster_size_m"), _list_clusterings),
-    *map(_effect_knob, _EFFECTS),
-    Knob(("device.rate_hz",), _list_rates),
+KNOBS = tuple(
+    Knob(tuple(filter(_is_there, knob.keys)), knob.list_settings)
+    for knob in _ALL_KNOBS
+    if _is_there(knob.keys[0])
 )

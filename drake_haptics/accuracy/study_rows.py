@@ -39,11 +39,18 @@ def list_timing_tasks(
     return tasks
 
 
-def make_row(setting: Setting, done: Sequence[tuple[Task, Mapping[str, Any]]]) -> Row:
+def make_row(
+    setting: Setting,
+    measured: Setting,
+    is_scene: bool,
+    done: Sequence[tuple[Task, Mapping[str, Any]]],
+) -> Row:
     """Returns the row of a setting.
 
     Args:
         setting: Its setting.
+        measured: The setting that was measured and makes the same scene.
+        is_scene: Whether that is the scene as it is.
         done: All tasks of the study with their results.
     """
     own: dict[str, list[Mapping[str, Any]]] = {
@@ -53,7 +60,7 @@ def make_row(setting: Setting, done: Sequence[tuple[Task, Mapping[str, Any]]]) -
         "ticks": [],
     }
     for task, result in done:
-        if task["setting"] == setting.to_dict():
+        if task["setting"] == measured.to_dict():
             own[task["what"]].append(result)
     reasons = [
         result["why_not"]
@@ -63,7 +70,7 @@ def make_row(setting: Setting, done: Sequence[tuple[Task, Mapping[str, Any]]]) -
     ]
     return Row(
         setting=setting,
-        is_scene=not setting.changes,
+        is_scene=is_scene,
         cost=_make_cost(own),
         errors=_make_errors(own["errors"]),
         pieces=_read_pieces(own["errors"]),

@@ -1,0 +1,80 @@
+"""Settings of how exactly the shapes of tool and objects are taken."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.util import find_spec
+from typing import Any
+
+from drake_haptics.accuracy.contact_knobs import format_length
+from drake_haptics.accuracy.setting import Setting
+from drake_haptics.mesh import load_mesh
+from drake_haptics.model_file import is_model_file, load_model_mesh
+from drake_haptics.scene import EnvironmentObject, Scene, Tool
+
+# Shares of a mesh's triangles; fewer than this many are no shape any more.
+_TRIANGLES = (2, 4, 8)
+_LEAST_TRIANGLES = 20
+_MERGED_M = (1e-4, 3e-4, 1e-3)
+_CHORDS_M = (2.5e-5, 1e-4, 4e-4, 1.6e-3)
+
+
+def list_decompositions(scene: Scene, where: str) -> list[Setting]:
+    """Returns ways to cut a mesh, those that are installed.
+
+    Args:
+        scene: Has the meshes.
+        where: `tool`, or `environment` for all objects.
+    """
+    key, error = f"{where}.decomposition", f"{where}.decomposition_error_m"
+    words = {"surface": "exact pieces", "coacd": "CoACD's pieces", "hull": "one hull"}
+    if find_spec("coacd") is None:
+        del words["coacd"]
+    methods = [
+        Setting(key, label, {key: name, error: None}) for name, label in words.items()
+    ]
+    merged = [
+        Setting(key, f"merged within {format_length(m)}", {key: "merged", error: m})
+        for m in _MERGED_M
+    ]
+    if not hasattr(scene.tool, "decomposition_error_m"):  # GUARD
+        return [Setting(key, s.label, {key: s.changes[key]}) for s in methods]
+    return [methods[0], *merged, *methods[1:]]
+
+
+def list_triangle_counts(scene: Scene, where: str) -> list[Setting]:
+    """Returns decimations, of meshes that have triangles to spare."""
+    key = f"{where}.max_triangles"
+    largest = max(_count_triangles(part) for part in _find_parts(scene, where))
+    counts = [largest // n for n in _TRIANGLES if largest // n >= _LEAST_TRIANGLES]
+    return [
+        Setting(key, f"all of {largest} triangles", {key: None}),
+        *(Setting(key, f"{count} triangles", {key: count}) for count in counts),
+    ]
+
+
+def list_chord_errors(scene: Scene, where: str) -> list[Setting]:
+    """Returns how well polytopes follow round shapes, where there are any."""
+    key = f"{where}.chord_error_m"
+    if not any(_is_round(part) for part in _find_parts(scene, where)):
+        return []
+    return [Setting(key, format_length(m), {key: m}) for m in _CHORDS_M]
+
+
+def _find_parts(scene: Scene, where: str) -> Sequence[Tool | EnvironmentObject]:
+    return [scene.tool] if where == "tool" else scene.environment
+
+
+def _count_triangles(part: Tool | EnvironmentObject, **how: Any) -> int:
+    load = load_model_mesh if is_model_file(part.mesh) else load_mesh
+    return len(load(part.mesh, scale=part.scale, **how).triangles)
+
+
+def _is_round(part: Tool | EnvironmentObject) -> bool:
+    """Whether a part has shapes that a finer polytope follows better."""
+    if not is_model_file(part.mesh):
+        return False
+    fine, coarse = _CHORDS_M[0], _CHORDS_M[-1]
+    return _count_triangles(part, chord_error_m=fine) > _count_triangles(
+        part, chord_error_m=coarse
+    )
