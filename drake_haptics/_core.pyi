@@ -1928,3 +1928,38 @@ def handle_slopes(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order=
     Returns:
         (72,): K then B by rows, at Ho in W; symmetric, no negative eigenvalue. The wrench is F − K δ − B ΔV.
     """
+
+def run_tool_loop(tool: Decomposition, objects: Sequence[Decomposition], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')], tolerance: float, dynamics: RigidToolDynamics, gains: CouplingGains, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], stiffness: float, damping: float, h: float, handle: Annotated[NDArray[numpy.float64], dict(shape=(None, 13), order='C')], start: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, 13), order='C')], Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]]:
+    """
+    What a haptic loop without effects computes, tick after tick, without Drake and without the GIL: query, shared stiffness, penalty force, coupling, and the tool's implicit step.
+
+    Args:
+        tool, objects: their pieces; the objects rest.
+        q_WO: (m, 7) poses [qw qx qy qz x y z] of the objects.
+        tolerance: contacts up to this distance push, m.
+        dynamics, gains, q_HT: of the tool and its coupling.
+        stiffness, damping: of every contact, N/m and N·s/m.
+        h: the tick, s.
+        handle: (n, 13) pose (7) and spatial velocity (6) of the handle at each tick.
+        start: (13,) the same of the tool before the first tick.
+
+    Returns:
+        The tool's state (n, 13) after each tick; contacts (n,) and the smallest distance (n,), m, at its beginning, the tolerance where there is none; and the time (n,) that it took, s.
+
+    Raises:
+        ValueError: poses or gains are out of range.
+    """
+
+def contact_set(distance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], nhat_BA_W: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], p_WCa: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], p_WCb: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], object_index: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')]) -> ContactSet:
+    """
+    Contacts that another library found, for the laws of this one. They have no extent and no features.
+
+    Args:
+        distance: (n,) signed distances, m.
+        nhat_BA_W: (n, 3) unit normals out of the object into the tool.
+        p_WCa, p_WCb: (n, 3) witness points on the tool and on the object, m.
+        object_index: (n,) int32, in ascending order.
+
+    Raises:
+        ValueError: the columns do not match or are not ordered.
+    """

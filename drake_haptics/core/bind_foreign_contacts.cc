@@ -1,0 +1,57 @@
+#include <nanobind/eigen/dense.h>
+
+#include <stdexcept>
+
+#include "bind.h"
+#include "contact.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+ContactSet ToContactSet(const Eigen::VectorXd& distance, const Rows3& nhat_BA_W,
+                        const Rows3& p_WCa, const Rows3& p_WCb,
+                        const Eigen::VectorXi& object_index) {
+  const Eigen::Index n = distance.size();
+  if (nhat_BA_W.rows() != n || p_WCa.rows() != n || p_WCb.rows() != n ||
+      object_index.size() != n) {
+    throw std::invalid_argument("all columns must have one row for a contact");
+  }
+  ContactSet set;
+  set.contacts.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (i > 0 && object_index[i] < object_index[i - 1]) {
+      throw std::invalid_argument("contacts must be ordered by object_index");
+    }
+    Contact& contact = set.contacts[i];
+    contact.distance = distance[i];
+    contact.nhat_BA_W = nhat_BA_W.row(i);
+    contact.p_WCa = p_WCa.row(i);
+    contact.p_WCb = p_WCb.row(i);
+    contact.p_WC = (contact.p_WCa + contact.p_WCb) / 2;
+    contact.object = object_index[i];
+  }
+  return set;
+}
+
+}  // namespace
+
+void BindForeignContacts(nb::module_& m) {
+  m.def("contact_set", &ToContactSet, nb::arg("distance"), nb::arg("nhat_BA_W"),
+        nb::arg("p_WCa"), nb::arg("p_WCb"), nb::arg("object_index"),
+        "Contacts that another library found, for the laws of this one. They "
+        "have no extent and no features.\n\n"
+        "Args:\n"
+        "    distance: (n,) signed distances, m.\n"
+        "    nhat_BA_W: (n, 3) unit normals out of the object into the tool.\n"
+        "    p_WCa, p_WCb: (n, 3) witness points on the tool and on the "
+        "object, m.\n"
+        "    object_index: (n,) int32, in ascending order.\n\n"
+        "Raises:\n    ValueError: the columns do not match or are not "
+        "ordered.");
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,65 @@
+"""Contacts of another library under this package's laws."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drake_haptics import _core
+
+_TOLERANCE_M = 1e-3
+
+
+def _columns(distance: list[float], normals: list[list[float]]) -> dict[str, Any]:
+    n = np.array(normals, dtype=float)
+    p_WCb = np.arange(3.0 * len(distance)).reshape(-1, 3)
+    return {
+        "distance": np.array(distance),
+        "nhat_BA_W": n,
+        "p_WCa": p_WCb + np.array(distance)[:, None] * n,
+        "p_WCb": p_WCb,
+        "object_index": np.zeros(len(distance), dtype=np.int32),
+    }
+
+
+def test_columns_go_in_as_they_come_out() -> None:
+    columns = _columns([-1e-4, 5e-4], [[0, 0, 1], [1, 0, 0]])
+    contacts = _core.contact_set(**columns)
+    for name, column in columns.items():
+        np.testing.assert_array_equal(getattr(contacts, name), column)
+    middle = (columns["p_WCa"] + columns["p_WCb"]) / 2
+    np.testing.assert_allclose(contacts.p_WC, middle, rtol=0, atol=1e-15)
+
+
+def test_each_pushes_along_its_normal() -> None:
+    # At right angles they have nothing in common (shared_stiffness.h).
+    columns = _columns([-1e-4, 5e-4], [[0, 0, 1], [1, 0, 0]])
+    clusters = _core.share_stiffness(_core.contact_set(**columns), _TOLERANCE_M)
+    wrench = _core.penalty_force(
+        clusters,
+        np.zeros(3),
+        np.zeros(6),
+        np.zeros((1, 3)),
+        np.zeros((1, 6)),
+        np.array([1e3]),
+        np.array([0.0]),
+    )
+    np.testing.assert_allclose(wrench.F_Tool_W[3:], [0.5, 0.0, 1.1], atol=1e-12)
+
+
+def test_two_at_one_place_are_as_stiff_as_one() -> None:
+    columns = _columns([0.0, 0.0], [[0, 0, 1], [0, 0, 1]])
+    columns["p_WCa"] = columns["p_WCb"] = np.zeros((2, 3))
+    clusters = _core.share_stiffness(_core.contact_set(**columns), _TOLERANCE_M)
+    assert clusters.compression.sum() == pytest.approx(_TOLERANCE_M)
+
+
+def test_columns_must_match_and_be_ordered() -> None:
+    columns = _columns([0.0, 0.0], [[0, 0, 1], [0, 0, 1]])
+    with pytest.raises(ValueError, match="one row for a contact"):
+        _core.contact_set(**{**columns, "p_WCa": np.zeros((1, 3))})
+    descending = np.array([1, 0], dtype=np.int32)
+    with pytest.raises(ValueError, match="ordered"):
+        _core.contact_set(**{**columns, "object_index": descending})
