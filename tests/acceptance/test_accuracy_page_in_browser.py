@@ -1,0 +1,51 @@
+"""The page on accuracy, as a browser shows it on a desk and on a phone."""
+
+import numpy as np
+import pytest
+from accuracy_samples import make_peers, make_study
+from headless_browser import HeadlessBrowser, find_browser
+
+from drake_haptics.accuracy.page import write_accuracy_page
+
+
+@pytest.mark.parametrize(("width", "is_phone"), [(1280, False), (390, True)])
+def test_the_page_is_readable(tmp_path, width, is_phone):
+    executable = find_browser()
+    if executable is None:
+        pytest.skip("no Chromium on the PATH")
+    path = tmp_path / "page.html"
+    write_accuracy_page(make_study(peers=make_peers()), path, "cup_spoon")
+    path.with_suffix(".png").unlink()  # the page needs nothing beside it
+    with HeadlessBrowser(executable) as browser:
+        browser.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=900,
+            deviceScaleFactor=1,
+            mobile=is_phone,
+        )
+        browser.open(path.as_uri())
+        assert browser.evaluate("document.title") == "What accuracy costs in cup_spoon"
+        assert browser.evaluate("document.images[0].naturalWidth") > 1200
+        # Nothing reaches beyond the window's side; what is wider scrolls by itself.
+        assert browser.evaluate(
+            "document.documentElement.scrollWidth <= window.innerWidth"
+        )
+        # The picture's words can be read: it is never shown at half its size.
+        assert browser.evaluate("document.images[0].clientWidth") > 700
+        # Head and cells of each column begin or end at the same place.
+        assert browser.evaluate(
+            "[...document.querySelectorAll('table')].every(table => {"
+            "  const rows = [...table.rows].filter(row => row.cells.length > 1);"
+            "  return [...rows[0].cells].every((head, i) => rows.every(row =>"
+            "    getComputedStyle(row.cells[i]).textAlign"
+            "      == getComputedStyle(head).textAlign));"
+            "})"
+        )
+        # A bar is as wide as its share of the cell says.
+        assert browser.evaluate(
+            "getComputedStyle(document.querySelector('td.bar.time')).backgroundSize"
+        ).startswith("77.4%")
+        colours = browser.screenshot().reshape(-1, 3)
+        assert len(np.unique(colours, axis=0)) > 50
+        assert browser.errors == []

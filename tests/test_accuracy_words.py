@@ -1,0 +1,110 @@
+"""What the sentences on accuracy say of studies that are easy to reckon with."""
+
+from dataclasses import replace
+
+from accuracy_samples import make_peers, make_row, make_study
+
+from drake_haptics.accuracy.words import (
+    describe_knees,
+    describe_machine,
+    describe_missing,
+    describe_models,
+    describe_peers,
+    describe_reference,
+    describe_verdict,
+    make_front,
+)
+
+STUDY = make_study(peers=make_peers())
+
+
+def test_the_verdict_is_that_of_the_scene():
+    assert describe_verdict(STUDY) == [
+        "The scene as it is takes 150 µs a tick (p99 300), 24.0 of them for contact"
+        " inside the core. Its force is off by 0.004 N rms, 0.016 N at most.",
+        "No setting here is both faster and more exact.",
+    ]
+
+
+def test_a_setting_that_beats_the_scene_is_named():
+    scene = make_row("the scene", "as it is", 150.0, 24.0, 0.02, is_scene=True)
+    better = make_row("tool.max_triangles", "900", 140.0, 20.0, 0.01)
+    noise = make_row("tool.max_triangles", "950", 150.0, 23.5, 0.0)
+    model = make_row("contact.depth", "a", 140.0, 2.0, 0.0, contact__depth="tracked")
+    (_, words) = describe_verdict(make_study(scene, noise, model, better))
+    assert words == (
+        "tool.max_triangles 900 is both faster and more exact: 20.0 µs in the core, a"
+        " tick of 140, for 0.010 N rms."
+    )
+
+
+def test_a_scene_that_is_the_reference_is_exact():
+    scene = make_row("the scene", "as it is", 150.0, 24.0, 1e-9, is_scene=True)
+    first, _ = describe_verdict(make_study(scene))
+    assert "Its force is the reference's to 0.001 N." in first
+
+
+def test_a_scene_without_figures_has_no_verdict():
+    scene = make_row("the scene", "as it is", 150.0, 24.0, 1e-9, is_scene=True)
+    broken = replace(scene, cost=None, errors=None, why_not="it diverges")
+    words = describe_verdict(make_study(broken))
+    assert words == ["The scene as it is could not be measured."]
+    assert describe_missing(make_study(broken)) == ["the scene as it is: it diverges"]
+
+
+def test_a_knee_is_compared_with_the_scene_and_its_neighbours():
+    (words,) = describe_knees(STUDY, make_front(STUDY))
+    # 2.1 µs and 2.4 N on one side: 10.9 µs for 2.08 decades; 31 µs and the floor of
+    # 1 mN on the other: 18 µs for 1.30.
+    assert words == (
+        "contact.tolerance_m 0.5 mm: 13.0 µs in the core, a tick of 138, for 0.020 N"
+        " rms, 0.54 times the scene's time there. Up to it a tenth of the error costs"
+        " 5.24 µs, beyond it 13.8."
+    )
+
+
+def test_half_is_called_so():
+    study = make_study(
+        make_row("s", "as it is", 150.0, 20.0, 0.001, is_scene=True),
+        make_row("k", "coarse", 150.0, 9.0, 5.0),
+        make_row("k", "fine", 150.0, 10.1, 0.01),
+    )
+    (words,) = describe_knees(study, make_front(study))
+    assert "half the scene's time" in words
+
+
+def test_models_share_a_sentence_where_the_same_differs():
+    gravity, friction = (
+        make_row(f"effects.{name}", "off", 1.0, 1.0, 1.0, **{f"effects__{name}": None})
+        for name in ("gravity", "friction")
+    )
+    assert describe_models(make_study(gravity, friction, friction)) == [
+        "effects.gravity, effects.friction: what is felt besides contact"
+    ]
+    assert describe_models(make_study(make_row("a", "b", 1.0, 1.0, 1.0))) == []
+
+
+def test_what_was_not_measured_is_told_once():
+    reason = "the tool does not come to rest"
+    rows = [make_row("a", str(i), 1.0, 1.0, 1.0, stiffness=None) for i in range(3)]
+    rows = [
+        replace(row, errors=replace(row.errors, stiffness_why_not=reason))
+        for row in rows
+    ]
+    assert describe_missing(make_study(*rows)) == [f"stable stiffness: {reason}"]
+    assert describe_missing(STUDY) == [
+        "decomposition CoACD: coacd is not installed",
+        "coal 3.0.1, every pair: not installed",
+    ]
+
+
+def test_peers_reference_and_machine_are_named():
+    assert describe_peers(STUDY) == [
+        "MuJoCo 3.3.0, its own contacts: 30.0 µs, p99 60.0, for 0.600 N rms"
+    ]
+    assert describe_reference(STUDY).startswith(
+        "Errors are against every contact by itself, exact global depth, at the same"
+        " poses: 4800 ticks"
+    )
+    assert "4 cores" in describe_machine(STUDY)
+    assert "read ratios" in describe_machine(STUDY)
