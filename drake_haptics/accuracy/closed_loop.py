@@ -6,11 +6,12 @@ import math
 from dataclasses import dataclass, replace
 
 from drake_haptics.accuracy.built_scenes import build_once
+from drake_haptics.accuracy.whole_run import run_whole
 from drake_haptics.analysis.held_loop import analyse_held_scene
 from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.analysis.stability_limit import find_stability_limit
 from drake_haptics.scene import Scene
-from drake_haptics.simulation import RunError, run
+from drake_haptics.simulation import RunError
 
 # The whole; all other accounts are its parts.
 _WHOLE = "device"
@@ -64,13 +65,10 @@ def measure_created_energy(scene: Scene, duration_s: float) -> float:
     Raises:
         KeyboardInterrupt: At Ctrl-C.
     """
-    haptic = build_once(scene)
     try:
-        statistics = run(haptic, duration_s, energy=True)
+        statistics = run_whole(build_once(scene), duration_s, energy=True)
     except RunError:
         return math.inf
-    if statistics.ticks < round(duration_s / haptic.period_s):
-        raise KeyboardInterrupt
     books = statistics.to_dict()["energy_J"]
     assert isinstance(books, dict)
     return float(

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from pydrake.systems.framework import Context
 
+from drake_haptics.accuracy.whole_run import run_whole
 from drake_haptics.analysis.held_scene import build_quietly
 from drake_haptics.scene import Scene
 from drake_haptics.simulated_device import make_hand_path
-from drake_haptics.simulation import run
 
-# A lap that is longer is cut: some thousand ticks show what a setting does.
-_LONGEST_S = 4.0
 # Ticks at the same time differ by round-off of their numbers.
 _SAME_TICK = 1e-6
 
@@ -74,13 +72,20 @@ class RecordedMotion:
         )
 
 
+def choose_duration(scene: Scene, longest_s: float = 4.0) -> float:
+    """Returns the time of one lap of the hand's path, s, or of a longer one a part.
+
+    Some thousand ticks show what a setting does.
+    """
+    return min(make_hand_path(scene.hand.path).duration_s, longest_s)
+
+
 def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMotion:
     """Runs a scene in its simulated hand and records how handle and tool move.
 
     Args:
         scene: What to run. The same scene gives the same motion, bit for bit.
-        duration_s: Simulated time, s; one lap of the hand's path, or 4 s of a longer
-            one, where not given.
+        duration_s: Simulated time, s; that of `choose_duration` where not given.
 
     Raises:
         SceneError: The scene cannot be built.
@@ -89,7 +94,7 @@ def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMoti
         KeyboardInterrupt: At Ctrl-C.
     """
     if duration_s is None:
-        duration_s = min(make_hand_path(scene.hand.path).duration_s, _LONGEST_S)
+        duration_s = choose_duration(scene)
     haptic = build_quietly(scene)
     loop = haptic.loop
     ports = [
@@ -104,9 +109,6 @@ def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMoti
     def note(root: Context) -> None:
         rows.append(np.concatenate([port.Eval(find(root)) for port, find in readers]))
 
-    run(haptic, duration_s, on_tick=note)
-    if len(rows) < round(duration_s / haptic.period_s):
-        # A run takes Ctrl-C for its end, but half a motion is none.
-        raise KeyboardInterrupt
+    run_whole(haptic, duration_s, on_tick=note)
     X_WTool, V_WTool, X_WH, V_WH = np.split(np.array(rows), [7, 13, 20], axis=1)
     return RecordedMotion(haptic.period_s, X_WTool, V_WTool, X_WH, V_WH)

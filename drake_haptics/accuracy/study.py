@@ -17,7 +17,7 @@ from drake_haptics.accuracy.knobs import (
     make_reference,
 )
 from drake_haptics.accuracy.measurement import Measurement
-from drake_haptics.accuracy.recorded_motion import record_motion
+from drake_haptics.accuracy.recorded_motion import choose_duration, record_motion
 from drake_haptics.accuracy.setting import Setting
 from drake_haptics.accuracy.study_rows import (
     Task,
@@ -37,7 +37,7 @@ Progress = Callable[[str, float], None]
 
 # Runs of each setting, in turns.
 _REPEATS = 3
-# Of a quick study.
+# Longest motion of a quick study, simulated.
 _QUICK_S = 1.5
 # Shares of all work that are done when something begins.
 _TRUTH, _PRESS = 0.01, 0.03
@@ -164,7 +164,7 @@ def _prepare(
 ) -> Measurement:
     """Finds all that the settings of a scene are compared on."""
     report("recording the motion", 0.0)
-    motion = record_motion(scene, _QUICK_S if quick else None)
+    motion = record_motion(scene, choose_duration(scene, _QUICK_S) if quick else None)
     report("finding the truth", _TRUTH)
     truth = find_truth(make_reference(scene).apply(scene), motion)
     place = None

@@ -1,0 +1,99 @@
+"""What is timed and counted is what the loop does, and in fair turns."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+from drake_haptics.accuracy.built_scenes import build_once
+from drake_haptics.accuracy.figures import TickTimes
+from drake_haptics.accuracy.instruction_count import count_native
+from drake_haptics.accuracy.native_cost import make_native_part, time_native
+from drake_haptics.accuracy.recorded_motion import record_motion
+from drake_haptics.accuracy.setting import Setting
+from drake_haptics.accuracy.study_rows import list_timing_tasks
+from drake_haptics.accuracy.tick_cost import combine
+from drake_haptics.accuracy.tool_replay import replay_tool
+from drake_haptics.scene import Braking, Material, load_scene
+from drake_haptics.scene_library import find_scene
+
+
+def test_of_several_runs_each_figure_is_the_middle():
+    repeats = [TickTimes(9, 20, 31), TickTimes(8, 900, 990), TickTimes(1, 10, 30)]
+    assert combine(repeats) == TickTimes(8, 20, 31)
+
+
+def test_turns_begin_each_time_at_another_setting():
+    settings = [Setting("k", label, {"k": label}) for label in "abcdef"]
+    tasks = list_timing_tasks(settings, 3, {"processor": "x"})
+    assert [t["setting"]["label"] for t in tasks if t["what"] == "native"] == [
+        *"abcdef"
+    ]
+    turns = [
+        "".join(
+            t["setting"]["label"]
+            for t in tasks
+            if t["what"] == "ticks" and t["repeat"] == repeat
+        )
+        for repeat in range(3)
+    ]
+    assert turns == ["abcdef", "cdefab", "efabcd"]
+    # Another machine's times are other tasks.
+    elsewhere = list_timing_tasks(settings, 3, {"processor": "y"})
+    assert not any(task in elsewhere for task in tasks)
+
+
+def _load(clustering):
+    scene = load_scene(find_scene("cup_spoon"))
+    scene.contact.clustering = clustering
+    if clustering == "octree":
+        scene.contact.cluster_size_m = 5e-3
+    scene.environment[0].material = Material(stiffness_N_per_m=3e3)
+    return scene
+
+
+@pytest.mark.parametrize("clustering", ["shared", "octree"])
+def test_the_native_part_gives_the_loops_wrench(clustering):
+    scene = _load(clustering)
+    motion = record_motion(scene, 0.7)
+    part = make_native_part(build_once(scene))
+    tracker, cluster, force = (
+        part.make_tracker(),
+        part.make_clustering(),
+        part.make_force(),
+    )
+    wrenches = [
+        force(cluster(tracker.query(X)), X[4:], V).F_Tool_W
+        for X, V in zip(motion.X_WTool, motion.V_WTool, strict=True)
+    ]
+    expected = replay_tool(scene, motion).F_Tool_W
+    assert np.abs(expected).max() > 0.1
+    np.testing.assert_allclose(wrenches, expected, rtol=1e-12, atol=1e-12)
+
+
+def test_the_native_part_looks_as_far_as_braking_does():
+    scene = _load("shared")
+    scene.effects.braking = Braking(distance_m=7e-3)
+    assert make_native_part(build_once(scene)).search_m == 7e-3
+
+
+def test_a_slower_loop_is_timed_at_its_own_ticks():
+    scene = _load("shared")
+    motion = record_motion(scene, 0.1)
+    slow = motion.sample(4e-3)
+    assert len(slow) == 25 and slow.period_s == 4e-3
+    np.testing.assert_array_equal(slow.X_WTool, motion.X_WTool[::4])
+    fast = motion.sample(0.5e-3)
+    np.testing.assert_array_equal(fast.X_WTool, motion.X_WTool)
+    times = time_native(make_native_part(build_once(scene)), slow)
+    assert 0.0 < times.median_us <= times.p99_us <= times.p99_9_us
+
+
+@pytest.mark.skipif(shutil.which("valgrind") is None, reason="needs valgrind")
+def test_only_what_the_contacts_take_is_counted():
+    scene = _load("shared")
+    motion = record_motion(scene, 0.7)
+    part = make_native_part(build_once(scene))
+    touching = slice(650, 670)
+    X, V = motion.X_WTool[touching], motion.V_WTool[touching]
+    assert 1e3 < count_native(part, X, V) < 1e7

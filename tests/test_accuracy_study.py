@@ -1,0 +1,131 @@
+"""A whole study: complete, resumed, and never ended by a setting that cannot be."""
+
+import json
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from box_scenes import over_a_plate
+
+from drake_haptics.accuracy.figures import AccuracyStudy
+from drake_haptics.accuracy.knobs import AS_IT_IS
+from drake_haptics.accuracy.setting import Setting
+from drake_haptics.accuracy.study import run_accuracy_study
+from drake_haptics.analysis.study_pool import SerialExecutor
+from drake_haptics.bench import valgrind
+from drake_haptics.errors import UserError
+
+OWN = Setting("device.rate_hz", "1000 Hz", {"device.rate_hz": 1000.0})
+SLOW = Setting("device.rate_hz", "500 Hz", {"device.rate_hz": 500.0})
+OCTREE = Setting(
+    "contact.clustering",
+    "octree of 5 mm",
+    {"contact.clustering": "octree", "contact.cluster_size_m": 5e-3},
+)
+IMPOSSIBLE = Setting("tool.decomposition", "cubes", {"tool.decomposition": "cubes"})
+SETTINGS = [SLOW, OWN, OCTREE, IMPOSSIBLE]
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    """A cube that is pressed on a plate and slides."""
+    folder = tmp_path_factory.mktemp("scene")
+    path = [(0.0, 0.0, 0.0, 0.015), (0.15, 0.0, 0.0, 0.006), (0.3, 0.01, 0.0, 0.006)]
+    return over_a_plate(folder, path)
+
+
+def _study(scene, **how):
+    how = {"executor": SerialExecutor(), "quick": True} | how
+    return run_accuracy_study(scene, "plate", settings=SETTINGS, **how)
+
+
+@pytest.fixture(scope="module")
+def study(scene):
+    return _study(scene)
+
+
+def _errors(study):
+    return [(row.setting, row.errors, row.pieces, row.why_not) for row in study.rows]
+
+
+def test_has_the_scene_first_and_a_row_for_each_setting(study):
+    assert [row.setting for row in study.rows] == [AS_IT_IS, *SETTINGS]
+    assert [row.is_scene for row in study.rows] == [True, False, True, False, False]
+    assert study.ticks == 300 and 0 < study.contact_ticks < 300
+
+
+def test_the_scene_is_measured_once(study):
+    first, _, own, *_ = study.rows
+    assert (own.cost, own.errors, own.pieces) == (
+        first.cost,
+        first.errors,
+        first.pieces,
+    )
+    assert first.pieces == (1, 1)
+
+
+def test_exact_pieces_of_convex_bodies_have_no_error(study):
+    errors = study.rows[0].errors
+    assert errors.force_max_N == errors.torque_max_Nm == errors.normal_jump_deg == 0.0
+    assert errors.depth_max_m < 1e-12
+    assert study.rows[1].errors.force_max_N > 0.01
+
+
+def test_costs_are_those_of_ticks(study):
+    for row in study.rows[:-1]:
+        for times in (row.cost.tick, row.cost.native):
+            assert 0.0 < times.p99_us <= times.p99_9_us
+            assert times.median_us <= times.p99_us
+        assert row.cost.native.median_us < row.cost.tick.median_us
+        assert row.cost.instructions is None
+
+
+def test_a_setting_that_cannot_be_says_why(study):
+    row = study.rows[-1]
+    assert row.cost is None and row.errors is None
+    assert "unknown decomposition method 'cubes'" in row.why_not
+
+
+def test_goes_through_json(study):
+    text = json.dumps(study.to_dict())
+    assert AccuracyStudy.from_dict(json.loads(text)) == study
+
+
+def test_errors_do_not_depend_on_the_executor(scene, study):
+    with ThreadPoolExecutor(2) as executor:
+        assert _errors(_study(scene, executor=executor)) == _errors(study)
+
+
+@pytest.mark.parametrize("stage", ["errors: 2 of", "times: 3 of"])
+def test_goes_on_after_ctrl_c(scene, study, tmp_path, stage):
+    store = tmp_path / "store"
+
+    def interrupt(what, share):
+        if what.startswith(stage):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        _study(scene, store=store, progress=interrupt)
+    told = []
+    again = _study(scene, store=store, progress=lambda what, share: told.append(what))
+    assert _errors(again) == _errors(study)
+    # What was done is not done again.
+    assert next(what for what in told if what.startswith(stage[:5])).startswith(stage)
+    # Nor are times taken a second time.
+    once_more = _study(scene, store=store)
+    assert once_more == again
+
+
+def test_tells_how_far_it_is(scene):
+    told = []
+    _study(scene, progress=lambda what, share: told.append((what, share)))
+    shares = [share for _, share in told]
+    assert shares == sorted(shares)
+    assert shares[0] == 0.0 and shares[-1] == 1.0
+    assert told[0][0] == "recording the motion"
+    assert told[-1][0].startswith("times: ")
+
+
+def test_without_valgrind_it_says_so_at_once(scene, monkeypatch):
+    monkeypatch.setattr(valgrind.shutil, "which", lambda name: None)
+    with pytest.raises(UserError, match="not installed"):
+        _study(scene, count_instructions=True)
