@@ -1,0 +1,214 @@
+"""`drake-haptics accuracy` from end to end."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from accuracy_samples import make_study
+from click.testing import CliRunner
+
+from drake_haptics.accuracy.study_json import from_json_data
+from drake_haptics.cli import accuracy as command
+from drake_haptics.cli import main
+from drake_haptics.scene import load_scene
+from drake_haptics.simulation import RunError
+
+# The installed command, beside the interpreter.
+COMMAND = Path(sys.executable).with_name("drake-haptics")
+ONLY = ["--only", "contact.tolerance_m=0.0005"]
+
+
+def run(*arguments, folder):
+    return subprocess.run(
+        [COMMAND, *map(str, arguments)], capture_output=True, text=True, cwd=folder
+    )
+
+
+@pytest.fixture
+def invoke(monkeypatch, tmp_path):
+    """Runs the command in this process, in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return lambda *arguments: CliRunner().invoke(
+        main, ["accuracy", *map(str, arguments)]
+    )
+
+
+@pytest.fixture
+def sample(monkeypatch):
+    """Takes the place of the study, and notes what it was asked."""
+    asked = []
+
+    def study(scene, name, **settings):
+        asked.append((scene, name, settings))
+        return make_study()
+
+    monkeypatch.setattr(command, "run_accuracy_study", study)
+    return asked
+
+
+@pytest.fixture
+def fresh_runs(monkeypatch):
+    """Takes the place of runs in other processes: tolerance and hull save time."""
+
+    def measure(scene):
+        saved = 40.0 * (scene.contact.tolerance_m < 1e-3)
+        return 300.0 - saved - 100.0 * (scene.tool.decomposition == "hull")
+
+    monkeypatch.setattr(command, "measure_p99", measure)
+
+
+def test_one_row_from_end_to_end_and_again_from_its_store(tmp_path):
+    arguments = ["accuracy", "sphere_pen", "--quick", *ONLY, "--store", "s.jsonl"]
+    first = run(*arguments, "--json", "-", folder=tmp_path)
+    assert first.returncode == 0, first.stderr
+    assert first.stderr == ""
+    study = from_json_data(json.loads(first.stdout))
+    scene, row = study.rows
+    assert scene.is_scene and not row.is_scene
+    assert (row.setting.knob, row.setting.label) == ("contact.tolerance_m", "0.5 mm")
+    assert row.setting.changes == {"contact.tolerance_m": 5e-4}
+    # At the scene's poses the nearer tolerance pushes 0.5 mm later: 2000 N/m of it is
+    # 1 N where it pushes at all.
+    assert scene.errors.force_rms_N == 0.0
+    assert 0.3 < row.errors.force_rms_N <= row.errors.force_max_N < 1.1
+    kept = (tmp_path / "s.jsonl").read_bytes()
+    second = run(*arguments, "--json", "second.json", folder=tmp_path)
+    assert second.returncode == 0, second.stderr
+    assert (tmp_path / "s.jsonl").read_bytes() == kept
+    assert json.loads((tmp_path / "second.json").read_text()) == json.loads(
+        first.stdout
+    )
+    assert "~0.5 mm" in second.stdout and "Wrote" not in second.stdout
+
+
+def test_a_generous_budget_gives_up_nothing_and_its_file_runs(tmp_path):
+    held = run(
+        *["accuracy", "sphere_pen", "--quick", "--budget-us", 1e6],
+        *["--write", "held.yaml"],
+        folder=tmp_path,
+    )
+    assert held.returncode == 0, held.stderr
+    assert "sphere_pen as it is holds 1e+06 µs" in held.stdout
+    assert "Nothing is given up." in held.stdout
+    assert [path.name for path in tmp_path.iterdir()] == ["held.yaml"]
+    ran = run("run", "held.yaml", "--headless", "--duration", 0.05, folder=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+
+
+def test_the_terminal_shows_the_price_list(invoke, sample):
+    result = invoke("hammer_block", "--quick", "--instructions")
+    assert result.exit_code == 0, result.output
+    ((scene, name, settings),) = sample
+    assert scene.description.startswith("A hammer") and name == "hammer_block"
+    assert settings["quick"] and settings["count_instructions"]
+    assert settings["settings"] is None and settings["store"] is None
+    lines = [line.split() for line in result.stdout.splitlines()]
+    assert ["*~1", "mm", "150/300", "24.0", "0.004/0.016", "4.0", "0", "0.004",
+            "30000"] in lines  # fmt: skip
+    text = " ".join(result.stdout.split())
+    assert "Knee: contact.tolerance_m 0.5 mm: 13.0 µs in the core" in text
+    assert "Errors are against every contact by itself" in text
+    assert "~ differences of model, not errors: contact.depth:" in text
+    assert "not measured: decomposition CoACD: coacd is not installed" in text
+    assert max(map(len, result.stdout.splitlines())) <= 100
+    assert Path("hammer_block-accuracy.html").is_file()
+    assert Path("hammer_block-accuracy.png").is_file()
+
+
+def test_the_scene_is_cup_spoon_where_none_is_named(invoke, sample):
+    assert invoke("--out", "my.page.html").exit_code == 0
+    assert sample[0][1] == "cup_spoon"
+    assert sorted(path.name for path in Path().iterdir()) == [
+        "my.page.html",
+        "my.page.png",
+    ]
+
+
+def test_only_asks_for_one_setting_in_its_own_words(invoke, sample):
+    words = ["--only", "contact.clustering=octree"]
+    words += ["--only", "contact.cluster_size_m=0.001"]
+    result = invoke("hammer_block", *words)
+    assert result.exit_code == 0, result.output
+    (setting,) = sample[0][2]["settings"]
+    assert (setting.knob, setting.label) == ("contact.clustering", "octree of 1 mm")
+    assert list(Path().iterdir()) == []
+
+
+def test_a_budget_is_held_by_a_scene_file(invoke, sample, fresh_runs):
+    result = invoke("cup_spoon", "--budget-us", 280, "--json", "choice.json")
+    assert result.exit_code == 0, result.output
+    text = " ".join(result.stdout.split())
+    assert "cup_spoon holds 280 µs with what follows: p99 260 µs a tick" in text
+    assert "given up: contact.tolerance_m from 0.001 to 0.0005 (0.5 mm)" in text
+    assert "Wrote cup_spoon-280-us.yaml: drake-haptics run cup_spoon-280-us.yaml" in (
+        text
+    )
+    assert load_scene("cup_spoon-280-us.yaml").contact.tolerance_m == 5e-4
+    assert Path("cup_spoon-280-us.yaml").read_text().startswith("# cup_spoon holds 280")
+    data = json.loads(Path("choice.json").read_text())
+    assert data["holds"] and data["p99_us"] == 260.0
+    assert not Path("cup_spoon-accuracy.html").exists()
+
+
+def test_an_impossible_budget_is_told_with_status_1(invoke, sample, fresh_runs):
+    result = invoke("cup_spoon", "--budget-us", 1.5)
+    assert result.exit_code == 1
+    text = " ".join(result.stdout.split())
+    assert "Nothing that may be given up makes cup_spoon hold 1.5 µs: the fastest" in (
+        text
+    )
+    assert "has a p99 of 260 µs" in text and "--explain" in text
+    assert list(Path().iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--out", "page.png"], "must not be called page.png"),
+        (["--out", "nowhere/page.html"], "--out: there is no folder nowhere"),
+        (["--only", "contact.depth"], "'contact.depth' is not KEY=VALUE"),
+        (["--only", "contact.deep=1"], "the scene has no such key"),
+        (["--only", "contact.tolerance_m=-1"], "contact.tolerance_m must not be neg"),
+    ],
+)
+def test_a_mistake_is_one_line(invoke, arguments, words):
+    result = invoke("hammer_block", *arguments)
+    assert result.exit_code == 1
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("Error: ") and words in line
+    assert result.stdout == "" and list(Path().iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--write", "x.yaml"], "--write needs --budget-us"),
+        (["--budget-us", "9", "--out", "x.html"], "neither --out nor --only"),
+        (["--budget-us", "9", *ONLY], "neither --out nor --only"),
+        (["--budget-us", "0"], "0.0 is not in the range x>0"),
+    ],
+)
+def test_options_that_do_not_go_together(invoke, arguments, words):
+    result = invoke("hammer_block", *arguments)
+    assert result.exit_code == 2 and words in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (KeyboardInterrupt(), "Error: stopped"),
+        (KeyboardInterrupt("Stopped. 3 of 9 are kept in s"), "Error: Stopped. 3 of 9"),
+        (RunError("stopped at 0.1 s: it diverged", None), "Error: stopped at 0.1 s"),
+    ],
+)
+def test_what_goes_wrong_is_told_in_a_line(invoke, monkeypatch, error, words):
+    def fail(*_, **__):
+        raise error
+
+    monkeypatch.setattr(command, "run_accuracy_study", fail)
+    result = invoke("hammer_block")
+    assert result.exit_code == 1
+    (line,) = result.stderr.splitlines()
+    assert line.startswith(words)
