@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
+from drake_haptics.accuracy.knob_values import format_length, with_own
 from drake_haptics.accuracy.setting import Setting
 from drake_haptics.scene import Scene
 
 # Lengths are chosen in relation to the tolerance, or to this where a scene has none.
 _LENGTH_M = 1e-3
-_TOLERANCES = (4.0, 2.0, 1.0, 0.5, 0.25, 0.0)
+_TOLERANCES = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0)
 _CLUSTERS = (1.0, 4.0, 16.0)
-_WALK_STEPS = (1024, 16, 4, 2, 1)
+_WALK_STEPS = (1, 2, 4, 16, 1024)
 _QUERY_EVERY = (2, 4, 10)
-_RATES_HZ = (2000.0, 1000.0, 500.0, 250.0)
+_RATES_HZ = (250.0, 500.0, 1000.0, 2000.0)
 # What a material says of an effect.
 _OF_MATERIAL = {"shading": "shading", "friction": "friction_coefficient"}
 
@@ -32,23 +32,24 @@ def list_depths(scene: Scene) -> list[Setting]:
 def list_walk_steps(scene: Scene) -> list[Setting]:
     """Returns bounds of the walk to a depth, down to a single step."""
     key = "contact.max_walk_steps"
-    steps = _with_own(_WALK_STEPS, scene.contact.max_walk_steps)
-    return [Setting(key, f"{n} step{'s'[: n > 1]}", {key: n}) for n in steps]
+    steps = with_own(_WALK_STEPS, scene.contact.max_walk_steps)
+    return [Setting(key, f"{n} step{'s'[: n > 1]}", {key: n}) for n in reversed(steps)]
 
 
 def list_tolerances(scene: Scene) -> list[Setting]:
     """Returns shares and multiples of the tolerance."""
     key, own_m = "contact.tolerance_m", scene.contact.tolerance_m
-    lengths = _with_own([share * _find_length(scene) for share in _TOLERANCES], own_m)
-    return [Setting(key, format_length(m), {key: m}) for m in lengths]
+    lengths = with_own([share * _find_length(scene) for share in _TOLERANCES], own_m)
+    return [Setting(key, format_length(m), {key: m}) for m in reversed(lengths)]
 
 
 def list_clusterings(scene: Scene) -> list[Setting]:
     """Returns the continuous clustering, and octrees of some sizes."""
     knob, size = "contact.clustering", "contact.cluster_size_m"
-    sizes: list[float] = [factor * _find_length(scene) for factor in _CLUSTERS]
-    if scene.contact.cluster_size_m is not None:
-        sizes = sorted({*sizes, scene.contact.cluster_size_m})
+    sizes = with_own(
+        [factor * _find_length(scene) for factor in _CLUSTERS],
+        scene.contact.cluster_size_m,
+    )
     return [
         Setting(knob, "shared", {knob: "shared", size: None}),
         *(
@@ -73,32 +74,22 @@ def list_effect(scene: Scene, name: str) -> list[Setting]:
 def list_query_rates(scene: Scene) -> list[Setting]:
     """Returns how often contacts are looked for."""
     key, rate_hz = "contact.query_rate_hz", scene.device.rate_hz
-    rates = _with_own(
+    rates = with_own(
         [rate_hz / every for every in _QUERY_EVERY],
         scene.contact.query_rate_hz,
     )
     return [
         Setting(key, "every tick", {key: None}),
-        *(Setting(key, f"{hz:g} Hz", {key: hz}) for hz in rates),
+        *(Setting(key, f"{hz:g} Hz", {key: hz}) for hz in reversed(rates)),
     ]
 
 
 def list_rates(scene: Scene) -> list[Setting]:
     """Returns how often the loop ticks."""
     key = "device.rate_hz"
-    rates = _with_own(_RATES_HZ, scene.device.rate_hz)
-    return [Setting(key, f"{hz:g} Hz", {key: hz}) for hz in rates]
-
-
-def format_length(length_m: float) -> str:
-    """Returns a length in mm, in few digits."""
-    return f"{1e3 * length_m:.3g} mm"
+    rates = with_own(_RATES_HZ, scene.device.rate_hz)
+    return [Setting(key, f"{hz:g} Hz", {key: hz}) for hz in reversed(rates)]
 
 
 def _find_length(scene: Scene) -> float:
     return scene.contact.tolerance_m or _LENGTH_M
-
-
-def _with_own(values: Iterable[Any], own: Any) -> list[Any]:
-    """Returns numbers and the scene's own, the largest first."""
-    return sorted({*values, *([] if own is None else [own])}, reverse=True)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from typing import Any
 
-from drake_haptics.accuracy.contact_knobs import format_length
+from drake_haptics.accuracy.knob_values import format_length, with_own
 from drake_haptics.accuracy.setting import Setting
 from drake_haptics.mesh import load_mesh
 from drake_haptics.model_file import is_model_file, load_model_mesh
@@ -30,15 +30,15 @@ def list_decompositions(scene: Scene, where: str) -> list[Setting]:
     words = {"surface": "exact pieces", "coacd": "CoACD's pieces", "hull": "one hull"}
     if find_spec("coacd") is None:
         del words["coacd"]
+    if not hasattr(scene.tool, "decomposition_error_m"):  # GUARD
+        return [Setting(key, label, {key: name}) for name, label in words.items()]
     methods = [
         Setting(key, label, {key: name, error: None}) for name, label in words.items()
     ]
     merged = [
         Setting(key, f"merged within {format_length(m)}", {key: "merged", error: m})
-        for m in _MERGED_M
+        for m in with_own(_MERGED_M, _find_own(scene, where, "decomposition_error_m"))
     ]
-    if not hasattr(scene.tool, "decomposition_error_m"):  # GUARD
-        return [Setting(key, s.label, {key: s.changes[key]}) for s in methods]
     return [methods[0], *merged, *methods[1:]]
 
 
@@ -46,10 +46,16 @@ def list_triangle_counts(scene: Scene, where: str) -> list[Setting]:
     """Returns decimations, of meshes that have triangles to spare."""
     key = f"{where}.max_triangles"
     largest = max(_count_triangles(part) for part in _find_parts(scene, where))
-    counts = [largest // n for n in _TRIANGLES if largest // n >= _LEAST_TRIANGLES]
+    counts = with_own(
+        [largest // n for n in _TRIANGLES if largest // n >= _LEAST_TRIANGLES],
+        _find_own(scene, where, "max_triangles"),
+    )
     return [
         Setting(key, f"all of {largest} triangles", {key: None}),
-        *(Setting(key, f"{count} triangles", {key: count}) for count in counts),
+        *(
+            Setting(key, f"{count} triangles", {key: count})
+            for count in reversed(counts)
+        ),
     ]
 
 
@@ -58,11 +64,18 @@ def list_chord_errors(scene: Scene, where: str) -> list[Setting]:
     key = f"{where}.chord_error_m"
     if not any(_is_round(part) for part in _find_parts(scene, where)):
         return []
-    return [Setting(key, format_length(m), {key: m}) for m in _CHORDS_M]
+    errors = with_own(_CHORDS_M, _find_own(scene, where, "chord_error_m"))
+    return [Setting(key, format_length(m), {key: m}) for m in errors]
 
 
 def _find_parts(scene: Scene, where: str) -> Sequence[Tool | EnvironmentObject]:
     return [scene.tool] if where == "tool" else scene.environment
+
+
+def _find_own(scene: Scene, where: str, name: str) -> Any:
+    """Returns what all parts have; None where they differ."""
+    own = {getattr(part, name) for part in _find_parts(scene, where)}
+    return own.pop() if len(own) == 1 else None
 
 
 def _count_triangles(part: Tool | EnvironmentObject, **how: Any) -> int:
