@@ -114,9 +114,8 @@ def test_what_was_not_measured_is_not_on_the_front():
         get_native_us(missing)
 
 
-def test_effects_are_not_on_the_front():
+@pytest.mark.parametrize("key", ["effects__friction", "device__rate_hz"])
+def test_what_does_something_else_is_not_on_the_front(key):
     row = make_row("contact.depth", "tracked", 9.0, 9.0, 1.0)
-    off = make_row(
-        "effects.friction", "no friction", 1.0, 1.0, 0.0, effects__friction=None
-    )
-    assert find_front(make_study(row, off)).rows == (row,)
+    other = make_row("a", "b", 1.0, 1.0, 0.0, **{key: None})
+    assert find_front(make_study(row, other)).rows == (row,)

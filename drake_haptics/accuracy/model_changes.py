@@ -11,8 +11,10 @@ _MODELS = {
     "contact.cluster_size_m": "how far contacts count as one",
     "contact.depth": "whether depth is the way back or the shortest way out",
     "contact.tolerance_m": "how far from a surface it begins to push",
+    "device.rate_hz": "how often the loop ticks, and so what a second of it costs",
 }
 _EFFECTS = "effects."
+_LOOP = "device."
 
 
 def find_model_change(setting: Setting) -> str:
@@ -29,6 +31,15 @@ def find_model_change(setting: Setting) -> str:
         ),
         "",
     )
+
+
+def is_comparable(setting: Setting) -> bool:
+    """Whether a setting's tick does the same as the scene's, only otherwise.
+
+    One with other effects does something else, and at another rate a tick is another
+    share of a second.
+    """
+    return not any(key.startswith((_EFFECTS, _LOOP)) for key in setting.changes)
 
 
 def is_effect(setting: Setting) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from drake_haptics.accuracy.figures import AccuracyStudy, Row
-from drake_haptics.accuracy.model_changes import is_effect
+from drake_haptics.accuracy.model_changes import is_comparable
 
 # Smaller errors are alike: a hundredth of what a hand can tell from nothing.
 ERROR_FLOOR_N = 1e-3
@@ -57,14 +57,14 @@ def find_front(
     """Finds the front of the rows that were measured.
 
     Args:
-        study: Rows that were not measured are left out, and effects, which are physics
-            that a scene has or has not.
+        study: Rows that were not measured are left out, and those whose tick does
+            something else, see `is_comparable`.
         get_time_us: What is paid, µs.
     """
     rows = [
         row
         for row in study.rows
-        if row.cost and row.errors and not is_effect(row.setting)
+        if row.cost and row.errors and (row.is_scene or is_comparable(row.setting))
     ]
     points = [(get_time_us(row), get_force_error_N(row)) for row in rows]
     front = find_front_points(points)

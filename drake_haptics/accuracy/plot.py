@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from drake_haptics.accuracy.figures import AccuracyStudy, PeerRow, Row
+from drake_haptics.accuracy.model_changes import is_comparable
 from drake_haptics.accuracy.pareto import (
     ERROR_FLOOR_N,
     find_front,
@@ -77,6 +78,8 @@ def _draw_rows(
                 *zip(*sorted(points), strict=True),
                 _MARKERS[i % len(_MARKERS)] + ":",
                 color=f"C{i % 10}",
+                # What a tick does not do is no accuracy: paler.
+                alpha=1.0 if all(map(_is_on_a_par, rows)) else 0.35,
                 linewidth=0.8,
                 markersize=7,
                 label=knob,
@@ -89,25 +92,31 @@ def _draw_rows(
         where="post",
         color="0.2",
         linewidth=1.8,
-        label="front: nothing is better in both",
+        label="front: no other is better in both",
         zorder=2,
     )
-    for rows, marker, size, colour, label in (
-        (_take_scene(study), "*", 20, "gold", "the scene as it is"),
-        (_take_reference(study), "s", 15, "none", "reference"),
-    ):
+    for row in _take_reference(study):
+        axes.plot(get_time_us(row), get_force_error_N(row), "s", markersize=15,
+                  markerfacecolor="none", markeredgecolor="black", label="reference",
+                  zorder=4)  # fmt: skip
+    for row in _take_scene(study):
+        is_exact = get_force_error_N(row) == ERROR_FLOOR_N
         axes.plot(
-            [get_time_us(row) for row in rows],
-            [get_force_error_N(row) for row in rows],
-            marker,
-            markersize=size,
-            markerfacecolor=colour,
+            get_time_us(row),
+            get_force_error_N(row),
+            "*",
+            markersize=20,
+            markerfacecolor="gold",
             markeredgecolor="black",
-            label=label,
+            label=f"the scene as it is{', as exact as the reference' * is_exact}",
             zorder=4,
         )
     axes.grid(which="major", color="0.9")
     _write_plain_numbers(axes)
+
+
+def _is_on_a_par(row: Row) -> bool:
+    return row.is_scene or is_comparable(row.setting)
 
 
 def _take_scene(study: AccuracyStudy) -> list[Row]:
@@ -167,6 +176,7 @@ def _make_legend(figure: Figure, axes: Axes, study: AccuracyStudy) -> None:
         fontsize=8,
         markerscale=0.7,
         title=f"Error against {study.reference.label}, at the same {study.ticks} poses."
+        " Pale: effects and rates, which make it another loop."
         f"\n{describe_machine(study)}",
         title_fontsize=8,
     )

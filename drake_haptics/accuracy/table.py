@@ -89,7 +89,8 @@ def make_error_cells(errors: Errors) -> tuple[str, str, str, str]:
 def make_label(row: Row) -> str:
     """Returns a setting's label after its marks, which take two places."""
     scene = SCENE_MARK if row.is_scene else " "
-    model = MODEL_MARK if find_model_change(row.setting) else " "
+    differs = not row.is_scene and find_model_change(row.setting)
+    model = MODEL_MARK if differs else " "
     return f"{scene}{model}{row.setting.label}"
 
 
