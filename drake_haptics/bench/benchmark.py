@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from dataclasses import asdict, dataclass, field
+from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from drake_haptics.bench.libraries import find_libraries
+from drake_haptics.bench.loop.figures import LoopFigures
 from drake_haptics.bench.machine import describe_machine
 from drake_haptics.bench.native_build import NativeBuildError
 from drake_haptics.bench.pair_runs import PairFigures, run_pair
@@ -24,7 +26,7 @@ from drake_haptics.bench.scene_runs import (
 )
 from drake_haptics.bench.scenes import scene_makers
 
-PARTS = ("pairs", "python", "scenes")
+PARTS = ("pairs", "python", "scenes", "loop")
 # Called with what is done next and the share of the part that is done.
 Progress = Callable[[str, float], None]
 
@@ -39,6 +41,7 @@ class Effort:
         motions: of each scene.
         repeats: of each of these; at least 3, so that interruptions fall out.
         large_scenes: whether scenes of 1000 pieces and more are run.
+        loop_s: of the loops' motion, s.
     """
 
     sizes: tuple[int, ...] = SIZES
@@ -46,9 +49,17 @@ class Effort:
     motions: int = 6
     repeats: int = 8
     large_scenes: bool = True
+    loop_s: float = 4.0
 
 
-QUICK = Effort(sizes=(42, 2562), presses=1, motions=1, repeats=3, large_scenes=False)
+QUICK = Effort(
+    sizes=(42, 2562),
+    presses=1,
+    motions=1,
+    repeats=3,
+    large_scenes=False,
+    loop_s=1.2,
+)
 _LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room")
 
 
@@ -58,11 +69,12 @@ class BenchFigures:
 
     Attributes:
         machine: see `describe_machine`.
-        libraries: name -> version of those that were measured on pairs.
+        libraries: name -> version of those that were measured on pairs or in loops.
         missing: name -> why it was not measured.
         pairs: figures of convex pairs, those of a pair together.
         python: figures of single queries from Python.
         scenes: figures of scenes, those of a scene together.
+        loop: figures of whole loops.
     """
 
     machine: dict[str, Any]
@@ -71,6 +83,7 @@ class BenchFigures:
     pairs: list[PairFigures] = field(default_factory=list)
     python: list[PythonFigures] = field(default_factory=list)
     scenes: list[SceneFigures] = field(default_factory=list)
+    loop: list[LoopFigures] = field(default_factory=list)
 
     def to_dict(self) -> dict[str, Any]:
         """Returns everything as plain data; None stands for NaN."""
@@ -86,6 +99,7 @@ class BenchFigures:
             pairs=[PairFigures.from_dict(d) for d in data["pairs"]],
             python=[PythonFigures(**d) for d in data["python"]],
             scenes=[SceneFigures.from_dict(d) for d in data["scenes"]],
+            loop=[LoopFigures.from_dict(d) for d in data["loop"]],
         )
 
 
@@ -110,6 +124,8 @@ def run_benchmarks(
         _run_python(figures, effort, progress)
     if "scenes" in parts:
         _run_scenes(figures, effort, meshes, progress)
+    if "loop" in parts:
+        _run_loop(figures, effort, progress)
     return figures
 
 
@@ -150,6 +166,27 @@ def _run_scenes(
         queries: dict[str, SceneQuery] = {NAME: DrakeHapticsScene(problem)}
         queries.update(_scene_peer(figures, problem))
         figures.scenes.extend(run_scene(problem, queries, effort.repeats))
+
+
+def _run_loop(figures: BenchFigures, effort: Effort, progress: Progress) -> None:
+    from drake_haptics.bench.loop.problem import make_problem
+    from drake_haptics.bench.loop.runs import make_loops, run_loops
+
+    progress("loop: recording the hand", 0.0)
+    problem = make_problem(duration_s=effort.loop_s)
+    loops, missing = make_loops(problem)
+    figures.missing.update(missing)
+    for library in ("Drake", "MuJoCo"):
+        if any(name.startswith(library) for name in loops):
+            figures.libraries[library] = version(library.lower())
+    figures.loop.extend(
+        run_loops(
+            problem,
+            loops,
+            effort.repeats,
+            lambda share: progress("loop: in turns", share),
+        )
+    )
 
 
 def _scene_peer(figures: BenchFigures, problem: SceneProblem) -> dict[str, SceneQuery]:

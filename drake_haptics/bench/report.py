@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from drake_haptics.bench.benchmark import BenchFigures
+from drake_haptics.bench.loop.table import loop_tables
 from drake_haptics.bench.pair_tables import (
     error_table,
     python_table,
@@ -26,6 +27,8 @@ def make_tables(figures: BenchFigures) -> list[Table]:
         tables.append(python_table(figures.python))
     if figures.scenes:
         tables.append(scene_table(figures.scenes))
+    if figures.loop:
+        tables += loop_tables(figures.loop)
     return tables
 
 

@@ -33,11 +33,12 @@ from drake_haptics.cli.progress_bar import progress_bar
 def bench(
     parts: tuple[str, ...], quick: bool, meshes: Path | None, json_file: str | None
 ) -> None:
-    """Measure the contact query on this machine, beside other libraries.
+    """Measure queries and whole loops on this machine, beside other libraries.
 
     PARTS are pairs (convex pairs, apart and in depth), python (one query from
-    Python) and scenes; all if none is named. Some minutes. The others are measured
-    where they are installed: pip install "drake_haptics[peers]".
+    Python), scenes, and loop (whole ticks at 1 kHz); all if none is named. Some
+    minutes. The others are measured where they are installed:
+    pip install "drake_haptics[peers]".
     """
     effort = QUICK if quick else Effort()
     with progress_bar() as show:

@@ -1,0 +1,1 @@
+"""Whole ticks of a haptic loop, this package's and those of other simulators."""

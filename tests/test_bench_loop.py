@@ -1,0 +1,137 @@
+"""Whole loops are given the same, do the same, and are told as they are."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import sys
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from drake_haptics.bench.benchmark import BenchFigures
+from drake_haptics.bench.loop.figures import LoopFigures, LoopTimes
+from drake_haptics.bench.loop.names import MUJOCO, NATIVE, OURS, STOCK
+from drake_haptics.bench.loop.problem import Loop, LoopCourse, LoopProblem, make_problem
+from drake_haptics.bench.loop.runs import make_loops, run_loops
+from drake_haptics.bench.loop.table import loop_tables
+from drake_haptics.bench.report import make_tables
+
+sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
+from write_docs import PAGE, figures_of
+
+# The spoon comes in and begins to scrape.
+_SECONDS = 1.2
+
+
+@pytest.fixture(scope="module")
+def problem() -> LoopProblem:
+    return make_problem(duration_s=_SECONDS)
+
+
+@pytest.fixture(scope="module")
+def loops(problem: LoopProblem) -> dict[str, Loop]:
+    return make_loops(problem)[0]
+
+
+@pytest.fixture(scope="module")
+def courses(loops: dict[str, Loop]) -> dict[str, LoopCourse]:
+    return {name: loop.observe() for name, loop in loops.items()}
+
+
+def test_our_loop_repeats_the_recorded_run(
+    problem: LoopProblem, courses: dict[str, LoopCourse]
+) -> None:
+    course = courses[OURS]
+    assert course.num_contacts[0] == 0 and course.num_contacts[-1] > 0
+    np.testing.assert_allclose(
+        course.X_WTool, problem.motion.X_WTool, rtol=0, atol=1e-9
+    )
+
+
+def test_the_native_part_computes_what_the_whole_loop_does(
+    courses: dict[str, LoopCourse],
+) -> None:
+    ours, native = courses[OURS], courses[NATIVE]
+    np.testing.assert_allclose(native.X_WTool, ours.X_WTool, rtol=0, atol=1e-9)
+    np.testing.assert_array_equal(native.num_contacts, ours.num_contacts)
+    np.testing.assert_allclose(native.nearest_m, ours.nearest_m, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", [*STOCK, MUJOCO])
+def test_others_are_pressed_with_a_like_force_at_a_like_place(
+    name: str, courses: dict[str, LoopCourse]
+) -> None:
+    if name not in courses:
+        pytest.skip(f"{name} cannot be run here")
+    ours, theirs = courses[OURS], courses[name]
+    pressed = ours.force_N > 0.75 * ours.force_N.max()
+    assert theirs.num_contacts[pressed].min() > 0
+    # They are pressed later, by the tolerance; both hands go on alike.
+    apart_m = np.linalg.norm(theirs.X_WTool[:, 4:] - ours.X_WTool[:, 4:], axis=1)
+    assert apart_m.max() < 2e-3
+    mean_N = theirs.force_N[pressed].mean()
+    assert mean_N == pytest.approx(ours.force_N[pressed].mean(), rel=0.4)
+
+
+def test_every_loop_starts_anew_each_time(loops: dict[str, Loop]) -> None:
+    for loop in loops.values():
+        first = loop.observe()
+        assert len(loop.time()) == len(first.X_WTool)
+        np.testing.assert_array_equal(loop.observe().X_WTool, first.X_WTool)
+
+
+def test_figures_are_those_of_the_ticks_that_all_touch_in(
+    problem: LoopProblem, loops: dict[str, Loop], courses: dict[str, LoopCourse]
+) -> None:
+    figures = run_loops(problem, loops, repeats=3)
+    assert [f.loop for f in figures] == list(loops)
+    touching = np.all([c.num_contacts[1:] > 0 for c in courses.values()], axis=0)
+    for f in figures:
+        assert f.in_contact.ticks == touching.sum() > 0
+        assert f.all_ticks.ticks == len(problem.motion) - 1
+        course = courses[f.loop]
+        assert f.deepest_m == -course.nearest_m.min()
+        assert f.median_contacts == np.median(course.num_contacts[1:][touching])
+    assert figures[0].apart_m == 0.0
+
+
+def _figures(loop: str, median_us: float) -> LoopFigures:
+    times = LoopTimes(9, median_us, 2 * median_us, math.nan)
+    return LoopFigures("cup", loop, times, times, 2.0, 7, 1e-4, 1.5, 2.5, 3e-4)
+
+
+SOME = [_figures(OURS, 60.0), _figures(NATIVE, 6.0), _figures(MUJOCO, 30.0)]
+
+
+def test_ratios_are_to_the_row() -> None:
+    rows = {row[0]: row[-2:] for row in loop_tables(SOME)[0].rows}
+    assert rows[OURS] == ("1.00", "0.10")
+    assert rows[MUJOCO] == ("2.00", "0.20")
+
+
+def test_tables_are_rectangular() -> None:
+    for table in loop_tables(SOME):
+        assert all(len(row) == len(table.header) for row in table.rows)
+
+
+def test_figures_survive_json() -> None:
+    figures = BenchFigures(machine={}, loop=SOME)
+    read = BenchFigures.from_dict(json.loads(json.dumps(figures.to_dict())))
+    assert asdict(read.loop[0])["in_contact"]["median_us"] == 60.0
+    assert math.isnan(read.loop[0].all_ticks.p99_9_us)
+    assert make_tables(read)[1].rows == loop_tables(SOME)[1].rows
+
+
+def test_the_page_has_the_tables_with_their_headings_and_rows() -> None:
+    section = figures_of(PAGE.read_text(encoding="utf-8"))
+    for table in loop_tables(SOME):
+        shown = section.split(f"### {table.title.replace('cup', 'cup_spoon')}\n")[1]
+        shown = shown.split("###")[0]
+        assert table.note in shown
+        rows = re.findall(r"^\| (.*) \|$", shown, flags=re.MULTILINE)
+        assert tuple(rows[0].split(" | ")) == table.header
+        assert {OURS, NATIVE, MUJOCO} <= {row.split(" | ")[0] for row in rows[2:]}
