@@ -7,6 +7,7 @@ from typing import cast
 
 import click
 from rich.console import Console
+from rich.measure import Measurement
 from rich.table import Table as RichTable
 
 from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
@@ -28,6 +29,8 @@ _STYLES = {
     "differs": "red",
     "lacks": "yellow",
 }
+
+_ANY_WIDTH = 1000
 
 
 @click.command()
@@ -88,12 +91,16 @@ def _print(evaluation: PaperEvaluation, out: Path) -> None:
             for row in table.rows:
                 shown.add_row(*row)
             # A wider one is read on the page.
-            if console.measure(shown).maximum <= console.width:
+            options = console.options.update(max_width=_ANY_WIDTH)
+            if Measurement.get(console, options, shown).maximum <= console.width:
                 console.print(shown)
                 console.print(table.note, style="dim")
-        for statement in section.statements:
-            style = _STYLES[statement.verdict]
-            console.print(f"[{style}]{statement.verdict:>7}[/]  {statement.text}")
+        for block in section.blocks:
+            if block.title:
+                console.print(block.title)
+            for statement in block.statements:
+                style = _STYLES[statement.verdict]
+                console.print(f"[{style}]{statement.verdict:>7}[/]  {statement.text}")
         console.print()
     console.print(summarize(sections))
     console.print(describe_machine_line(evaluation), style="dim")

@@ -14,6 +14,7 @@ from string import Template
 from drake_haptics.bench.table import Table
 from drake_haptics.paper.evaluation import PaperEvaluation
 from drake_haptics.paper.report import (
+    Block,
     Picture,
     Section,
     describe_machine_line,
@@ -82,16 +83,22 @@ def summarize(sections: Sequence[Section]) -> str:
 
 
 def _make_section(section: Section, pictures: dict[str, bytes]) -> str:
+    blocks = "".join(_make_block(block, pictures) for block in section.blocks)
+    return (
+        f'<section id="{section.part}"><h2>{html.escape(section.title)}</h2>{blocks}'
+        f"{''.join(map(_make_table, section.tables))}</section>\n"
+    )
+
+
+def _make_block(block: Block, pictures: dict[str, bytes]) -> str:
+    title = f"<h3>{html.escape(block.title)}</h3>" if block.title else ""
     images = "".join(
         f'<img alt="{html.escape(picture.alt)}" src="data:image/png;base64,'
         f'{base64.b64encode(pictures[picture.key]).decode()}">'
-        for picture in section.pictures
+        for picture in block.pictures
     )
-    return (
-        f'<section id="{section.part}"><h2>{html.escape(section.title)}</h2>'
-        f"<ul>{''.join(map(_make_statement, section.statements))}</ul>{images}"
-        f"{''.join(map(_make_table, section.tables))}</section>\n"
-    )
+    statements = "".join(map(_make_statement, block.statements))
+    return f"{title}<ul>{statements}</ul>{images}"
 
 
 def _make_statement(statement: Statement) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -20,6 +20,7 @@ _Follow = Callable[[Surface, Surface, np.ndarray], ContactCurves]
 
 RADIUS_M = 0.040
 OURS = "drake_haptics"
+EXACT = "exact depth"
 _SECONDS = 3.0
 _RATE_HZ = 1000.0
 _ARC_RAD = 2.0
@@ -39,6 +40,7 @@ class PenPass:
         truth: On a perfect sphere.
         curves: By library; this package's under `OURS`.
         smoothness: By library.
+        exact: Of the exact depth of the two polyhedra: what no query can better.
     """
 
     time_s: np.ndarray
@@ -47,6 +49,7 @@ class PenPass:
     truth: ContactCurves
     curves: dict[str, ContactCurves]
     smoothness: dict[str, Smoothness]
+    exact: Smoothness
 
     def to_dict(self) -> dict[str, Any]:
         """Returns the figures, without the curves, ready for JSON."""
@@ -55,6 +58,7 @@ class PenPass:
             "triangles": self.triangles,
             "corner_deg": self.corner_deg,
             "smoothness": {n: asdict(s) for n, s in self.smoothness.items()},
+            "exact": asdict(self.exact),
         }
 
 
@@ -106,12 +110,19 @@ def measure_pen_pass(
         truth=truth,
         curves=curves,
         smoothness={n: measure_smoothness(c, truth) for n, c in curves.items()},
+        exact=measure_smoothness(_follow(pen, sphere, X_WA, "global"), truth),
     )
 
 
-def _follow(pen: Surface, sphere: Surface, X_WA: np.ndarray) -> ContactCurves:
+def _follow(
+    pen: Surface,
+    sphere: Surface,
+    X_WA: np.ndarray,
+    depth: Literal["tracked", "global"] = "tracked",
+) -> ContactCurves:
     """Our own answers."""
-    pair = ConvexPair(ConvexPolytope(pen.vertices), ConvexPolytope(sphere.vertices))
+    A, B = (ConvexPolytope(body.vertices) for body in (pen, sphere))
+    pair = ConvexPair(A, B, depth)
     found = pair.query_trajectory(X_WA, np.eye(4))
     return ContactCurves(found.distance, found.nhat_BA_W, found.p_WC)
 

@@ -36,6 +36,7 @@ class Profile:
         contacts: (n,) before clustering.
         clusters: (n,) after it.
         touched: (n,) objects with a contact.
+        touched_triangles: Of all objects that are ever touched together.
         distance_m: (n,) of the nearest contact, m, negative where it penetrates;
             the tolerance where there is none.
     """
@@ -53,6 +54,7 @@ class Profile:
     contacts: np.ndarray
     clusters: np.ndarray
     touched: np.ndarray
+    touched_triangles: int
     distance_m: np.ndarray
 
     @property
@@ -78,6 +80,7 @@ def measure_profile(scenario: Scenario, seconds: float | None = None) -> Profile
     clusters_port = loop.contact_clustering.get_clusters_output_port()
     # One row more for the monitor's call at the start.
     notes = np.zeros((round(duration_s / PERIOD_S) + 2, 4))
+    ever_touched: set[int] = set()
     tick = 0
 
     def note(context: Context) -> None:
@@ -88,8 +91,9 @@ def measure_profile(scenario: Scenario, seconds: float | None = None) -> Profile
             loop.contact_clustering.GetMyContextFromRoot(context)
         )
         nearest_m = min(contacts.distance.tolist(), default=np.inf)
-        objects = len(set(contacts.object_index.tolist()))
-        notes[tick] = len(contacts), len(clusters), objects, nearest_m
+        touched = set(contacts.object_index.tolist())
+        ever_touched.update(touched)
+        notes[tick] = len(contacts), len(clusters), len(touched), nearest_m
         tick += 1
         timer.end_tick(context)
 
@@ -120,5 +124,6 @@ def measure_profile(scenario: Scenario, seconds: float | None = None) -> Profile
         contacts=contacts,
         clusters=clusters,
         touched=touched,
+        touched_triangles=sum(len(objects[i].piece_of_triangle) for i in ever_touched),
         distance_m=np.minimum(notes[kept, 3], scenario.contact.tolerance_m),
     )

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from drake_haptics.accuracy.figures import TickTimes
+from drake_haptics.paper.fits import PowerFit, fit_power
 from drake_haptics.paper.intervals import Interval, find_intervals
 from drake_haptics.paper.profile import Profile
 from drake_haptics.paper.scenario import PERIOD_S
@@ -16,6 +17,8 @@ from drake_haptics.paper.scenario import PERIOD_S
 _SHORTEST_INTERVAL = 40
 # Fewer ticks of a kind have no median to speak of.
 _LEAST_TICKS = 20
+# A power through fewer points is none.
+_LEAST_NUMBERS = 3
 
 
 @dataclass(frozen=True)
@@ -54,11 +57,14 @@ class ProfileFigures:
         most_contacts: Before clustering.
         most_clusters: After it.
         most_touched: Objects in contact at once.
+        touched_triangles: Of all objects that are ever touched together.
         deepest_m: Deepest penetration, m.
         busiest: Ticks with at least half the most contacts.
         depth_overhead: Median time of the query where something penetrates, over that
             where nothing does, at the same number of contacts; None where no number
             has ticks enough of both kinds.
+        contact_growth: Of the query's median time with the number of contacts; None
+            where fewer than three numbers have ticks enough.
         intervals: Disjoint and penetrating in turn.
     """
 
@@ -74,9 +80,11 @@ class ProfileFigures:
     most_contacts: int
     most_clusters: int
     most_touched: int
+    touched_triangles: int
     deepest_m: float
     busiest: StateTimes
     depth_overhead: float | None
+    contact_growth: PowerFit | None
     intervals: tuple[Interval, ...]
 
     @property
@@ -109,9 +117,11 @@ def sum_up(profile: Profile) -> ProfileFigures:
         most_contacts=int(profile.contacts.max()),
         most_clusters=int(profile.clusters.max()),
         most_touched=int(profile.touched.max()),
+        touched_triangles=profile.touched_triangles,
         deepest_m=max(0.0, -float(profile.distance_m.min())),
         busiest=busy,
         depth_overhead=_find_overhead(profile),
+        contact_growth=_fit_growth(profile),
         intervals=tuple(find_intervals(inside, _SHORTEST_INTERVAL)),
     )
 
@@ -144,3 +154,13 @@ def _find_overhead(profile: Profile) -> float | None:
             ratios.append(np.median(deep) / np.median(apart))
             weights.append(min(len(deep), len(apart)))
     return float(np.average(ratios, weights=weights)) if ratios else None
+
+
+def _fit_growth(profile: Profile) -> PowerFit | None:
+    """Returns `contact_growth`."""
+    numbers, ticks = np.unique(profile.contacts, return_counts=True)
+    numbers = numbers[(ticks >= _LEAST_TICKS) & (numbers > 0)]
+    if len(numbers) < _LEAST_NUMBERS:
+        return None
+    medians = [np.median(profile.query_s[profile.contacts == n]) for n in numbers]
+    return fit_power(numbers, np.array(medians))

@@ -41,10 +41,11 @@ def draw_profile(profile: Profile, figures: ProfileFigures) -> Figure:
         above.plot(time_s, 1e6 * seconds, color=colour, lw=width, label=label)
     above.axhline(_PERIOD_US, color="#b03030", ls="--", lw=1.0, label="1 ms")
     above.set_yscale("log")
-    least_us = 1e6 * float(np.percentile(profile.force_s, 1))
+    least_s = np.percentile([profile.query_s, profile.force_s], 1, axis=1)
+    least_us = 1e6 * float(least_s.min())
     most_us = max(_PERIOD_US, 1e6 * float(profile.tick_s.max()))
     # Room for the letters above the highest line.
-    above.set_ylim(0.5 * least_us, 3.0 * most_us)
+    above.set_ylim(0.7 * least_us, 3.0 * most_us)
     above.set_ylabel("time, µs")
     below.plot(time_s, profile.contacts, color="#1f5fa8", lw=0.9, label="contacts")
     below.plot(time_s, profile.clusters, color="#2f8f5b", lw=0.9, label="clusters")

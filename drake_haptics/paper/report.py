@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from drake_haptics.bench.table import Table
 from drake_haptics.paper.analysis_plot import draw_analysis
-from drake_haptics.paper.evaluation import PaperEvaluation, Part
+from drake_haptics.paper.evaluation import PaperEvaluation, Part, Run
+from drake_haptics.paper.pen_pass import PenPass
 from drake_haptics.paper.pen_plot import draw_pen_pass
 from drake_haptics.paper.profile_plot import draw_profile
 from drake_haptics.paper.published import MACHINE
@@ -22,8 +23,8 @@ from drake_haptics.paper.tables import (
 )
 from drake_haptics.paper.words import (
     judge_analysis,
-    judge_figure11,
     judge_figure12,
+    judge_run,
     judge_table1,
 )
 
@@ -47,22 +48,45 @@ class Picture:
 
 
 @dataclass(frozen=True)
+class Block:
+    """What belongs together in a section.
+
+    Attributes:
+        title: A line; empty where the section's is enough.
+        statements: Where we agree and differ.
+        pictures: The curves.
+    """
+
+    title: str
+    statements: tuple[Statement, ...]
+    pictures: tuple[Picture, ...]
+
+
+@dataclass(frozen=True)
 class Section:
     """A part of the evaluation.
 
     Attributes:
         part: Which.
         title: A line.
-        statements: Where we agree and differ.
+        blocks: One or more.
         tables: The figures.
-        pictures: The curves.
     """
 
     part: Part
     title: str
-    statements: tuple[Statement, ...]
+    blocks: tuple[Block, ...]
     tables: tuple[Table, ...]
-    pictures: tuple[Picture, ...]
+
+    @property
+    def statements(self) -> list[Statement]:
+        """Those of all blocks."""
+        return [statement for block in self.blocks for statement in block.statements]
+
+    @property
+    def pictures(self) -> list[Picture]:
+        """Those of all blocks."""
+        return [picture for block in self.blocks for picture in block.pictures]
 
 
 def make_sections(evaluation: PaperEvaluation) -> list[Section]:
@@ -81,13 +105,13 @@ def make_sections(evaluation: PaperEvaluation) -> list[Section]:
             "Depth over triangles, query over pairs and force over contacts",
             lambda: draw_analysis(analysis),
         )
+        statements = tuple(judge_analysis(analysis))
         sections.append(
             Section(
                 "analysis",
                 "Section 6.3: what grows with what",
-                tuple(judge_analysis(analysis)),
+                (Block("", statements, (picture,)),),
                 tuple(make_analysis_tables(analysis)),
-                (picture,),
             )
         )
     return sections
@@ -107,42 +131,47 @@ def _section_table1(evaluation: PaperEvaluation) -> Section:
     return Section(
         "table1",
         "Table 1: convex pieces",
-        tuple(judge_table1(evaluation.table1)),
+        (Block("", tuple(judge_table1(evaluation.table1)), ()),),
         (make_table1(evaluation.table1),),
-        (),
     )
 
 
 def _section_figure11(evaluation: PaperEvaluation) -> Section:
     runs = evaluation.figure11
-
-    def picture_of(k: int) -> Picture:
-        run = runs[k]
-        name = run.figures.name
-        key = f"figure11-{name.replace(', ', '-').replace(' ', '-')}"
-        alt = f"{name}: time of each tick above, number of contacts below"
-        return Picture(key, alt, lambda: draw_profile(run.profile, run.figures))
-
     return Section(
         "figure11",
         "Figure 11: time of each tick",
-        tuple(judge_figure11(runs)),
+        tuple(map(_block_of_run, runs)),
         (make_run_table(runs), make_profile_table(runs)),
-        tuple(picture_of(k) for k in range(len(runs))),
     )
+
+
+def _block_of_run(run: Run) -> Block:
+    figures = run.figures
+    picture = Picture(
+        f"figure11-{figures.name.replace(', ', '-').replace(' ', '-')}",
+        f"{figures.name}: time of each tick above, number of contacts below",
+        lambda: draw_profile(run.profile, figures),
+    )
+    like = f", as Figure {figures.figure}" if figures.figure else ""
+    title = f"{figures.name[0].upper()}{figures.name[1:]}{like}"
+    return Block(title, tuple(judge_run(figures)), (picture,))
 
 
 def _section_figure12(evaluation: PaperEvaluation) -> Section:
-    coarse = evaluation.figure12[0]
-    picture = Picture(
-        "figure12",
-        "Contact point, normal and distance of a pen that passes over a sphere",
-        lambda: draw_pen_pass(coarse),
-    )
+    passes = evaluation.figure12
     return Section(
         "figure12",
         "Figure 12: a pen passes over a sphere",
-        tuple(judge_figure12(evaluation.figure12)),
-        (make_pen_table(evaluation.figure12),),
-        (picture,),
+        (Block("", tuple(judge_figure12(passes)), tuple(map(_draw_pass, passes))),),
+        (make_pen_table(passes),),
+    )
+
+
+def _draw_pass(passed: PenPass) -> Picture:
+    return Picture(
+        f"figure12-{passed.triangles}-triangles",
+        "Contact point, normal and distance of a pen that passes over a sphere of"
+        f" {passed.triangles:,} triangles",
+        lambda: draw_pen_pass(passed),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -59,30 +59,36 @@ def measure_table1(
         Rows in the paper's order. A model that is neither a shape of the package nor
         in the folder has one row with an empty source.
     """
+    jobs = [
+        (paper, source)
+        for paper in TABLE_1
+        for source in find_sources(paper.model, meshes) or [""]
+    ]
     rows = []
-    for k, paper in enumerate(TABLE_1):
-        head = (paper.model, paper.triangles, paper.pieces)
-        sources = find_sources(paper.model, meshes)
-        if not sources:
-            rows.append(ModelFigures(*head))
-        for source in sources:
+    for k, (paper, source) in enumerate(jobs):
 
-            def show(share: float, k: int = k, what: str = paper.model) -> None:
-                progress(f"cut {what}", (k + share) / len(TABLE_1))
+        def show(share: float, k: int = k, what: str = paper.model) -> None:
+            progress(f"cut {what}", (k + share) / len(jobs))
 
-            show(0.0)
-            mesh = load_model(paper.model, source, meshes)
-            report = decompose(mesh, progress=show).report
-            rows.append(
-                ModelFigures(
-                    *head,
-                    source=source,
-                    triangles=report.triangles,
-                    pieces=report.pieces,
-                    flat_pieces=report.flat_pieces,
-                    facets=report.facets,
-                    virtual_facets=report.virtual_facets,
-                    seconds=report.seconds,
-                )
-            )
+        show(0.0)
+        row = ModelFigures(paper.model, paper.triangles, paper.pieces)
+        rows.append(_cut(row, source, meshes, show) if source else row)
     return tuple(rows)
+
+
+def _cut(
+    row: ModelFigures, source: str, meshes: Path | None, show: Callable[[float], None]
+) -> ModelFigures:
+    """Returns a row with our figures."""
+    mesh = load_model(row.model, source, meshes)
+    report = decompose(mesh, progress=show).report
+    return replace(
+        row,
+        source=source,
+        triangles=report.triangles,
+        pieces=report.pieces,
+        flat_pieces=report.flat_pieces,
+        facets=report.facets,
+        virtual_facets=report.virtual_facets,
+        seconds=report.seconds,
+    )

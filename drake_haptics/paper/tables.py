@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from drake_haptics.accuracy.figures import TickTimes
 from drake_haptics.bench.table import Table
 from drake_haptics.paper.evaluation import Analysis, Run
-from drake_haptics.paper.pen_pass import PenPass
+from drake_haptics.paper.pen_pass import EXACT, PenPass
 from drake_haptics.paper.profile_figures import ProfileFigures, StateTimes
 from drake_haptics.paper.table1 import ModelFigures
 
@@ -37,8 +37,8 @@ def make_table1(rows: Sequence[ModelFigures]) -> Table:
         )
     note = (
         "Convex pieces of the surface decomposition. Flat pieces have no volume;"
-        " virtual facets are those of pieces that are not on the mesh. Seconds are those in"
-        " which the pieces were found."
+        " virtual facets are those of pieces that are not on the mesh. Seconds are"
+        " those in which the pieces were found."
     )
     return Table("Convex pieces", note, header, cells)
 
@@ -134,12 +134,13 @@ def make_pen_table(passes: Sequence[PenPass]) -> Table:
             f"{1e6 * smooth.distance_error_m:.1f}",
         )
         for passed in passes
-        for name, smooth in passed.smoothness.items()
+        for name, smooth in [*passed.smoothness.items(), (EXACT, passed.exact)]
     ]
     note = (
         "The largest step from one tick to the next beyond what the motion itself"
         " explains, and the largest error, both against a perfect sphere: the faces of"
-        " the polyhedron that stands for it are in both."
+        " the polyhedron that stands for it are in both. Exact depth: the least way out"
+        " of the two polyhedra, which no query can better."
     )
     return Table("Smoothness", note, header, rows)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from drake_haptics.paper.evaluation import Analysis, Run
-from drake_haptics.paper.force_scaling import ForceScaling
+from drake_haptics.paper.evaluation import Analysis
+from drake_haptics.paper.force_scaling import FEWEST_FITTED, ForceScaling
 from drake_haptics.paper.pen_pass import OURS, PenPass
 from drake_haptics.paper.profile_figures import ProfileFigures
 from drake_haptics.paper.published import (
@@ -16,10 +16,14 @@ from drake_haptics.paper.published import (
     ROOM_OBJECTS,
     ROOM_TRIANGLES,
     TOUCHED_OBJECTS,
+    TOUCHED_TRIANGLES,
 )
+from drake_haptics.paper.smoothness import Smoothness
 from drake_haptics.paper.statement import Statement, Verdict
 from drake_haptics.paper.table1 import ModelFigures
 
+# Powers that are "roughly proportional"; with a smaller one contacts cost less.
+_PROPORTIONAL = (0.7, 1.3)
 # "Five to fifty times the paper's rate" is a pass.
 _PASSING_RATE = 5.0
 # So much more for depth is "a very small amount of overhead".
@@ -29,8 +33,8 @@ _CONSTANT_EXPONENT = 0.2
 _LINEAR_R_SQUARED = 0.95
 # Counts this near to each other are the same.
 _NEAR = 0.02
-# Round-off in a corner that a normal turns over.
-_CORNER_SLACK = 1.02
+# Steps that differ by less are the same.
+_SAME = 1.02
 
 
 def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:
@@ -61,24 +65,21 @@ def _list_rows(rows: Sequence[ModelFigures]) -> str:
     )
 
 
-def judge_figure11(runs: Sequence[Run]) -> list[Statement]:
-    """Returns what the runs of Figure 11 come to."""
-    statements = []
-    for run in runs:
-        figures = run.figures
-        statements.append(_judge_rate(figures))
-        if figures.figure == "11-(a)":
-            statements.append(_judge_contacts(figures))
-        if figures.figure == "11-(c)":
-            statements.append(_judge_room(figures))
-        statements += _judge_overhead(figures)
-    return statements
+def judge_run(figures: ProfileFigures) -> list[Statement]:
+    """Returns what a run of Figure 11 comes to."""
+    statements = [_judge_rate(figures)]
+    if figures.figure == "11-(a)":
+        statements.append(_judge_contacts(figures))
+    if figures.figure == "11-(c)":
+        statements.append(_judge_room(figures))
+    return [*statements, *_judge_overhead(figures), *_judge_growth(figures)]
 
 
 def _judge_rate(figures: ProfileFigures) -> Statement:
     is_cup = figures.figure == "11-(a)"
     paper_Hz = CUP_SPOON_RATE_HZ if is_cup else FEW_CONTACTS_RATE_HZ
     times = figures.rate_Hz / paper_Hz
+    tick = figures.all_ticks.tick
     said = (
         "the paper's 500 Hz"
         if is_cup
@@ -89,8 +90,8 @@ def _judge_rate(figures: ProfileFigures) -> Statement:
         verdict = "differs"
     return Statement(
         verdict,
-        f"{figures.name}: 99 of 100 ticks take less than"
-        f" {figures.all_ticks.tick.p99_us:,.0f} µs, which is {figures.rate_Hz:,.0f} Hz,"
+        f"Half of the ticks take less than {tick.median_us:,.0f} µs, 99 of 100 less"
+        f" than {tick.p99_us:,.0f} µs, which is {figures.rate_Hz:,.0f} Hz,"
         f" {times:.1f} times {said}; {100.0 * figures.in_time:.2f} % of the ticks hold"
         " 1 kHz.",
     )
@@ -99,10 +100,7 @@ def _judge_rate(figures: ProfileFigures) -> Statement:
 def _judge_contacts(figures: ProfileFigures) -> Statement:
     most = figures.most_contacts
     share = most / CUP_SPOON_CONTACTS
-    text = (
-        f"{figures.name}: up to {most} contacts at a time; the paper has up to"
-        f" {CUP_SPOON_CONTACTS}."
-    )
+    text = f"Up to {most} contacts at a time; the paper has up to {CUP_SPOON_CONTACTS}."
     return Statement("agrees" if 0.5 <= share <= 2.0 else "differs", text)
 
 
@@ -115,10 +113,11 @@ def _judge_room(figures: ProfileFigures) -> Statement:
     )
     return Statement(
         "agrees" if is_near else "differs",
-        f"{figures.name}: {figures.objects} objects of {triangles:,} triangles, of"
-        f" which the tool touches {figures.most_touched} at once with up to"
-        f" {figures.most_contacts} contacts; the paper: {ROOM_OBJECTS},"
-        f" {ROOM_TRIANGLES:,} and {TOUCHED_OBJECTS}.",
+        f"{figures.objects} objects of {triangles:,} triangles, of which the tool"
+        f" touches {figures.most_touched} at once, with up to {figures.most_contacts}"
+        f" contacts, and in all some of {figures.touched_triangles:,} triangles; the"
+        f" paper: {ROOM_OBJECTS}, {ROOM_TRIANGLES:,}, {TOUCHED_OBJECTS} and"
+        f" {TOUCHED_TRIANGLES:,}.",
     )
 
 
@@ -128,11 +127,25 @@ def _judge_overhead(figures: ProfileFigures) -> list[Statement]:
         return []
     change = 100.0 * (overhead - 1.0)
     text = (
-        f"{figures.name}: at the same number of contacts the query takes"
-        f" {abs(change):.0f} % {'more' if change >= 0.0 else 'less'} where objects"
-        " penetrate; the paper: a very small overhead."
+        f"At the same number of contacts the query takes {abs(change):.0f} %"
+        f" {'more' if change >= 0.0 else 'less'} where objects penetrate; the paper: a"
+        " very small overhead."
     )
     return [Statement("agrees" if overhead <= _SMALL_OVERHEAD else "differs", text)]
+
+
+def _judge_growth(figures: ProfileFigures) -> list[Statement]:
+    growth = figures.contact_growth
+    if growth is None:
+        return []
+    exponent = growth.exponent
+    text = (
+        f"The query's time grows with the power {exponent:.2f} of the number of"
+        " contacts; the paper: roughly in proportion."
+    )
+    if exponent > _PROPORTIONAL[1]:
+        return [Statement("differs", text)]
+    return [Statement("agrees" if exponent >= _PROPORTIONAL[0] else "passes", text)]
 
 
 def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
@@ -151,15 +164,16 @@ def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
                 f" {1e6 * ours.true_distance_step_m:.2f} µm.",
             )
         )
-        smooth = ours.normal_step_deg <= _CORNER_SLACK * passed.corner_deg
+        smooth = ours.normal_step_deg <= _SAME * passed.exact.normal_step_deg
         bound = "no more than" if smooth else "more than"
         statements.append(
             Statement(
                 "agrees" if smooth else "differs",
                 f"Normal {on}: a tick turns it by {ours.normal_step_deg:.2f}° at most"
-                f" beyond the motion, {bound} the {passed.corner_deg:.2f}° between two"
-                f" faces; the contact point steps by {1e3 * ours.point_step_m:.2f} mm"
-                " at most.",
+                f" beyond the motion, {bound} the exact depth of the two polyhedra"
+                f" ({passed.exact.normal_step_deg:.2f}°), whose faces meet at up to"
+                f" {passed.corner_deg:.2f}°; the contact point steps by"
+                f" {1e3 * ours.point_step_m:.2f} mm at most.",
             )
         )
         statements += [
@@ -170,14 +184,21 @@ def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
 
 def _judge_peer(passed: PenPass, name: str) -> Statement:
     ours, theirs = passed.smoothness[OURS], passed.smoothness[name]
-    verdict: Verdict = (
-        "passes" if ours.normal_step_deg <= theirs.normal_step_deg else "differs"
-    )
+    verdict: Verdict = "agrees"
+    if ours.normal_step_deg * _SAME < theirs.normal_step_deg:
+        verdict = "passes"
+    elif ours.normal_step_deg > _SAME * theirs.normal_step_deg:
+        verdict = "differs"
     return Statement(
         verdict,
-        f"For comparison, {name} on {passed.triangles:,} triangles: steps of"
-        f" {theirs.normal_step_deg:.2f}° and {1e6 * theirs.distance_step_m:.2f} µm.",
+        f"For comparison, {name} on {passed.triangles:,} triangles: the normal steps"
+        f" by {theirs.normal_step_deg:.2f}° at most, {_times(theirs, ours)} times ours,"
+        f" and the distance by {1e6 * theirs.distance_step_m:.2f} µm.",
     )
+
+
+def _times(theirs: Smoothness, ours: Smoothness) -> str:
+    return f"{theirs.normal_step_deg / ours.normal_step_deg:.1f}"
 
 
 def judge_analysis(analysis: Analysis) -> list[Statement]:
@@ -208,13 +229,18 @@ def judge_analysis(analysis: Analysis) -> list[Statement]:
     return statements + [_judge_force(forces) for forces in analysis.forces]
 
 
+def _count(forces: int) -> str:
+    return f"{forces} force{'s' if forces != 1 else ''}"
+
+
 def _judge_force(forces: ForceScaling) -> Statement:
     exponent = forces.time_growth.exponent
     whose = "the paper's clusters" if forces.method == "octree" else "shared stiffness"
     growth = "sub-linear" if exponent < 1.0 else "not sub-linear"
     return Statement(
         "agrees" if exponent < 1.0 else "differs",
-        f"Force over contacts, {whose}: {forces.forces[-1]} forces for"
+        f"Force over contacts, {whose}: {_count(forces.forces[-1])} for"
         f" {forces.contacts[-1]} contacts, and a time that grows with the power"
-        f" {exponent:.2f} of them: {growth}; the paper: sub-linear.",
+        f" {exponent:.2f} of them from {FEWEST_FITTED} on: {growth}; the paper:"
+        " sub-linear.",
     )

@@ -1,0 +1,102 @@
+"""`drake-haptics paper`, as a person calls it."""
+
+import json
+import sys
+
+import pytest
+from click.testing import CliRunner
+from headless_browser import HeadlessBrowser, find_browser
+from paper_samples import make_evaluation
+
+from drake_haptics.cli import main
+from drake_haptics.paper.page import write_paper_page
+
+
+@pytest.fixture(scope="module")
+def called(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("paper")
+    page, data = folder / "here.html", folder / "here.json"
+    arguments = ["--quick", "--out", str(page), "--json", str(data), "table1"]
+    result = CliRunner().invoke(main, ["paper", *arguments, "figure12"])
+    assert result.exit_code == 0, result.output
+    return result, page, json.loads(data.read_text())
+
+
+def test_it_says_where_we_agree_and_differ(called):
+    result, page, _ = called
+    assert "Table 1: convex pieces" in result.output
+    assert "Torus (own shape) 54 for 67" in result.output
+    assert "--meshes FOLDER" in result.output  # how to have the armadillo
+    assert "Distance on a sphere of 1,280 triangles" in result.output
+    assert str(page.name) in result.output.replace("\n", "")
+
+
+def test_only_the_parts_named_are_made(called):
+    _, page, data = called
+    assert len(data["table1"]) == 6
+    assert data["figure11"] == [] and data["analysis"] is None
+    text = page.read_text(encoding="utf-8")
+    assert 'id="table1"' in text and 'id="figure12"' in text
+    assert 'id="figure11"' not in text
+    beside = sorted(path.name for path in page.parent.glob("*.png"))
+    assert beside == [
+        "here-figure12-1280-triangles.png",
+        "here-figure12-20480-triangles.png",
+    ]
+
+
+def test_json_on_stdout_is_alone(tmp_path):
+    arguments = ["--json", "-", "--out", str(tmp_path / "p.html"), "table1"]
+    result = CliRunner().invoke(main, ["paper", *arguments])
+    assert result.exit_code == 0, result.output
+    assert json.loads(result.stdout)["table1"][0]["model"] == "Torus"
+
+
+def test_a_wrong_call_is_refused_before_anything_is_measured(tmp_path):
+    nowhere = str(tmp_path / "no" / "p.html")
+    result = CliRunner().invoke(main, ["paper", "--out", nowhere])
+    assert result.exit_code == 1 and "there is no folder" in result.output
+    result = CliRunner().invoke(main, ["paper", "figure13"])
+    assert result.exit_code == 2 and "figure13" in result.output
+
+
+def test_help_imports_neither_drake_nor_plots():
+    code = (
+        "import sys; from click.testing import CliRunner;"
+        "from drake_haptics.cli import main;"
+        "CliRunner().invoke(main, ['--help']);"
+        "sys.exit('pydrake' in sys.modules or 'matplotlib' in sys.modules)"
+    )
+    import subprocess
+
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+@pytest.mark.parametrize("width", [1200, 390])
+def test_the_page_is_readable(tmp_path, width):
+    executable = find_browser()
+    if executable is None:
+        pytest.skip("no Chromium on the PATH")
+    path = tmp_path / "page.html"
+    write_paper_page(make_evaluation(), path)
+    with HeadlessBrowser(executable) as browser:
+        browser.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=800,
+            deviceScaleFactor=1,
+            mobile=width < 500,
+        )
+        browser.open(path.as_uri())
+        assert browser.evaluate("[...document.images].every(i => i.naturalWidth > 900)")
+        # Nothing reaches beyond the window's side, but for tables that scroll.
+        assert browser.evaluate(
+            "document.documentElement.scrollWidth <= window.innerWidth"
+        )
+        assert browser.evaluate("document.querySelectorAll('table').length") == 7
+        assert browser.evaluate(
+            "[...document.querySelectorAll('.mark')].every(m => m.scrollWidth <="
+            " m.clientWidth && ['agrees', 'passes', 'differs', 'lacks']"
+            ".includes(m.innerText))"
+        )
+        assert browser.errors == []

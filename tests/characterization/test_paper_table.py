@@ -1,0 +1,98 @@
+"""The page on the paper has every part that the command makes, whose figures agree."""
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parent))
+from paper_samples import make_evaluation
+from paper_table import PAGE, figures_of, file_of, with_figures
+
+from drake_haptics.paper.published import TABLE_1
+from drake_haptics.paper.report import make_sections
+from drake_haptics.paper.scenarios import scenario_makers
+from drake_haptics.paper.statement import MEANING
+
+TEXT = PAGE.read_text(encoding="utf-8")
+FIGURES = figures_of(TEXT)
+
+
+def headings_of(text):
+    return re.findall(r"^#{2,3} .*$", text, re.MULTILINE)
+
+
+def read_rows(title):
+    """Returns the cells of a table, its head first."""
+    section = FIGURES.split(f"### {title}\n")[1].split("\n#")[0]
+    lines = [line for line in section.splitlines() if line.startswith("|")]
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
+    return [rows[0], *rows[2:]]
+
+
+def number(cell):
+    return float(cell.replace(",", "").removesuffix(" %"))
+
+
+def test_the_page_has_the_headings_and_heads_of_now():
+    now = figures_of(with_figures(TEXT, make_evaluation()))
+    # Meshes that were measured too have headings of their own.
+    real = [h for h in headings_of(FIGURES) if "real mesh" in h]
+    rest = [h for h in headings_of(FIGURES) if h not in real]
+    names = ("### Spoon", "### Probe", "### Wrench")
+    assert [h for h in rest if not h.startswith(names)] == [
+        h for h in headings_of(now) if not h.startswith(names)
+    ]
+    for section in make_sections(make_evaluation()):
+        for table in section.tables:
+            head, *body = read_rows(table.title)
+            assert tuple(head) == table.header
+            assert body
+
+
+def test_every_model_and_scenario_has_a_row():
+    _, *models = read_rows("Convex pieces")
+    assert list(dict.fromkeys(row[0] for row in models)) == [r.model for r in TABLE_1]
+    _, *scenarios = read_rows("Scenarios")
+    names = [row[0] for row in scenarios]
+    assert names[:3] == list(scenario_makers(None))
+    _, *times = read_rows("Times of a tick")
+    for name in names:
+        kinds = [row[0].removeprefix(f"{name}, ") for row in times]
+        assert {"D", "P", "most contacts"} <= set(kinds)
+
+
+def test_every_statement_has_a_verdict_and_is_counted():
+    lines = re.findall(r"^- \*\*(\w+)\*\*: .+\.$", FIGURES, re.MULTILINE)
+    assert set(lines) <= set(MEANING)
+    assert FIGURES.lstrip().startswith(f"Of {len(lines)} statements")
+
+
+def test_pictures_are_there_and_small():
+    shown = re.findall(r"!\[.+\]\((paper_\w+\.png)\)", FIGURES)
+    there = sorted(path.name for path in PAGE.parent.glob("paper_*.png"))
+    assert sorted(shown) == there
+    for name in shown:
+        assert (PAGE.parent / name).stat().st_size < 120_000
+    expected = [
+        file_of(p) for s in make_sections(make_evaluation()) for p in s.pictures
+    ]
+    assert expected[-1] in shown
+
+
+def test_the_rate_is_that_of_the_table():
+    _, *rows = read_rows("Scenarios")
+    said = re.findall(r"99 of 100 less than ([\d,]+) µs, which is ([\d,]+) Hz", FIGURES)
+    assert len(said) == len(rows)
+    for row, (p99_us, rate_Hz) in zip(rows, said, strict=True):
+        assert row[8] == rate_Hz
+        assert number(rate_Hz) == pytest.approx(1e6 / number(p99_us), rel=0.02)
+
+
+def test_the_pairs_are_on_the_line_that_is_told():
+    _, *rows = read_rows("Query over penetrating pairs")
+    last = rows[-1]
+    assert number(last[1]) / number(last[0]) == pytest.approx(number(last[2]), rel=0.02)
+    assert [number(row[0]) for row in rows] == [1, 2, 4, 8, 16, 32, 64]
