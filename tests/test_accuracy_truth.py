@@ -6,7 +6,7 @@ from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
 from pydrake.multibody.math import SpatialForce
 
 from drake_haptics.accuracy.recorded_motion import RecordedMotion
-from drake_haptics.accuracy.truth import find_truth, shift_wrench
+from drake_haptics.accuracy.truth import Truth, find_truth, shift_wrench
 from drake_haptics.mesh import load_mesh
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.scene import Gravity, Scene
@@ -95,3 +95,12 @@ def test_effects_that_push_are_in_the_wrench(tmp_path):
     weight = [0.0, 0.0, -9.81 * scene.tool.mass_kg]
     np.testing.assert_allclose(truth.F_Tcm_W[0, 3:], weight, atol=1e-12)
     assert truth.F_Tcm_W[0, :3] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_busiest_stretch_has_the_most_contact():
+    distance = np.full(100, np.inf)
+    distance[[10, 40, 41, 45, 90]] = -1e-4
+    truth = Truth(np.zeros((100, 6)), np.zeros(3), distance, T)
+    first, end = truth.find_busiest(6)
+    assert end - first == 6 and np.isfinite(distance[first:end]).sum() == 3
+    assert truth.find_busiest(1000) == (0, 100)

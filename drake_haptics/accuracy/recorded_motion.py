@@ -63,13 +63,15 @@ class RecordedMotion:
     def sample(self, period_s: float) -> RecordedMotion:
         """Returns the rows at which a loop of another tick has one, s."""
         rows = [row for row, _ in self.find_ticks(period_s)]
-        return RecordedMotion(
-            max(period_s, self.period_s),
-            self.X_WTool[rows],
-            self.V_WTool[rows],
-            self.X_WH[rows],
-            self.V_WH[rows],
-        )
+        return self._take(rows, max(period_s, self.period_s))
+
+    def cut(self, first: int, end: int) -> RecordedMotion:
+        """Returns the rows from the first to the one before the end."""
+        return self._take(list(range(first, end)), self.period_s)
+
+    def _take(self, rows: list[int], period_s: float) -> RecordedMotion:
+        arrays = (self.X_WTool, self.V_WTool, self.X_WH, self.V_WH)
+        return RecordedMotion(period_s, *(array[rows] for array in arrays))
 
 
 def choose_duration(scene: Scene, longest_s: float = 4.0) -> float:

@@ -100,8 +100,8 @@ def run_accuracy_study(
         store: File that keeps each result; a call with the same scene and file goes on.
         progress: Called with what is done now and the share of all, in [0, 1].
         quick: One setting per knob and a short motion, without stable stiffnesses.
-        count_instructions: Whether to count the core's instructions, for some ten
-            seconds each.
+        count_instructions: Whether to count the core's instructions with valgrind, in
+            the 500 ticks with the most contact, for some ten seconds each.
         stability: Whether to look for the largest stable stiffness of each setting.
 
     Raises:

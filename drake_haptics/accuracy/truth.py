@@ -36,6 +36,17 @@ class Truth:
         """At how many ticks there is a contact."""
         return int(np.isfinite(self.distance).sum())
 
+    def find_busiest(self, num_ticks: int) -> tuple[int, int]:
+        """Returns first and end of the stretch of ticks with the most contact.
+
+        Args:
+            num_ticks: Its length; all where there are no more.
+        """
+        num_ticks = min(num_ticks, len(self.distance))
+        touched = np.concatenate([[0], np.cumsum(np.isfinite(self.distance))])
+        first = int((touched[num_ticks:] - touched[:-num_ticks]).argmax())
+        return first, first + num_ticks
+
 
 def find_truth(reference: Scene, motion: RecordedMotion) -> Truth:
     """Returns what the reference answers to a motion, and how deep the tool is.
