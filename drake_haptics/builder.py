@@ -22,8 +22,13 @@ from drake_haptics.device_site import make_haptic_device, wait_for_reading
 from drake_haptics.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.held_handle import check_scene_coupling
 from drake_haptics.mass_properties import calc_mass_properties
-from drake_haptics.mesh import load_mesh
-from drake_haptics.model_file import is_model_file, load_model_mesh
+from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.mesh_decimation import decimate
+from drake_haptics.model_file import (
+    DEFAULT_CHORD_ERROR_M,
+    is_model_file,
+    load_model_mesh,
+)
 from drake_haptics.scene import (
     Contact,
     Coupling,
@@ -348,16 +353,31 @@ def _find_port(
     return None
 
 
+def _load_mesh(item: Tool | EnvironmentObject) -> Mesh:
+    """Reads the mesh of an object of a scene, as exact as the scene asks for."""
+    if is_model_file(item.mesh):
+        chord_error_m = item.chord_error_m or DEFAULT_CHORD_ERROR_M
+        mesh = load_model_mesh(
+            item.mesh, scale=item.scale, chord_error_m=chord_error_m / item.scale
+        )
+    elif item.chord_error_m is not None:
+        raise SceneError(
+            f"{item.mesh}: chord_error_m is for models with round shapes"
+            f" (SDF, URDF, MJCF); a mesh file has none"
+        )
+    else:
+        mesh = load_mesh(item.mesh, scale=item.scale)
+    return mesh if item.max_triangles is None else decimate(mesh, item.max_triangles)
+
+
 def _decompose(
     name: str,
     item: Tool | EnvironmentObject,
     progress: Callable[[str, float], None] | None,
 ) -> Decomposition:
     """Loads and cuts the mesh of an object of a scene."""
-    load = load_model_mesh if is_model_file(item.mesh) else load_mesh
-    mesh = load(item.mesh, scale=item.scale)
     return decompose(
-        mesh,
+        _load_mesh(item),
         cast(Method, item.decomposition),
         progress=partial(progress, name) if progress else None,
     )

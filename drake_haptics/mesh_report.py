@@ -85,6 +85,8 @@ class MeshReport:
         area: of the surface, m².
         volume: of the solids, m³, counted once for each; cavities subtract.
         findings: in the order in which they were made.
+        decimation_error_m: largest distance between this surface and that of the
+            file, m; 0 where no triangles were taken away.
     """
 
     source: str
@@ -98,6 +100,7 @@ class MeshReport:
     area: float
     volume: float
     findings: tuple[Finding, ...]
+    decimation_error_m: float = 0.0
 
     @property
     def unclean(self) -> tuple[Finding, ...]:
@@ -147,6 +150,7 @@ class MeshReport:
             "volume_m3": self.volume,
             "verdict": self.verdict,
             "findings": [finding.to_dict() for finding in self.findings],
+            "decimation_error_m": self.decimation_error_m,
         }
 
     @staticmethod
@@ -165,6 +169,7 @@ class MeshReport:
             area=data["area_m2"],
             volume=data["volume_m3"],
             findings=tuple(map(Finding.from_dict, data["findings"])),
+            decimation_error_m=data.get("decimation_error_m", 0.0),
         )
 
     def __rich_console__(

@@ -15,6 +15,8 @@ from drake_haptics.errors import MeshError
 from drake_haptics.mesh import Mesh
 from drake_haptics.plant_shapes import decompose_body, find_body_geometries
 
+DEFAULT_CHORD_ERROR_M = 1e-4
+
 _SUFFIXES = (".sdf", ".urdf", ".xml", ".yaml")
 
 
@@ -27,7 +29,7 @@ def load_model_mesh(
     path: str | os.PathLike[str],
     *,
     scale: float = 1.0,
-    chord_error_m: float = 1e-4,
+    chord_error_m: float = DEFAULT_CHORD_ERROR_M,
 ) -> Mesh:
     """Reads the collision shapes of a model as one mesh.
 

@@ -89,6 +89,10 @@ class Tool:
             are taken, as a whole rigid; relative to the scene file, absolute, or
             `package://...` of this package or of Drake.
         scale: Metres per unit of the mesh file.
+        max_triangles: The mesh is first reduced to at most so many triangles; all
+            of them where not given. See `drake_haptics.mesh_decimation.decimate`.
+        chord_error_m: Of a model with round shapes: largest distance of the polytopes
+            that stand for them, m; 1e-4 where not given.
         decomposition: How the mesh is cut into convex pieces: a method of
             `drake_haptics.decomposition.decompose`.
         mass_kg: Mass, kg.
@@ -97,6 +101,8 @@ class Tool:
 
     mesh: str = ""
     scale: float = 1.0
+    max_triangles: int | None = None
+    chord_error_m: float | None = None
     decomposition: str = "surface"
     mass_kg: float = 0.1
     grasp: Pose = field(default_factory=Pose)
@@ -110,6 +116,8 @@ class EnvironmentObject:
         name: Unique among the scene's objects.
         mesh: As for the tool.
         scale: Metres per unit of the mesh file.
+        max_triangles: As for the tool.
+        chord_error_m: As for the tool.
         decomposition: As for the tool.
         pose: X_WO, the pose of the object's frame in the world.
         material: What it is made of.
@@ -118,6 +126,8 @@ class EnvironmentObject:
     name: str = ""
     mesh: str = ""
     scale: float = 1.0
+    max_triangles: int | None = None
+    chord_error_m: float | None = None
     decomposition: str = "surface"
     pose: Pose = field(default_factory=Pose)
     material: Material = field(default_factory=Material)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from drake_haptics.errors import UserError
 
 if TYPE_CHECKING:
-    from drake_haptics.scene import Contact, HandPath, Scene
+    from drake_haptics.scene import Contact, EnvironmentObject, HandPath, Scene, Tool
     from drake_haptics.scene_effects import Effects, Material
     from drake_haptics.scene_twin import Twin
 
@@ -104,7 +104,8 @@ def check_values(scene: Scene) -> None:
         SceneError: A value out of its range.
     """
     require(bool(scene.tool.mesh), "tool.mesh", "is missing")
-    require_all_positive(scene.tool, "tool", ["scale", "mass_kg"])
+    require_all_positive(scene.tool, "tool", ["mass_kg"])
+    _check_shape(scene.tool, "tool")
     _check_pose(scene.tool.grasp, "tool.grasp")
     require(bool(scene.environment), "environment", "needs at least one object")
     names = [item.name for item in scene.environment]
@@ -113,7 +114,7 @@ def check_values(scene: Scene) -> None:
         require(item.name.isidentifier(), f"{where}.name", "must be a plain name")
         require(names.count(item.name) == 1, f"{where}.name", "is used twice")
         require(bool(item.mesh), f"{where}.mesh", "is missing")
-        require_all_positive(item, where, ["scale"])
+        _check_shape(item, where)
         _check_pose(item.pose, f"{where}.pose")
         _check_material(item.material, f"{where}.material", scene.effects)
     _check_contact(scene.contact)
@@ -127,6 +128,16 @@ def check_values(scene: Scene) -> None:
         _check_pose(scene.device.base, "device.base")
     _check_twin(scene.device.twin)
     _check_path(scene.hand.path)
+
+
+def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
+    """Checks how the shape of an object is read and how exact it is."""
+    require_all_positive(item, where, ["scale", "chord_error_m"])
+    require(
+        item.max_triangles is None or item.max_triangles >= 4,
+        f"{where}.max_triangles",
+        f"must be 4 or more, is {item.max_triangles}",
+    )
 
 
 def _check_contact(contact: Contact) -> None:

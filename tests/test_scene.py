@@ -84,6 +84,14 @@ def test_a_material_takes_the_place_of_the_scenes(tmp_path):
     assert scene.environment[0].material == Material(900.0, None, 0.0, False)
 
 
+def test_an_object_says_how_exact_its_shape_is(tmp_path):
+    exact = "scale: 1e-3\n  max_triangles: 200\n  chord_error_m: 1e-5"
+    (plate,) = load(tmp_path, GOOD.replace("scale: 1e-3", exact)).environment
+    assert (plate.max_triangles, plate.chord_error_m) == (200, 1e-5)
+    tool = load(tmp_path, GOOD).tool
+    assert tool.max_triangles is tool.chord_error_m is None
+
+
 def test_mesh_paths_no_longer_depend_on_the_folder(tmp_path):
     scene = load(tmp_path, GOOD)
     assert scene.tool.mesh == str(tmp_path / "peg.obj")
@@ -111,6 +119,21 @@ def test_a_pose_is_drakes():
         ("periodic: false", "periodic: 3", r"hand\.path\.periodic: expected true or"),
         ("scale: 1e-3", "scale: -1", r"environment\[0\]\.scale must be positive"),
         ("mesh: peg.obj", "", r"tool\.mesh is missing"),
+        (
+            "scale: 1e-3",
+            "max_triangles: 3",
+            r"environment\[0\]\.max_triangles must be 4",
+        ),
+        (
+            "mass_kg",
+            "max_triangles: 2.5\n  mass_kg",
+            r"max_triangles: expected a whole",
+        ),
+        (
+            "scale: 1e-3",
+            "chord_error_m: 0",
+            r"\]\.chord_error_m must be positive, is 0",
+        ),
         ("[0, 0, 0.04]", "[0, 0]", r"tool\.grasp\.position_m needs three numbers"),
         ("[0, 0, 0.04]", "0.04", r"tool\.grasp\.position_m: expected a list"),
         ("- name: plate", "- name: a b", r"environment\[0\]\.name must be a plain"),

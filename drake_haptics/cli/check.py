@@ -5,13 +5,20 @@ from __future__ import annotations
 import click
 from rich.console import Console
 
-from drake_haptics.cli.mesh_options import json_option, unit_options, write_json
-from drake_haptics.mesh import MeshError, load_mesh
+from drake_haptics.cli.mesh_options import (
+    json_option,
+    max_triangles_option,
+    read_mesh,
+    unit_options,
+    write_json,
+)
+from drake_haptics.mesh import MeshError
 
 
 @click.command()
 @click.argument("mesh", type=click.Path())
 @unit_options
+@max_triangles_option
 @click.option(
     "--strict", is_flag=True, help="Fail if the mesh has a defect, repairable or not."
 )
@@ -20,6 +27,7 @@ def check(
     mesh: str,
     unit: str | None,
     scale: float | None,
+    max_triangles: int | None,
     strict: bool,
     json_file: str | None,
 ) -> None:
@@ -27,7 +35,7 @@ def check(
 
     Exits with 0 if the mesh can be used, with 1 if it cannot.
     """
-    report = load_mesh(mesh, unit=unit, scale=scale).report
+    report = read_mesh(mesh, unit, scale, max_triangles).report
     if json_file is not None:
         write_json(report.to_dict(), json_file)
     if json_file != "-":

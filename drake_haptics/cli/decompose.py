@@ -9,15 +9,23 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from drake_haptics.cli.mesh_options import json_option, unit_options, write_json
+from drake_haptics.cli.mesh_options import (
+    json_option,
+    max_triangles_option,
+    read_mesh,
+    unit_options,
+    write_json,
+)
 from drake_haptics.decomposition import METHODS, Decomposition, Method
 from drake_haptics.decomposition import decompose as decompose_mesh
-from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.mesh import Mesh
+from drake_haptics.mesh_report import length
 
 
 @click.command()
 @click.argument("mesh", type=click.Path())
 @unit_options
+@max_triangles_option
 @click.option(
     "--method",
     type=click.Choice(METHODS),
@@ -49,6 +57,7 @@ def decompose(
     mesh: str,
     unit: str | None,
     scale: float | None,
+    max_triangles: int | None,
     method: Method,
     output: str | None,
     no_cache: bool,
@@ -57,7 +66,7 @@ def decompose(
     json_file: str | None,
 ) -> None:
     """Cut the surface of a mesh into convex pieces, and report them."""
-    taken_in = load_mesh(mesh, unit=unit, scale=scale)
+    taken_in = read_mesh(mesh, unit, scale, max_triangles)
     result = _with_progress(taken_in, method, cache=not no_cache)
     if output is not None:
         result.save(output)
@@ -87,6 +96,11 @@ def _with_progress(mesh: Mesh, method: Method, cache: bool) -> Decomposition:
 def _print_report(result: Decomposition) -> None:
     console = Console(highlight=False)
     console.print(result.report)
+    if result.mesh.report.decimation_error_m:
+        console.print(
+            f"  The mesh was reduced: its surface is within"
+            f" {length(result.mesh.report.decimation_error_m)} of the original one."
+        )
     unclean = len(result.mesh.report.unclean)
     if unclean:
         console.print(

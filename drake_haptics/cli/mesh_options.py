@@ -10,6 +10,8 @@ from typing import Any, TypeVar
 import click
 
 from drake_haptics.errors import UserError
+from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.mesh_decimation import decimate
 from drake_haptics.units import METRES_PER_UNIT
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -25,6 +27,24 @@ def unit_options(function: _Function) -> _Function:
         help=f"Length unit of the file: {', '.join(METRES_PER_UNIT)}.  [default: m]",
     )
     return unit(scale(function))
+
+
+def max_triangles_option(function: _Function) -> _Function:
+    """Adds --max-triangles."""
+    return click.option(
+        "--max-triangles",
+        type=click.IntRange(min=4),
+        metavar="N",
+        help="Reduce the mesh to at most N triangles first.",
+    )(function)
+
+
+def read_mesh(
+    file: str, unit: str | None, scale: float | None, max_triangles: int | None
+) -> Mesh:
+    """Reads the mesh that a command works on."""
+    mesh = load_mesh(file, unit=unit, scale=scale)
+    return mesh if max_triangles is None else decimate(mesh, max_triangles)
 
 
 def json_option(function: _Function) -> _Function:

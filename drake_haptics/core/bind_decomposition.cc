@@ -9,6 +9,7 @@
 #include "bind.h"
 #include "bind_array.h"
 #include "decomposition.h"
+#include "surface_distance.h"
 
 namespace nb = nanobind;
 
@@ -76,6 +77,18 @@ DecompositionPtr Adopt(const PointsArg& vertices, const TrianglesArg& triangles,
   nb::gil_scoped_release release;
   return std::make_shared<Decomposition>(
       AdoptConvexPieces(points, faces, piece_points, tolerance));
+}
+
+double MeasureDistance(const PointsArg& vertices_A,
+                       const TrianglesArg& triangles_A,
+                       const PointsArg& vertices_B,
+                       const TrianglesArg& triangles_B) {
+  const std::vector<Vec3> points_A = ToPoints(vertices_A);
+  const std::vector<Vec3> points_B = ToPoints(vertices_B);
+  const std::vector<Triangle> faces_A = ToTriangles(triangles_A);
+  const std::vector<Triangle> faces_B = ToTriangles(triangles_B);
+  nb::gil_scoped_release release;
+  return CalcSurfaceDistance(points_A, faces_A, points_B, faces_B);
 }
 
 // Each piece keeps the whole decomposition alive.
@@ -151,6 +164,16 @@ void BindDecomposition(nb::module_& m) {
         "it.\n\n"
         "Raises:\n"
         "    ValueError: bad indices or values.");
+  m.def(
+      "surface_distance", &MeasureDistance, nb::arg("vertices_A"),
+      nb::arg("triangles_A"), nb::arg("vertices_B"), nb::arg("triangles_B"),
+      "Largest distance, m, of any point of either surface from the other: "
+      "a bound on it that is above by no more than 5%, or 1e-4 of the size.\n\n"
+      "Args:\n"
+      "    vertices_A, vertices_B: (n, 3) positions, m.\n"
+      "    triangles_A, triangles_B: (m, 3) vertex indices, int32.\n\n"
+      "Raises:\n"
+      "    ValueError: bad indices or values.");
 }
 
 }  // namespace drake_haptics

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace drake_haptics {
@@ -11,6 +13,15 @@ class BoxTree {
   using Box = Eigen::AlignedBox3d;
 
   explicit BoxTree(std::vector<Box> item_boxes);
+
+  /// Calls `visit(item)` for items whose boxes are nearer to `point` than the
+  /// squared distance, m², that the call before returned, those in nearer boxes
+  /// rather before those in farther ones.
+  template <typename Visit>
+  void VisitNear(const Eigen::Vector3d& point, const Visit& visit) const {
+    double limit = std::numeric_limits<double>::infinity();
+    if (!nodes_.empty()) VisitNear(0, point, visit, &limit);
+  }
 
   /// Calls `visit(item)` for each item whose box meets `box`, until one call
   /// returns true. Returns whether one did.
@@ -43,6 +54,28 @@ class BoxTree {
       if (item_boxes_[item].intersects(box) && visit(item)) return true;
     }
     return false;
+  }
+
+  template <typename Visit>
+  void VisitNear(int index, const Eigen::Vector3d& point, const Visit& visit,
+                 double* limit) const {
+    const Node& node = nodes_[index];
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      const int item = order_[i];
+      if (item_boxes_[item].squaredExteriorDistance(point) < *limit) {
+        *limit = visit(item);
+      }
+    }
+    if (node.count > 0) return;
+    int near = node.first, far = node.first + 1;
+    double near_squared = nodes_[near].box.squaredExteriorDistance(point);
+    double far_squared = nodes_[far].box.squaredExteriorDistance(point);
+    if (far_squared < near_squared) {
+      std::swap(near, far);
+      std::swap(near_squared, far_squared);
+    }
+    if (near_squared < *limit) VisitNear(near, point, visit, limit);
+    if (far_squared < *limit) VisitNear(far, point, visit, limit);
   }
 
   std::vector<Box> item_boxes_;
