@@ -19,7 +19,10 @@ from pydrake.multibody.tree import RigidBody, SpatialInertia
 from pydrake.systems.framework import Context, DiagramBuilder, OutputPort
 
 from drake_haptics.accuracy.recorded_motion import RecordedMotion
+from drake_haptics.bench.quiet_stderr import quiet_stderr
 from drake_haptics.pose_vector import vector_to_pose
+
+AddGeometry = Callable[[MultibodyPlant, RigidBody, int, RigidTransform], None]
 
 # Of a tool whose motion is given; they change nothing.
 _MASS_KG, _RADIUS_M = 0.1, 0.1
@@ -74,7 +77,7 @@ class DrakePlant:
 def make_plant(
     contact_model: str,
     X_WO: np.ndarray,
-    add: Callable[[MultibodyPlant, RigidBody, int, RigidTransform], None],
+    add: AddGeometry,
 ) -> DrakePlant:
     """Builds a plant with a tool and objects.
 
@@ -84,6 +87,12 @@ def make_plant(
         add: Gives a body its geometry: called with the plant, the body, the object's
             index or -1 for the tool, and where the geometry is in the body's frame.
     """
+    # Qhull tells of flat pieces.
+    with quiet_stderr():
+        return _build(contact_model, X_WO, add)
+
+
+def _build(contact_model: str, X_WO: np.ndarray, add: AddGeometry) -> DrakePlant:
     builder = DiagramBuilder()
     config = MultibodyPlantConfig(time_step=0.0, contact_model=contact_model)
     plant, scene_graph = AddMultibodyPlant(config, builder)

@@ -41,6 +41,7 @@ class PeerMethod:
         module: Of this folder; imports the library.
         function: In it, an `Answer`.
         words: What is asked, for the report.
+        for_pieces: Whether it is another method's where the tool is one piece.
     """
 
     library: str
@@ -48,6 +49,7 @@ class PeerMethod:
     module: str
     function: str
     words: str
+    for_pieces: bool = False
 
     def load(self) -> Answer:
         """Returns the function.
@@ -101,14 +103,15 @@ METHODS = (
         "drake",
         "with_drake_hydroelastic",
         "answer_with_hull",
-        "hydroelastic, the tool's hull compliant, objects rigid",
+        "hydroelastic without a tolerance: tool's hull compliant, objects rigid",
     ),
     PeerMethod(
         "Drake",
         "drake",
         "with_drake_hydroelastic",
         "answer_with_pieces",
-        "hydroelastic, the tool's pieces compliant, objects rigid",
+        "hydroelastic without a tolerance: tool's pieces compliant, objects rigid",
+        for_pieces=True,
     ),
 )
 
@@ -153,6 +156,8 @@ def run_peers(
 
 def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
     """Returns the row of one method, see `run_peers`."""
+    if method.for_pieces and len(problem.tool.pieces) == 1:
+        return _explain(method.library, method, "the tool is one piece: its hull")
     try:
         library = f"{method.library} {version(method.package)}"
         answer = method.load()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from pydrake.common import MemoryFile
 from pydrake.geometry import (
@@ -17,14 +15,16 @@ from pydrake.math import RigidTransform
 from pydrake.multibody.plant import ContactResults, MultibodyPlant
 from pydrake.multibody.tree import RigidBody
 
-from drake_haptics.accuracy.peers.drake_plant import DrakePlant, make_plant
+from drake_haptics.accuracy.peers.drake_plant import (
+    AddGeometry,
+    DrakePlant,
+    make_plant,
+)
 from drake_haptics.accuracy.peers.our_law import FoundContacts, apply_law
 from drake_haptics.accuracy.peers.problem import PeerAnswers, PeerProblem
 from drake_haptics.bench.drake_pieces import make_surface, register_pieces
 from drake_haptics.decomposition import Decomposition
 from drake_haptics.pose_vector import vector_to_pose
-
-_Add = Callable[[MultibodyPlant, RigidBody, int, RigidTransform], None]
 
 
 def answer_on_pieces(problem: PeerProblem) -> PeerAnswers:
@@ -49,7 +49,8 @@ def answer_by_distances(problem: PeerProblem) -> PeerAnswers:
     """Takes signed distances within the tolerance, of the same pieces."""
     drake = make_plant("point", problem.part.X_WO, _add_pieces(problem))
     owners = _find_owners(problem, drake)
-    start, rows = [0], []
+    start = [0]
+    rows: list[np.ndarray] = []
 
     def read(tick: int, pairs: list[SignedDistancePair]) -> None:
         X_WTool = vector_to_pose(problem.motion.X_WTool[tick])
@@ -100,7 +101,7 @@ def _find_part(
     return problem.tool if which < 0 else problem.objects[which], surface
 
 
-def _add_pieces(problem: PeerProblem) -> _Add:
+def _add_pieces(problem: PeerProblem) -> AddGeometry:
     def add(
         plant: MultibodyPlant, body: RigidBody, which: int, X_BP: RigidTransform
     ) -> None:
@@ -109,7 +110,7 @@ def _add_pieces(problem: PeerProblem) -> _Add:
     return add
 
 
-def _read_forces(problem: PeerProblem, add: _Add) -> PeerAnswers:
+def _read_forces(problem: PeerProblem, add: AddGeometry) -> PeerAnswers:
     """Sums the forces of the plant's point contacts at the tool's origin."""
     drake = make_plant("point", problem.part.X_WO, add)
     motion, tool = problem.motion, drake.tool.index()

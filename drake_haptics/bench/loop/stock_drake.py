@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import gc
-import logging
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
 import numpy as np
 from pydrake.math import RigidTransform
@@ -17,7 +15,6 @@ from pydrake.multibody.plant import (
 from pydrake.multibody.tree import (
     FixedOffsetFrame,
     LinearBushingRollPitchYaw,
-    RigidBody,
     RotationalInertia,
     SpatialInertia,
 )
@@ -30,6 +27,7 @@ from drake_haptics.bench.loop.problem import (
     LoopProblem,
     moments_and_products,
 )
+from drake_haptics.bench.quiet_stderr import quiet_stderr
 
 # So heavy that the bushing does not move the handle within a tick: 1 µm/s at 1 kN.
 _HANDLE_KG = 1e6
@@ -64,12 +62,14 @@ class StockLoop:
             contact_model="point",
             discrete_contact_approximation=solver,
         )
-        with _without_warnings():
+        # Drake warns that TAMSI will go; where it is gone it is not measured. Qhull
+        # tells of flat pieces.
+        with quiet_stderr():
             self._plant, _ = AddMultibodyPlant(config, builder)
-        self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
-        self._handle, self._tool = self._add_bodies()
-        self._plant.Finalize()
-        self._diagram = builder.Build()
+            self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
+            self._add_bodies()
+            self._plant.Finalize()
+            self._diagram = builder.Build()
 
     def observe(self) -> LoopCourse:
         """See `Loop.observe`."""
@@ -135,7 +135,7 @@ class StockLoop:
             gc.unfreeze()
         return seconds
 
-    def _add_bodies(self) -> tuple[RigidBody, RigidBody]:
+    def _add_bodies(self) -> None:
         problem, plant = self._problem, self._plant
         handle = plant.AddRigidBody(
             "handle", SpatialInertia.SolidSphereWithMass(_HANDLE_KG, _HANDLE_RADIUS_M)
@@ -172,16 +172,3 @@ class StockLoop:
                 [gains.damping_Ns_per_m] * 3,
             )
         )
-        return handle, tool
-
-
-@contextmanager
-def _without_warnings() -> Iterator[None]:
-    """Drake warns that TAMSI will go; where it is gone it is not measured."""
-    log = logging.getLogger("drake")
-    level = log.level
-    log.setLevel(logging.ERROR)
-    try:
-        yield
-    finally:
-        log.setLevel(level)
