@@ -1,11 +1,13 @@
 """A recorded motion: what a run does, tick by tick."""
 
+import copy
+
 import numpy as np
 import pytest
 
-from drake_haptics.accuracy.recorded_motion import record_motion
+from drake_haptics.accuracy.recorded_motion import choose_duration, record_motion
 from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import load_scene
+from drake_haptics.scene import HandPath, load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import make_simulator
 
@@ -55,6 +57,15 @@ def test_velocity_is_the_change_of_the_pose(motion):
     v = motion.V_WTool[1:, 3:]
     np.testing.assert_allclose(moved, motion.period_s * v, atol=2e-6)
     assert np.abs(moved).max() > 2e-5
+
+
+def test_a_long_lap_is_cut_and_a_hand_at_rest_is_watched(scene):
+    lap_s = scene.hand.path.waypoints[-1].time_s
+    assert choose_duration(scene, 0.4) == 0.4
+    assert choose_duration(scene, 100.0) == lap_s
+    still = copy.deepcopy(scene)
+    still.hand.path = HandPath(waypoints=[scene.hand.path.waypoints[0]])
+    assert choose_duration(still, 0.4) == 0.4
 
 
 def test_default_is_one_lap(scene):

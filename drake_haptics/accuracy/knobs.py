@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 from drake_haptics.accuracy.contact_knobs import (
     list_clusterings,
@@ -65,10 +66,13 @@ def make_reference(scene: Scene) -> Setting:
 
     Tolerance, gains, effects and the kind of depth stay the scene's.
     """
-    changes = {
-        "tool.decomposition": "surface",
-        "environment.decomposition": "surface",
-    }
+    changes: dict[str, Any] = {}
+    for where in ("tool", "environment"):
+        changes[f"{where}.decomposition"] = "surface"
+        changes[f"{where}.max_triangles"] = None
+        chords = list_chord_errors(scene, where)
+        # The finest comes first.
+        changes.update(chords[0].changes if chords else {})
     return Setting("reference", "all triangles in exact pieces, every tick", changes)
 
 

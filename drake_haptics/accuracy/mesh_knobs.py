@@ -9,14 +9,18 @@ from typing import Any
 from drake_haptics.accuracy.knob_values import format_length, with_own
 from drake_haptics.accuracy.setting import Setting
 from drake_haptics.mesh import load_mesh
-from drake_haptics.model_file import is_model_file, load_model_mesh
+from drake_haptics.model_file import (
+    DEFAULT_CHORD_ERROR_M,
+    is_model_file,
+    load_model_mesh,
+)
 from drake_haptics.scene import EnvironmentObject, Scene, Tool
 
 # Shares of a mesh's triangles; fewer than this many are no shape any more.
 _TRIANGLES = (2, 4, 8)
 _LEAST_TRIANGLES = 20
 _MERGED_M = (1e-4, 3e-4, 1e-3)
-_CHORDS_M = (2.5e-5, 1e-4, 4e-4, 1.6e-3)
+_CHORDS_M = (2.5e-5, 4e-4, 1.6e-3)
 
 
 def list_decompositions(scene: Scene, where: str) -> list[Setting]:
@@ -61,11 +65,22 @@ def list_triangle_counts(scene: Scene, where: str) -> list[Setting]:
 
 def list_chord_errors(scene: Scene, where: str) -> list[Setting]:
     """Returns how well polytopes follow round shapes, where there are any."""
-    key = f"{where}.chord_error_m"
-    if not any(_is_round(part) for part in _find_parts(scene, where)):
+    key, own_m = f"{where}.chord_error_m", _find_own(scene, where, "chord_error_m")
+    parts = _find_parts(scene, where)
+    # Meshes of triangles have none, and no such key.
+    if not all(is_model_file(part.mesh) for part in parts):
         return []
-    errors = with_own(_CHORDS_M, _find_own(scene, where, "chord_error_m"))
-    return [Setting(key, format_length(m), {key: m}) for m in errors]
+    if not any(_is_round(part) for part in parts):
+        return []
+    default_m = None if own_m is None else DEFAULT_CHORD_ERROR_M
+    return [
+        Setting(
+            key,
+            format_length(m),
+            {key: default_m if m == DEFAULT_CHORD_ERROR_M else m},
+        )
+        for m in with_own([*_CHORDS_M, DEFAULT_CHORD_ERROR_M], own_m)
+    ]
 
 
 def _find_parts(scene: Scene, where: str) -> Sequence[Tool | EnvironmentObject]:
@@ -78,16 +93,20 @@ def _find_own(scene: Scene, where: str, name: str) -> Any:
     return own.pop() if len(own) == 1 else None
 
 
-def _count_triangles(part: Tool | EnvironmentObject, **how: Any) -> int:
-    load = load_model_mesh if is_model_file(part.mesh) else load_mesh
-    return len(load(part.mesh, scale=part.scale, **how).triangles)
+def _count_triangles(
+    part: Tool | EnvironmentObject, chord_error_m: float | None = None
+) -> int:
+    """Returns how many triangles a part has before it is reduced."""
+    if not is_model_file(part.mesh):
+        return len(load_mesh(part.mesh, scale=part.scale).triangles)
+    error_m = chord_error_m or part.chord_error_m or DEFAULT_CHORD_ERROR_M
+    mesh = load_model_mesh(
+        part.mesh, scale=part.scale, chord_error_m=error_m / part.scale
+    )
+    return len(mesh.triangles)
 
 
 def _is_round(part: Tool | EnvironmentObject) -> bool:
     """Whether a part has shapes that a finer polytope follows better."""
-    if not is_model_file(part.mesh):
-        return False
-    fine, coarse = _CHORDS_M[0], _CHORDS_M[-1]
-    return _count_triangles(part, chord_error_m=fine) > _count_triangles(
-        part, chord_error_m=coarse
-    )
+    fine, coarse = (_count_triangles(part, _CHORDS_M[i]) for i in (0, -1))
+    return fine > coarse

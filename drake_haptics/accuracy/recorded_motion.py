@@ -77,9 +77,10 @@ class RecordedMotion:
 def choose_duration(scene: Scene, longest_s: float = 4.0) -> float:
     """Returns the time of one lap of the hand's path, s, or of a longer one a part.
 
-    Some thousand ticks show what a setting does.
+    Some thousand ticks show what a setting does. Where the hand goes nowhere they are
+    those in which the tool comes to rest.
     """
-    return min(make_hand_path(scene.hand.path).duration_s, longest_s)
+    return min(make_hand_path(scene.hand.path).duration_s or longest_s, longest_s)
 
 
 def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMotion:

@@ -38,7 +38,7 @@ Progress = Callable[[str, float], None]
 # Runs of each setting, in turns.
 _REPEATS = 3
 # Longest motion of a quick study, simulated.
-_QUICK_S = 1.5
+_QUICK_S = 1.0
 # Shares of all work that are done when something begins.
 _TRUTH, _PRESS = 0.01, 0.03
 # Those of stages, from where to where.

@@ -117,10 +117,8 @@ def _read_wrench(tick: ReplayedTick) -> np.ndarray:
 
 
 def _read_distance(tick: ReplayedTick, tolerance_m: float) -> float:
-    query = tick.haptic.loop.contact_query
-    contacts = query.get_contacts_output_port().Eval(
-        query.GetMyContextFromRoot(tick.root)
-    )
+    port = tick.haptic.loop.contacts
+    contacts = port.Eval(port.get_system().GetMyContextFromRoot(tick.root))
     nearest = min(contacts.distance.tolist(), default=np.inf)
     # Braking looks further.
     return nearest if nearest < tolerance_m else np.inf
