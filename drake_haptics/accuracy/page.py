@@ -175,7 +175,8 @@ def _make_peers(peers: Sequence[PeerRow]) -> str:
     heads = "".join(map(_make_head, _PEER_COLUMNS))
     return (
         "<h2>Other libraries on the same motion</h2><p class='note'>Against the same"
-        " reference; what differs is their contact model as well as their exactness."
+        " reference, without the scene's effects; what differs is their contact model"
+        " as well as their exactness."
         f"</p><div class='wide'><table><tr>{heads}</tr>{''.join(rows)}</table></div>"
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -24,8 +25,10 @@ if TYPE_CHECKING:
 
 _SIZE_INCH = (13.0, 8.0)
 _MARKERS = "osD^vP<>Xhpd8"
-# Axes end this factor beyond what they show, so that labels have room.
-_MARGIN_TIME, _MARGIN_ERROR = 1.25, 2.0
+# The axis of errors ends this factor beyond what it shows: labels have room.
+_MARGIN_ERROR = 2.0
+# Letters in a line of the legend.
+_LABEL_WIDTH = 36
 
 
 def draw_study(study: AccuracyStudy) -> Figure:
@@ -145,7 +148,7 @@ def _draw_peers(peers: Sequence[PeerRow], axes: Axes) -> None:
             markerfacecolor="none",
             markeredgecolor="0.35",
             markeredgewidth=1.6,
-            label=f"{peer.library}, {peer.method}",
+            label=textwrap.fill(f"{peer.library}, {peer.method}", _LABEL_WIDTH),
             zorder=3,
         )
 

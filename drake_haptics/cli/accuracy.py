@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from drake_haptics.accuracy.add_peers import add_peers
 from drake_haptics.accuracy.budget import RUNS, BudgetChoice, choose_setting
 from drake_haptics.accuracy.budget_words import describe_file, to_budget_data
 from drake_haptics.accuracy.figures import AccuracyStudy
@@ -39,7 +40,9 @@ _FILE: dict[str, Any] = {
 @click.command()
 @click.argument("scene", default="cup_spoon")
 @click.option(
-    "--quick", is_flag=True, help="Measure less: one setting of each knob, once."
+    "--quick",
+    is_flag=True,
+    help="Measure less: one setting of each knob, once, and no other library.",
 )
 @click.option(
     "--only",
@@ -52,6 +55,7 @@ _FILE: dict[str, Any] = {
 @click.option(
     "--instructions", is_flag=True, help="Also count the core's, with valgrind."
 )
+@click.option("--no-peers", is_flag=True, help="Leave other libraries out.")
 @click.option(
     "--out",
     **_FILE,
@@ -72,6 +76,7 @@ def accuracy(
     quick: bool,
     words: tuple[str, ...],
     instructions: bool,
+    no_peers: bool,
     out: Path | None,
     store: Path | None,
     budget_us: float | None,
@@ -110,6 +115,8 @@ def accuracy(
         if budget_us is None:
             check_page_path(page)
             study = measure(show)
+            if not (quick or no_peers or words):
+                study = add_peers(study, chosen, progress=show)
         else:
             choice = choose_setting(
                 chosen,

@@ -3,10 +3,11 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from accuracy_samples import make_study
+from accuracy_samples import make_peers, make_study
 from click.testing import CliRunner
 
 from drake_haptics.accuracy.study_json import from_json_data
@@ -44,7 +45,11 @@ def sample(monkeypatch):
         asked.append((scene, name, settings))
         return make_study()
 
+    def add_peers(study, scene, **_):
+        return replace(study, peers=make_peers())
+
     monkeypatch.setattr(command, "run_accuracy_study", study)
+    monkeypatch.setattr(command, "add_peers", add_peers)
     return asked
 
 
@@ -105,7 +110,7 @@ def test_the_terminal_shows_the_price_list(invoke, sample):
     assert settings["quick"] and settings["count_instructions"]
     assert settings["settings"] is None and settings["store"] is None
     lines = [line.split() for line in result.stdout.splitlines()]
-    assert ["*~1", "mm", "150/300", "24.0", "0.004/0.016", "4.0", "0", "0.004",
+    assert ["*", "1", "mm", "150/300", "24.0", "0.004/0.016", "4.0", "0", "0.004",
             "30000"] in lines  # fmt: skip
     text = " ".join(result.stdout.split())
     assert "Knee: contact.tolerance_m 0.5 mm: 13.0 µs in the core" in text
@@ -124,6 +129,18 @@ def test_the_scene_is_cup_spoon_where_none_is_named(invoke, sample):
         "my.page.html",
         "my.page.png",
     ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "beside"),
+    [([], True), (["--no-peers"], False), (["--quick"], False), (ONLY, False)],
+)
+def test_other_libraries_are_beside_a_whole_price_list(
+    invoke, sample, arguments, beside
+):
+    result = invoke("hammer_block", *arguments)
+    assert result.exit_code == 0, result.output
+    assert ("Beside it: MuJoCo 3.3.0, its own contacts" in result.stdout) == beside
 
 
 def test_only_asks_for_one_setting_in_its_own_words(invoke, sample):
