@@ -42,15 +42,17 @@ def test_pieces_are_compared_row_by_row():
 @pytest.mark.parametrize(
     ("tick_us", "verdict", "words"),
     [
-        (100.0, "passes", "10,000 Hz, 20.0 times the paper's 500 Hz; 100.00 %"),
-        (1000.0, "agrees", "1,000 Hz, 2.0 times the paper's 500 Hz; 0.00 %"),
-        (4000.0, "differs", "250 Hz, 0.5 times the paper's 500 Hz; 0.00 %"),
+        (100.0, "passes", "10,000 Hz, 20.0 times the paper's 500 Hz. With all"),
+        (1000.0, "agrees", "1,000 Hz, 2.0 times the paper's 500 Hz. With all"),
+        (4000.0, "differs", "250 Hz, 0.5 times the paper's 500 Hz. With all"),
     ],
 )
 def test_the_rate_is_compared_with_the_papers(tick_us, verdict, words):
     rate = find(judge_run(make_run(tick_us=tick_us).figures), "99 of 100")
     assert rate.verdict == verdict
     assert words in rate.text
+    held = "75.00 %" if tick_us < 1000.0 else "0.00 %"
+    assert f"less than 5,000 µs, and {held} of the ticks held" in rate.text
 
 
 def test_contacts_and_overhead_are_compared():

@@ -76,4 +76,4 @@ def _draw_depths(axes: Axes, analysis: Analysis) -> None:
     axes.set_xlabel("triangles of each body")
     axes.set_ylabel("one depth, µs")
     axes.set_title("depth over triangles", fontsize=10)
-    axes.legend(fontsize=8, loc="center right")
+    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(0.02, 0.72))

@@ -96,6 +96,7 @@ class PaperEvaluation:
         figure11: Runs, those of the paper first.
         figure12: Passes of the pen over a coarse and a fine sphere.
         analysis: Of section 6.3.
+        is_cut_short: Whether only the beginnings of Figure 11's paths were run.
     """
 
     machine: dict[str, str | int]
@@ -103,6 +104,7 @@ class PaperEvaluation:
     figure11: tuple[Run, ...] = ()
     figure12: tuple[PenPass, ...] = ()
     analysis: Analysis | None = None
+    is_cut_short: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """Returns the figures, without the curves, ready for JSON."""
@@ -115,6 +117,7 @@ class PaperEvaluation:
             }
         return {
             "machine": self.machine,
+            "is_cut_short": self.is_cut_short,
             "table1": [row.to_dict() for row in self.table1],
             "figure11": [run.figures.to_dict() for run in self.figure11],
             "figure12": [passed.to_dict() for passed in self.figure12],
@@ -153,7 +156,8 @@ def evaluate_paper(
 
         found[part] = _MEASURE[part](effort, meshes, show)
         done += _WEIGHTS[part]
-    return PaperEvaluation(describe_machine(), **found)
+    is_cut_short = "figure11" in found and effort.profile_s is not None
+    return PaperEvaluation(describe_machine(), is_cut_short=is_cut_short, **found)
 
 
 def _measure_table1(

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from drake_haptics import SceneTracker, _core
-from drake_haptics.decomposition import decompose
+from drake_haptics.decomposition import Decomposition, decompose
 from drake_haptics.mesh import Mesh
 from drake_haptics.paper.fits import PowerFit, fit_power
 from drake_haptics.paper.pair_scaling import (
@@ -75,7 +75,7 @@ def measure_force_scaling(repeats: int) -> tuple[ForceScaling, ...]:
     return tuple(_measure(name, call, sets, repeats) for name, call in cluster.items())
 
 
-def _touch(across: int, plate: Any) -> _core.ContactSet:
+def _touch(across: int, plate: Decomposition) -> _core.ContactSet:
     """Returns the contacts of a square brush with that many teeth along a side."""
     builder = SurfaceBuilder()
     spacing_m = _WIDTH_M / across

@@ -53,7 +53,8 @@ class ProfileFigures:
         disjoint: Ticks in which nothing penetrates; None if there are none.
         penetrating: Those in which something does; None if there are none.
         all_ticks: Both.
-        in_time: Share of ticks that took less than 1 ms.
+        disturbed: The whole tick with all that came between.
+        in_time: Share of those ticks that took less than 1 ms.
         most_contacts: Before clustering.
         most_clusters: After it.
         most_touched: Objects in contact at once.
@@ -76,6 +77,7 @@ class ProfileFigures:
     disjoint: StateTimes | None
     penetrating: StateTimes | None
     all_ticks: StateTimes
+    disturbed: TickTimes
     in_time: float
     most_contacts: int
     most_clusters: int
@@ -113,7 +115,8 @@ def sum_up(profile: Profile) -> ProfileFigures:
         disjoint=_times_of(profile, ~inside),
         penetrating=_times_of(profile, inside),
         all_ticks=times,
-        in_time=float((profile.tick_s < PERIOD_S).mean()),
+        disturbed=_describe(profile.disturbed_s),
+        in_time=float((profile.disturbed_s < PERIOD_S).mean()),
         most_contacts=int(profile.contacts.max()),
         most_clusters=int(profile.clusters.max()),
         most_touched=int(profile.touched.max()),
@@ -131,7 +134,7 @@ def _times_of(profile: Profile, which: np.ndarray) -> StateTimes | None:
     if not which.any():
         return None
     query, force, tick = (
-        TickTimes(*(1e6 * np.percentile(seconds[which], [50, 99, 99.9])).tolist())
+        _describe(seconds[which])
         for seconds in (profile.query_s, profile.force_s, profile.tick_s)
     )
     return StateTimes(
@@ -141,6 +144,10 @@ def _times_of(profile: Profile, which: np.ndarray) -> StateTimes | None:
         tick=tick,
         contacts=float(np.median(profile.contacts[which])),
     )
+
+
+def _describe(seconds: np.ndarray) -> TickTimes:
+    return TickTimes(*(1e6 * np.percentile(seconds, [50, 99, 99.9])).tolist())
 
 
 def _find_overhead(profile: Profile) -> float | None:

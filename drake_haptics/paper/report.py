@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+_CUT_SHORT = " Only the beginnings of Figure 11's paths were run (--quick)."
+
+
 @dataclass(frozen=True)
 class Picture:
     """A picture that can be drawn.
@@ -118,12 +121,12 @@ def make_sections(evaluation: PaperEvaluation) -> list[Section]:
 
 
 def describe_machine_line(evaluation: PaperEvaluation) -> str:
-    """Says what the figures were taken on, and the paper's."""
+    """Says what the figures were taken on, and how far they go."""
     machine = evaluation.machine
     return (
         f"{machine['processor']}, {machine['cores']} cores, {machine['system']}, Python"
         f" {machine['python']}, drake_haptics {machine['drake_haptics']}; one thread."
-        f" The paper: {MACHINE}."
+        f" The paper: {MACHINE}." + (_CUT_SHORT if evaluation.is_cut_short else "")
     )
 
 

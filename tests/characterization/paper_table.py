@@ -27,7 +27,7 @@ _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "paper.md"
 BEGIN = "<!-- figures: written by tests/characterization/paper_table.py -->\n"
 END = "<!-- end of figures -->\n"
-_DPI, _COLOURS = 72, 48
+_DPI, _COLOURS = 80, 128
 
 
 def figures_of(page: str) -> str:
