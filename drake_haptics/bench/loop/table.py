@@ -33,15 +33,16 @@ def _make_times(scene: str, by_name: dict[str, LoopFigures]) -> Table:
     return Table(
         title=f"Whole ticks of the 1 kHz loop, {scene}: µs",
         note=(
-            "Over the ticks at which all loops have a contact, and over all. The "
-            "ratios are of medians in contact, to the row's: of this package's whole "
-            "tick, from the device's reading through Drake's Simulator to the device's "
-            "wrench, and of its native part."
+            "First over the ticks at which all loops have a contact; `all` is the "
+            "median of all ticks. The last two are ratios of medians in contact, to the "
+            "row's: `whole` of this package's whole tick, from the device's reading "
+            "through Drake's Simulator to the device's wrench, `native` of its native "
+            "part."
         ),
         header=(
-            *("loop", "in contact: median", "p99", "p99.9"),
-            *("all: median", "p99", "p99.9"),
-            *("ratio: whole tick", "native part"),
+            *("loop", "median", "p99", "p99.9"),
+            *("all", "p99", "p99.9"),
+            *("whole", "native"),
         ),
         rows=[
             (
