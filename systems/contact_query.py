@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
@@ -24,6 +25,8 @@ from drake_haptics.systems.differentiable_system import (
     DifferentiableSystem,
 )
 from drake_haptics.systems.scratch import declare_scratch, get_scratch
+
+DepthSearch = Literal["tracked", "global"]
 
 
 @dataclass(frozen=True)
@@ -76,6 +79,8 @@ class ContactQuery(DifferentiableSystem):
         tool: Decomposition,
         objects: Sequence[ContactObject],
         tolerance_m: float,
+        depth: DepthSearch = "tracked",
+        max_walk_steps: int = 1024,
     ):
         """Constructs the system.
 
@@ -83,14 +88,21 @@ class ContactQuery(DifferentiableSystem):
             tool: Convex pieces of the tool, in its frame.
             objects: What it can meet, in the order of `ContactSet.object_index`.
             tolerance_m: Pairs up to this distance are contacts, m.
+            depth: Of two pieces in overlap: that walked to from the last answer, or
+                the least one of all; see `drake_haptics.SceneTracker`.
+            max_walk_steps: Bound on the vertex pairs that a walk looks at, at least 1.
 
         Raises:
-            ValueError: The tolerance is negative, there is no object, or a name is
-                used twice.
+            ValueError: The tolerance is negative, there is no object, a name is used
+                twice, there is no such depth, or no step is allowed.
         """
         super().__init__()
         if not tolerance_m >= 0.0:
             raise ValueError(f"tolerance_m must not be negative, is {tolerance_m}")
+        if depth not in get_args(DepthSearch):
+            raise ValueError(f"depth must be 'tracked' or 'global', is {depth!r}")
+        if max_walk_steps < 1:
+            raise ValueError(f"max_walk_steps must be at least 1, is {max_walk_steps}")
         if not objects:
             raise ValueError("objects must name something that the tool can meet")
         if len({item.name for item in objects}) < len(objects):
@@ -98,6 +110,8 @@ class ContactQuery(DifferentiableSystem):
         self._tool = tool
         self._objects = tuple(objects)
         self._tolerance_m = tolerance_m
+        self._depth: DepthSearch = depth
+        self._max_walk_steps = max_walk_steps
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._X_WO = {
             i: self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
@@ -162,7 +176,13 @@ class ContactQuery(DifferentiableSystem):
         if hint is not None:
             return copy.deepcopy(hint)
         decompositions = [item.decomposition for item in self._objects]
-        tracker = SceneTracker(self._tool, decompositions, self._tolerance_m)
+        tracker = SceneTracker(
+            self._tool,
+            decompositions,
+            self._tolerance_m,
+            self._depth,
+            self._max_walk_steps,
+        )
         for i, item in enumerate(self._objects):
             if item.X_WO is not None:
                 tracker.set_object_pose(i, item.X_WO)

@@ -7,6 +7,7 @@
 
 #include "bind.h"
 #include "bind_contact.h"
+#include "bind_depth.h"
 #include "bind_pose.h"
 #include "bind_real_array.h"
 #include "bind_trajectory.h"
@@ -30,16 +31,6 @@ PolytopePtr ToPolytope(nb::handle value, const char* name) {
   return polytope;
 }
 
-bool IsGlobal(nb::handle depth) {
-  std::string name;
-  if (nb::try_cast(depth, name)) {
-    if (name == "tracked") return false;
-    if (name == "global") return true;
-  }
-  throw std::invalid_argument("depth must be 'tracked' or 'global', got " +
-                              nb::cast<std::string>(nb::repr(depth)));
-}
-
 // The contact of a pair at each pose of a trajectory.
 struct PairTrajectory {
   std::vector<Contact> contacts;
@@ -52,7 +43,7 @@ class ConvexPair {
   ConvexPair(nb::handle A, nb::handle B, nb::handle depth)
       : A_(ToPolytope(A, "A")),
         B_(ToPolytope(B, "B")),
-        is_global_(IsGlobal(depth)) {}
+        is_global_(IsGlobalDepth(depth)) {}
 
   ConvexPair(const ConvexPair& other)
       : A_(other.A_), B_(other.B_), is_global_(other.is_global_) {
@@ -63,7 +54,7 @@ class ConvexPair {
 
   const PolytopePtr& A() const { return A_; }
   const PolytopePtr& B() const { return B_; }
-  const char* depth() const { return is_global_ ? "global" : "tracked"; }
+  const char* depth() const { return DepthName(is_global_); }
 
   Contact Query(nb::handle X_WA_value, nb::handle X_WB_value) {
     const Pose X_WA = ToPose(X_WA_value, "X_WA");
@@ -133,6 +124,16 @@ void BindPairTrajectory(nb::module_& m) {
 }
 
 }  // namespace
+
+bool IsGlobalDepth(nb::handle depth) {
+  std::string name;
+  if (nb::try_cast(depth, name)) {
+    if (name == "tracked") return false;
+    if (name == "global") return true;
+  }
+  throw std::invalid_argument("depth must be 'tracked' or 'global', got " +
+                              nb::cast<std::string>(nb::repr(depth)));
+}
 
 void BindConvexPair(nb::module_& m) {
   BindPairTrajectory(m);

@@ -1,12 +1,14 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
 
 #include "bind.h"
 #include "bind_contact.h"
+#include "bind_depth.h"
 #include "bind_pose.h"
 #include "bind_real_array.h"
 #include "bind_trajectory.h"
@@ -14,6 +16,17 @@
 #include "contact_tracker.h"
 
 namespace nb = nanobind;
+
+// What both trackers' constructors say of the arguments that they share.
+#define DRAKE_HAPTICS_DEPTH_ARGUMENTS                                        \
+  "Args:\n"                                                                  \
+  "    depth: Of two pieces in overlap: `tracked` walks from the last "      \
+  "answer, and so does not pop through a thin plate; `global` is the least " \
+  "way out over any feature that both surfaces have, and costs more. What "  \
+  "has passed behind a surface is held by the way in either way.\n"          \
+  "    max_walk_steps: Bound on the vertex pairs that a walk looks at "      \
+  "(paper, 5.2.3), at least 1. Where it ends a walk, the status is "         \
+  "`BOUNDED`, and the depth may be too large, never too small.\n\n"
 
 namespace drake_haptics {
 namespace {
@@ -45,6 +58,18 @@ std::vector<DecompositionPtr> ToDecompositions(nb::handle values) {
     decompositions.push_back(ToDecomposition(value, name));
   }
   return decompositions;
+}
+
+DepthSearch ToDepthSearch(nb::handle depth, nb::handle max_walk_steps) {
+  const bool is_global = IsGlobalDepth(depth);
+  int steps = 0;
+  if (PyBool_Check(max_walk_steps.ptr()) ||
+      !nb::try_cast(max_walk_steps, steps) || steps < 1) {
+    throw std::invalid_argument(
+        "max_walk_steps must be a whole number of at least 1, is " +
+        nb::cast<std::string>(nb::repr(max_walk_steps)));
+  }
+  return {is_global, steps};
 }
 
 // The contacts at each pose of a trajectory, one pose after the other.
@@ -106,10 +131,12 @@ class SharedTracker {
 
 class PairTracker : public SharedTracker {
  public:
-  PairTracker(nb::handle A, nb::handle B, nb::handle tolerance)
+  PairTracker(nb::handle A, nb::handle B, nb::handle tolerance,
+              nb::handle depth, nb::handle max_walk_steps)
       : SharedTracker({ToDecomposition(A, "A"),
                        {ToDecomposition(B, "B")},
-                       ToReal(tolerance, "tolerance")}) {}
+                       ToReal(tolerance, "tolerance"),
+                       ToDepthSearch(depth, max_walk_steps)}) {}
 
   ContactSet Query(nb::handle X_WA_value, nb::handle X_WB_value) {
     const Pose X_WA = ToPose(X_WA_value, "X_WA");
@@ -134,9 +161,11 @@ class PairTracker : public SharedTracker {
 
 class SceneTracker : public SharedTracker {
  public:
-  SceneTracker(nb::handle tool, nb::handle objects, nb::handle tolerance)
+  SceneTracker(nb::handle tool, nb::handle objects, nb::handle tolerance,
+               nb::handle depth, nb::handle max_walk_steps)
       : SharedTracker({ToDecomposition(tool, "tool"), ToDecompositions(objects),
-                       ToReal(tolerance, "tolerance")}) {}
+                       ToReal(tolerance, "tolerance"),
+                       ToDepthSearch(depth, max_walk_steps)}) {}
 
   void SetObjectPose(nb::handle place, nb::handle X_WO_value) {
     const Pose X_WO = ToPose(X_WO_value, "X_WO");
@@ -207,6 +236,18 @@ void DefTracker(nb::class_<Tracker>* tracker) {
           "tolerance",
           [](const Tracker& self) { return self.constants().tolerance(); },
           "Distance up to which there are contacts, m.")
+      .def_prop_ro(
+          "depth",
+          [](const Tracker& self) {
+            return DepthName(self.constants().depth().is_global);
+          },
+          "'tracked' or 'global'.")
+      .def_prop_ro(
+          "max_walk_steps",
+          [](const Tracker& self) {
+            return self.constants().depth().max_walk_steps;
+          },
+          "Bound on the vertex pairs that a walk looks at.")
       .def("reset", &Tracker::Reset, "Forgets what earlier queries found.")
       .def("__deepcopy__",
            [](const Tracker& self, nb::handle) { return Tracker(self); })
@@ -225,15 +266,20 @@ void BindContactTracker(nb::module_& m) {
       "[qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt "
       "as it is. Threads that share a tracker take turns.");
   tracker
-      .def(nb::init<nb::handle, nb::handle, nb::handle>(), nb::arg("A").none(),
-           nb::arg("B").none(), nb::arg("tolerance").none(),
+      .def(nb::init<nb::handle, nb::handle, nb::handle, nb::handle,
+                    nb::handle>(),
+           nb::arg("A").none(), nb::arg("B").none(),
+           nb::arg("tolerance").none(), nb::arg("depth").none() = "tracked",
+           nb::arg("max_walk_steps").none() = WalkBounds{}.max_hubs,
            nb::sig("def __init__(self, A: drake_haptics.decomposition."
                    "Decomposition | Decomposition, B: drake_haptics."
                    "decomposition.Decomposition | Decomposition, tolerance: "
-                   "float) -> None"),
-           "Watches A against B for contacts up to `tolerance` (m).\n\n"
-           "Raises:\n    ValueError: not decompositions, or the tolerance is "
-           "negative or not finite.")
+                   "float, depth: typing.Literal['tracked', 'global'] = "
+                   "'tracked', max_walk_steps: int = 1024) -> None"),
+           "Watches A against B for contacts up to `tolerance` "
+           "(m).\n\n" DRAKE_HAPTICS_DEPTH_ARGUMENTS
+           "Raises:\n    ValueError: not decompositions, the tolerance is "
+           "negative or not finite, no such depth, or max_walk_steps below 1.")
       .def("query", &PairTracker::Query, nb::arg("X_WA").none(),
            nb::arg("X_WB").none(),
            nb::sig("def query(self, X_WA: drake_haptics.pose_like.PoseLike, "
@@ -266,17 +312,22 @@ void BindSceneTracker(nb::module_& m) {
       "`ContactTracker`, A the tool and B each object. Objects are posed one "
       "by one and stay there, so that those at rest cost nothing.");
   tracker
-      .def(nb::init<nb::handle, nb::handle, nb::handle>(),
+      .def(nb::init<nb::handle, nb::handle, nb::handle, nb::handle,
+                    nb::handle>(),
            nb::arg("tool").none(), nb::arg("objects").none(),
-           nb::arg("tolerance").none(),
+           nb::arg("tolerance").none(), nb::arg("depth").none() = "tracked",
+           nb::arg("max_walk_steps").none() = WalkBounds{}.max_hubs,
            nb::sig("def __init__(self, tool: drake_haptics.decomposition."
                    "Decomposition | Decomposition, objects: collections.abc."
                    "Sequence[drake_haptics.decomposition.Decomposition | "
-                   "Decomposition], tolerance: float) -> None"),
+                   "Decomposition], tolerance: float, depth: typing.Literal["
+                   "'tracked', 'global'] = 'tracked', max_walk_steps: int = "
+                   "1024) -> None"),
            "Watches `tool` against `objects`, all at the identity pose, for "
-           "contacts up to `tolerance` (m).\n\n"
-           "Raises:\n    ValueError: not decompositions, no objects, or the "
-           "tolerance is negative or not finite.")
+           "contacts up to `tolerance` (m).\n\n" DRAKE_HAPTICS_DEPTH_ARGUMENTS
+           "Raises:\n    ValueError: not decompositions, no objects, the "
+           "tolerance is negative or not finite, no such depth, or "
+           "max_walk_steps below 1.")
       .def_prop_ro("num_objects",
                    [](const SceneTracker& self) {
                      return self.constants().num_objects();

@@ -35,10 +35,17 @@ double RadiusAboutOrigin(const Decomposition& decomposition) {
 
 ContactTracker::ContactTracker(
     std::shared_ptr<const Decomposition> tool,
-    std::vector<std::shared_ptr<const Decomposition>> objects, double tolerance)
-    : tolerance_(tolerance), wake_times_(static_cast<int>(objects.size())) {
+    std::vector<std::shared_ptr<const Decomposition>> objects, double tolerance,
+    const DepthSearch& depth)
+    : tolerance_(tolerance),
+      depth_(depth),
+      wake_times_(static_cast<int>(objects.size())) {
   if (!std::isfinite(tolerance) || tolerance < 0) {
     throw std::invalid_argument("tolerance must be finite and at least 0 m");
+  }
+  if (depth.max_walk_steps < 1) {
+    throw std::invalid_argument("max_walk_steps must be at least 1, is " +
+                                std::to_string(depth.max_walk_steps));
   }
   if (tool == nullptr) throw std::invalid_argument("the tool is missing");
   std::map<const Decomposition*, TreedShape> shapes;
@@ -109,8 +116,8 @@ void ContactTracker::QueryObject(int i, const Pose& X_WTool,
   // After a teleport what was learnt means nothing.
   if (step > teleport_) object.tracked.ForgetContacts();
   const std::size_t first = out->contacts.size();
-  object.tracked.Query({tool_, tolerance_, X_WTool, X_AB, last_X_AB, motion,
-                        step, odometer_ + object.ahead},
+  object.tracked.Query({tool_, tolerance_, depth_, X_WTool, X_AB, last_X_AB,
+                        motion, step, odometer_ + object.ahead},
                        &workspace_, &out->contacts);
   for (std::size_t k = first; k < out->contacts.size(); ++k) {
     out->contacts[k].object = i;

@@ -20,14 +20,15 @@ class ContactTracker {
  public:
   /// Objects that share a decomposition share its tree.
   /// @param tolerance contacts up to this distance (m) are reported.
-  /// @throws std::invalid_argument if it is negative or not finite, or if a
-  ///         decomposition is missing.
+  /// @throws std::invalid_argument if it is negative or not finite, if no step
+  ///         of a walk is allowed, or if a decomposition is missing.
   ContactTracker(std::shared_ptr<const Decomposition> tool,
                  std::vector<std::shared_ptr<const Decomposition>> objects,
-                 double tolerance);
+                 double tolerance, const DepthSearch& depth = {});
 
   int num_objects() const { return static_cast<int>(objects_.size()); }
   double tolerance() const { return tolerance_; }
+  const DepthSearch& depth() const { return depth_; }
 
   /// Poses object i; the pose that it has costs nothing.
   /// @throws std::out_of_range, std::invalid_argument.
@@ -57,6 +58,7 @@ class ContactTracker {
   TreedShape tool_;
   std::vector<Object> objects_;
   double tolerance_;
+  DepthSearch depth_;
   double teleport_;    // m; longer motions forget the contacts
   Vec3 middle_;        // of the tool, in its frame, m
   double radius_;      // of the tool about its middle, m

@@ -19,7 +19,7 @@ constexpr double kLayerShare = 1e-9;
 
 // Every facet of a solid counts, so a walk knows an answer from its first hub
 // on and never needs to promote.
-constexpr int kNoPromotion = 1;
+constexpr WalkBounds kNoPromotion{.max_promotion_hubs = 1};
 
 class Query {
  public:

@@ -10,17 +10,12 @@ namespace drake_haptics {
 namespace {
 
 constexpr double kNone = -std::numeric_limits<double>::infinity();
-// Bound on a whole walk, far above what any start needs.
-constexpr int kMaxHubs = 1024;
 
 class Walk {
  public:
-  Walk(const PosedPair& pair, SurfaceRule rule, int max_promotion_hubs,
+  Walk(const PosedPair& pair, SurfaceRule rule, const WalkBounds& bounds,
        DepthWorkspace* workspace)
-      : pair_(pair),
-        rule_(rule),
-        max_promotion_hubs_(max_promotion_hubs),
-        workspace_(*workspace) {
+      : pair_(pair), rule_(rule), bounds_(bounds), workspace_(*workspace) {
     workspace_.visited.clear();
     workspace_.candidates.clear();
     workspace_.closed.clear();
@@ -102,7 +97,8 @@ class Walk {
       if (std::find(visited.begin(), visited.end(), hub) != visited.end()) {
         continue;
       }
-      const int bound = best_ >= 0 ? kMaxHubs : max_promotion_hubs_;
+      const int bound =
+          best_ >= 0 ? bounds_.max_hubs : bounds_.max_promotion_hubs;
       if (static_cast<int>(visited.size()) >= bound) return false;
       Visit(hub);
       *last = hub;
@@ -141,7 +137,7 @@ class Walk {
 
   const PosedPair& pair_;
   const SurfaceRule rule_;
-  const int max_promotion_hubs_;
+  const WalkBounds bounds_;
   DepthWorkspace& workspace_;
   int best_ = -1;  // the best candidate that both surfaces support
 };
@@ -149,9 +145,9 @@ class Walk {
 }  // namespace
 
 Depth WalkDepth(const PosedPair& pair, const Hub& start, SurfaceRule rule,
-                const DepthCandidate* known, int max_promotion_hubs,
+                const DepthCandidate* known, const WalkBounds& bounds,
                 DepthWorkspace* workspace) {
-  return Walk(pair, rule, max_promotion_hubs, workspace).Run(start, known);
+  return Walk(pair, rule, bounds, workspace).Run(start, known);
 }
 
 }  // namespace drake_haptics

@@ -8,6 +8,12 @@
 
 namespace drake_haptics {
 
+/// Bounds on the vertex hub pairs that a walk looks at, at least 1.
+struct WalkBounds {
+  int max_promotion_hubs = 1;  ///< while no supported facet is known
+  int max_hubs = 1024;         ///< in all (paper, 5.2.3); far above most needs
+};
+
 /// Which contacts of a pair count.
 enum class SurfaceRule {
   kWholeBoundary,  ///< the polytopes are the solids: every contact counts
@@ -64,10 +70,10 @@ struct DepthWorkspace {
 /// @param start a hub whose Gauss regions overlap: supports along a direction.
 /// @param known a facet of that hub known beforehand, or null: supported, it
 ///     spares the look at all that is deeper.
-/// @param max_promotion_hubs bound on the hubs looked at while no supported
-///     facet is known.
+/// A facet's gap never exceeds that of the shallowest one, so where a bound
+/// ends the walk, the best facet seen still bounds the depth from above.
 Depth WalkDepth(const PosedPair& pair, const Hub& start, SurfaceRule rule,
-                const DepthCandidate* known, int max_promotion_hubs,
+                const DepthCandidate* known, const WalkBounds& bounds,
                 DepthWorkspace* workspace);
 
 }  // namespace drake_haptics

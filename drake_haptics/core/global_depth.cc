@@ -97,7 +97,7 @@ class Search {
 
   void Walk(const Hub& hub) {
     const Depth depth = WalkDepth(pair_, hub, SurfaceRule::kWholeBoundary,
-                                  nullptr, 1, &state_.walk);
+                                  nullptr, {}, &state_.walk);
     if (depth.status != DepthStatus::kNoFacet && depth.best.h > best_.facet.h) {
       best_.facet = depth.best;
       best_.hub = depth.hub;

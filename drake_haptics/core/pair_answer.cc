@@ -25,9 +25,9 @@ bool IsBetter(const Depth& second, const Depth& first) {
 }
 
 Depth WalkAlong(const PosedPair& pair, SurfaceRule rule, const Vec3& direction,
-                Hub hub, int max_promotion_hubs, DepthWorkspace* workspace) {
+                Hub hub, const WalkBounds& bounds, DepthWorkspace* workspace) {
   SupportGap(pair, direction, &hub);
-  return WalkDepth(pair, hub, rule, nullptr, max_promotion_hubs, workspace);
+  return WalkDepth(pair, hub, rule, nullptr, bounds, workspace);
 }
 
 }  // namespace
@@ -77,21 +77,20 @@ PairContact ContactGrazing(const PosedPair& pair, const Separation& separation,
 }
 
 Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
-                const Hub& hub_last, int max_promotion_hubs,
+                const Hub& hub_last, const WalkBounds& bounds,
                 DepthWorkspace* workspace) {
   Vec3 between = pair.A.centroid - pair.X_AB * pair.B.centroid;
   if (!(between.norm() > 1e-12 * pair.scale())) between = Vec3::UnitX();
-  Depth best =
-      WalkAlong(pair, rule, between, hub_last, max_promotion_hubs, workspace);
+  Depth best = WalkAlong(pair, rule, between, hub_last, bounds, workspace);
   if (n_last.squaredNorm() > 0) {
     const Depth other =
-        WalkAlong(pair, rule, n_last, hub_last, max_promotion_hubs, workspace);
+        WalkAlong(pair, rule, n_last, hub_last, bounds, workspace);
     if (IsBetter(other, best)) best = other;
   }
   // Round-off can hide every facet from a hub.
   for (int i = 0; i < 6 && best.status == DepthStatus::kNoFacet; ++i) {
     const Vec3 axis = (i < 3 ? 1.0 : -1.0) * Vec3::Unit(i % 3);
-    best = WalkAlong(pair, rule, axis, hub_last, max_promotion_hubs, workspace);
+    best = WalkAlong(pair, rule, axis, hub_last, bounds, workspace);
   }
   return best;
 }

@@ -28,7 +28,7 @@ PairContact ContactGrazing(const PosedPair& pair, const Separation& separation,
 /// The facet found by the starts of paper 5.2.2 where no facet is known: the
 /// line that joins the centroids and, unless it is zero, the last normal.
 Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
-                const Hub& hub_last, int max_promotion_hubs,
+                const Hub& hub_last, const WalkBounds& bounds,
                 DepthWorkspace* workspace);
 
 }  // namespace drake_haptics

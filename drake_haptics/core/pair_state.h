@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "contact_patch.h"
 #include "depth_walk.h"
 #include "simplex.h"
@@ -29,6 +31,7 @@ struct PairState {
 /// Buffers of a query, kept between ticks so that a warm one allocates nothing.
 struct PairWorkspace {
   DepthWorkspace depth;
+  std::vector<DepthCandidate> carried;
   PatchWorkspace patch;
 };
 

@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "carried_facets.h"
 #include "contact_passage.h"
 #include "facet_revisit.h"
 #include "flush_features.h"
@@ -38,16 +40,18 @@ constexpr double kSameNormal = 0.996;
 // How far beyond its features' sides a contact in depth may lie, as a share of
 // the size.
 constexpr double kSlideShare = 1e-2;
+constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 
 class Query {
  public:
   Query(const PosedPair& pair, const SurfaceRequest& request, PairState* state,
-        PairWorkspace* workspace)
+        PairWorkspace* workspace, GlobalDepthState* global)
       : pair_(pair),
         request_(request),
         state_(*state),
         passage_(pair, request_, *state),
-        workspace_(*workspace) {}
+        workspace_(*workspace),
+        global_(global) {}
 
   std::optional<PairContact> Run() {
     state_.is_settled = false;
@@ -179,11 +183,19 @@ class Query {
     if (depth.status == DepthStatus::kNoFacet) {
       return ContactGrazing(pair_, separation_, state_.n);
     }
+    if (global_ != nullptr) {
+      const auto least = LeastDepth(depth);
+      if (least) return AtDepth(*least);
+    }
     if (!IsPlausible(depth)) {
       Refuse(depth);
       const auto contact = GoneOn();
       return contact ? contact : TakenOver();
     }
+    return AtDepth(depth);
+  }
+
+  PairContact AtDepth(const Depth& depth) {
     ContactStatus status =
         depth.best.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating;
     if (depth.status == DepthStatus::kBounded &&
@@ -193,6 +205,43 @@ class Query {
     return AtFacet(depth, status);
   }
 
+  // The least depth of all facets that both surfaces carry, where the bodies
+  // press on them. The least of all facets needs no other reason. Where that
+  // one is virtual, the least of the others counts if it is shallower than the
+  // depth that was tracked, or, with none to compare to, by the rules for that.
+  std::optional<Depth> LeastDepth(const Depth& tracked) {
+    const Depth local =
+        WalkDepth(pair_, tracked.hub, SurfaceRule::kWholeBoundary, nullptr, {},
+                  &global_->walk);
+    const GlobalDepth found = FindGlobalDepth(pair_, local, global_);
+    if (found.status == GlobalDepthStatus::kFlat) return std::nullopt;
+    const DepthStatus status = found.status == GlobalDepthStatus::kExact
+                                   ? DepthStatus::kLocalMinimum
+                                   : DepthStatus::kBounded;
+    Depth least{status, found.facet, found.facet.h, found.hub};
+    least.best.support = ClassifySupport(
+        pair_.A, least.best.feature_A, least.best.n, pair_.B,
+        least.best.feature_B, pair_.X_AB.R.transpose() * least.best.n);
+    if (least.best.support == SurfaceSupport::kSupported &&
+        IsWithinFeatures(least)) {
+      return least;
+    }
+    const bool is_tracked = IsPlausible(tracked);
+    ListCarriedFacets(pair_, is_tracked ? tracked.best.h : kNoFloor,
+                      &workspace_.carried);
+    for (const DepthCandidate& facet : workspace_.carried) {
+      const Depth depth{DepthStatus::kLocalMinimum,
+                        facet,
+                        found.facet.h,
+                        {pair_.A.first_vertex_of(facet.feature_A),
+                         pair_.B.first_vertex_of(facet.feature_B)}};
+      if (is_tracked ? IsWithinFeatures(depth) : IsPlausible(depth)) {
+        return depth;
+      }
+    }
+    return std::nullopt;
+  }
+
   // Of a pair that was not in contact. One that was refused at the last tick
   // mostly is again: the thorough search is made anew only now and then.
   Depth EntryDepth() {
@@ -200,12 +249,16 @@ class Query {
       Hub hub = state_.refused_hub;
       SupportGap(pair_, state_.refused_n, &hub);
       return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
-                       kRefusedPromotionHubs, &workspace_.depth);
+                       Bounds(kRefusedPromotionHubs), &workspace_.depth);
     }
     // Pairs refused at one tick shall not all be searched at one later tick.
     state_.refusals = (state_.hub.a * 31 + state_.hub.b * 17) % kRefusalSpread;
     return ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
-                     kColdPromotionHubs, &workspace_.depth);
+                     Bounds(kColdPromotionHubs), &workspace_.depth);
+  }
+
+  WalkBounds Bounds(int max_promotion_hubs) const {
+    return {max_promotion_hubs, request_.max_walk_steps};
   }
 
   void Refuse(const Depth& depth) {
@@ -301,12 +354,13 @@ class Query {
       }
       if (last.status != RevisitStatus::kGone) {
         return WalkDepth(pair_, last.hub, SurfaceRule::kSurfaceOnly,
-                         &last.facet, kWarmPromotionHubs, &workspace_.depth);
+                         &last.facet, Bounds(kWarmPromotionHubs),
+                         &workspace_.depth);
       }
     }
     SupportGap(pair_, state_.n, &hub);
     return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
-                     kWarmPromotionHubs, &workspace_.depth);
+                     Bounds(kWarmPromotionHubs), &workspace_.depth);
   }
 
   // The tool was in contact and the hulls are apart now, yet the gap along the
@@ -317,7 +371,7 @@ class Query {
     if (!(SupportGap(pair_, n, &hub) < 0)) return std::nullopt;
     const Depth depth =
         WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
-                  kWarmPromotionHubs, &workspace_.depth);
+                  Bounds(kWarmPromotionHubs), &workspace_.depth);
     if (depth.status == DepthStatus::kNoFacet ||
         depth.best.support != SurfaceSupport::kSupported ||
         !(depth.best.h < 0) ||
@@ -360,6 +414,7 @@ class Query {
   PairState& state_;
   const ContactPassage passage_;
   PairWorkspace& workspace_;
+  GlobalDepthState* const global_;  // null where the depth is tracked
   Separation separation_;
   bool is_refused_ = false;       // an overlap had no plausible facet
   std::optional<Hub> facet_hub_;  // of the facet that is the answer, if one is
@@ -370,8 +425,9 @@ class Query {
 std::optional<PairContact> QuerySurfacePair(const PosedPair& pair,
                                             const SurfaceRequest& request,
                                             PairState* state,
-                                            PairWorkspace* workspace) {
-  return Query(pair, request, state, workspace).Run();
+                                            PairWorkspace* workspace,
+                                            GlobalDepthState* global) {
+  return Query(pair, request, state, workspace, global).Run();
 }
 
 }  // namespace drake_haptics

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "global_depth.h"
 #include "pair_contact.h"
 #include "pair_state.h"
 #include "support.h"
@@ -20,12 +21,18 @@ namespace drake_haptics {
 /// where the tool slides from one piece to the next while it presses, the next
 /// takes the contact over at its depth.
 ///
+/// The depth is the one tracked from the last answer, or where `global` is
+/// given the least of all facets that both surfaces carry and on which the
+/// bodies meet. What has passed behind the surface overlaps with nothing, and
+/// is held by the way in either way.
+///
 /// The witness points of faces that lie nearly flush are at the centre of
 /// pressure of a layer as thick as `tolerance` − distance, at most a tenth of
 /// the tolerance (contact_patch.h).
 std::optional<PairContact> QuerySurfacePair(const PosedPair& pair,
                                             const SurfaceRequest& request,
                                             PairState* state,
-                                            PairWorkspace* workspace);
+                                            PairWorkspace* workspace,
+                                            GlobalDepthState* global = nullptr);
 
 }  // namespace drake_haptics

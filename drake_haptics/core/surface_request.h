@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "depth_walk.h"
 #include "polytope.h"
 #include "types.h"
 
@@ -46,6 +47,10 @@ struct SurfaceRequest {
   /// Where the tool presses already. A pair that was not in contact may take
   /// over there.
   std::span<const PressedContact> pressed{};
+  /// Bound on the hubs of a walk once it knows a facet that both surfaces
+  /// carry; the search for one has bounds of its own, so that no contact is
+  /// lost for want of it.
+  int max_walk_steps = WalkBounds{}.max_hubs;
 };
 
 }  // namespace drake_haptics

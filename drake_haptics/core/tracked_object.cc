@@ -119,6 +119,9 @@ int TrackedObject::NewState() {
   const int state = free_states_.back();
   free_states_.pop_back();
   states_[state] = {};
+  if (state < static_cast<int>(global_states_.size())) {
+    global_states_[state].Reset();
+  }
   return state;
 }
 
@@ -152,10 +155,16 @@ void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
                         WatchedPair* pair, std::vector<Contact>* out) {
   PairState& state = states_[pair->state];
   const int last_press = state.press;
+  GlobalDepthState* global = nullptr;
+  if (tick.depth.is_global) {
+    global_states_.resize(states_.size());
+    global = &global_states_[pair->state];
+  }
   const auto answer =
       QuerySurfacePair(Posed(tick, pair->pieces),
-                       {tick.tolerance, is_first_, tick.last_X_AB, pressed_},
-                       &state, &workspace->pair);
+                       {tick.tolerance, is_first_, tick.last_X_AB, pressed_,
+                        tick.depth.max_walk_steps},
+                       &state, &workspace->pair, global);
   pair->slack = 0;
   state.press = -1;
   if (!answer) return;
@@ -186,6 +195,7 @@ void TrackedObject::ForgetContacts() {
     states_[pair.state] = {};
     pair.slack = 0;
   }
+  for (GlobalDepthState& state : global_states_) state.Reset();
   pressed_.clear();
   is_first_ = true;
 }
@@ -193,6 +203,7 @@ void TrackedObject::ForgetContacts() {
 void TrackedObject::Reset() {
   watched_.clear();
   states_.clear();
+  global_states_.clear();
   free_states_.clear();
   pressed_.clear();
   front_.Clear();

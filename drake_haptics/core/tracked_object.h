@@ -20,6 +20,14 @@ struct TreedShape {
   std::shared_ptr<const PieceTree> tree;
 };
 
+/// Which depth a pair of pieces in overlap has, and what it may cost.
+struct DepthSearch {
+  /// The least one of all (surface_pair.h), not the one walked to from the
+  /// last tick.
+  bool is_global = false;
+  int max_walk_steps = WalkBounds{}.max_hubs;  ///< at least 1
+};
+
 /// Buffers of a tick, kept so that a warm one allocates nothing.
 struct TrackerWorkspace {
   PairWorkspace pair;
@@ -33,7 +41,8 @@ class TrackedObject {
  public:
   struct Tick {
     const TreedShape& tool;
-    double tolerance;       ///< contacts up to this distance (m) are reported
+    double tolerance;  ///< contacts up to this distance (m) are reported
+    const DepthSearch& depth;
     const Pose& X_WA;       ///< the tool in the world
     const Pose& X_AB;       ///< the object in the tool's frame
     const Pose& last_X_AB;  ///< at the last tick
@@ -86,6 +95,7 @@ class TrackedObject {
   PairFront front_;
   std::vector<WatchedPair> watched_;  // sorted by pieces
   std::vector<PairState> states_;
+  std::vector<GlobalDepthState> global_states_;  // of states_, where needed
   std::vector<int> free_states_;
   std::vector<PressedContact> pressed_;  // last tick's
   double odometer_ = 0;                  // at the last tick, m

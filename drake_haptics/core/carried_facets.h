@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "depth_walk.h"
+#include "support.h"
+
+namespace drake_haptics {
+
+/// Lists all facets of A ⊖ B that both surfaces carry and whose gap exceeds
+/// `floor` (m), the shallowest first: by enumeration, not by a walk, so that
+/// none is missed wherever virtual facets lie between.
+///
+/// Each original facet of a body faces the vertices of the other that support
+/// it; two original edges make a facet where their arcs on the Gauss map cross.
+/// It costs two products for most pairs of edges.
+void ListCarriedFacets(const PosedPair& pair, double floor,
+                       std::vector<DepthCandidate>* facets);
+
+}  // namespace drake_haptics

@@ -1,0 +1,249 @@
+"""Test which depth the trackers give, and what bounds its search."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from contact_samples import IDENTITY, box, hull, pose
+from exact_minkowski import ExactPair
+from press_tools import MODELS
+from scipy.spatial.transform import Rotation
+
+from drake_haptics import ContactTracker, ConvexPair, SceneTracker, decompose, load_mesh
+from drake_haptics._core import ConvexPolytope, Decomposition, decompose_surface
+
+T = 1e-3
+PLATE = (0.1, 0.1, 0.004)
+CUBE = (0.02, 0.02, 0.02)
+
+
+def matrix(q_WB: np.ndarray) -> np.ndarray:
+    X_WB = np.eye(4)
+    X_WB[:3, :3] = Rotation.from_quat(np.roll(q_WB[:4], -1)).as_matrix()
+    X_WB[:3, 3] = q_WB[4:]
+    return X_WB
+
+
+def turned(p: object, turn: np.ndarray) -> np.ndarray:
+    return pose(p, np.roll(Rotation.from_rotvec(turn).as_quat(), 1))
+
+
+def sphere(rng: np.random.Generator, count: int, radius: float) -> np.ndarray:
+    points = rng.normal(size=(count, 3))
+    return radius * points / np.linalg.norm(points, axis=1)[:, None]
+
+
+def polytope(decomposition: Decomposition) -> ConvexPolytope:
+    (piece,) = decomposition.pieces
+    return piece
+
+
+def model(name: str) -> Decomposition:
+    return decompose(load_mesh(MODELS / name)).core
+
+
+@pytest.fixture(scope="module")
+def bodies() -> list[Decomposition]:
+    rng = np.random.default_rng(1)
+    return [
+        box(CUBE),
+        box(PLATE),
+        hull(sphere(rng, 40, 0.012)),
+        hull(0.01 * rng.normal(size=(14, 3))),
+    ]
+
+
+def test_the_global_depth_of_two_solids_is_that_of_a_pair(
+    bodies: list[Decomposition],
+) -> None:
+    rng = np.random.default_rng(2)
+    overlaps = 0
+    for A in bodies:
+        for B in bodies:
+            tracker = ContactTracker(A, B, T, depth="global")
+            pair = ConvexPair(polytope(A), polytope(B), depth="global")
+            for k in range(12):
+                # Two of three from where the last one was: on a way, not anew.
+                if k % 3 == 0:
+                    q_WA = turned(0.004 * rng.normal(size=3), rng.normal(size=3))
+                    tracker.reset()
+                    pair.reset()
+                else:
+                    q_WA = q_WA + np.r_[np.zeros(4), 5e-4 * rng.normal(size=3)]
+                contacts = tracker.query(q_WA, IDENTITY)
+                contact = pair.query(q_WA, IDENTITY)
+                if contact.distance >= 0:
+                    continue
+                overlaps += 1
+                exact = ExactPair(
+                    np.asarray(pair.A.vertices),
+                    np.asarray(pair.B.vertices),
+                    matrix(q_WA),
+                    np.eye(4),
+                )
+                assert len(contacts) == 1
+                slack = 1e-12 * exact.scale
+                assert contacts.distance[0] == pytest.approx(
+                    contact.distance, abs=slack
+                )
+                assert contacts.distance[0] == pytest.approx(
+                    exact.signed_distance, abs=slack
+                )
+                gap = exact.float_gap(contacts.nhat_BA_W[0])
+                assert gap == pytest.approx(exact.signed_distance, abs=slack)
+    assert overlaps > 100
+
+
+def test_only_the_tracked_depth_stays_on_its_side_of_a_plate() -> None:
+    """A cube of 20 mm pressed through a plate of 4 mm, in steps of 0.5 mm."""
+    heights = np.arange(12.1e-3, -13e-3, -0.5e-3)
+    X_WA = np.array([pose([0, 0, z]) for z in heights])
+    for depth in ("tracked", "global"):
+        tracker = ContactTracker(box(CUBE), box(PLATE), T, depth=depth)
+        assert tracker.depth == depth
+        trajectory = tracker.query_trajectory(X_WA, IDENTITY)
+        in_depth = heights > -12e-3
+        up = heights - 12e-3
+        if depth == "tracked":
+            expected = up
+        else:
+            # Also the way out below, and over the sides: 60 mm.
+            expected = np.maximum(up, -heights - 12e-3)
+        assert len(trajectory) == len(heights)
+        for k in np.flatnonzero(in_depth):
+            assert trajectory[k].distance[0] == pytest.approx(expected[k], abs=1e-12)
+
+
+def test_the_least_depth_of_surfaces_is_least_and_on_them() -> None:
+    """Where the tracked depth is wrong, it is too large; normals are the mesh's."""
+    cup, spoon = model("cup.obj"), model("spoon.obj")
+    rng = np.random.default_rng(3)
+    compared = less = 0
+    for _ in range(40):
+        q_WA = turned(0.03 * rng.normal(size=3), rng.normal(size=3))
+        found = {
+            depth: ContactTracker(spoon, cup, T, depth=depth).query(q_WA, IDENTITY)
+            for depth in ("tracked", "global")
+        }
+        least = {
+            (a, b): d
+            for a, b, d in zip(
+                found["global"].piece_A,
+                found["global"].piece_B,
+                found["global"].distance,
+                strict=True,
+            )
+        }
+        tracked = found["tracked"]
+        for a, b, d in zip(
+            tracked.piece_A, tracked.piece_B, tracked.distance, strict=True
+        ):
+            if d >= 0:
+                continue
+            compared += 1
+            assert least[a, b] >= d - 1e-12
+            less += least[a, b] > d + 1e-9
+        for contact in found["global"]:
+            for side, body, feature in (
+                ("A", spoon, contact.feature_A),
+                ("B", cup, contact.feature_B),
+            ):
+                piece = body.pieces[getattr(contact, f"piece_{side}")]
+                if feature.kind.name == "FACET":
+                    assert piece.facet_original[feature.index]
+    assert compared > 100 and less > 0
+
+
+def test_what_passed_behind_a_surface_is_held_at_either_depth() -> None:
+    """A pin goes through one open face of flat triangles: the way out is back."""
+    V = np.array([[x, y, 0.0] for x in (-1, 0, 1) for y in (-1, 0, 1)]) * 0.03
+    quads = [(0, 3, 4, 1), (1, 4, 5, 2), (3, 6, 7, 4), (4, 7, 8, 5)]
+    F = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    sheet = decompose_surface(
+        V, np.array(F, dtype=np.int32), np.ones(len(F), dtype=np.uint8)
+    )
+    pin = box((0.004, 0.004, 0.01))
+    heights = np.arange(5.5e-3, -9e-3, -2e-4)
+    X_WA = np.array([pose([0.011, 0.004, z]) for z in heights])
+    answers = []
+    for depth in ("tracked", "global"):
+        trajectory = ContactTracker(pin, sheet, T, depth=depth).query_trajectory(
+            X_WA, IDENTITY
+        )
+        answers.append(
+            [
+                (float(c.distance.min()), float(c.nhat_BA_W[:, 2].min()))
+                for c in trajectory
+                if len(c)
+            ]
+        )
+        last = trajectory[len(heights) - 1]
+        assert {contact.status.name for contact in last} == {"HELD"}
+        np.testing.assert_allclose(last.distance, heights[-1] - 5e-3, atol=1e-12)
+    np.testing.assert_allclose(answers[0], answers[1], atol=1e-12)
+
+
+def test_a_walk_that_is_cut_short_gives_no_less_than_the_depth() -> None:
+    """From a cold start each further step can only find a way out that is less."""
+    rng = np.random.default_rng(4)
+    A, B = hull(sphere(rng, 300, 0.02)), hull(sphere(rng, 250, 0.015))
+    bounds = (1, 2, 4, 8, 16, 64, 1024)
+    cut_short = 0
+    for _ in range(12):
+        q_WA = turned(0.004 * rng.normal(size=3), rng.normal(size=3))
+        exact = ConvexPair(polytope(A), polytope(B), depth="global").query(
+            q_WA, IDENTITY
+        )
+        depths = []
+        for bound in bounds:
+            tracker = ContactTracker(A, B, T, max_walk_steps=bound)
+            assert tracker.max_walk_steps == bound
+            (contact,) = tracker.query(q_WA, IDENTITY)
+            depths.append(-contact.distance)
+            if contact.status.name == "BOUNDED":
+                cut_short += 1
+            else:
+                # Unbounded walks end here as well.
+                free = ContactTracker(A, B, T).query(q_WA, IDENTITY)
+                assert -free.distance[0] == pytest.approx(depths[-1], abs=1e-12)
+        assert np.all(np.isfinite(depths))
+        assert np.all(np.diff(depths) <= 1e-12)
+        assert depths[-1] >= -exact.distance - 1e-12
+        assert contact.status.name == "PENETRATING"
+    assert cut_short > 12
+
+
+def test_a_bound_on_walks_loses_no_contact_on_the_way() -> None:
+    """A ball rolls over a block and into it: both bounds press all the way."""
+    rng = np.random.default_rng(5)
+    ball, block = hull(sphere(rng, 200, 0.01)), box((0.1, 0.1, 0.05))
+    way = np.linspace(0, 1, 150)
+    X_WA = np.array(
+        [
+            turned([0.05 * t, 0, 0.0355 - 0.004 * t], np.array([0, 5 * t, 0]))
+            for t in way
+        ]
+    )
+    free = ContactTracker(ball, block, T).query_trajectory(X_WA, IDENTITY)
+    bounded = ContactTracker(ball, block, T, max_walk_steps=1).query_trajectory(
+        X_WA, IDENTITY
+    )
+    for k in range(len(way)):
+        if len(free[k]) and free[k].distance[0] < 0:
+            assert bounded[k].distance[0] <= free[k].distance[0] + 1e-12
+            assert bounded[k].distance[0] > free[k].distance[0] - 2e-4
+
+
+@pytest.mark.parametrize("steps", [0, -1, 1.5, True, "many", None])
+def test_a_walk_takes_a_whole_number_of_steps(steps: object) -> None:
+    cube = box(CUBE)
+    with pytest.raises(ValueError, match=r"^max_walk_steps must be a whole number"):
+        ContactTracker(cube, cube, T, max_walk_steps=steps)
+    with pytest.raises(ValueError, match=r"^max_walk_steps must be a whole number"):
+        SceneTracker(cube, [cube], T, max_walk_steps=steps)
+
+
+def test_a_depth_has_one_of_two_names() -> None:
+    cube = box(CUBE)
+    with pytest.raises(ValueError, match=r"^depth must be 'tracked' or 'global'"):
+        SceneTracker(cube, [cube], T, depth="least")
