@@ -588,12 +588,16 @@ class ContactTracker:
     A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector [qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt as it is. Threads that share a tracker take turns.
     """
 
-    def __init__(self, A: drake_haptics.decomposition.Decomposition | Decomposition, B: drake_haptics.decomposition.Decomposition | Decomposition, tolerance: float) -> None:
+    def __init__(self, A: drake_haptics.decomposition.Decomposition | Decomposition, B: drake_haptics.decomposition.Decomposition | Decomposition, tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
         """
         Watches A against B for contacts up to `tolerance` (m).
 
+        Args:
+            depth: Of two pieces in overlap: `tracked` walks from the last answer, and so does not pop through a thin plate; `global` is the least way out over any feature that both surfaces have, and costs more. What has passed behind a surface is held by the way in either way.
+            max_walk_steps: Bound on the vertex pairs that a walk looks at (paper, 5.2.3), at least 1. Where it ends a walk, the status is `BOUNDED`, and the depth may be too large, never too small.
+
         Raises:
-            ValueError: not decompositions, or the tolerance is negative or not finite.
+            ValueError: not decompositions, the tolerance is negative or not finite, no such depth, or max_walk_steps below 1.
         """
 
     def query(self, X_WA: drake_haptics.pose_like.PoseLike, X_WB: drake_haptics.pose_like.PoseLike) -> ContactSet:
@@ -622,6 +626,14 @@ class ContactTracker:
     def tolerance(self) -> float:
         """Distance up to which there are contacts, m."""
 
+    @property
+    def depth(self) -> str:
+        """'tracked' or 'global'."""
+
+    @property
+    def max_walk_steps(self) -> int:
+        """Bound on the vertex pairs that a walk looks at."""
+
     def reset(self) -> None:
         """Forgets what earlier queries found."""
 
@@ -634,12 +646,16 @@ class SceneTracker:
     All contacts of a moving tool with many objects at once; else a `ContactTracker`, A the tool and B each object. Objects are posed one by one and stay there, so that those at rest cost nothing.
     """
 
-    def __init__(self, tool: drake_haptics.decomposition.Decomposition | Decomposition, objects: Sequence[drake_haptics.decomposition.Decomposition | Decomposition], tolerance: float) -> None:
+    def __init__(self, tool: drake_haptics.decomposition.Decomposition | Decomposition, objects: Sequence[drake_haptics.decomposition.Decomposition | Decomposition], tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
         """
         Watches `tool` against `objects`, all at the identity pose, for contacts up to `tolerance` (m).
 
+        Args:
+            depth: Of two pieces in overlap: `tracked` walks from the last answer, and so does not pop through a thin plate; `global` is the least way out over any feature that both surfaces have, and costs more. What has passed behind a surface is held by the way in either way.
+            max_walk_steps: Bound on the vertex pairs that a walk looks at (paper, 5.2.3), at least 1. Where it ends a walk, the status is `BOUNDED`, and the depth may be too large, never too small.
+
         Raises:
-            ValueError: not decompositions, no objects, or the tolerance is negative or not finite.
+            ValueError: not decompositions, no objects, the tolerance is negative or not finite, no such depth, or max_walk_steps below 1.
         """
 
     @property
@@ -679,12 +695,39 @@ class SceneTracker:
     def tolerance(self) -> float:
         """Distance up to which there are contacts, m."""
 
+    @property
+    def depth(self) -> str:
+        """'tracked' or 'global'."""
+
+    @property
+    def max_walk_steps(self) -> int:
+        """Bound on the vertex pairs that a walk looks at."""
+
     def reset(self) -> None:
         """Forgets what earlier queries found."""
 
     def __deepcopy__(self, arg: object, /) -> SceneTracker: ...
 
     def __copy__(self) -> SceneTracker: ...
+
+@overload
+def advance_contacts(contacts: ContactSet, found: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], now: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], moving: Sequence[int]) -> ContactSet:
+    """
+    Carries contacts along with the bodies: witness points stay on them, and the normal on the one whose feature it is of (contact_advance.h).
+
+    Args:
+        contacts: `ContactSet` of a query.
+        found: (7 + 7 m,) poses [qw qx qy qz x y z] at which it was asked, of the tool, then of the objects that move.
+        now: (7 + 7 m,) their poses now.
+        moving: which m objects those are.
+
+    Raises:
+        ValueError: not poses, or not one for each body.
+    """
+
+@overload
+def advance_contacts(contacts: AutoDiffContactSet, found: AutoDiffVector, now: AutoDiffVector, moving: Sequence[int]) -> AutoDiffContactSet:
+    """The same with derivatives."""
 
 class ClusterSet:
     """

@@ -15,7 +15,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 from drake_haptics import _core
 from drake_haptics.builder_effects import EffectSite, add_effects, find_springs
 from drake_haptics.builder_picture import add_picture
-from drake_haptics.contact_systems import add_contact_systems
+from drake_haptics.contact_systems import add_contact_systems, connect_by_name
 from drake_haptics.decomposition import Decomposition, Method, decompose
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.device_site import make_haptic_device, wait_for_reading
@@ -142,7 +142,9 @@ def AddHapticLoop(
             HapticTool(tool_dynamics, period_s, ["coupling", "contact", *forces], X_WT),
         ),
         **vars(
-            add_contact_systems(builder, tool, objects, contact, effects, materials)
+            add_contact_systems(
+                builder, tool, objects, contact, effects, materials, period_s
+            )
         ),
     )
     _connect_base(builder, base)
@@ -190,7 +192,6 @@ def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
         ),
         (X_WTool, coupling.get_tool_pose_input_port()),
         (V_WTool, coupling.get_tool_velocity_input_port()),
-        (X_WTool, base.contact_query.get_tool_pose_input_port()),
         (
             base.contact_clustering.get_clusters_output_port(),
             force.get_clusters_input_port(),
@@ -199,6 +200,9 @@ def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
         (V_WTool, force.get_tool_velocity_input_port()),
     ]:
         builder.Connect(output, input)
+    for system in (base.contact_query, base.pose_sample, base.contact_advance):
+        if system is not None:
+            connect_by_name(builder, system, {"X_WTool": X_WTool})
 
 
 def _add_handle_model(
@@ -235,7 +239,7 @@ def _find_sources(base: BaseSystems) -> dict[str, OutputPort]:
         "V_WTool": base.haptic_tool.get_velocity_output_port(),
         "F_applied": base.device.get_applied_wrench_output_port(),
         "F_asked": base.virtual_coupling.get_display_wrench_output_port(),
-        "contacts": base.contact_query.get_contacts_output_port(),
+        "contacts": base.found_contacts,
         "clusters": base.contact_clustering.get_clusters_output_port(),
         "contact_wrench": base.penalty_force.get_contact_wrench_output_port(),
     }

@@ -1,18 +1,23 @@
-"""The three systems from the tool's pose to the contact force, for any loop."""
+"""The systems from the tool's pose to the contact force, for any loop."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 
 from drake_haptics import _core
 from drake_haptics.scene import Contact, Effects, Material
+from drake_haptics.scene_check import check_query_rate
 from drake_haptics.systems.contact_clustering import ClusteringMethod, ContactClustering
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.contact_query import ContactObject, ContactQuery, DepthSearch
 from drake_haptics.systems.penalty_force import PenaltyForce
+
+if TYPE_CHECKING:
+    from drake_haptics.systems.contact_advance import ContactAdvance
+    from drake_haptics.systems.pose_sample import PoseSample
 
 
 @dataclass(frozen=True)
@@ -23,11 +28,22 @@ class ContactSystems:
         contact_query: Finds the contacts.
         contact_clustering: Keeps many contacts from being stiffer than one.
         penalty_force: Answers them.
+        pose_sample: Says where contacts are looked for, if not at every tick.
+        contact_advance: Carries them along then.
     """
 
     contact_query: ContactQuery
     contact_clustering: ContactClustering
     penalty_force: PenaltyForce
+    pose_sample: PoseSample | None
+    contact_advance: ContactAdvance | None
+
+    @property
+    def found_contacts(self) -> OutputPort:
+        """The contacts where the bodies are now."""
+        if self.contact_advance is not None:
+            return self.contact_advance.get_contacts_output_port()
+        return self.contact_query.get_contacts_output_port()
 
 
 def add_contact_systems(
@@ -37,8 +53,9 @@ def add_contact_systems(
     contact: Contact,
     effects: Effects,
     materials: Sequence[Material],
+    period_s: float,
 ) -> ContactSystems:
-    """Adds the systems; their inputs are left to the caller.
+    """Adds the systems; their inputs from elsewhere are left to the caller.
 
     Args:
         builder: Gets the systems.
@@ -47,10 +64,12 @@ def add_contact_systems(
         contact: Tolerance, clustering and gains.
         effects: Contacts are looked for as far as they need.
         materials: Of each object; gains that one does not give are those of `contact`.
+        period_s: The tick, s.
 
     Raises:
-        ValueError: A gain or size is out of range, two objects share a name, or
-            there is not a material for each object.
+        ValueError: A gain or size is out of range, two objects share a name, there
+            is not a material for each object, or the rate of the query is not that
+            of the tick divided by a whole number.
     """
     if len(materials) != len(objects):
         raise ValueError(
@@ -59,11 +78,24 @@ def add_contact_systems(
         )
     stiffness = [material.stiffness_N_per_m for material in materials]
     damping = [material.damping_Ns_per_m for material in materials]
-    return ContactSystems(
-        contact_query=builder.AddNamedSystem(
-            "contact_query",
-            ContactQuery(tool, objects, _find_tolerance(contact, effects)),
+    query = builder.AddNamedSystem(
+        "contact_query",
+        ContactQuery(
+            tool,
+            objects,
+            _find_tolerance(contact, effects),
+            cast(DepthSearch, contact.depth),
+            contact.max_walk_steps,
         ),
+    )
+    sample = advance = None
+    if contact.query_rate_hz is not None:
+        check_query_rate(contact.query_rate_hz, 1.0 / period_s)
+        sample, advance = _add_advance(
+            builder, query, tool, objects, 1.0 / contact.query_rate_hz
+        )
+    return ContactSystems(
+        contact_query=query,
         contact_clustering=builder.AddNamedSystem(
             "contact_clustering",
             ContactClustering(
@@ -80,7 +112,31 @@ def add_contact_systems(
                 [contact.damping_Ns_per_m if b is None else b for b in damping],
             ),
         ),
+        pose_sample=sample,
+        contact_advance=advance,
     )
+
+
+def _add_advance(
+    builder: DiagramBuilder,
+    query: ContactQuery,
+    tool: _core.Decomposition,
+    objects: Sequence[ContactObject],
+    period_s: float,
+) -> tuple[PoseSample, ContactAdvance]:
+    """Lets a query look for contacts every so often, and carries them along."""
+    from drake_haptics.systems.contact_advance import ContactAdvance
+    from drake_haptics.systems.pose_sample import PoseSample
+
+    names = [item.name for item in objects if item.X_WO is None]
+    sample = builder.AddNamedSystem("pose_sample", PoseSample(names, period_s))
+    advance = builder.AddNamedSystem("contact_advance", ContactAdvance(tool, objects))
+    for port in map(sample.get_output_port, range(sample.num_output_ports())):
+        name = port.get_name()
+        builder.Connect(port, query.GetInputPort(name))
+        builder.Connect(port, advance.GetInputPort(f"found_{name}"))
+    builder.Connect(query.get_contacts_output_port(), advance.get_contacts_input_port())
+    return sample, advance
 
 
 def _find_tolerance(contact: Contact, effects: Effects) -> float:

@@ -18,6 +18,8 @@ _WHY = {
     "virtual_coupling": "always: couples the tool to the handle",
     "haptic_tool": "always: moves the tool",
     "contact_query": "always: finds the contacts",
+    "pose_sample": "contact.query_rate_hz: says where contacts are looked for",
+    "contact_advance": "contact.query_rate_hz: carries contacts on between queries",
     "contact_clustering": "always: contact.clustering",
     "penalty_force": "always: answers the contacts",
     "force_shading": "effects.shading",

@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 
 from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 
-from drake_haptics.systems.contact_clustering import ContactClustering
-from drake_haptics.systems.contact_query import ContactQuery
+from drake_haptics.contact_systems import ContactSystems
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.haptic_tool import HapticTool
-from drake_haptics.systems.penalty_force import PenaltyForce
 from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
 if TYPE_CHECKING:
@@ -24,24 +22,18 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class BaseSystems:
-    """The systems that every loop has.
+class BaseSystems(ContactSystems):
+    """The systems that every loop has, those of contact among them.
 
     Attributes:
         device: The device port.
         virtual_coupling: Between the device's handle and the tool.
         haptic_tool: The tool's body.
-        contact_query: Finds the contacts.
-        contact_clustering: Keeps many contacts from being stiffer than one.
-        penalty_force: Answers them.
     """
 
     device: HapticDevice
     virtual_coupling: VirtualCoupling
     haptic_tool: HapticTool
-    contact_query: ContactQuery
-    contact_clustering: ContactClustering
-    penalty_force: PenaltyForce
 
 
 @dataclass(frozen=True)
@@ -81,7 +73,7 @@ class HapticLoop(BaseSystems):
         """What is clustered: the contacts, shaded if the scene asks for it."""
         if self.effects.shading is not None:
             return self.effects.shading.get_contacts_output_port()
-        return self.contact_query.get_contacts_output_port()
+        return self.found_contacts
 
     @property
     def display_wrench(self) -> OutputPort:
@@ -110,8 +102,11 @@ def ConnectMovingObject(
     Raises:
         ValueError: There is no such object, or it does not move.
     """
-    systems: list[System] = [loop.contact_query, loop.penalty_force]
-    systems += [system for system in vars(loop.effects).values() if system is not None]
+    parts = [loop.penalty_force, *vars(loop.effects).values()]
+    if loop.pose_sample is None:
+        parts.append(loop.contact_query)
+    parts += [loop.pose_sample, loop.contact_advance]
+    systems: list[System] = [part for part in parts if part is not None]
     sources = {f"X_WO_{name}": X_WO, f"V_WO_{name}": V_WO}
     inputs = [
         (sources[port.get_name()], port)

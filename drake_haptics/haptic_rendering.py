@@ -96,7 +96,7 @@ class HapticRendering(Diagram):
         self._tool = tool
         self._objects = tuple(objects)
         wiring = RenderingWiring(tool, objects)
-        wiring.add_contact(contact, effects, materials)
+        wiring.add_contact(contact, effects, materials, period_s)
         if coupling is not None:
             wiring.add_coupling(_core.CouplingGains(**asdict(coupling)), X_HT, device)
         wiring.add_effects(effects, materials, period_s)

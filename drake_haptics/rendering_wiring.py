@@ -70,7 +70,11 @@ class RenderingWiring:
         }
 
     def add_contact(
-        self, contact: Contact, effects: Effects, materials: Sequence[Material]
+        self,
+        contact: Contact,
+        effects: Effects,
+        materials: Sequence[Material],
+        period_s: float,
     ) -> None:
         """Adds what finds contacts and answers them."""
         found = add_contact_systems(
@@ -80,12 +84,13 @@ class RenderingWiring:
             contact,
             effects,
             materials,
+            period_s,
         )
         force = found.penalty_force
         self._contact_stiffness = min(force.stiffness_N_per_m)
         self._on_tool["contact"] = force.get_tool_wrench_output_port()
         self.outputs |= {
-            "contacts": found.contact_query.get_contacts_output_port(),
+            "contacts": found.found_contacts,
             "clusters": found.contact_clustering.get_clusters_output_port(),
             "contact_wrench": force.get_contact_wrench_output_port(),
             "F_Tool_W": self._on_tool["contact"],

@@ -146,6 +146,15 @@ class Contact:
             continuous, or `octree`, the paper's.
         cluster_size_m: For `octree`, and only there: contacts nearer than this
             count as one, m (the paper's δ).
+        depth: Of two pieces in overlap: `tracked`, the way out that is nearest to
+            the last one, which does not pop through a thin plate, or `global`, the
+            least of all, which costs more.
+        max_walk_steps: Bound on the vertex pairs that the search for a way out looks
+            at (the paper's maximum number of iterations), at least 1. Where it ends
+            a search, the depth may be too large, never too small.
+        query_rate_hz: Contacts are looked for so often, Hz, and carried along with
+            the bodies in between; `device.rate_hz` divided by a whole number. Where
+            not given, at every tick.
     """
 
     tolerance_m: float = 2e-3
@@ -153,6 +162,9 @@ class Contact:
     damping_Ns_per_m: float = 5.0
     clustering: str = "shared"
     cluster_size_m: float | None = None
+    depth: str = "tracked"
+    max_walk_steps: int = 1024
+    query_rate_hz: float | None = None
 
 
 @dataclass

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from drake_haptics.scene_twin import Twin
 
 _CLUSTERINGS = ("shared", "octree")
+_DEPTHS = ("tracked", "global")
+# How far a ratio of two rates may be from a whole number.
+_RATE_SLACK = 1e-9
 
 
 class SceneError(UserError):
@@ -118,11 +121,13 @@ def check_values(scene: Scene) -> None:
         _check_pose(item.pose, f"{where}.pose")
         _check_material(item.material, f"{where}.material", scene.effects)
     _check_contact(scene.contact)
+    require_all_positive(scene.device, "device", ["rate_hz"])
+    if scene.contact.query_rate_hz is not None:
+        check_query_rate(scene.contact.query_rate_hz, scene.device.rate_hz)
     _check_effects(scene.effects)
     require_none_negative(
         scene.coupling, "coupling", [f.name for f in dataclasses.fields(scene.coupling)]
     )
-    require_all_positive(scene.device, "device", ["rate_hz"])
     require_none_negative(scene.device, "device", ["max_force_N", "max_torque_Nm"])
     if scene.device.base is not None:
         _check_pose(scene.device.base, "device.base")
@@ -154,6 +159,37 @@ def _check_contact(contact: Contact) -> None:
         octree == (contact.cluster_size_m is not None),
         "contact.cluster_size_m",
         "is missing" if octree else "is only for clustering: octree",
+    )
+    require(
+        contact.depth in _DEPTHS,
+        "contact.depth",
+        f"is '{contact.depth}'; {_make_hint(contact.depth, _DEPTHS)}",
+    )
+    require(
+        contact.max_walk_steps >= 1,
+        "contact.max_walk_steps",
+        f"must be at least 1, is {contact.max_walk_steps}",
+    )
+
+
+def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
+    """Checks that contacts are looked for every so many ticks.
+
+    Args:
+        rate_hz: contact.query_rate_hz, Hz.
+        ticks_per_s: device.rate_hz, Hz.
+
+    Raises:
+        SceneError: The one is not the other divided by a whole number.
+    """
+    where = "contact.query_rate_hz"
+    require(rate_hz > 0.0, where, f"must be positive, is {rate_hz}")
+    ticks = ticks_per_s / rate_hz
+    require(
+        round(ticks) >= 1 and abs(ticks - round(ticks)) <= _RATE_SLACK * ticks,
+        where,
+        f"must be device.rate_hz ({ticks_per_s:g}) divided by a whole number, is"
+        f" {rate_hz:g}; {ticks_per_s / max(1, round(ticks)):.10g} is the nearest",
     )
 
 

@@ -134,9 +134,9 @@ def _make_measure(
     tool_context = loop.haptic_tool.GetMyContextFromRoot(root)
     hold = loop.device.GetSubsystemByName("display_force_hold")
     hold_context = hold.GetMyContextFromRoot(root)
-    query_context = loop.contact_query.GetMyContextFromRoot(root)
     clustering_context = loop.contact_clustering.GetMyContextFromRoot(root)
-    contacts_port = loop.contact_query.get_contacts_output_port()
+    contacts_port = loop.found_contacts
+    contacts_context = contacts_port.get_system().GetMyContextFromRoot(root)
     clusters_port = loop.contact_clustering.get_clusters_output_port()
 
     def measure(context: Context, tick_s: float) -> None:
@@ -152,7 +152,7 @@ def _make_measure(
                 statistics,
             )
         # What the next tick needs of these is cached, so they cost nothing twice.
-        contacts = contacts_port.Eval(query_context)
+        contacts = contacts_port.Eval(contacts_context)
         statistics.add(
             tick_s,
             contacts.query_seconds,

@@ -25,7 +25,7 @@ def test_a_material_gives_what_the_contact_does_not(core):
     contact = Contact(stiffness_N_per_m=100.0)
     materials = [Material(), Material(stiffness_N_per_m=900.0)]
     found = add_contact_systems(
-        DiagramBuilder(), core, objects(core), contact, Effects(), materials
+        DiagramBuilder(), core, objects(core), contact, Effects(), materials, 1e-3
     )
     assert found.penalty_force.stiffness_N_per_m == [100.0, 900.0]
 
@@ -40,6 +40,7 @@ def test_contacts_are_looked_for_as_far_as_braking_reaches(core, distance, conta
         Contact(tolerance_m=2e-3),
         effects,
         [Material()],
+        1e-3,
     )
     query = found.contact_query
     context = query.CreateDefaultContext()
@@ -51,14 +52,20 @@ def test_contacts_are_looked_for_as_far_as_braking_reaches(core, distance, conta
 def test_there_is_a_material_for_each_object(core):
     with pytest.raises(ValueError, match="materials must be one for each of the 2"):
         add_contact_systems(
-            DiagramBuilder(), core, objects(core), Contact(), Effects(), [Material()]
+            DiagramBuilder(),
+            core,
+            objects(core),
+            Contact(),
+            Effects(),
+            [Material()],
+            1e-3,
         )
 
 
 def test_inputs_are_connected_by_their_names_once(core):
     builder = DiagramBuilder()
     found = add_contact_systems(
-        builder, core, objects(core), Contact(), Effects(), [Material()] * 2
+        builder, core, objects(core), Contact(), Effects(), [Material()] * 2, 1e-3
     )
     rest, moving = (
         builder.AddSystem(ConstantVectorSource(np.full(6, x))) for x in (0.0, 1.0)

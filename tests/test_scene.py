@@ -149,6 +149,21 @@ def test_a_pose_is_drakes():
         ),
         ("hand:", "contact: {clustering: octree}\nhand:", r"cluster_size_m is missing"),
         ("hand:", "contact: {clustering: ocree}\nhand:", r"'ocree'; did you mean 'oct"),
+        ("hand:", "contact: {depth: globl}\nhand:", r"'globl'; did you mean 'global'"),
+        ("hand:", "contact: {max_walk_steps: 0}\nhand:", r"max_walk_steps must be at"),
+        ("hand:", "contact: {max_walk_steps: 1.5}\nhand:", r"expected a whole number"),
+        ("hand:", "contact: {query_rate_hz: 0}\nhand:", r"query_rate_hz must be pos"),
+        (
+            "hand:",
+            "contact: {query_rate_hz: 300}\nhand:",
+            r"query_rate_hz must be device\.rate_hz \(1000\) divided by a whole number,"
+            r" is 300; 333\.3333333 is the nearest",
+        ),
+        (
+            "hand:",
+            "contact: {query_rate_hz: 2000}\nhand:",
+            r"is 2000; 1000 is the near",
+        ),
         ("hand:", "effects: {gravty: {}}\nhand:", r"gravty: .* did you mean 'gravity'"),
         ("hand:", "effects: {gravity:}\nhand:", r"gravity: is empty; write {} for"),
         ("hand:", "effects: {gravity: 9.81}\nhand:", r"gravity: expected keys"),

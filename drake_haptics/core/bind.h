@@ -7,6 +7,7 @@
 /// Each bind_<topic>.cc adds one topic to the Python module `_core`.
 namespace drake_haptics {
 
+void BindAdvance(nanobind::module_& m);
 void BindAutoDiff(nanobind::module_& m);
 void BindPolytope(nanobind::module_& m);
 void BindDecomposition(nanobind::module_& m);

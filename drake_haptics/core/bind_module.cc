@@ -14,6 +14,7 @@ NB_MODULE(_core, m) {
   drake_haptics::BindContact(m);
   drake_haptics::BindConvexPair(m);
   drake_haptics::BindTracker(m);
+  drake_haptics::BindAdvance(m);
   drake_haptics::BindForce(m);
   drake_haptics::BindTool(m);
   drake_haptics::BindJacobian(m);

@@ -58,7 +58,7 @@ def AddTickLog(
         "X_WTool": tool.get_pose_output_port(),
         "V_WTool": tool.get_velocity_output_port(),
         "status": device.get_status_output_port(),
-        "contacts": loop.contact_query.get_contacts_output_port(),
+        "contacts": loop.found_contacts,
         "clusters": loop.contact_clustering.get_clusters_output_port(),
     }
     if device.HasOutputPort("reading"):
