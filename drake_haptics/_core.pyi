@@ -594,7 +594,7 @@ class ContactTracker:
 
         Args:
             depth: Of two pieces in overlap: `tracked` walks from the last answer, and so does not pop through a thin plate; `global` is the least way out over any feature that both surfaces have, and costs more. What has passed behind a surface is held by the way in either way.
-            max_walk_steps: Bound on the vertex pairs that a walk looks at (paper, 5.2.3), at least 1. Where it ends a walk, the status is `BOUNDED`, and the depth may be too large, never too small.
+            max_walk_steps: Bound on the steps of a walk from feature to feature (paper, 5.2.3), at least 1. Where it ends a walk, the status is `BOUNDED`, and the depth may be too large, never too small.
 
         Raises:
             ValueError: not decompositions, the tolerance is negative or not finite, no such depth, or max_walk_steps below 1.
@@ -632,7 +632,7 @@ class ContactTracker:
 
     @property
     def max_walk_steps(self) -> int:
-        """Bound on the vertex pairs that a walk looks at."""
+        """Bound on the steps of a walk from feature to feature."""
 
     def reset(self) -> None:
         """Forgets what earlier queries found."""
@@ -652,7 +652,7 @@ class SceneTracker:
 
         Args:
             depth: Of two pieces in overlap: `tracked` walks from the last answer, and so does not pop through a thin plate; `global` is the least way out over any feature that both surfaces have, and costs more. What has passed behind a surface is held by the way in either way.
-            max_walk_steps: Bound on the vertex pairs that a walk looks at (paper, 5.2.3), at least 1. Where it ends a walk, the status is `BOUNDED`, and the depth may be too large, never too small.
+            max_walk_steps: Bound on the steps of a walk from feature to feature (paper, 5.2.3), at least 1. Where it ends a walk, the status is `BOUNDED`, and the depth may be too large, never too small.
 
         Raises:
             ValueError: not decompositions, no objects, the tolerance is negative or not finite, no such depth, or max_walk_steps below 1.
@@ -701,7 +701,7 @@ class SceneTracker:
 
     @property
     def max_walk_steps(self) -> int:
-        """Bound on the vertex pairs that a walk looks at."""
+        """Bound on the steps of a walk from feature to feature."""
 
     def reset(self) -> None:
         """Forgets what earlier queries found."""
@@ -710,24 +710,40 @@ class SceneTracker:
 
     def __copy__(self) -> SceneTracker: ...
 
-@overload
-def advance_contacts(contacts: ContactSet, found: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], now: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], moving: Sequence[int]) -> ContactSet:
+class ContactCarrier:
     """
-    Carries contacts along with the bodies: witness points stay on them, and the normal on the one whose feature it is of (contact_advance.h).
-
-    Args:
-        contacts: `ContactSet` of a query.
-        found: (7 + 7 m,) poses [qw qx qy qz x y z] at which it was asked, of the tool, then of the objects that move.
-        now: (7 + 7 m,) their poses now.
-        moving: which m objects those are.
-
-    Raises:
-        ValueError: not poses, or not one for each body.
+    Carries contacts along with the bodies: features stay, witness points stay on their bodies, and the normal on the one whose facet it is of (contact_advance.h). Immutable.
     """
 
-@overload
-def advance_contacts(contacts: AutoDiffContactSet, found: AutoDiffVector, now: AutoDiffVector, moving: Sequence[int]) -> AutoDiffContactSet:
-    """The same with derivatives."""
+    def __init__(self, tool: Decomposition, objects: Sequence[Decomposition], X_WO: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')] | None]) -> None:
+        """
+        Carries contacts of `tool` with `objects`, those of the query.
+
+        Args:
+            X_WO: (7,) pose [qw qx qy qz x y z] of each object that never moves, None for the others.
+
+        Raises:
+            ValueError: not a pose, or not an entry for each object.
+        """
+
+    @overload
+    def advance(self, contacts: ContactSet, found: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], now: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> ContactSet:
+        """
+        The contacts where the bodies are now.
+
+        Args:
+            contacts: `ContactSet` of a query, not shaded.
+            found: (7 + 7 m,) poses at which it was asked, of the tool, then of the m objects that move.
+            now: (7 + 7 m,) their poses now.
+
+        Raises:
+            ValueError: not poses, or not one for each body.
+            IndexError: a contact names what is not there.
+        """
+
+    @overload
+    def advance(self, contacts: AutoDiffContactSet, found: AutoDiffVector, now: AutoDiffVector) -> AutoDiffContactSet:
+        """The same with derivatives."""
 
 class ClusterSet:
     """

@@ -149,9 +149,9 @@ class Contact:
         depth: Of two pieces in overlap: `tracked`, the way out that is nearest to
             the last one, which does not pop through a thin plate, or `global`, the
             least of all, which costs more.
-        max_walk_steps: Bound on the vertex pairs that the search for a way out looks
-            at (the paper's maximum number of iterations), at least 1. Where it ends
-            a search, the depth may be too large, never too small.
+        max_walk_steps: Bound on the steps of the search for a way out from feature
+            to feature (the paper's maximum number of iterations), at least 1. Where
+            it ends a search, the depth may be too large, never too small.
         query_rate_hz: Contacts are looked for so often, Hz, and carried along with
             the bodies in between; `device.rate_hz` divided by a whole number. Where
             not given, at every tick.

@@ -90,7 +90,7 @@ class ContactQuery(DifferentiableSystem):
             tolerance_m: Pairs up to this distance are contacts, m.
             depth: Of two pieces in overlap: that walked to from the last answer, or
                 the least one of all; see `drake_haptics.SceneTracker`.
-            max_walk_steps: Bound on the vertex pairs that a walk looks at, at least 1.
+            max_walk_steps: Bound on the steps of such a walk, at least 1.
 
         Raises:
             ValueError: The tolerance is negative, there is no object, a name is used

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from dataclasses import replace
 
 import numpy as np
@@ -241,7 +240,7 @@ def test_contacts_are_looked_for_every_fourth_tick_and_carried_between(
 
 
 @pytest.fixture(scope="module")
-def cup_spoon() -> dict[float | None, tuple[HapticDiagram, np.ndarray, int]]:
+def cup_spoon() -> dict[float | None, tuple[HapticDiagram, np.ndarray, float]]:
     """Cup and spoon, their contacts looked for at 250 Hz and at each tick."""
     results = {}
     for rate_hz in (None, 250.0):
@@ -252,35 +251,44 @@ def cup_spoon() -> dict[float | None, tuple[HapticDiagram, np.ndarray, int]]:
     return results
 
 
-def watch(haptic: HapticDiagram) -> tuple[np.ndarray, int]:
-    """Returns the tool's poses (n, 7), and how many contacts in depth were lost."""
+def watch(haptic: HapticDiagram) -> tuple[np.ndarray, float]:
+    """Returns the tool's poses (n, 7), and how much less deep than by a query it was.
+
+    At every tick the deepest of all contacts is compared, m: a pair of pieces may
+    have handed its contact over to the next.
+    """
     loop = haptic.loop
     tool = loop.haptic_tool
+    tracker = SceneTracker(
+        haptic.tool.core,
+        [item.core for item in haptic.environment],
+        haptic.scene.contact.tolerance_m,
+    )
+    for i, item in enumerate(haptic.scene.environment):
+        tracker.set_object_pose(i, item.pose.to_rigid_transform())
     poses: list[np.ndarray] = []
-    lost = 0
-    tracker: list[SceneTracker] = []
+    missed = 0.0
 
     def look(root) -> None:
-        nonlocal lost
+        nonlocal missed
         poses.append(
             np.array(tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root)))
         )
-        if loop.contact_advance is None:
-            return
-        if not tracker:
-            query = loop.contact_query
-            tracker.append(copy.deepcopy(query._make_tracker(None)))
-        true = tracker[0].query(poses[-1])
-        now = loop.found_contacts.Eval(loop.contact_advance.GetMyContextFromRoot(root))
-        known = set(zip(now.piece_A.tolist(), now.piece_B.tolist(), strict=True))
-        deep = true.distance < 0
-        pairs = zip(
-            true.piece_A[deep].tolist(), true.piece_B[deep].tolist(), strict=True
-        )
-        lost += sum(pair not in known for pair in pairs)
+        found = loop.found_contacts
+        now = found.Eval(found.get_system().GetMyContextFromRoot(root))
+        true = tracker.query(poses[-1])
+        for contact in true:
+            if contact.distance < 0:
+                near = [
+                    other.distance
+                    for other in now
+                    if np.linalg.norm(other.p_WC - contact.p_WC) < 5e-3
+                    and other.nhat_BA_W @ contact.nhat_BA_W > 0.5
+                ]
+                missed = max(missed, min(near, default=0.0) - contact.distance)
 
     run(haptic, 2.5, on_tick=look)
-    return np.array(poses), lost
+    return np.array(poses), missed
 
 
 def test_a_loop_that_looks_for_contacts_at_250_hz_is_stable(cup_spoon) -> None:
@@ -293,7 +301,9 @@ def test_a_loop_that_looks_for_contacts_at_250_hz_is_stable(cup_spoon) -> None:
 
 
 def test_no_contact_in_depth_is_lost_between_two_queries(cup_spoon) -> None:
-    assert cup_spoon[250.0][2] == 0
+    """Near each that a query would find there is one, as deep to some µm."""
+    assert cup_spoon[None][2] < 1e-9
+    assert cup_spoon[250.0][2] < 2e-5
 
 
 def test_bodies_of_a_plant_that_move_are_followed_between_queries() -> None:

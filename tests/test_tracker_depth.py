@@ -119,7 +119,7 @@ def test_the_least_depth_of_surfaces_is_least_and_on_them() -> None:
     cup, spoon = model("cup.obj"), model("spoon.obj")
     rng = np.random.default_rng(3)
     compared = less = 0
-    for _ in range(40):
+    for _ in range(150):
         q_WA = turned(0.03 * rng.normal(size=3), rng.normal(size=3))
         found = {
             depth: ContactTracker(spoon, cup, T, depth=depth).query(q_WA, IDENTITY)
@@ -151,7 +151,7 @@ def test_the_least_depth_of_surfaces_is_least_and_on_them() -> None:
                 piece = body.pieces[getattr(contact, f"piece_{side}")]
                 if feature.kind.name == "FACET":
                     assert piece.facet_original[feature.index]
-    assert compared > 100 and less > 0
+    assert compared > 60 and less > 0
 
 
 def test_what_passed_behind_a_surface_is_held_at_either_depth() -> None:
@@ -225,13 +225,19 @@ def test_a_bound_on_walks_loses_no_contact_on_the_way() -> None:
         ]
     )
     free = ContactTracker(ball, block, T).query_trajectory(X_WA, IDENTITY)
-    bounded = ContactTracker(ball, block, T, max_walk_steps=1).query_trajectory(
-        X_WA, IDENTITY
-    )
-    for k in range(len(way)):
-        if len(free[k]) and free[k].distance[0] < 0:
-            assert bounded[k].distance[0] <= free[k].distance[0] + 1e-12
-            assert bounded[k].distance[0] > free[k].distance[0] - 2e-4
+    worst = []
+    for steps in (1, 4, 16):
+        bounded = ContactTracker(ball, block, T, max_walk_steps=steps).query_trajectory(
+            X_WA, IDENTITY
+        )
+        excess = [
+            free[k].distance[0] - bounded[k].distance[0]
+            for k in range(len(way))
+            if len(free[k]) and free[k].distance[0] < 0
+        ]
+        assert len(excess) > 100 and min(excess) >= -1e-12
+        worst.append(max(excess))
+    assert worst[0] < 5e-4 and worst[2] < 1e-12
 
 
 @pytest.mark.parametrize("steps", [0, -1, 1.5, True, "many", None])

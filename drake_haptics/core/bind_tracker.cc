@@ -24,8 +24,8 @@ namespace nb = nanobind;
   "answer, and so does not pop through a thin plate; `global` is the least " \
   "way out over any feature that both surfaces have, and costs more. What "  \
   "has passed behind a surface is held by the way in either way.\n"          \
-  "    max_walk_steps: Bound on the vertex pairs that a walk looks at "      \
-  "(paper, 5.2.3), at least 1. Where it ends a walk, the status is "         \
+  "    max_walk_steps: Bound on the steps of a walk from feature to "        \
+  "feature (paper, 5.2.3), at least 1. Where it ends a walk, the status is " \
   "`BOUNDED`, and the depth may be too large, never too small.\n\n"
 
 namespace drake_haptics {
@@ -247,7 +247,7 @@ void DefTracker(nb::class_<Tracker>* tracker) {
           [](const Tracker& self) {
             return self.constants().depth().max_walk_steps;
           },
-          "Bound on the vertex pairs that a walk looks at.")
+          "Bound on the steps of a walk from feature to feature.")
       .def("reset", &Tracker::Reset, "Forgets what earlier queries found.")
       .def("__deepcopy__",
            [](const Tracker& self, nb::handle) { return Tracker(self); })
@@ -270,7 +270,7 @@ void BindContactTracker(nb::module_& m) {
                     nb::handle>(),
            nb::arg("A").none(), nb::arg("B").none(),
            nb::arg("tolerance").none(), nb::arg("depth").none() = "tracked",
-           nb::arg("max_walk_steps").none() = WalkBounds{}.max_hubs,
+           nb::arg("max_walk_steps").none() = WalkBounds{}.max_steps,
            nb::sig("def __init__(self, A: drake_haptics.decomposition."
                    "Decomposition | Decomposition, B: drake_haptics."
                    "decomposition.Decomposition | Decomposition, tolerance: "
@@ -316,7 +316,7 @@ void BindSceneTracker(nb::module_& m) {
                     nb::handle>(),
            nb::arg("tool").none(), nb::arg("objects").none(),
            nb::arg("tolerance").none(), nb::arg("depth").none() = "tracked",
-           nb::arg("max_walk_steps").none() = WalkBounds{}.max_hubs,
+           nb::arg("max_walk_steps").none() = WalkBounds{}.max_steps,
            nb::sig("def __init__(self, tool: drake_haptics.decomposition."
                    "Decomposition | Decomposition, objects: collections.abc."
                    "Sequence[drake_haptics.decomposition.Decomposition | "

@@ -127,6 +127,23 @@ class Enumeration {
 
 }  // namespace
 
+Depth LeastOfAllFacets(const PosedPair& pair, const Hub& start,
+                       GlobalDepthState* state) {
+  const Depth local = WalkDepth(pair, start, SurfaceRule::kWholeBoundary,
+                                nullptr, {}, &state->walk);
+  const GlobalDepth found = FindGlobalDepth(pair, local, state);
+  if (found.status == GlobalDepthStatus::kFlat) return {};
+  Depth least{found.status == GlobalDepthStatus::kExact
+                  ? DepthStatus::kLocalMinimum
+                  : DepthStatus::kBounded,
+              found.facet, found.facet.h, found.hub};
+  const Vec3 n_B = pair.X_AB.R.transpose() * least.best.n;
+  least.best.support =
+      ClassifySupport(pair.A, least.best.feature_A, least.best.n, pair.B,
+                      least.best.feature_B, n_B);
+  return least;
+}
+
 void ListCarriedFacets(const PosedPair& pair, double floor,
                        std::vector<DepthCandidate>* facets) {
   facets->clear();

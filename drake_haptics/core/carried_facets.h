@@ -3,9 +3,16 @@
 #include <vector>
 
 #include "depth_walk.h"
+#include "global_depth.h"
 #include "support.h"
 
 namespace drake_haptics {
+
+/// The shallowest of all facets of A ⊖ B (global_depth.h), virtual or not, with
+/// its support by the surfaces. kNoFacet where A ⊖ B has no interior.
+/// @param start a hub to walk from.
+Depth LeastOfAllFacets(const PosedPair& pair, const Hub& start,
+                       GlobalDepthState* state);
 
 /// Lists all facets of A ⊖ B that both surfaces carry and whose gap exceeds
 /// `floor` (m), the shallowest first: by enumeration, not by a walk, so that

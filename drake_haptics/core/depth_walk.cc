@@ -28,12 +28,12 @@ class Walk {
     result.hub = start;
     // Each round looks around one facet: the best supported one, or while
     // there is none, the best of the others not yet looked around.
-    for (;;) {
+    for (int num_steps = 0;;) {
       const int target = best_ >= 0 ? best_ : BestOpen();
       if (target < 0) break;
       const int before = best_;
-      const bool complete = VisitHubsOf(target, &result.hub);
-      if (!complete) {
+      const bool may_step = best_ < 0 || num_steps++ < bounds_.max_steps;
+      if (!may_step || !VisitHubsOf(target, &result.hub)) {
         result.status = DepthStatus::kBounded;
         break;
       }
@@ -87,7 +87,8 @@ class Walk {
     }
   }
 
-  // Looks at all hubs of a facet; false where the bound stopped it.
+  // Looks at all hubs of a facet; false where the bound on those without an
+  // answer stopped it.
   bool VisitHubsOf(int target, Hub* last) {
     const DepthCandidate facet = workspace_.candidates[target];
     ListFacetHubs(pair_, facet.feature_A, facet.feature_B, facet.n,
@@ -97,9 +98,10 @@ class Walk {
       if (std::find(visited.begin(), visited.end(), hub) != visited.end()) {
         continue;
       }
-      const int bound =
-          best_ >= 0 ? bounds_.max_hubs : bounds_.max_promotion_hubs;
-      if (static_cast<int>(visited.size()) >= bound) return false;
+      if (best_ < 0 &&
+          static_cast<int>(visited.size()) >= bounds_.max_promotion_hubs) {
+        return false;
+      }
       Visit(hub);
       *last = hub;
     }

@@ -8,10 +8,13 @@
 
 namespace drake_haptics {
 
-/// Bounds on the vertex hub pairs that a walk looks at, at least 1.
+/// Bounds on what a walk looks at, at least 1 each.
 struct WalkBounds {
-  int max_promotion_hubs = 1;  ///< while no supported facet is known
-  int max_hubs = 1024;         ///< in all (paper, 5.2.3); far above most needs
+  /// Hubs, while no supported facet is known.
+  int max_promotion_hubs = 1;
+  /// Steps from then on (the iterations of paper 5.2.3): each looks at all hubs
+  /// of the best facet so far. Far above most needs.
+  int max_steps = 1024;
 };
 
 /// Which contacts of a pair count.
@@ -35,7 +38,7 @@ struct DepthCandidate {
 /// How a walk ended.
 enum class DepthStatus {
   kLocalMinimum,  ///< no facet around any of the answer's hubs is shallower
-  kBounded,       ///< the bound on hubs was met; the best one seen
+  kBounded,       ///< a bound was met; the best one seen
   kNoFacet        ///< the Minkowski difference has no facet here (flat in it)
 };
 

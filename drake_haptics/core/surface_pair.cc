@@ -210,18 +210,8 @@ class Query {
   // one is virtual, the least of the others counts if it is shallower than the
   // depth that was tracked, or, with none to compare to, by the rules for that.
   std::optional<Depth> LeastDepth(const Depth& tracked) {
-    const Depth local =
-        WalkDepth(pair_, tracked.hub, SurfaceRule::kWholeBoundary, nullptr, {},
-                  &global_->walk);
-    const GlobalDepth found = FindGlobalDepth(pair_, local, global_);
-    if (found.status == GlobalDepthStatus::kFlat) return std::nullopt;
-    const DepthStatus status = found.status == GlobalDepthStatus::kExact
-                                   ? DepthStatus::kLocalMinimum
-                                   : DepthStatus::kBounded;
-    Depth least{status, found.facet, found.facet.h, found.hub};
-    least.best.support = ClassifySupport(
-        pair_.A, least.best.feature_A, least.best.n, pair_.B,
-        least.best.feature_B, pair_.X_AB.R.transpose() * least.best.n);
+    const Depth least = LeastOfAllFacets(pair_, tracked.hub, global_);
+    if (least.status == DepthStatus::kNoFacet) return std::nullopt;
     if (least.best.support == SurfaceSupport::kSupported &&
         IsWithinFeatures(least)) {
       return least;
@@ -232,7 +222,7 @@ class Query {
     for (const DepthCandidate& facet : workspace_.carried) {
       const Depth depth{DepthStatus::kLocalMinimum,
                         facet,
-                        found.facet.h,
+                        least.best.h,
                         {pair_.A.first_vertex_of(facet.feature_A),
                          pair_.B.first_vertex_of(facet.feature_B)}};
       if (is_tracked ? IsWithinFeatures(depth) : IsPlausible(depth)) {
@@ -285,7 +275,10 @@ class Query {
     // has its deepest corner over another one.
     if (passage_.GoesOn(depth.best)) return true;
     if (depth.best.support != SurfaceSupport::kSupported) return false;
-    if (!IsWithinFeatures(depth)) return false;
+    // A walk that was cut short may not have come to where the bodies press.
+    if (depth.status != DepthStatus::kBounded && !IsWithinFeatures(depth)) {
+      return false;
+    }
     return request_.is_first || passage_.IsHandedOver(depth.best) ||
            (depth.best.n.dot(state_.n) >= kComingFrom &&
             depth.best.h >=

@@ -47,10 +47,10 @@ struct SurfaceRequest {
   /// Where the tool presses already. A pair that was not in contact may take
   /// over there.
   std::span<const PressedContact> pressed{};
-  /// Bound on the hubs of a walk once it knows a facet that both surfaces
-  /// carry; the search for one has bounds of its own, so that no contact is
-  /// lost for want of it.
-  int max_walk_steps = WalkBounds{}.max_hubs;
+  /// Bound on the steps of a walk. The search for a first facet that both
+  /// surfaces carry has bounds of its own, so that no contact is lost for want
+  /// of it.
+  int max_walk_steps = WalkBounds{}.max_steps;
 };
 
 }  // namespace drake_haptics

@@ -25,7 +25,7 @@ struct DepthSearch {
   /// The least one of all (surface_pair.h), not the one walked to from the
   /// last tick.
   bool is_global = false;
-  int max_walk_steps = WalkBounds{}.max_hubs;  ///< at least 1
+  int max_walk_steps = WalkBounds{}.max_steps;  ///< at least 1
 };
 
 /// Buffers of a tick, kept so that a warm one allocates nothing.
