@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
@@ -46,11 +47,15 @@ from drake_haptics.systems.handle_model import HandleModel
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.haptic_tool import HapticTool
 from drake_haptics.systems.haptic_visualizer import HapticVisualizer
+from drake_haptics.systems.load_shedding import LoadShedding, TickEnd, TickMeter
 from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
 if TYPE_CHECKING:
     from drake_haptics.tick_log.tick_recorder import TickRecorder
 
+# Of the tool's size: how far contacts can be from a deeper one that stands for them
+# where a tick takes too long.
+_LARGEST_CELL = 0.1
 # Effects that push the tool, each through the input of its name.
 _FORCES = ("friction", "braking", "gravity")
 
@@ -94,6 +99,7 @@ def AddHapticLoop(
     period_s: float,
     effects: Effects | None = None,
     materials: Sequence[Material] | None = None,
+    load_shedding: LoadShedding | None = None,
 ) -> HapticLoop:
     """Adds the systems of a haptic loop around a device and connects them.
 
@@ -114,6 +120,9 @@ def AddHapticLoop(
         effects: What is felt besides contact; nothing where not given.
         materials: Of each object, in their order; what one does not give is that of
             `contact` and `effects`.
+        load_shedding: Says what to leave out of ticks that take too long; not yet in a
+            builder. The loop must be the first part of its diagram then, and a
+            `TickEnd` the last.
 
     Returns:
         The systems.
@@ -132,7 +141,10 @@ def AddHapticLoop(
         coupling.rotational_damping_Nms_per_rad,
     )
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
+    if load_shedding is not None:
+        builder.AddNamedSystem("load_shedding", load_shedding)
     base = BaseSystems(
+        load_shedding=load_shedding,
         device=builder.AddNamedSystem("device", device),
         virtual_coupling=builder.AddNamedSystem(
             "virtual_coupling", VirtualCoupling(gains, X_HT)
@@ -143,7 +155,14 @@ def AddHapticLoop(
         ),
         **vars(
             add_contact_systems(
-                builder, tool, objects, contact, effects, materials, period_s
+                builder,
+                tool,
+                objects,
+                contact,
+                effects,
+                materials,
+                period_s,
+                sheds_load=load_shedding is not None,
             )
         ),
     )
@@ -200,9 +219,17 @@ def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
         (V_WTool, force.get_tool_velocity_input_port()),
     ]:
         builder.Connect(output, input)
-    for system in (base.contact_query, base.pose_sample, base.contact_advance):
+    sources = {"X_WTool": X_WTool}
+    if base.load_shedding is not None:
+        sources["relief"] = base.load_shedding.get_relief_output_port()
+    for system in (
+        base.contact_query,
+        base.contact_clustering,
+        base.pose_sample,
+        base.contact_advance,
+    ):
         if system is not None:
-            connect_by_name(builder, system, {"X_WTool": X_WTool})
+            connect_by_name(builder, system, sources)
 
 
 def _add_handle_model(
@@ -232,7 +259,11 @@ def _add_handle_model(
 
 def _find_sources(base: BaseSystems) -> dict[str, OutputPort]:
     """Returns what systems of effects ask for, by the names of their inputs."""
+    relief: dict[str, OutputPort] = {}
+    if base.load_shedding is not None:
+        relief["relief"] = base.load_shedding.get_relief_output_port()
     return {
+        **relief,
         "X_WH": base.device.get_handle_pose_output_port(),
         "V_WH": base.device.get_handle_velocity_output_port(),
         "X_WTool": base.haptic_tool.get_pose_output_port(),
@@ -297,9 +328,11 @@ def BuildHapticDiagram(
         port, X_WH = make_haptic_device(scene, device)
         X_WT = X_WH @ X_HT
     assert port is not None
+    meter = None if scene.device.tick_budget_us is None else TickMeter()
     builder = DiagramBuilder()
     loop = AddHapticLoop(
         builder,
+        load_shedding=_make_load_shedding(meter, scene, tool),
         device=port,
         tool=tool.core,
         tool_dynamics=_core.RigidToolDynamics(scene.tool.mass_kg, p_TTcm, I_TTcm_T),
@@ -319,6 +352,9 @@ def BuildHapticDiagram(
     visualizer = None
     if meshcat is not None:
         visualizer = add_picture(builder, loop, meshcat, tool.core, objects, period_s)
+    if meter is not None:
+        # The last to publish: what a tick takes includes its drawing.
+        builder.AddNamedSystem("tick_end", TickEnd(meter, period_s))
     return HapticDiagram(
         diagram=builder.Build(),
         scene=scene,
@@ -328,6 +364,19 @@ def BuildHapticDiagram(
         environment=environment,
         visualizer=visualizer,
         backend=device if isinstance(device, DeviceBackend) else None,
+    )
+
+
+def _make_load_shedding(
+    meter: TickMeter | None, scene: Scene, tool: Decomposition
+) -> LoadShedding | None:
+    """Returns what keeps ticks within a scene's budget, if it has one."""
+    budget_us = scene.device.tick_budget_us
+    if meter is None or budget_us is None:
+        return None
+    size_m = float(np.linalg.norm(tool.mesh.report.extent))
+    return LoadShedding(
+        meter, 1.0 / scene.device.rate_hz, 1e-6 * budget_us, _LARGEST_CELL * size_m
     )
 
 

@@ -133,6 +133,7 @@ def _add_braking(effect: Braking, site: EffectSite) -> System:
         site.objects,
         damping_Ns_per_m=effect.damping_Ns_per_m,
         distance_m=effect.distance_m,
+        sheds_load="relief" in site.sources,
     )
     return _add(site, "pre_contact_braking", system)
 

@@ -40,6 +40,7 @@ def add_picture(
             loop.virtual_coupling.X_HT,
             period_s,
             has_friction=loop.effects.friction is not None,
+            sheds_load=loop.load_shedding is not None,
         ),
     )
     for output, input in [
@@ -67,5 +68,10 @@ def add_picture(
         builder.Connect(
             loop.effects.friction.get_friction_force_output_port(),
             visualizer.get_friction_force_input_port(),
+        )
+    if loop.load_shedding is not None:
+        builder.Connect(
+            loop.load_shedding.get_relief_output_port(),
+            visualizer.get_relief_input_port(),
         )
     return visualizer

@@ -54,6 +54,8 @@ def add_contact_systems(
     effects: Effects,
     materials: Sequence[Material],
     period_s: float,
+    *,
+    sheds_load: bool = False,
 ) -> ContactSystems:
     """Adds the systems; their inputs from elsewhere are left to the caller.
 
@@ -65,6 +67,7 @@ def add_contact_systems(
         effects: Contacts are looked for as far as they need.
         materials: Of each object; gains that one does not give are those of `contact`.
         period_s: The tick, s.
+        sheds_load: Whether query and clustering take the `relief` of a `LoadShedding`.
 
     Raises:
         ValueError: A gain or size is out of range, two objects share a name, there
@@ -86,6 +89,7 @@ def add_contact_systems(
             _find_tolerance(contact, effects),
             cast(DepthSearch, contact.depth),
             contact.max_walk_steps,
+            sheds_load=sheds_load,
         ),
     )
     sample = advance = None
@@ -102,6 +106,7 @@ def add_contact_systems(
                 cast(ClusteringMethod, contact.clustering),
                 contact.tolerance_m,
                 contact.cluster_size_m,
+                sheds_load=sheds_load,
             ),
         ),
         penalty_force=builder.AddNamedSystem(

@@ -27,6 +27,8 @@ _WHY = {
     "pre_contact_braking": "effects.braking",
     "tool_gravity": "effects.gravity",
     "passivity_control": "effects.passivity",
+    "load_shedding": "device.tick_budget_us: says what slow ticks leave out",
+    "tick_end": "device.tick_budget_us: times the tick",
     "tick_log_sink": "--log: notes every tick",
     "haptic_visualizer": "draws the page or the recording",
 }

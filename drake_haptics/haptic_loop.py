@@ -15,6 +15,7 @@ from drake_haptics.systems.virtual_coupling import VirtualCoupling
 
 if TYPE_CHECKING:
     from drake_haptics.systems.force_shading import ForceShading
+    from drake_haptics.systems.load_shedding import LoadShedding
     from drake_haptics.systems.passivity_control import PassivityControl
     from drake_haptics.systems.pre_contact_braking import PreContactBraking
     from drake_haptics.systems.stick_slip_friction import StickSlipFriction
@@ -29,11 +30,13 @@ class BaseSystems(ContactSystems):
         device: The device port.
         virtual_coupling: Between the device's handle and the tool.
         haptic_tool: The tool's body.
+        load_shedding: Says what to leave out; None without a budget of ticks.
     """
 
     device: HapticDevice
     virtual_coupling: VirtualCoupling
     haptic_tool: HapticTool
+    load_shedding: LoadShedding | None
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from drake_haptics.energy_ledger import EnergyLedger
 from drake_haptics.systems.display_force_hold import LIMITED, NOT_FINITE
+from drake_haptics.systems.load_shedding import SHED_STAGES
 from drake_haptics.tick_clock import TickClock
 
 # Distributions are those of the latest ticks, so that a demo left running
@@ -44,6 +45,7 @@ class RunStatistics:
         self._max_torque_Nm = 0.0
         self._max_penetration_m = 0.0
         self._limit_hits = 0
+        self._shed_ticks = dict.fromkeys(SHED_STAGES, 0)
         self._non_finite_events = 0
 
     @property
@@ -76,6 +78,15 @@ class RunStatistics:
         if len(self._pending) == _BLOCK:
             self._digest()
 
+    def add_shed(self, shed: float) -> None:
+        """Adds what the tick left out.
+
+        Args:
+            shed: Of `LoadShedding`, 0 (nothing) to 3.
+        """
+        for stage, name in enumerate(SHED_STAGES):
+            self._shed_ticks[name] += shed > stage
+
     def _digest(self) -> None:
         """Counts the pending ticks."""
         if not self._pending:
@@ -103,7 +114,8 @@ class RunStatistics:
         `limit_hits` and `non_finite_events` (numbers of ticks), `energy_J` (by the
         name of the part, as `EnergyLedger.to_dict` tells; empty without a ledger),
         `lateness_us` (of a paced run, `p50`, `p99`, `p99_9` and `skipped`, the number
-        of ticks lost to stalls; else empty).
+        of ticks lost to stalls; else empty), `shed_ticks` (numbers of ticks that left
+        out each of `SHED_STAGES`).
         """
         self._digest()
         tick_s, query_s, contacts, clusters = self._records[: self._ticks].T
@@ -120,6 +132,7 @@ class RunStatistics:
             "limit_hits": self._limit_hits,
             "non_finite_events": self._non_finite_events,
             "energy_J": self._ledger.to_dict() if self._ledger is not None else {},
+            "shed_ticks": dict(self._shed_ticks),
             "lateness_us": _describe_lateness(self._pace) if self._pace else {},
         }
 

@@ -198,6 +198,9 @@ class Device:
             the middle of its workspace is put at the middle of the hand's path, and
             a device that is not simulated begins where the path does.
         rate_hz: Ticks per second of the haptic loop, Hz.
+        tick_budget_us: What the work of a tick may take, µs. Where ticks take longer,
+            drawing stops, then contacts are looked for less far, then fewer push
+            (docs/under-load.md). Nothing is dropped where not given.
         max_force_N: Largest force shown, N; the preset's where not given.
         max_torque_Nm: Largest torque shown, N·m; the preset's where not given.
         twin: What a simulated device has of a real one's faults.
@@ -206,6 +209,7 @@ class Device:
     preset: str = "phantom_premium_1_5_6dof"
     base: Pose | None = None
     rate_hz: float = 1000.0
+    tick_budget_us: float | None = None
     max_force_N: float | None = None
     max_torque_Nm: float | None = None
     twin: Twin = field(default_factory=Twin)

@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING, Any
 from drake_haptics.errors import UserError
 
 if TYPE_CHECKING:
-    from drake_haptics.scene import Contact, EnvironmentObject, HandPath, Scene, Tool
+    from drake_haptics.scene import (
+        Contact,
+        Device,
+        EnvironmentObject,
+        HandPath,
+        Scene,
+        Tool,
+    )
     from drake_haptics.scene_effects import Effects, Material
     from drake_haptics.scene_twin import Twin
 
@@ -129,6 +136,7 @@ def check_values(scene: Scene) -> None:
         scene.coupling, "coupling", [f.name for f in dataclasses.fields(scene.coupling)]
     )
     require_none_negative(scene.device, "device", ["max_force_N", "max_torque_Nm"])
+    _check_tick_budget(scene.device)
     if scene.device.base is not None:
         _check_pose(scene.device.base, "device.base")
     _check_twin(scene.device.twin)
@@ -190,6 +198,16 @@ def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
         where,
         f"must be device.rate_hz ({ticks_per_s:g}) divided by a whole number, is"
         f" {rate_hz:g}; {ticks_per_s / max(1, round(ticks)):.10g} is the nearest",
+    )
+
+
+def _check_tick_budget(device: Device) -> None:
+    period_us = 1e6 / device.rate_hz
+    require(
+        device.tick_budget_us is None or 0.0 < device.tick_budget_us <= period_us,
+        "device.tick_budget_us",
+        f"must be positive and at most a tick ({period_us:g} µs), is"
+        f" {device.tick_budget_us}",
     )
 
 

@@ -137,6 +137,11 @@ def _make_measure(
     clustering_context = loop.contact_clustering.GetMyContextFromRoot(root)
     contacts_port = loop.found_contacts
     contacts_context = contacts_port.get_system().GetMyContextFromRoot(root)
+    relief_context = (
+        None
+        if loop.load_shedding is None
+        else loop.load_shedding.GetMyContextFromRoot(root)
+    )
     clusters_port = loop.contact_clustering.get_clusters_output_port()
 
     def measure(context: Context, tick_s: float) -> None:
@@ -161,6 +166,8 @@ def _make_measure(
             min(contacts.distance.tolist(), default=0.0),
             shown,
         )
+        if relief_context is not None:
+            statistics.add_shed(relief_context.get_discrete_state_vector().value()[0])
         if ledger is not None:
             ledger.add()
 

@@ -57,11 +57,13 @@ class ContactQuery(DifferentiableSystem):
         input_ports:
         - X_WTool
         - X_WO_<name of each object that moves>
+        - relief (with load shedding)
         output_ports:
         - contacts
 
     `X_WTool` and `X_WO_<name>` are poses [qw qx qy qz x y z] in the world, m.
-    `contacts` is a `drake_haptics.ContactSet`, immutable.
+    `contacts` is a `drake_haptics.ContactSet`, immutable. `relief` is that of
+    `LoadShedding`: contacts are looked for only up to its share of the tolerance.
 
     The search starts from its last answer in the same Context (paper, 5.2), and first
     from the abstract parameter `hint` (index 0): what a query of another Context knew.
@@ -81,6 +83,8 @@ class ContactQuery(DifferentiableSystem):
         tolerance_m: float,
         depth: DepthSearch = "tracked",
         max_walk_steps: int = 1024,
+        *,
+        sheds_load: bool = False,
     ):
         """Constructs the system.
 
@@ -91,6 +95,7 @@ class ContactQuery(DifferentiableSystem):
             depth: Of two pieces in overlap: that walked to from the last answer, or
                 the least one of all; see `drake_haptics.SceneTracker`.
             max_walk_steps: Bound on the steps of such a walk, at least 1.
+            sheds_load: Whether the loop sheds load, and there is a port for that.
 
         Raises:
             ValueError: The tolerance is negative, there is no object, a name is used
@@ -118,6 +123,7 @@ class ContactQuery(DifferentiableSystem):
             for i, item in enumerate(objects)
             if item.X_WO is None
         }
+        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
         self._hint = self.DeclareAbstractParameter(Value[object](None))
         self._memory = declare_scratch(self, "memory", _Memory)
         self._contacts = self.DeclareAbstractOutputPort(
@@ -134,6 +140,10 @@ class ContactQuery(DifferentiableSystem):
     def get_object_pose_input_port(self, name: str) -> InputPort:
         """Returns the input `X_WO_<name>` of an object that moves."""
         return self.GetInputPort(f"X_WO_{name}")
+
+    def get_relief_input_port(self) -> InputPort:
+        """Returns the input `relief`, with load shedding."""
+        return self.GetInputPort("relief")
 
     def get_contacts_output_port(self) -> OutputPort:
         """Returns the output `contacts`."""
@@ -163,9 +173,12 @@ class ContactQuery(DifferentiableSystem):
         ]
         for i in self._X_WO:
             tracker.set_object_pose(i, X_WO[i].value)
+        reach_m = self._tolerance_m
+        if self._relief is not None:
+            reach_m *= at["relief"].value[1]
         return differentiate_contacts(
-            tracker.query(at["X_WTool"].value),
-            self._tolerance_m,
+            tracker.query(at["X_WTool"].value, reach_m),
+            reach_m,
             self._tool,
             at["X_WTool"],
             [item.decomposition for item in self._objects],
@@ -196,7 +209,12 @@ class ContactQuery(DifferentiableSystem):
             tracker = memory.tracker = self._make_tracker(hint)
         for i, port in self._X_WO.items():
             tracker.set_object_pose(i, port.Eval(context))
-        contacts.set_value(tracker.query(self._X_WTool.Eval(context)))
+        X_WTool = self._X_WTool.Eval(context)
+        if self._relief is None:
+            contacts.set_value(tracker.query(X_WTool))
+            return
+        reach_m = self._tolerance_m * self._relief.Eval(context)[1]
+        contacts.set_value(tracker.query(X_WTool, reach_m))
 
 
 @dataclass

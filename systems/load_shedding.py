@@ -21,6 +21,8 @@ from drake_haptics.systems.differentiable_system import (
     DifferentiableSystem,
 )
 
+# What is dropped, in this order.
+SHED_STAGES = ("drawing", "far near-contacts", "fine clusters")
 # A stage is dropped within so many ticks over the budget: one that the operating
 # system has delayed drops next to nothing, and what is felt changes smoothly.
 _TICKS_TO_DROP = 50
@@ -29,7 +31,6 @@ _TICKS_TO_RESTORE = 1000
 _WELL_BELOW = 0.8
 # Near contacts are looked for, and push, as far as this share of the tolerance.
 _LEAST_REACH = 0.25
-_STAGES = 3.0
 
 
 class TickMeter:
@@ -159,7 +160,7 @@ class LoadShedding(DifferentiableSystem):
     def _find_next(self, shed: float) -> float:
         """Returns how much is dropped after the tick that was measured."""
         if self._meter.busy_s > self._budget_s:
-            return min(_STAGES, shed + 1.0 / _TICKS_TO_DROP)
+            return min(float(len(SHED_STAGES)), shed + 1.0 / _TICKS_TO_DROP)
         if self._meter.busy_s < _WELL_BELOW * self._budget_s:
             return max(0.0, shed - 1.0 / _TICKS_TO_RESTORE)
         return shed

@@ -174,7 +174,12 @@ def stop_hand(scene: Scene, time_s: float) -> Scene:
         waypoints = [Waypoint(0.0, stop.position_m, stop.rpy_deg)]
     return replace(
         scene,
-        device=replace(scene.device, base=to_scene_pose(place_base(scene, path))),
+        device=replace(
+            scene.device,
+            base=to_scene_pose(place_base(scene, path)),
+            # How fast a simulation runs here must not change what it finds.
+            tick_budget_us=None,
+        ),
         hand=replace(scene.hand, path=HandPath(periodic=False, waypoints=waypoints)),
     )
 

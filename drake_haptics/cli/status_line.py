@@ -20,6 +20,7 @@ from drake_haptics.cli.device_words import (
 )
 from drake_haptics.cli.live_line import LiveLine
 from drake_haptics.device.backend import DeviceReading, GateState
+from drake_haptics.systems.load_shedding import SHED_STAGES
 from drake_haptics.tick_clock import TickClock
 
 # Energies below are rounding: a nanojoule lifts a milligram by a tenth of a
@@ -85,7 +86,18 @@ class StatusLine(LiveLine):
                 describe_link(backend.get_link_status()),
                 contacts,
             ]
+        parts += self._describe_relief(self._context)
         return " · ".join([f"[bold]{time_s:7.1f} s[/]", *parts])
+
+    def _describe_relief(self, context: Context) -> list[str]:
+        """Returns what is left out because ticks take too long, if anything is."""
+        shedding = self._haptic.loop.load_shedding
+        if shedding is None:
+            return []
+        state = shedding.GetMyContextFromRoot(context).get_discrete_state_vector()
+        shed = state.value()[0]
+        stages = [name for stage, name in enumerate(SHED_STAGES) if shed > stage]
+        return [f"[yellow]leaves out {', '.join(stages)}[/]"] if stages else []
 
     def _describe_touch(self, context: Context) -> tuple[str, str]:
         """Returns what is felt, and by how many contacts."""
@@ -146,6 +158,14 @@ def make_summary(figures: dict[str, Any]) -> Table:
         f" torque {1e3 * figures['max_torque_Nm']:.0f} mN·m,"
         f" penetration {1e3 * figures['max_penetration_m']:.3f} mm",
     )
+    if any(figures["shed_ticks"].values()):
+        table.add_row(
+            "left out",
+            ", ".join(
+                f"{name} in {count} ticks"
+                for name, count in figures["shed_ticks"].items()
+            ),
+        )
     table.add_row("device limit", f"{figures['limit_hits']} ticks at it")
     if device := figures.get("device"):
         table.add_row("device", describe_device(device))

@@ -182,11 +182,14 @@ class SceneTracker : public SharedTracker {
     tracker_.SetObjectPose(static_cast<int>(i), X_WO);
   }
 
-  ContactSet Query(nb::handle X_WTool_value) {
+  ContactSet Query(nb::handle X_WTool_value, nb::handle tolerance_value) {
     const Pose X_WTool = ToPose(X_WTool_value, "X_WTool");
+    const double tolerance = tolerance_value.is_none()
+                                 ? tracker_.tolerance()
+                                 : ToReal(tolerance_value, "tolerance");
     ContactSet contacts;
     const Turn turn(&mutex_, Turn::Gil::kRelease);
-    tracker_.Query(X_WTool, &contacts);
+    tracker_.Query(X_WTool, tolerance, &contacts);
     return contacts;
   }
 
@@ -340,10 +343,14 @@ void BindSceneTracker(nb::module_& m) {
            "Raises:\n    ValueError: not a pose; the object stays where it is."
            "\n    IndexError: no such object.")
       .def("query", &SceneTracker::Query, nb::arg("X_WTool").none(),
-           nb::sig("def query(self, X_WTool: drake_haptics.pose_like.PoseLike) "
-                   "-> ContactSet"),
-           "`ContactSet` of the tool at the pose X_WTool.\n\n"
-           "Raises:\n    ValueError: the pose is not finite or not rigid.")
+           nb::arg("tolerance") = nb::none(),
+           nb::sig("def query(self, X_WTool: drake_haptics.pose_like.PoseLike, "
+                   "tolerance: float | None = None) -> ContactSet"),
+           "`ContactSet` of the tool at the pose X_WTool. With a `tolerance` "
+           "(m) smaller than the tracker's only of contacts up to that, for "
+           "less work; the next query may ask for another.\n\n"
+           "Raises:\n    ValueError: the pose is not finite or not rigid, or "
+           "the tolerance not within 0 and the tracker's.")
       .def("query_trajectory", &SceneTracker::QueryTrajectory,
            nb::arg("X_WTool").none(),
            nb::sig("def query_trajectory(self, X_WTool: "

@@ -81,8 +81,14 @@ void ContactTracker::SetObjectPose(int i, const Pose& X_WO) {
   wake_times_.Wake(i);
 }
 
-void ContactTracker::Query(const Pose& X_WTool, ContactSet* out) {
+void ContactTracker::Query(const Pose& X_WTool, double tolerance,
+                           ContactSet* out) {
   RequireFinite(X_WTool, "the pose of the tool");
+  if (!(tolerance >= 0 && tolerance <= tolerance_)) {
+    throw std::invalid_argument(
+        "tolerance must be from 0 m to the tracker's, " +
+        std::to_string(tolerance_) + " m");
+  }
   const auto start = std::chrono::steady_clock::now();
   out->contacts.clear();
   if (is_first_) last_X_WTool_ = X_WTool;
@@ -90,7 +96,7 @@ void ContactTracker::Query(const Pose& X_WTool, ContactSet* out) {
   const Motion motion(last_X_WTool_, X_WTool);
   odometer_ += motion.Bound(middle_, radius_);
   wake_times_.Collect(odometer_, &awake_);
-  for (const int i : awake_) QueryObject(i, X_WTool, motion, out);
+  for (const int i : awake_) QueryObject(i, X_WTool, motion, tolerance, out);
   last_X_WTool_ = X_WTool;
   const std::chrono::duration<double> elapsed =
       std::chrono::steady_clock::now() - start;
@@ -98,7 +104,8 @@ void ContactTracker::Query(const Pose& X_WTool, ContactSet* out) {
 }
 
 void ContactTracker::QueryObject(int i, const Pose& X_WTool,
-                                 const Motion& tool_motion, ContactSet* out) {
+                                 const Motion& tool_motion, double tolerance,
+                                 ContactSet* out) {
   Object& object = objects_[i];
   const Pose X_AB = RelativePose(X_WTool, object.X_WO);
   const Pose last_X_AB = RelativePose(last_X_WTool_, object.last_X_WO);
@@ -116,8 +123,8 @@ void ContactTracker::QueryObject(int i, const Pose& X_WTool,
   // After a teleport what was learnt means nothing.
   if (step > teleport_) object.tracked.ForgetContacts();
   const std::size_t first = out->contacts.size();
-  object.tracked.Query({tool_, tolerance_, depth_, X_WTool, X_AB, last_X_AB,
-                        motion, step, odometer_ + object.ahead},
+  object.tracked.Query({tool_, tolerance_, tolerance, depth_, X_WTool, X_AB,
+                        last_X_AB, motion, step, odometer_ + object.ahead},
                        &workspace_, &out->contacts);
   for (std::size_t k = first; k < out->contacts.size(); ++k) {
     out->contacts[k].object = i;

@@ -37,7 +37,14 @@ class ContactTracker {
   /// Writes the contacts at the tool's pose to `out`, reusing its memory.
   /// @throws std::invalid_argument for a pose that is not finite, before any
   ///         remembered state is touched.
-  void Query(const Pose& X_WTool, ContactSet* out);
+  void Query(const Pose& X_WTool, ContactSet* out) {
+    Query(X_WTool, tolerance_, out);
+  }
+
+  /// The same, of contacts up to a smaller distance `tolerance` (m), for less
+  /// work. What is learnt of pairs serves later queries of any.
+  /// @throws std::invalid_argument also unless 0 <= tolerance <= tolerance().
+  void Query(const Pose& X_WTool, double tolerance, ContactSet* out);
 
   /// Forgets everything learnt from earlier ticks.
   void Reset();
@@ -53,7 +60,7 @@ class ContactTracker {
   };
 
   void QueryObject(int i, const Pose& X_WTool, const Motion& tool_motion,
-                   ContactSet* out);
+                   double tolerance, ContactSet* out);
 
   TreedShape tool_;
   std::vector<Object> objects_;

@@ -20,13 +20,13 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
   }
   // Where the tool presses, pieces beside may take over from as far as it is
   // deep.
-  const double reach = tick.tolerance + deepest;
+  const double reach = tick.watched + deepest;
   const PosedBoxes boxes(tick.X_AB);
   const PairFront::Tick front_tick{*tick.tool.tree, *shape_.tree, boxes,
                                    tick.odometer, reach};
   workspace->entered.clear();
   front_.Advance(front_tick, &workspace->entered);
-  if (!workspace->entered.empty()) Admit(tick.tolerance, &workspace->entered);
+  if (!workspace->entered.empty()) Admit(tick.watched, &workspace->entered);
 
   workspace->pressed.clear();
   const std::size_t first = out->size();
@@ -53,7 +53,7 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
   // Copied, so that each object keeps the memory that it has needed.
   pressed_.assign(workspace->pressed.begin(), workspace->pressed.end());
   quiet_until_ = least_slack > 0 ? std::min(tick.odometer + least_slack,
-                                            front_.mark() - tick.tolerance)
+                                            front_.mark() - tick.watched)
                                  : -kForever;
 }
 
@@ -93,7 +93,7 @@ bool TrackedObject::MayTakeOver(const Tick& tick,
 }
 
 // Merges the pairs into those under watch, from behind and in place.
-void TrackedObject::Admit(double tolerance, std::vector<EnteredPair>* entered) {
+void TrackedObject::Admit(double watched, std::vector<EnteredPair>* entered) {
   const auto by_pieces = [](const auto& p, const auto& q) {
     return p.pieces < q.pieces;
   };
@@ -105,7 +105,7 @@ void TrackedObject::Admit(double tolerance, std::vector<EnteredPair>* entered) {
     if (old >= 0 && by_pieces(*added, watched_[old])) {
       *place = watched_[old--];
     } else {
-      *place = {added->pieces, added->node, added->gap - tolerance, NewState()};
+      *place = {added->pieces, added->node, added->gap - watched, NewState()};
       ++added;
     }
   }
@@ -137,8 +137,8 @@ bool TrackedObject::Tend(const Tick& tick, const PairFront::Tick& front_tick,
     // Last tick's normal often still proves that the pair is out of reach.
     const double gap =
         SupportGap(Posed(tick, pair->pieces), state.n, &state.hub);
-    pair->slack = gap - tick.tolerance;
-    if (pair->slack > 0) return true;
+    pair->slack = gap - tick.watched;
+    if (gap > tick.tolerance) return true;
   }
   const double gap =
       front_tick.boxes.Gap(tick.tool.tree->box_of(pair->pieces.a),

@@ -41,7 +41,8 @@ class TrackedObject {
  public:
   struct Tick {
     const TreedShape& tool;
-    double tolerance;  ///< contacts up to this distance (m) are reported
+    double watched;    ///< pairs up to this distance (m) are under watch
+    double tolerance;  ///< contacts up to this one (m) are reported
     const DepthSearch& depth;
     const Pose& X_WA;       ///< the tool in the world
     const Pose& X_AB;       ///< the object in the tool's frame
@@ -73,13 +74,13 @@ class TrackedObject {
     PiecePair pieces;
     int node;  // in the front
     // The motion of the tool's piece for which the pair is sure to stay apart
-    // by more than the tolerance, m.
+    // by more than the watched distance, m.
     double slack;
     int state;  // its place in states_
     bool was_in_contact = false;
   };
 
-  void Admit(double tolerance, std::vector<EnteredPair>* entered);
+  void Admit(double watched, std::vector<EnteredPair>* entered);
   bool Tend(const Tick& tick, const PairFront::Tick& front_tick,
             TrackerWorkspace* workspace, WatchedPair* pair,
             std::vector<Contact>* out);

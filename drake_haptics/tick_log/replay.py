@@ -6,6 +6,7 @@ import math
 import os
 import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -108,8 +109,10 @@ def _run(
         if progress is not None:
             progress(f"Cutting {name} into convex pieces", share)
 
+    # How long ticks take here is not how long they took.
+    unhurried = replace(scene, device=replace(scene.device, tick_budget_us=None))
     haptic = BuildHapticDiagram(
-        scene, device=device, recorder=recorder, progress=report_cut
+        unhurried, device=device, recorder=recorder, progress=report_cut
     )
     simulator = make_simulator(haptic)
     tool = haptic.loop.haptic_tool.GetMyMutableContextFromRoot(
