@@ -90,6 +90,12 @@ def test_the_growth_with_contacts_is_compared(power, verdict):
     assert statement.verdict == verdict
 
 
+def test_nearly_equal_numbers_of_contacts_show_no_growth():
+    profile = make_profile()
+    near = replace(profile, contacts=30 + np.arange(1000) // 200)
+    assert sum_up(near).contact_growth is None
+
+
 def test_a_run_in_one_state_says_nothing_of_the_other():
     profile = make_profile()
     apart = replace(profile, distance_m=abs(profile.distance_m))

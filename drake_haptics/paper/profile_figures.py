@@ -17,8 +17,9 @@ from drake_haptics.paper.scenario import PERIOD_S
 _SHORTEST_INTERVAL = 40
 # Fewer ticks of a kind have no median to speak of.
 _LEAST_TICKS = 20
-# A power through fewer points is none.
+# A power through fewer points, or through nearly equal ones, is none.
 _LEAST_NUMBERS = 3
+_LEAST_SPAN = 4.0
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class ProfileFigures:
             where nothing does, at the same number of contacts; None where no number
             has ticks enough of both kinds.
         contact_growth: Of the query's median time with the number of contacts; None
-            where fewer than three numbers have ticks enough.
+            where fewer than three numbers, or nearly equal ones, have ticks enough.
         intervals: Disjoint and penetrating in turn.
     """
 
@@ -167,7 +168,7 @@ def _fit_growth(profile: Profile) -> PowerFit | None:
     """Returns `contact_growth`."""
     numbers, ticks = np.unique(profile.contacts, return_counts=True)
     numbers = numbers[(ticks >= _LEAST_TICKS) & (numbers > 0)]
-    if len(numbers) < _LEAST_NUMBERS:
+    if len(numbers) < _LEAST_NUMBERS or numbers[-1] < _LEAST_SPAN * numbers[0]:
         return None
     medians = [np.median(profile.query_s[profile.contacts == n]) for n in numbers]
     return fit_power(numbers, np.array(medians))
