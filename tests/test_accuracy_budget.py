@@ -125,6 +125,17 @@ def test_runs_of_both_are_in_turns(scene):
     assert machine.runs == [as_it_is] * 5 + [turned, as_it_is] * 5
 
 
+def test_progress_is_told_run_by_run(scene):
+    told = []
+    choose(scene, 160.0, Machine(), runs=2, progress=lambda *now: told.append(now))
+    assert told == [
+        ("the scene as it is: run 1 of 2", 0.0),
+        ("the scene as it is: run 2 of 2", 0.5),
+        ("combination 1 of 3: run 1 of 2", 0.0),
+        ("combination 1 of 3: run 2 of 2", 0.5),
+    ]
+
+
 def test_a_scene_that_was_only_disturbed_gives_up_nothing(scene):
     # Its first runs are slow because of something else, its later ones are not.
     machine = Machine(30.0, 60.0, 50.0, noise=[1.2, 1.2] + [0.9] * 13)

@@ -96,7 +96,7 @@ def choose_setting(
         budget_us: For the whole tick, 99th percentile, µs.
         make_study: Measures all settings; called only if the scene does not hold.
         measure_p99: Runs a scene anew and returns the 99th percentile of its ticks, µs.
-        progress: Called with what is done now and the share of all, in [0, 1].
+        progress: Called with what is done now and the share of it, in [0, 1].
         runs: Of each combination.
 
     Raises:
@@ -107,9 +107,11 @@ def choose_setting(
     if runs < 1:
         raise ValueError(f"runs must be at least 1, is {runs}")
     report = progress or (lambda what, share: None)
-    report("running the scene as it is", 0.0)
-    p99_us = tuple(measure_p99(scene) for _ in range(runs))
-    as_it_is = Trial(Combination((), math.nan), p99_us, p99_us)
+    p99_us = []
+    for i in range(runs):
+        report(f"the scene as it is: run {i + 1} of {runs}", i / runs)
+        p99_us.append(measure_p99(scene))
+    as_it_is = Trial(Combination((), math.nan), tuple(p99_us), tuple(p99_us))
     if as_it_is.holds(budget_us):
         return BudgetChoice(budget_us, scene, as_it_is, True, (as_it_is,))
     chain = list_combinations(make_study(), scene)
@@ -119,8 +121,14 @@ def choose_setting(
     def hold(index: int) -> bool:
         """Whether a combination holds, by runs of it."""
         if index not in done:
-            report(f"running combination {index} of {len(chain) - 1}", 0.9)
-            done[index] = _try_out(chain[index], scene, measure_p99, runs)
+            what = f"combination {index} of {len(chain) - 1}"
+            done[index] = _try_out(
+                chain[index],
+                scene,
+                measure_p99,
+                runs,
+                lambda i: report(f"{what}: run {i + 1} of {runs}", i / runs),
+            )
             done[0] = _add_scene_runs(done[0], done[index])
         return done[index].holds(budget_us)
 
@@ -156,12 +164,14 @@ def _try_out(
     scene: Scene,
     measure_p99: Callable[[Scene], float],
     runs: int,
+    begin_run: Callable[[int], None],
 ) -> Trial:
     """Runs a combination and the scene in turns; what cannot be run holds nothing."""
     changed = combination.setting.apply(scene)
     own: list[float] = []
     scenes: list[float] = []
-    for _ in range(runs):
+    for i in range(runs):
+        begin_run(i)
         try:
             own.append(measure_p99(changed))
         except UserError:

@@ -86,9 +86,10 @@ def print_choice(
 def _make_table(study: AccuracyStudy) -> Table:
     columns = get_columns(study)
     table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
-    table.add_column("setting", no_wrap=True)
+    # In a narrow terminal labels take two lines, and figures stay whole.
+    table.add_column("setting")
     for column in columns:
-        table.add_column(f"{column.head}\n{column.unit}", justify="right")
+        table.add_column(f"{column.head}\n{column.unit}", justify="right", no_wrap=True)
     for knob, rows in group_rows(study):
         table.add_row(Text(knob, style="bold"))
         for row in rows:
