@@ -670,12 +670,12 @@ class SceneTracker:
             IndexError: no such object.
         """
 
-    def query(self, X_WTool: drake_haptics.pose_like.PoseLike) -> ContactSet:
+    def query(self, X_WTool: drake_haptics.pose_like.PoseLike, tolerance: float | None = None) -> ContactSet:
         """
-        `ContactSet` of the tool at the pose X_WTool.
+        `ContactSet` of the tool at the pose X_WTool. With a `tolerance` (m) smaller than the tracker's only of contacts up to that, for less work; the next query may ask for another.
 
         Raises:
-            ValueError: the pose is not finite or not rigid.
+            ValueError: the pose is not finite or not rigid, or the tolerance not within 0 and the tracker's.
         """
 
     def query_trajectory(self, X_WTool: drake_haptics.pose_like.PoseLike) -> ContactTrajectory:
