@@ -19,7 +19,15 @@ from drake_haptics.accuracy.peers.run import METHODS, PeerMethod, run_peer, run_
 from drake_haptics.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.accuracy.truth import Truth
 from drake_haptics.analysis.held_scene import build_quietly
-from drake_haptics.scene import Contact, EnvironmentObject, Scene, Tool, Waypoint
+from drake_haptics.scene import (
+    Contact,
+    EnvironmentObject,
+    Friction,
+    Gravity,
+    Scene,
+    Tool,
+    Waypoint,
+)
 
 _STIFFNESS = 2e3
 # So small that libraries without a tolerance are held to the same law.
@@ -133,16 +141,21 @@ def test_the_modulus_makes_forces_like_the_references(
 
 def test_rows_have_figures_or_say_why_not(tmp_path: Path) -> None:
     scene = _scene(tmp_path, trimesh.creation.box([0.02, 0.03, 0.04]))
+    # An effect that no library has: the truth is found again without it.
+    scene.effects.gravity = Gravity()
+    scene.effects.friction = Friction()
+    scene.environment[0].material.friction_coefficient = 0.5
     depth = np.linspace(-1e-4, _DEEPEST_M, _TICKS)
     X_WTool = np.tile([1.0, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0], (_TICKS, 1))
     X_WTool[:, 6] = 2 * _TOP_M - depth
     rest = np.zeros((_TICKS, 6))
     motion = RecordedMotion(1e-3, X_WTool, rest, X_WTool, rest)
     seen: list[float] = []
+    weighed = replace(_truth(depth), F_Tcm_W=np.ones((_TICKS, 6)))
     rows = run_peers(
-        scene, motion, _truth(depth), progress=lambda what, share: seen.append(share)
+        scene, motion, weighed, progress=lambda what, share: seen.append(share)
     )
-    assert len(rows) == len(METHODS) == len(seen) and seen == sorted(seen)
+    assert len(rows) == len(METHODS) == len(seen) - 1 and seen == sorted(seen)
     for row, method in zip(rows, METHODS, strict=True):
         assert row.library.startswith(method.library)
         assert row.method.startswith(method.words)
@@ -160,3 +173,13 @@ def test_what_fails_says_why(box: tuple[PeerProblem, np.ndarray]) -> None:
     assert row.why_not == "no-such-abacus is not installed"
     broken = replace(absent, package="numpy")
     assert "with_abacus" in run_peer(broken, problem, _truth(depth)).why_not
+
+
+def test_drake_has_one_stiffness_for_a_surface(
+    box: tuple[PeerProblem, np.ndarray],
+) -> None:
+    problem, depth = box
+    part = replace(problem.part, stiffness_N_per_m=np.array([1e3, 2e3]))
+    on_pieces = next(m for m in METHODS if m.function == "answer_on_pieces")
+    row = run_peer(on_pieces, replace(problem, part=part), _truth(depth))
+    assert row.errors is None and "differ in stiffness" in row.why_not

@@ -143,8 +143,7 @@ def run_peers(
     report = progress or (lambda what, share: None)
     if scene.effects != Effects():
         report("finding the truth without effects", 0.0)
-        scene = copy.deepcopy(scene)
-        scene.effects = Effects()
+        scene = _leave_out_effects(scene)
         truth = find_truth(make_reference(scene).apply(scene), motion)
     problem = make_peer_problem(build_quietly(scene), motion, truth)
     rows = []
@@ -176,6 +175,15 @@ def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
         native=TickTimes(median, p99, p99_9),
         errors=_find_errors(last, problem, truth),
     )
+
+
+def _leave_out_effects(scene: Scene) -> Scene:
+    """Returns a copy of a scene without effects, and materials that name none."""
+    bare = copy.deepcopy(scene)
+    bare.effects = Effects()
+    for item in bare.environment:
+        item.material.friction_coefficient = item.material.shading = None
+    return bare
 
 
 def _find_errors(answers: PeerAnswers, problem: PeerProblem, truth: Truth) -> Errors:

@@ -91,13 +91,11 @@ def _find_part(
     problem: PeerProblem, which: int
 ) -> tuple[Decomposition, ProximityProperties]:
     """Returns the shape of the tool (-1) or an object, and what it is made of."""
-    # Two surfaces share their gains; of different objects Drake would have to be told
-    # pair by pair, so the tool has those of the first.
-    index = max(which, 0)
-    surface = make_surface(
-        float(problem.part.stiffness_N_per_m[index]),
-        float(problem.part.damping_Ns_per_m[index]),
-    )
+    stiffness, damping = problem.part.stiffness_N_per_m, problem.part.damping_Ns_per_m
+    if np.ptp(stiffness) > 0.0 or np.ptp(damping) > 0.0:
+        # The tool would need another surface for each object.
+        raise ValueError("the objects differ in stiffness or damping")
+    surface = make_surface(float(stiffness[0]), float(damping[0]))
     return problem.tool if which < 0 else problem.objects[which], surface
 
 
