@@ -314,6 +314,10 @@ class ContactSet:
 
     def __getitem__(self, i: int) -> Contact: ...
 
+    @property
+    def least_distance(self) -> float:
+        """Of the nearest contact, m; infinite if there is none."""
+
     def __repr__(self) -> str: ...
 
     @property
@@ -917,6 +921,14 @@ def coupling_wrench(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), orde
 @overload
 def coupling_wrench(q_WH: AutoDiffVector, V_WH: AutoDiffVector, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WTool: AutoDiffVector, V_WTool: AutoDiffVector, gains: CouplingGains) -> AutoDiffVector:
     """The same with derivatives."""
+
+def limit_wrench(F: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], max_torque_Nm: float, max_force_N: float) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
+    """
+    Shortens torque and force of a wrench (6,), [N·m; N], each to its limit, along its own direction.
+
+    Returns:
+        (7,): the wrench and what became of it: 0 as asked, 1 limited, 2 not finite, for which it is zero.
+    """
 
 class RigidToolDynamics:
     """A free rigid tool, advanced implicitly."""

@@ -69,8 +69,8 @@ class RunStatistics:
             query_s: Clock time of the contact query inside the core, s.
             contacts: Before clustering.
             clusters: After it.
-            distance_m: Of the nearest contact, m, negative if it penetrates; 0 if
-                there is none.
+            distance_m: Of the nearest contact, m, negative if it penetrates; infinite
+                if there is none.
             shown: (7,) state of the `DisplayForceHold`: wrench on the device
                 [τ; f], N·m and N, and status.
         """

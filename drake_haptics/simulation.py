@@ -150,7 +150,7 @@ def _make_measure(
         tool_state = tool_context.get_discrete_state_vector().value()
         if not math.isfinite(sum(tool_state.tolist())):
             # There are no contacts of such a tool.
-            statistics.add(tick_s, 0.0, 0, 0, 0.0, shown)
+            statistics.add(tick_s, 0.0, 0, 0, math.inf, shown)
             raise RunError(
                 f"stopped at {context.get_time():.4f} s: the tool's state is not"
                 " finite",
@@ -163,7 +163,7 @@ def _make_measure(
             contacts.query_seconds,
             len(contacts),
             len(clusters_port.Eval(clustering_context)),
-            min(contacts.distance.tolist(), default=0.0),
+            contacts.least_distance,
             shown,
         )
         if relief_context is not None:

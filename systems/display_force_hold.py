@@ -14,7 +14,7 @@ from pydrake.systems.framework import (
     OutputPort,
 )
 
-from drake_haptics._core import AutoDiffVector
+from drake_haptics._core import AutoDiffVector, limit_wrench
 from drake_haptics.systems.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -107,18 +107,11 @@ class _LimitedSample(DifferentiableSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
-        next_state.set_value(np.array(self._show(self._F_display.Eval(context))))
-
-    def _show(self, F_display: np.ndarray) -> list[float]:
-        """Returns [F_applied; status] for a wrench that is asked for."""
-        wrench = F_display.tolist()
-        torque, torque_limited = _limit(wrench[:3], self._max_torque_Nm)
-        force, force_limited = _limit(wrench[3:], self._max_force_N)
-        if not (torque_limited or force_limited):
-            return [*wrench, SHOWN_AS_ASKED]
-        if all(map(math.isfinite, wrench)):
-            return [*torque, *force, LIMITED]
-        return [0.0] * 6 + [NOT_FINITE]
+        next_state.set_value(
+            limit_wrench(
+                self._F_display.Eval(context), self._max_torque_Nm, self._max_force_N
+            )
+        )
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the state."""
@@ -135,24 +128,16 @@ class _LimitedSample(DifferentiableSystem):
             ]:
                 part = asked.value[rows]
                 gradient[rows] = _limit_slope(part, largest) @ asked.gradient[rows]
-        return AutoDiffVector(np.array(self._show(asked.value)), gradient)
+        shown = limit_wrench(asked.value, self._max_torque_Nm, self._max_force_N)
+        return AutoDiffVector(shown, gradient)
 
     def list_state_names(self) -> list[str]:
         """Returns a name for each number of the state."""
         return list(_STATE_NAMES)
 
 
-def _limit(vector: list[float], largest: float) -> tuple[list[float], bool]:
-    """Returns the vector, shortened to `largest` if longer, and whether it was."""
-    norm = math.hypot(*vector)
-    if norm <= largest:
-        return vector, False
-    # Divided first: the norm of huge values may be infinite, their ratios are not.
-    return [largest * (x / norm) for x in vector], True
-
-
 def _limit_slope(vector: np.ndarray, largest: float) -> np.ndarray:
-    """Returns the derivative (3, 3) of `_limit`."""
+    """Returns the derivative (3, 3) of a vector that is shortened to `largest`."""
     norm = float(np.linalg.norm(vector))
     if norm <= largest:
         return np.eye(3)

@@ -134,8 +134,12 @@ class _ImplicitStep(DifferentiableSystem):
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         wrench_model = np.zeros(78)
         for port in self._wrenches:
-            if port.HasValue(context):
+            try:
                 wrench_model += port.Eval(context)
+            except RuntimeError:
+                # To ask first would take as long as to read, at every tick.
+                if port.HasValue(context):
+                    raise
         next_state.set_value(
             self._dynamics.step(
                 context.get_discrete_state_vector().value(),

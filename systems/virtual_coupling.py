@@ -18,7 +18,7 @@ from drake_haptics.systems.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
 )
-from drake_haptics.systems.vector_ports import export_parts
+from drake_haptics.systems.vector_ports import export_parts, import_parts
 
 
 class VirtualCoupling(Diagram):
@@ -62,10 +62,7 @@ class VirtualCoupling(Diagram):
         self._X_HT = X_HT
         builder = DiagramBuilder()
         spring = builder.AddNamedSystem("spring", _SpringAndDamper(gains, X_HT))
-        for i in range(spring.num_input_ports()):
-            builder.ExportInput(
-                spring.get_input_port(i), spring.get_input_port(i).get_name()
-            )
+        import_parts(builder, spring.get_input_port(), _MOTIONS)
         export_parts(
             builder, spring.get_output_port(), {"wrench_model": 78, "F_display": 6}
         )
@@ -106,6 +103,11 @@ class VirtualCoupling(Diagram):
         return self.GetOutputPort("F_display")
 
 
+# Parts of what the spring and damper are given, and where each is in it.
+_MOTIONS = {"X_WH": 7, "V_WH": 6, "X_WTool": 7, "V_WTool": 6}
+_X_WH, _V_WH, _X_WTOOL, _V_WTOOL = map(slice, (0, 7, 13, 20), (7, 13, 20, 26))
+
+
 class _SpringAndDamper(DifferentiableSystem):
     """Both wrenches of a `VirtualCoupling` from one call of the core."""
 
@@ -113,33 +115,29 @@ class _SpringAndDamper(DifferentiableSystem):
         super().__init__()
         self._gains = gains
         self._q_HT = pose_to_vector(X_HT)
-        self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
-        self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
-        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
-        self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
+        self._motions = self.DeclareVectorInputPort("motions", 26)
         self.DeclareVectorOutputPort(
             "wrenches", 84, self._calc_wrenches, {self.all_input_ports_ticket()}
         )
 
     def _calc_wrenches(self, context: Context, wrenches: BasicVector) -> None:
+        motions = self._motions.Eval(context)
         wrenches.SetFromVector(
             coupling_wrench(
-                self._X_WH.Eval(context),
-                self._V_WH.Eval(context),
+                motions[_X_WH],
+                motions[_V_WH],
                 self._q_HT,
-                self._X_WTool.Eval(context),
-                self._V_WTool.Eval(context),
+                motions[_X_WTOOL],
+                motions[_V_WTOOL],
                 self._gains,
             )
         )
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrenches with their derivatives."""
-        return coupling_wrench(
-            at["X_WH"],
-            at["V_WH"],
-            self._q_HT,
-            at["X_WTool"],
-            at["V_WTool"],
-            self._gains,
+        motions = at["motions"]
+        X_WH, V_WH, X_WTool, V_WTool = (
+            AutoDiffVector(motions.value[part], motions.gradient[part])
+            for part in (_X_WH, _V_WH, _X_WTOOL, _V_WTOOL)
         )
+        return coupling_wrench(X_WH, V_WH, self._q_HT, X_WTool, V_WTool, self._gains)

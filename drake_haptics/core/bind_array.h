@@ -1,12 +1,12 @@
 #pragma once
 
-#include <nanobind/eigen/dense.h>
 #include <nanobind/ndarray.h>
 
 #include <span>
 #include <type_traits>
 #include <vector>
 
+#include "bind_eigen.h"
 #include "types.h"
 
 /// NumPy arrays in and out of the bindings. What goes out is a fresh copy.

@@ -1,11 +1,10 @@
-#include <nanobind/eigen/dense.h>
-
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "autodiff.h"
 #include "bind.h"
+#include "bind_eigen.h"
 
 namespace nb = nanobind;
 

@@ -1,10 +1,9 @@
-#include <nanobind/eigen/dense.h>
-
 #include <stdexcept>
 #include <string>
 
 #include "bind.h"
 #include "bind_autodiff_set.h"
+#include "bind_eigen.h"
 #include "contact_thinning.h"
 #include "shared_stiffness.h"
 

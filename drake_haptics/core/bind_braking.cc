@@ -1,9 +1,8 @@
-#include <nanobind/eigen/dense.h>
-
 #include <stdexcept>
 
 #include "autodiff_sets.h"
 #include "bind.h"
+#include "bind_eigen.h"
 #include "braking.h"
 
 namespace nb = nanobind;

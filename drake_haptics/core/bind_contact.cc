@@ -3,6 +3,7 @@
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "bind.h"
@@ -137,16 +138,19 @@ void BindContactSet(nb::module_& m) {
         return s.contacts[PlaceOf(i, s.contacts.size())];
       },
       nb::arg("i"));
-  const auto text = [](const ContactSet& s) -> nb::object {
-    const auto& contacts = s.contacts;
-    if (contacts.empty()) return nb::str("ContactSet(no contacts)");
-    const auto nearest =
-        std::min_element(contacts.begin(), contacts.end(),
-                         [](const Contact& a, const Contact& b) {
-                           return a.distance < b.distance;
-                         });
+  const auto least_distance = [](const ContactSet& s) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : s.contacts) {
+      least = std::min(least, contact.distance);
+    }
+    return least;
+  };
+  set.def_prop_ro("least_distance", least_distance,
+                  "Of the nearest contact, m; infinite if there is none.");
+  const auto text = [least_distance](const ContactSet& s) -> nb::object {
+    if (s.contacts.empty()) return nb::str("ContactSet(no contacts)");
     return nb::str("ContactSet({} contacts, least distance {:.6g} m)")
-        .format(contacts.size(), nearest->distance);
+        .format(s.contacts.size(), least_distance(s));
   };
   set.def("__repr__", text, nb::sig("def __repr__(self) -> str"));
   set.def_ro("query_seconds", &ContactSet::query_seconds,

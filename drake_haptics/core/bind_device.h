@@ -1,7 +1,6 @@
 #pragma once
 
 #include <drake_haptics/wire.h>
-#include <nanobind/eigen/dense.h>
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
@@ -9,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "bind_eigen.h"
 #include "bind_real_array.h"
 
 /// What the bindings of packets and of the gate share.

@@ -1,4 +1,3 @@
-#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "bind.h"
+#include "bind_eigen.h"
 #include "energy_ledger.h"
 #include "stored_energy.h"
 

@@ -1,10 +1,10 @@
-#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/vector.h>
 
 #include <stdexcept>
 
 #include "bind.h"
 #include "bind_columns.h"
+#include "bind_eigen.h"
 #include "clustering.h"
 #include "contact_thinning.h"
 #include "penalty_force.h"

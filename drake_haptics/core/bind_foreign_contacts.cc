@@ -1,8 +1,7 @@
-#include <nanobind/eigen/dense.h>
-
 #include <stdexcept>
 
 #include "bind.h"
+#include "bind_eigen.h"
 #include "contact.h"
 
 namespace nb = nanobind;

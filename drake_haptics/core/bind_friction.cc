@@ -1,4 +1,3 @@
-#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/vector.h>
 
 #include <span>
@@ -9,6 +8,7 @@
 #include "bind_array.h"
 #include "bind_autodiff_set.h"
 #include "bind_columns.h"
+#include "bind_eigen.h"
 #include "friction.h"
 #include "penalty_force.h"
 

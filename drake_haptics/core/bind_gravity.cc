@@ -1,7 +1,6 @@
-#include <nanobind/eigen/dense.h>
-
 #include "autodiff.h"
 #include "bind.h"
+#include "bind_eigen.h"
 #include "tool_gravity.h"
 
 namespace nb = nanobind;

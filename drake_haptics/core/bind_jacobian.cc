@@ -1,10 +1,10 @@
-#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/vector.h>
 
 #include <stdexcept>
 
 #include "bind.h"
 #include "bind_columns.h"
+#include "bind_eigen.h"
 #include "contact.h"
 #include "rotation.h"
 #include "wrench_jacobian.h"

@@ -1,7 +1,6 @@
-#include <nanobind/eigen/dense.h>
-
 #include "autodiff.h"
 #include "bind.h"
+#include "bind_eigen.h"
 #include "passivity.h"
 
 namespace nb = nanobind;

@@ -1,4 +1,3 @@
-#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -7,6 +6,7 @@
 #include <tuple>
 
 #include "bind.h"
+#include "bind_eigen.h"
 #include "handle_model.h"
 #include "servo_law.h"
 #include "udp_servo.h"

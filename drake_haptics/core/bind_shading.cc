@@ -1,4 +1,3 @@
-#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/vector.h>
 
@@ -6,6 +5,7 @@
 
 #include "autodiff_sets.h"
 #include "bind.h"
+#include "bind_eigen.h"
 #include "force_shading.h"
 #include "rotation.h"
 

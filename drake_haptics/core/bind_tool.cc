@@ -1,12 +1,12 @@
-#include <nanobind/eigen/dense.h>
-
 #include <cmath>
 #include <stdexcept>
 
 #include "autodiff.h"
 #include "bind.h"
+#include "bind_eigen.h"
 #include "rigid_tool.h"
 #include "virtual_coupling.h"
+#include "wrench_limit.h"
 
 namespace nb = nanobind;
 
@@ -135,10 +135,28 @@ void BindRigidTool(nb::module_& m) {
           "The same with derivatives.");
 }
 
+void BindLimit(nb::module_& m) {
+  m.def(
+      "limit_wrench",
+      [](const Vec6& F, double max_torque, double max_force) {
+        const LimitedWrench limited = LimitWrench(F, max_torque, max_force);
+        Eigen::Matrix<double, 7, 1> out;
+        out << limited.F, static_cast<double>(limited.fate);
+        return out;
+      },
+      nb::arg("F"), nb::arg("max_torque_Nm"), nb::arg("max_force_N"),
+      "Shortens torque and force of a wrench (6,), [N·m; N], each to its "
+      "limit, along its own direction.\n\n"
+      "Returns:\n"
+      "    (7,): the wrench and what became of it: 0 as asked, 1 limited, 2 "
+      "not finite, for which it is zero.");
+}
+
 }  // namespace
 
 void BindTool(nb::module_& m) {
   BindCoupling(m);
+  BindLimit(m);
   BindRigidTool(m);
 }
 

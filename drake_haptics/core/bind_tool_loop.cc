@@ -1,4 +1,3 @@
-#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -9,6 +8,7 @@
 #include <tuple>
 
 #include "bind.h"
+#include "bind_eigen.h"
 #include "bind_trajectory.h"
 #include "tool_loop.h"
 
