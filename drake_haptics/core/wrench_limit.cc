@@ -5,17 +5,25 @@
 namespace drake_haptics {
 namespace {
 
-// The norm rounded once, of numbers of any size; NaN or infinite if one is.
+// The norm of numbers of any size, rounded once, as Python's math.hypot; NaN or
+// infinite if one is.
 double Norm(const Vec3& v) {
   const double size = v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   if (size == 0 || !std::isfinite(size)) return size;
   const int exponent = std::ilogb(size);
-  long double sum = 0;
+  // The sum of squares and what its rounding lost.
+  double sum = 0, lost = 0;
   for (const double x : v) {
-    const long double scaled = std::scalbn(x, -exponent);
-    sum += scaled * scaled;
+    const double scaled = std::scalbn(x, -exponent);
+    const double square = scaled * scaled;
+    const double next = sum + square, added = next - sum;
+    lost += std::fma(scaled, scaled, -square);
+    lost += (sum - (next - added)) + (square - added);
+    sum = next;
   }
-  return std::scalbn(static_cast<double>(std::sqrt(sum)), exponent);
+  const double root = std::sqrt(sum);
+  const double rest = std::fma(-root, root, sum) + lost;
+  return std::scalbn(root + rest / (2 * root), exponent);
 }
 
 bool Exceeds(double norm, double largest) { return !(norm <= largest); }
@@ -29,8 +37,7 @@ LimitedWrench LimitWrench(const Vec6& F, double max_torque, double max_force) {
   }
   if (!F.allFinite()) return {};
   LimitedWrench limited{F, WrenchFate::kLimited};
-  // Divided first: the norm of huge values may be infinite, their ratios to it
-  // are not.
+  // Divided first: a limit times a huge value may be infinite.
   if (Exceeds(torque, max_torque)) {
     limited.F.head<3>() = max_torque * (F.head<3>() / torque);
   }
