@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "bind_eigen.h"
+
 /// Each bind_<topic>.cc adds one topic to the Python module `_core`.
 namespace drake_haptics {
 

@@ -6,8 +6,8 @@
 
 #include "bind_real_array.h"
 
-/// Vectors and matrices of doubles to and from NumPy, for all bindings: include
-/// this and never nanobind/eigen/dense.h alone, or two of them would disagree.
+/// Vectors and matrices of doubles to and from NumPy. bind.h includes this for
+/// all bindings: with nanobind/eigen/dense.h alone two of them would disagree.
 ///
 /// nanobind hands every array over by DLPack and lets NumPy's `asarray` and
 /// `copy` take what comes out, of a size like a wrench's a microsecond in each
