@@ -52,20 +52,29 @@ def _load(clustering):
     return scene
 
 
-@pytest.mark.parametrize("clustering", ["shared", "octree"])
-def test_the_native_part_gives_the_loops_wrench(clustering):
-    scene = _load(clustering)
-    motion = record_motion(scene, 0.7)
+@pytest.mark.parametrize(
+    ("clustering", "changes"),
+    [
+        ("octree", {"contact.depth": "global"}),
+        ("shared", {"contact.max_walk_steps": 1}),
+        ("shared", {"contact.query_rate_hz": 1000.0}),
+        ("shared", {"contact.query_rate_hz": 250.0}),
+    ],
+)
+def test_the_native_part_gives_the_loops_wrench(clustering, changes):
+    scene = Setting("", "", changes).apply(_load(clustering))
+    motion = record_motion(_load(clustering), 0.7)
     part = make_native_part(build_once(scene))
-    tracker, cluster, force = (
-        part.make_tracker(),
+    search, cluster, force = (
+        part.make_search(),
         part.make_clustering(),
         part.make_force(),
     )
-    wrenches = [
-        force(cluster(tracker.query(X)), X[4:], V).F_Tool_W
-        for X, V in zip(motion.X_WTool, motion.V_WTool, strict=True)
-    ]
+    wrenches = []
+    for X, V in zip(motion.X_WTool, motion.V_WTool, strict=True):
+        found, _ = search.look(X)
+        contacts = search.carry(found, X)
+        wrenches.append(force(cluster(contacts), X[4:], V).F_Tool_W)
     expected = replay_tool(scene, motion).F_Tool_W
     assert np.abs(expected).max() > 0.1
     np.testing.assert_allclose(wrenches, expected, rtol=1e-12, atol=1e-12)

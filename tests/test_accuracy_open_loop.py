@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from drake_haptics.accuracy.knobs import make_reference
 from drake_haptics.accuracy.open_loop import compare, measure_open_loop
 from drake_haptics.accuracy.recorded_motion import record_motion
 from drake_haptics.accuracy.setting import Setting
@@ -119,3 +120,21 @@ def test_coarser_rates_are_worse(cup):
     ]
     assert rms[0] == 0.0
     assert rms == sorted(rms) and rms[-1] > rms[1] > 0.0
+
+
+def test_a_coarser_polytope_is_wrong_by_more_and_by_no_more_than_stated():
+    scene = load_scene(find_scene("can_box"))
+    motion = record_motion(scene, 1.5)
+    truth = find_truth(make_reference(scene).apply(scene), motion)
+    finest_m, *chords_m = [2.5e-5, 1e-4, 4e-4, 1.6e-3]
+    errors = [
+        measure_open_loop(
+            Setting("", "", {"tool.chord_error_m": chord_m}).apply(scene), motion, truth
+        )
+        for chord_m in chords_m
+    ]
+    forces = [error.force_rms_N for error in errors]
+    assert 0.0 < forces[0] < forces[1] < forces[2]
+    for error, chord_m in zip(errors, chords_m, strict=True):
+        assert error.depth_max_m <= chord_m + finest_m
+    assert errors[-1].depth_max_m > 0.1 * chords_m[-1]

@@ -54,14 +54,15 @@ def _count(part: NativePart, X_WTool: np.ndarray, V_WTool: np.ndarray) -> int:
 def main() -> None:
     """Moves the tool as a file says, counted."""
     part, X_WTool, V_WTool = pickle.loads(Path(sys.argv[1]).read_bytes())
-    tracker, cluster, force = (
-        part.make_tracker(),
+    search, cluster, force = (
+        part.make_search(),
         part.make_clustering(),
         part.make_force(),
     )
     with counted():
         for X, V in zip(X_WTool, V_WTool, strict=True):
-            force(cluster(tracker.query(X)), X[4:], V)
+            found, _ = search.look(X)
+            force(cluster(search.carry(found, X)), X[4:], V)
 
 
 if __name__ == "__main__":

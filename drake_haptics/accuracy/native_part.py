@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from drake_haptics import _core
 from drake_haptics.decomposition import Decomposition
+
+_REST = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +24,11 @@ class NativePart:
         objects: Pieces of what it meets.
         X_WO: (m, 7) poses [qw qx qy qz x y z] of the objects, m.
         search_m: How far contacts are looked for, m.
-        tolerance_m: How far they push, m.
+        depth: Of two pieces in overlap, as `SceneTracker` has it.
+        max_walk_steps: The same.
+        query_every: Every how many ticks contacts are looked for, to be carried along
+            from then on; None where each tick looks for its own.
+        tolerance_m: How far contacts push, m.
         cluster_size_m: δ of the octree, m; None where contacts share stiffness.
         stiffness_N_per_m: (m,) of each object, N/m.
         damping_Ns_per_m: (m,) of each object, N·s/m.
@@ -32,17 +38,17 @@ class NativePart:
     objects: tuple[Decomposition, ...]
     X_WO: np.ndarray
     search_m: float
+    depth: Literal["tracked", "global"]
+    max_walk_steps: int
+    query_every: int | None
     tolerance_m: float
     cluster_size_m: float | None
     stiffness_N_per_m: np.ndarray
     damping_Ns_per_m: np.ndarray
 
-    def make_tracker(self) -> _core.SceneTracker:
-        """Returns a tracker that has not been asked yet, its objects in place."""
-        tracker = _core.SceneTracker(self.tool, self.objects, self.search_m)
-        for i, X_WO in enumerate(self.X_WO):
-            tracker.set_object_pose(i, X_WO)
-        return tracker
+    def make_search(self) -> ContactSearch:
+        """Returns what looks for contacts from the first tick on."""
+        return ContactSearch(self)
 
     def make_clustering(self) -> Callable[[_core.ContactSet], _core.ClusterSet]:
         """Returns what makes clusters of contacts."""
@@ -60,3 +66,57 @@ class NativePart:
             stiffness=self.stiffness_N_per_m,
             damping=self.damping_Ns_per_m,
         )
+
+
+class ContactSearch:
+    """Looks for contacts tick by tick, as the systems of a loop do."""
+
+    def __init__(self, part: NativePart):
+        """Begins before the first tick.
+
+        Args:
+            part: Whose contacts are found.
+        """
+        self._every = part.query_every
+        self._tracker = _core.SceneTracker(
+            part.tool, part.objects, part.search_m, part.depth, part.max_walk_steps
+        )
+        for i, X_WO in enumerate(part.X_WO):
+            self._tracker.set_object_pose(i, X_WO)
+        self._carrier = _core.ContactCarrier(
+            part.tool.core, [item.core for item in part.objects], list(part.X_WO)
+        )
+        self._tick = 0
+        self._sample = self._found_at = _REST
+        self._found: _core.ContactSet | None = None
+
+    def look(self, X_WTool: np.ndarray) -> tuple[_core.ContactSet, float]:
+        """Looks for contacts if it is time to.
+
+        Args:
+            X_WTool: (7,) pose of the tool at the next tick.
+
+        Returns:
+            What was found last, and the seconds that this look took in the core.
+        """
+        if self._every is None:
+            found = self._tracker.query(X_WTool)
+            return found, found.query_seconds
+        tick, query_s = self._tick, 0.0
+        self._tick += 1
+        if tick == 0:
+            self._sample = X_WTool
+        # What is sampled at a tick is known from the next one on.
+        if self._found is None or (tick - 1) % self._every == 0:
+            self._found_at = self._sample
+            self._found = self._tracker.query(self._found_at)
+            query_s = self._found.query_seconds
+        if tick % self._every == 0:
+            self._sample = X_WTool
+        return self._found, query_s
+
+    def carry(self, found: _core.ContactSet, X_WTool: np.ndarray) -> _core.ContactSet:
+        """Returns contacts that were found where the tool is now."""
+        if self._every is None:
+            return found
+        return self._carrier.advance(found, self._found_at, X_WTool)
