@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -15,7 +14,7 @@ from drake_haptics.accuracy.pareto import (
     get_native_us,
     get_tick_us,
 )
-from drake_haptics.accuracy.plot_labels import label_points
+from drake_haptics.accuracy.plot_labels import add_legends, label_points, scale_times
 from drake_haptics.accuracy.table import format_N, group_rows
 from drake_haptics.accuracy.words import describe_machine
 
@@ -23,12 +22,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SIZE_INCH = (13.0, 8.0)
+_SIZE_INCH = (13.0, 9.0)
 _MARKERS = "osD^vP<>Xhpd8"
 # The axis of errors ends this factor beyond what it shows: labels have room.
 _MARGIN_ERROR = 2.0
-# Letters in a line of the legend.
-_LABEL_WIDTH = 36
 
 
 def draw_study(study: AccuracyStudy) -> Figure:
@@ -49,9 +46,17 @@ def draw_study(study: AccuracyStudy) -> Figure:
     left.set_ylabel(f"force error, rms, N   (below {1e3 * ERROR_FLOOR_N:g} mN: exact)")
     left.set_xlabel("contact inside the core, median of a tick, µs")
     right.set_xlabel("whole tick, median, µs")
+    scale_times(left)
+    scale_times(right)
     _limit_errors(left)
     figure.suptitle(f"What accuracy costs in {study.scene}: lower left is better")
-    _make_legend(figure, left, study)
+    add_legends(
+        figure,
+        left,
+        [_name_peer(peer) for peer in study.peers],
+        f"Error against {study.reference.label}, at the same {study.ticks} poses. Pale:"
+        f" effects and rates, which make it another loop. {describe_machine(study)}",
+    )
     figure.draw_without_rendering()  # settles where everything is
     for axes, get_time_us in ((left, get_native_us), (right, get_tick_us)):
         label_points(
@@ -68,7 +73,6 @@ def _draw_rows(
     study: AccuracyStudy, axes: Axes, get_time_us: Callable[[Row], float]
 ) -> None:
     """Draws every row, the front behind them and the scene's own star above them."""
-    axes.set_xscale("log")
     axes.set_yscale("log")
     for i, (knob, rows) in enumerate(group_rows(study)):
         points = [
@@ -115,7 +119,6 @@ def _draw_rows(
             zorder=4,
         )
     axes.grid(which="major", color="0.9")
-    _write_plain_numbers(axes)
 
 
 def _is_on_a_par(row: Row) -> bool:
@@ -148,43 +151,19 @@ def _draw_peers(peers: Sequence[PeerRow], axes: Axes) -> None:
             markerfacecolor="none",
             markeredgecolor="0.35",
             markeredgewidth=1.6,
-            label=textwrap.fill(f"{peer.library}, {peer.method}", _LABEL_WIDTH),
+            label=_name_peer(peer),
             zorder=3,
         )
 
 
-def _write_plain_numbers(axes: Axes) -> None:
-    """Writes 20 and not 2·10¹."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-
-
 def _limit_errors(axes: Axes) -> None:
+    """Leaves room for labels below and above."""
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, ERROR_FLOOR_N / _MARGIN_ERROR), high * _MARGIN_ERROR)
 
 
-def _make_legend(figure: Figure, axes: Axes, study: AccuracyStudy) -> None:
-    """Puts all names below the panels, where no data are, and what was measured."""
-    handles, labels = axes.get_legend_handles_labels()
-    legend = figure.legend(
-        handles,
-        labels,
-        loc="outside lower center",
-        ncols=4,
-        fontsize=8,
-        markerscale=0.7,
-        title=f"Error against {study.reference.label}, at the same {study.ticks} poses."
-        " Pale: effects and rates, which make it another loop."
-        f"\n{describe_machine(study)}",
-        title_fontsize=8,
-    )
-    legend.get_title().set_color("0.35")
-    legend.get_title().set_multialignment("center")
+def _name_peer(peer: PeerRow) -> str:
+    return f"{peer.library}, {peer.method}"
 
 
 def _describe_knee(row: Row) -> str:

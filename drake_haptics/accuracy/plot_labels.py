@@ -1,12 +1,14 @@
-"""Labels of points that neither meet each other nor leave their axes."""
+"""Words round a picture of points: labels, numbers at the axes, legends."""
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from matplotlib.text import Annotation
     from matplotlib.transforms import Bbox
 
@@ -17,6 +19,11 @@ _STEP = 4.0
 _MOST_STEPS = 200
 # Of the frame round the words and of the room round it, in pixels.
 _PADDING = 8.0
+# From this ratio of the largest to the least on, times are logarithmic.
+_WIDE = 4.0
+# Letters in a line of the legends.
+_TITLE_WIDTH, _LABEL_WIDTH = 112, 80
+_LEGEND_SIZE = 8
 
 
 def label_points(
@@ -84,3 +91,54 @@ def _get_box(note: Annotation) -> Bbox:
 
     note.get_window_extent()  # puts the words where they belong now
     return Text.get_window_extent(note).padded(_PADDING)
+
+
+def scale_times(axes: Axes) -> None:
+    """Makes the axis of times logarithmic if they differ much; with plain numbers."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    low, high = axes.dataLim.intervalx
+    if high > _WIDE * low:
+        axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+    plain = FuncFormatter(lambda value, _: f"{value:g}")
+    axes.xaxis.set_major_formatter(plain)
+    axes.yaxis.set_major_formatter(plain)
+
+
+def add_legends(figure: Figure, axes: Axes, beside: Sequence[str], title: str) -> None:
+    """Puts all names below the panels, where no data are.
+
+    Args:
+        figure: In a constrained layout.
+        axes: Whose lines have names.
+        beside: Names that stand on the right, in a list of their own.
+        title: Of the other names, on the left.
+    """
+    names = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+    parts = [
+        ("outside lower left", 3, title, [n for n in names if n not in beside]),
+        (
+            "outside lower right",
+            1,
+            "Other libraries",
+            [n for n in names if n in beside],
+        ),
+    ]
+    for place, columns, heading, shown in parts:
+        if not shown:
+            continue
+        style: dict[str, Any] = {
+            "loc": place,
+            "ncols": columns,
+            "fontsize": _LEGEND_SIZE,
+            "markerscale": 0.7,
+            "title": textwrap.fill(heading, _TITLE_WIDTH),
+            "title_fontsize": _LEGEND_SIZE,
+            "alignment": "left",
+        }
+        handles = [names[name] for name in shown]
+        labels = [textwrap.fill(name, _LABEL_WIDTH) for name in shown]
+        legend = figure.legend(handles, labels, **style)
+        legend.get_title().set_color("0.35")
