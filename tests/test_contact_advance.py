@@ -11,6 +11,7 @@ from autodiff_check import constant, seeded
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
 from contact_samples import IDENTITY, box, hull, pose, spike
 from diagram_parts import EVERY, SYSTEMS, names, sources
+from loop_gradients import calc_gradients, contact_states
 from plant_scenes import PLANTS, PlantScene
 from pydrake.geometry import Box
 from pydrake.math import RigidTransform, RollPitchYaw
@@ -26,6 +27,7 @@ from drake_haptics._core import (
     SceneTracker,
     differentiate_contacts,
 )
+from drake_haptics.analysis.state_layout import find_state_layout
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.scene import Contact, Effects, SceneError
@@ -254,8 +256,9 @@ def cup_spoon() -> dict[float | None, tuple[HapticDiagram, np.ndarray, float]]:
 def watch(haptic: HapticDiagram) -> tuple[np.ndarray, float]:
     """Returns the tool's poses (n, 7), and how much less deep than by a query it was.
 
-    At every tick the deepest of all contacts is compared, m: a pair of pieces may
-    have handed its contact over to the next.
+    That is the most by which the contacts near one that a query finds are less deep,
+    m: a pair of pieces may have handed its contact over to the next. Looked at every
+    third tick, so at contacts of every age.
     """
     loop = haptic.loop
     tool = loop.haptic_tool
@@ -274,27 +277,23 @@ def watch(haptic: HapticDiagram) -> tuple[np.ndarray, float]:
         poses.append(
             np.array(tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root)))
         )
-        found = loop.found_contacts
-        now = found.Eval(found.get_system().GetMyContextFromRoot(root))
+        if loop.contact_advance is None or len(poses) % 3:
+            return
+        now = loop.found_contacts.Eval(loop.contact_advance.GetMyContextFromRoot(root))
         true = tracker.query(poses[-1])
-        for contact in true:
-            if contact.distance < 0:
-                near = [
-                    other.distance
-                    for other in now
-                    if np.linalg.norm(other.p_WC - contact.p_WC) < 5e-3
-                    and other.nhat_BA_W @ contact.nhat_BA_W > 0.5
-                ]
-                missed = max(missed, min(near, default=0.0) - contact.distance)
+        apart = np.linalg.norm(true.p_WC[:, None] - now.p_WC[None], axis=2)
+        is_near = (apart < 5e-3) & (true.nhat_BA_W @ now.nhat_BA_W.T > 0.5)
+        nearest = np.where(is_near, now.distance, 0.0).min(axis=1, initial=0.0)
+        missed = max(missed, (nearest - true.distance).max(initial=0.0))
 
-    run(haptic, 2.5, on_tick=look)
+    run(haptic, 2.0, on_tick=look)
     return np.array(poses), missed
 
 
 def test_a_loop_that_looks_for_contacts_at_250_hz_is_stable(cup_spoon) -> None:
     """It goes the way of the loop that looks at each tick, and does not shake."""
     slow, fast = cup_spoon[250.0][1], cup_spoon[None][1]
-    assert len(slow) == len(fast) == 2500
+    assert len(slow) == len(fast) == 2000
     assert np.abs(slow[:, 4:] - fast[:, 4:]).max() < 1e-3
     jerk = [np.abs(np.diff(p[:, 4:], 2, axis=0)).max() for p in (slow, fast)]
     assert jerk[0] < 3 * jerk[1]
@@ -302,8 +301,7 @@ def test_a_loop_that_looks_for_contacts_at_250_hz_is_stable(cup_spoon) -> None:
 
 def test_no_contact_in_depth_is_lost_between_two_queries(cup_spoon) -> None:
     """Near each that a query would find there is one, as deep to some µm."""
-    assert cup_spoon[None][2] < 1e-9
-    assert cup_spoon[250.0][2] < 2e-5
+    assert cup_spoon[250.0][2] < 1e-5
 
 
 def test_bodies_of_a_plant_that_move_are_followed_between_queries() -> None:
@@ -352,6 +350,21 @@ def test_a_sample_begins_where_the_tool_is(tmp_path) -> None:
     simulator.Initialize()
     held = sample.get_tool_pose_output_port().Eval(sample.GetMyContextFromRoot(root))
     np.testing.assert_array_equal(held, X_WT)
+
+
+def test_derivatives_of_a_loop_with_carried_contacts_are_those_of_doubles() -> None:
+    scene = load_scene(find_scene("cup_spoon"))
+    scene.contact = replace(scene.contact, query_rate_hz=250.0)
+    haptic = BuildHapticDiagram(scene)
+    names = find_state_layout(haptic.diagram).names
+    held = [i for i, name in enumerate(names) if "pose_sample" in name]
+    assert len(held) == 7
+    (context,) = contact_states(haptic, 1, 0.8)
+    gradients = calc_gradients(haptic, context)
+    assert np.nanmax(gradients.errors) < 1e-6
+    # The tool moves by where the contacts were found, too.
+    tool = [i for i, name in enumerate(names) if "haptic_tool" in name]
+    assert np.abs(gradients.found[np.ix_(tool, held)]).max() > 1e-6
 
 
 def test_a_rate_that_the_tick_does_not_hold_is_refused() -> None:
