@@ -99,6 +99,9 @@ def test_values_of_ones_own_are_among_the_settings():
     scene.device.rate_hz = 800.0
     scene.contact.clustering, scene.contact.cluster_size_m = "octree", 7e-3
     scene.contact.tolerance_m = 0.0
+    scene.contact.max_walk_steps, scene.contact.query_rate_hz = 3, 160.0
+    scene.device.tick_budget_us = 300.0
+    scene.tool.max_triangles = 100
     scene.effects.gravity = Gravity([0.0, 1.0, -3.0])
     for knob in KNOBS:
         settings = knob.list_settings(scene)

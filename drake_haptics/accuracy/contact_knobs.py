@@ -16,6 +16,8 @@ _CLUSTERS = (1.0, 4.0, 16.0)
 _WALK_STEPS = (1, 2, 4, 16, 1024)
 _QUERY_EVERY = (2, 4, 10)
 _RATES_HZ = (250.0, 500.0, 1000.0, 2000.0)
+# No tick is so short: after some 150 of them all is left out that may be.
+_BUDGET_WORDS = {1.0: "1 µs: all left out that may be"}
 # What a material says of an effect.
 _OF_MATERIAL = {"shading": "shading", "friction": "friction_coefficient"}
 
@@ -89,6 +91,22 @@ def list_rates(scene: Scene) -> list[Setting]:
     key = "device.rate_hz"
     rates = with_own(_RATES_HZ, scene.device.rate_hz)
     return [Setting(key, f"{hz:g} Hz", {key: hz}) for hz in reversed(rates)]
+
+
+def list_budgets(scene: Scene) -> list[Setting]:
+    """Returns the loop that leaves nothing out, and the one that leaves out all it may.
+
+    What lies between depends on the machine and the moment, and so can have no figures.
+    """
+    key, own_us = "device.tick_budget_us", scene.device.tick_budget_us
+    budgets = reversed(with_own(_BUDGET_WORDS, own_us))
+    return [
+        Setting(key, "nothing left out", {key: None}),
+        *(
+            Setting(key, _BUDGET_WORDS.get(us, f"{us:g} µs"), {key: us})
+            for us in budgets
+        ),
+    ]
 
 
 def _find_length(scene: Scene) -> float:

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from drake_haptics.accuracy.contact_knobs import (
+    list_budgets,
     list_clusterings,
     list_depths,
     list_effect,
@@ -22,7 +23,7 @@ from drake_haptics.accuracy.mesh_knobs import (
     list_triangle_counts,
 )
 from drake_haptics.accuracy.setting import Setting
-from drake_haptics.scene import EnvironmentObject, Scene
+from drake_haptics.scene import Scene
 
 # The scene as it is.
 AS_IT_IS = Setting("scene", "as it is")
@@ -83,23 +84,13 @@ def _mesh_knob(
     return Knob(keys, lambda scene: list_some(scene, where))
 
 
-def _is_there(key: str) -> bool:
-    # GUARD: until all keys are in scene.py.
-    part: object = Scene(environment=[EnvironmentObject()])
-    *path, name = key.split(".")
-    for step in path:
-        part = getattr(part, step)
-        part = part[0] if isinstance(part, list) else part
-    return hasattr(part, name)
-
-
-_ALL_KNOBS: tuple[Knob, ...] = (
+KNOBS: tuple[Knob, ...] = (
     Knob(("contact.depth",), list_depths),
     Knob(("contact.max_walk_steps",), list_walk_steps),
     *(
         _mesh_knob(where, names, list_some)
         for names, list_some in (
-            (("decomposition", "decomposition_error_m"), list_decompositions),
+            (("decomposition",), list_decompositions),
             (("max_triangles",), list_triangle_counts),
             (("chord_error_m",), list_chord_errors),
         )
@@ -110,10 +101,5 @@ _ALL_KNOBS: tuple[Knob, ...] = (
     *(Knob((f"effects.{name}",), partial(list_effect, name=name)) for name in _EFFECTS),
     Knob(("contact.query_rate_hz",), list_query_rates),
     Knob(("device.rate_hz",), list_rates),
-)
-
-KNOBS = tuple(
-    Knob(tuple(filter(_is_there, knob.keys)), knob.list_settings)
-    for knob in _ALL_KNOBS
-    if _is_there(knob.keys[0])
+    Knob(("device.tick_budget_us",), list_budgets),
 )

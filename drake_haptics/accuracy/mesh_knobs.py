@@ -19,7 +19,6 @@ from drake_haptics.scene import EnvironmentObject, Scene, Tool
 # Shares of a mesh's triangles; fewer than this many are no shape any more.
 _TRIANGLES = (2, 4, 8)
 _LEAST_TRIANGLES = 20
-_MERGED_M = (1e-4, 3e-4, 1e-3)
 _CHORDS_M = (2.5e-5, 4e-4, 1.6e-3)
 
 
@@ -30,20 +29,11 @@ def list_decompositions(scene: Scene, where: str) -> list[Setting]:
         scene: Has the meshes.
         where: `tool`, or `environment` for all objects.
     """
-    key, error = f"{where}.decomposition", f"{where}.decomposition_error_m"
+    key = f"{where}.decomposition"
     words = {"surface": "exact pieces", "coacd": "CoACD's pieces", "hull": "one hull"}
     if find_spec("coacd") is None:
         del words["coacd"]
-    if not hasattr(scene.tool, "decomposition_error_m"):  # GUARD
-        return [Setting(key, label, {key: name}) for name, label in words.items()]
-    methods = [
-        Setting(key, label, {key: name, error: None}) for name, label in words.items()
-    ]
-    merged = [
-        Setting(key, f"merged within {format_length(m)}", {key: "merged", error: m})
-        for m in with_own(_MERGED_M, _find_own(scene, where, "decomposition_error_m"))
-    ]
-    return [methods[0], *merged, *methods[1:]]
+    return [Setting(key, label, {key: name}) for name, label in words.items()]
 
 
 def list_triangle_counts(scene: Scene, where: str) -> list[Setting]:

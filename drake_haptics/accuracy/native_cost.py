@@ -23,7 +23,10 @@ _FAR_M = 1e3
 
 
 def make_native_part(haptic: HapticDiagram) -> NativePart:
-    """Returns what the systems of a scene ask the core."""
+    """Returns what the systems of a scene ask the core.
+
+    Effects are no part of it, and what a loop leaves out under load is not left out.
+    """
     scene, effects = haptic.scene, haptic.scene.effects
     contact, items = scene.contact, scene.environment
     stiffness = [item.material.stiffness_N_per_m for item in items]

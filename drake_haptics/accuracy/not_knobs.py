@@ -22,7 +22,6 @@ NOT_KNOBS: dict[str, str] = {
     "coupling": "is how firmly the handle holds the tool; every value takes as long",
     "device.preset": "is the device",
     "device.base": "is where it stands",
-    "device.tick_budget_us": "drops accuracy by itself where ticks are slow",
     "device.max_force_N": "is what it may show",
     "device.max_torque_Nm": "is what it may show",
     "device.twin": "is what a simulated device has of a real one's faults",
