@@ -1,5 +1,7 @@
 """An evaluation made by hand, of known figures."""
 
+from functools import cache
+
 import numpy as np
 
 from drake_haptics.paper.depth_cost import DepthCost, DepthCosts
@@ -84,8 +86,9 @@ def make_table1():
     )
 
 
+@cache
 def make_evaluation():
-    """All parts."""
+    """All parts; what is frozen is made once."""
     return PaperEvaluation(
         machine={
             "processor": "<a processor>",

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from paper_samples import (
     make_analysis,
+    make_evaluation,
     make_forces,
     make_profile,
     make_run,
     make_table1,
 )
 
-from drake_haptics.paper.pen_pass import OURS, measure_pen_pass
+from drake_haptics.paper.pen_pass import OURS
 from drake_haptics.paper.profile_figures import sum_up
 from drake_haptics.paper.words import (
     judge_analysis,
@@ -106,7 +107,7 @@ def test_a_run_in_one_state_says_nothing_of_the_other():
 
 
 def test_smoothness_is_that_of_the_exact_depth():
-    passed = measure_pen_pass(seconds=0.5)
+    (passed,) = make_evaluation().figure12
     statements = judge_figure12([passed])
     assert find(statements, "Normal on").verdict == "agrees"
     ours = passed.smoothness[OURS]

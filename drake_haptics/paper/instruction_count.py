@@ -1,25 +1,27 @@
-"""Counts the instructions of a depth, which no other program disturbs."""
+"""Counts the instructions of a depth, which no other program disturbs.
+
+python -m drake_haptics.paper.instruction_count FILE
+
+is the program that is counted: it moves a pair as FILE says.
+"""
 
 from __future__ import annotations
 
 import os
-import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 
 from drake_haptics import ConvexPair, ConvexPolytope
 from drake_haptics.bench.pair_shapes import PairShape
+from drake_haptics.bench.valgrind import count_instructions, counted
 
 _PASSES = 3
-# Turning the count on and off, checking poses and reading the clock: of a pair with
-# nothing to do.
-_NOTHING = "nothing"
 
 
 def count_depths(
@@ -27,71 +29,56 @@ def count_depths(
 ) -> dict[int, float] | None:
     """Counts the instructions of each query of a motion, by valgrind.
 
+    What a pair of points far from each other takes is taken off: switching the count
+    on and off, checking poses and reading the clock.
+
     Args:
         motions: A pair and the poses X_WA (n, 4, 4) of A, by some number.
 
     Returns:
         The mean per query, warm, by the same number; None without valgrind.
+
+    Raises:
+        subprocess.CalledProcessError: The program that is counted failed.
+        RuntimeError: valgrind counted nothing.
     """
     if shutil.which("valgrind") is None:
         return None
+    # As many queries of each, so that what is taken off is the same.
+    queries = min(len(X_WA) for _, X_WA in motions.values())
+    apart = np.tile(np.eye(4), (2 * queries, 1, 1))
+    apart[:, 0, 3] = 1.0
     point = np.zeros((1, 3))
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        longest = max(len(X_WA) for _, X_WA in motions.values())
-        idle = np.tile(np.eye(4), (longest, 1, 1))
-        idle[:, 0, 3] = 1.0
-        np.savez(folder / f"{_NOTHING}.npz", A=point, B=point, X_WA=idle)
-        for number, (pair, X_WA) in motions.items():
-            # There and back, so that each query is near the last one.
-            there_and_back = np.concatenate([X_WA, X_WA[::-1]])
-            A, B = pair.A_vertices, pair.B_vertices
-            np.savez(folder / f"{number}.npz", A=A, B=B, X_WA=there_and_back)
-        counts = _count(folder)
-    nothing = counts[_NOTHING] / (_PASSES * longest)
+    jobs = [(point, point, apart)]
+    for pair, X_WA in motions.values():
+        # There and back, so that each query is near the last one.
+        there_and_back = np.concatenate([X_WA[:queries], X_WA[:queries][::-1]])
+        jobs.append((pair.A_vertices, pair.B_vertices, there_and_back))
+    # Counts do not mind what runs beside them.
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        base, *counts = pool.map(lambda job: _count(*job), jobs)
     return {
-        number: counts[str(number)] / (_PASSES * 2 * len(X_WA)) - nothing
-        for number, (_, X_WA) in motions.items()
+        number: (count - base) / (_PASSES * 2 * queries)
+        for number, count in zip(motions, counts, strict=True)
     }
 
 
-def _count(folder: Path) -> dict[str, int]:
-    """Returns instructions by the name of the file in which a motion is."""
-    command = [
-        *("valgrind", "--tool=callgrind", "--instr-atstart=no"),
-        f"--callgrind-out-file={folder / 'count'}",
-        *(sys.executable, "-m", __name__, str(folder)),
-    ]
-    environment = {**os.environ, "PYTHONHASHSEED": "0"}
-    subprocess.run(command, capture_output=True, check=True, env=environment)
-    counts = {}
-    for dump in folder.glob("count.*"):
-        text = dump.read_text(encoding="utf-8")
-        name = re.search(r"^desc: Trigger: .*?(\w+)$", text, re.MULTILINE)
-        total = re.search(r"^totals: (\d+)", text, re.MULTILINE)
-        if name is not None and total is not None:
-            counts[name[1]] = int(total[1])
-    return counts
+def _count(A: np.ndarray, B: np.ndarray, X_WA: np.ndarray) -> int:
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "motion.npz"
+        np.savez(file, A=A, B=B, X_WA=X_WA)
+        return count_instructions(["-m", __name__, str(file)])
 
 
 def main() -> None:
-    """Runs the motions of a folder under the valgrind that has started this."""
-    for file in sorted(Path(sys.argv[1]).glob("*.npz")):
-        data = np.load(file)
-        X_WA = data["X_WA"]
-        pair = ConvexPair(ConvexPolytope(data["A"]), ConvexPolytope(data["B"]))
-        pair.query_trajectory(X_WA, np.eye(4))
-        _control("-i", "on")
+    """Moves a pair as a file says, counted, after a pass that is not."""
+    data = np.load(sys.argv[1])
+    X_WA = data["X_WA"]
+    pair = ConvexPair(ConvexPolytope(data["A"]), ConvexPolytope(data["B"]))
+    pair.query_trajectory(X_WA, np.eye(4))
+    with counted():
         for _ in range(_PASSES):
             pair.query_trajectory(X_WA, np.eye(4))
-        _control("-i", "off")
-        _control(f"--dump={file.stem}")
-
-
-def _control(*arguments: str) -> None:
-    """Tells the valgrind that this program runs under."""
-    command = ["callgrind_control", *arguments, str(os.getpid())]
-    subprocess.run(command, capture_output=True, check=True)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """`drake-haptics paper`, as a person calls it."""
 
 import json
+import subprocess
 import sys
 
 import pytest
@@ -67,18 +68,21 @@ def test_help_imports_neither_drake_nor_plots():
         "CliRunner().invoke(main, ['--help']);"
         "sys.exit('pydrake' in sys.modules or 'matplotlib' in sys.modules)"
     )
-    import subprocess
-
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
 
 
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "page.html"
+    write_paper_page(make_evaluation(), path)
+    return path
+
+
 @pytest.mark.parametrize("width", [1200, 390])
-def test_the_page_is_readable(tmp_path, width):
+def test_the_page_is_readable(page, width):
     executable = find_browser()
     if executable is None:
         pytest.skip("no Chromium on the PATH")
-    path = tmp_path / "page.html"
-    write_paper_page(make_evaluation(), path)
     with HeadlessBrowser(executable) as browser:
         browser.call(
             "Emulation.setDeviceMetricsOverride",
@@ -87,7 +91,7 @@ def test_the_page_is_readable(tmp_path, width):
             deviceScaleFactor=1,
             mobile=width < 500,
         )
-        browser.open(path.as_uri())
+        browser.open(page.as_uri())
         assert browser.evaluate("[...document.images].every(i => i.naturalWidth > 900)")
         # Nothing reaches beyond the window's side, but for tables that scroll.
         assert browser.evaluate(
