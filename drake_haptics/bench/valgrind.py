@@ -11,8 +11,10 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 
 from drake_haptics.errors import UserError
 
@@ -39,18 +41,51 @@ def count_instructions(arguments: Sequence[str]) -> int:
         subprocess.CalledProcessError: the program failed.
         RuntimeError: valgrind counted nothing.
     """
+    said = _run(arguments, "/dev/null")
+    found = re.search(r"Collected : (\d+)", said)
+    if found is None:
+        raise RuntimeError(f"valgrind counted nothing:\n{said}")
+    return int(found[1])
+
+
+def count_by_library(arguments: Sequence[str]) -> dict[str, int]:
+    """Counts as `count_instructions` does, by the path of each library.
+
+    Raises:
+        subprocess.CalledProcessError: the program failed.
+    """
+    counts: dict[str, int] = {}
+    paths: dict[str, str] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "profile"
+        _run(arguments, str(file))
+        path, of_callee = "", False
+        for line in file.read_text(errors="replace").splitlines():
+            if named := re.match(r"(c?ob)=\((\d+)\)(?: (.*))?$", line):
+                kind, number, name = named.groups()
+                paths.setdefault(number, name)
+                path = paths[number] if kind == "ob" else path
+            elif line.startswith("calls="):
+                # The next line tells what the callee took, which tells so itself.
+                of_callee = True
+            elif cost := re.match(r"[+*\-\d]\S* (\d+)$", line):
+                if not of_callee:
+                    counts[path] = counts.get(path, 0) + int(cost[1])
+                of_callee = False
+    return counts
+
+
+def _run(arguments: Sequence[str], profile: str) -> str:
+    """Runs this Python under callgrind; returns what that said."""
     command = [
         *("valgrind", "--tool=callgrind", "--instr-atstart=no"),
-        *("--callgrind-out-file=/dev/null", sys.executable, *arguments),
+        *(f"--callgrind-out-file={profile}", sys.executable, *arguments),
     ]
     environment = {**os.environ, "PYTHONHASHSEED": "0"}
     done = subprocess.run(
         command, capture_output=True, text=True, check=True, env=environment
     )
-    found = re.search(r"Collected : (\d+)", done.stderr)
-    if found is None:
-        raise RuntimeError(f"valgrind counted nothing:\n{done.stderr}")
-    return int(found[1])
+    return done.stderr
 
 
 @contextmanager

@@ -45,6 +45,11 @@ class ThisLoop:
             warnings.simplefilter("ignore", SceneWarning)
             self._haptic = BuildHapticDiagram(problem.scene, device=device)
 
+    @property
+    def haptic(self) -> HapticDiagram:
+        """What is run."""
+        return self._haptic
+
     def observe(self) -> LoopCourse:
         """See `Loop.observe`."""
         return _observe(self._problem, self._haptic)

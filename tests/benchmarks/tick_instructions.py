@@ -1,0 +1,113 @@
+"""Counts the instructions of a whole tick, by the library that runs them.
+
+python tests/benchmarks/tick_instructions.py [SCENE ...]
+
+Needs valgrind; half a minute for each scene. Three loops of it, in contact:
+
+* recorded: the handle moves as recorded, by systems of Drake's own. What the loop of
+  coupling, tool, contact and limits costs.
+* simulated: with the simulated arm, and the hand that holds it.
+* run: the same by `run`, which notes each tick down.
+
+What is of pydrake, Python and NumPy is the price of systems that are written in Python:
+each callback, each port that one reads, each vector that crosses. The core is the work.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from contextlib import ExitStack
+
+from pydrake.systems.framework import Context
+
+from drake_haptics.bench.loop.problem import make_problem
+from drake_haptics.bench.loop.this_package import ThisLoop
+from drake_haptics.bench.valgrind import count_by_library, counted, require_valgrind
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.errors import UserError
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+from drake_haptics.simulation import make_simulator, run
+
+LOOPS = ("recorded", "simulated", "run")
+# The shipped hands are in contact then.
+_WARM_UP, _TICKS = 1200, 300
+# Names of libraries by a part of their paths; the first that fits.
+_LIBRARIES = {
+    "/_core.": "core and its binding",
+    "libdrake": "Drake",
+    "/pydrake/": "pydrake",
+    "numpy": "NumPy",
+    "python": "Python",
+}
+_REST = "C and C++ libraries"
+
+
+def measure(scene: str, loop: str) -> dict[str, float]:
+    """Returns instructions per tick by the name of the library."""
+    found = dict.fromkeys([*_LIBRARIES.values(), _REST], 0.0)
+    for path, count in count_by_library([__file__, scene, loop]).items():
+        names = [name for part, name in _LIBRARIES.items() if part in path]
+        found[names[0] if names else _REST] += count / _TICKS
+    return found
+
+
+def run_counted(scene: str, loop: str) -> None:
+    """Runs a loop until the tool is in contact, and then some ticks counted."""
+    if loop == "run":
+        _run_counted(scene)
+        return
+    if loop == "recorded":
+        end_s = 1e-3 * (_WARM_UP + _TICKS + 1)
+        haptic = ThisLoop(make_problem(scene, end_s)).haptic
+    else:
+        haptic = BuildHapticDiagram(load_scene(find_scene(scene)))
+    simulator = make_simulator(haptic)
+    # Between two ticks, so that round-off does not move one.
+    simulator.AdvanceTo((_WARM_UP + 0.5) * haptic.period_s)
+    with counted():
+        simulator.AdvanceTo((_WARM_UP + _TICKS + 0.5) * haptic.period_s)
+
+
+def _run_counted(scene: str) -> None:
+    haptic = BuildHapticDiagram(load_scene(find_scene(scene)))
+    ticks = 0
+    with ExitStack() as counting:
+
+        def on_tick(context: Context) -> None:
+            nonlocal ticks
+            ticks += 1
+            if ticks == _WARM_UP:
+                counting.enter_context(counted())
+            elif ticks == _WARM_UP + _TICKS:
+                counting.close()
+
+        run(haptic, (_WARM_UP + _TICKS + 1) * haptic.period_s, on_tick=on_tick)
+
+
+def main() -> None:
+    """Prints a table for each scene; with a loop too, is the program counted."""
+    if len(sys.argv) == 3 and sys.argv[2] in LOOPS:
+        run_counted(sys.argv[1], sys.argv[2])
+        return
+    try:
+        require_valgrind()
+    except UserError as error:
+        sys.exit(str(error))
+    for scene in sys.argv[1:] or ["cup_spoon"]:
+        print(f"| {scene}: instructions per tick | {' | '.join(LOOPS)} |")
+        print(f"| --- |{' --: |' * len(LOOPS)}")
+        try:
+            columns = [measure(scene, loop) for loop in LOOPS]
+        except subprocess.CalledProcessError as error:
+            sys.exit(error.stderr)
+        for name in columns[0]:
+            counts = " | ".join(f"{column[name]:,.0f}" for column in columns)
+            print(f"| {name} | {counts} |")
+        totals = " | ".join(f"{sum(column.values()):,.0f}" for column in columns)
+        print(f"| whole tick | {totals} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
