@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from drake_haptics.accuracy.peers.our_law import FoundContacts
-from drake_haptics.bench.timing import clock_interval
+from drake_haptics.bench.timing import clock_interval, typical
 
 REALS = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
 INTEGERS = np.ctypeslib.ndpointer(dtype=np.int32, flags="C_CONTIGUOUS")
@@ -30,9 +30,9 @@ def copy_contacts(
         copy: Its function.
         scene: Its object.
         count: What its run returned.
-        seconds: (k,) what each tick took, the clock included, s.
+        seconds: (PASSES, k) what each tick took, the clock included, s.
     """
-    start = np.empty(len(seconds) + 1, dtype=np.int32)
+    start = np.empty(seconds.shape[1] + 1, dtype=np.int32)
     rows = np.empty((count, _CONTACT_SIZE))
     copy(scene, start, rows)
     distance, normal, p_WCa, p_WCb, owner = np.split(rows, [1, 4, 7, 10], axis=1)
@@ -43,5 +43,5 @@ def copy_contacts(
         p_WCa=p_WCa,
         p_WCb=p_WCb,
         object_index=owner[:, 0].astype(np.int32),
-        seconds=seconds - clock_interval(),
+        seconds=np.maximum(typical(seconds) - clock_interval(), 0.0),
     )

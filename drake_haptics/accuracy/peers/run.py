@@ -22,13 +22,9 @@ from drake_haptics.accuracy.peers.problem import (
 from drake_haptics.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.accuracy.truth import Truth, find_truth, shift_wrench
 from drake_haptics.analysis.held_scene import build_quietly
-from drake_haptics.bench.timing import typical
 from drake_haptics.errors import UserError
 from drake_haptics.scene import Scene
 from drake_haptics.scene_effects import Effects
-
-# As often each tick is timed.
-_PASSES = 3
 
 
 @dataclass(frozen=True)
@@ -159,21 +155,18 @@ def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
         return _explain(method.library, method, "the tool is one piece: its hull")
     try:
         library = f"{method.library} {version(method.package)}"
-        answer = method.load()
-        passes = [answer(problem) for _ in range(_PASSES)]
+        answers = method.load()(problem)
     except PackageNotFoundError:
         return _explain(method.library, method, f"{method.package} is not installed")
     except (ImportError, UserError, RuntimeError, ValueError) as error:
         return _explain(library, method, str(error))
-    last = passes[-1]
-    words = f"{method.words}, {last.remark}" if last.remark else method.words
-    seconds = np.maximum(typical(np.array([a.seconds for a in passes])), 0.0)
-    median, p99, p99_9 = (1e6 * np.percentile(seconds, [50, 99, 99.9])).tolist()
+    remark = f", {answers.remark}" if answers.remark else ""
+    median, p99, p99_9 = (1e6 * np.percentile(answers.seconds, [50, 99, 99.9])).tolist()
     return PeerRow(
         library=library,
-        method=words,
+        method=method.words + remark,
         native=TickTimes(median, p99, p99_9),
-        errors=_find_errors(last, problem, truth),
+        errors=_find_errors(answers, problem, truth),
     )
 
 

@@ -14,7 +14,7 @@ from drake_haptics.accuracy.peers.native_contacts import (
     declare_copy,
 )
 from drake_haptics.accuracy.peers.our_law import apply_law
-from drake_haptics.accuracy.peers.problem import PeerAnswers, PeerProblem
+from drake_haptics.accuracy.peers.problem import PASSES, PeerAnswers, PeerProblem
 from drake_haptics.bench.coal_native import load_coal_native
 from drake_haptics.decomposition import Decomposition
 from drake_haptics.pose_vector import vector_to_pose
@@ -32,10 +32,11 @@ def answer(problem: PeerProblem) -> PeerAnswers:
             X_WO = vector_to_pose(problem.part.X_WO[i]).GetAsMatrix4()
             _add(native, scene, i, part, X_WO)
         poses = [vector_to_pose(X).GetAsMatrix4() for X in problem.motion.X_WTool]
-        seconds = np.empty(len(poses))
-        count = native.coal_contacts_run(
-            scene, problem.tolerance_m, len(poses), np.array(poses), seconds
-        )
+        X_WTool, seconds = np.array(poses), np.empty((PASSES, len(poses)))
+        for one_pass in seconds:
+            count = native.coal_contacts_run(
+                scene, problem.tolerance_m, len(X_WTool), X_WTool, one_pass
+            )
         found = copy_contacts(native.coal_contacts_copy, scene, count, seconds)
     finally:
         native.coal_contacts_delete(scene)

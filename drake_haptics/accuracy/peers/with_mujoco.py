@@ -14,7 +14,7 @@ from drake_haptics.accuracy.peers.native_contacts import (
     declare_copy,
 )
 from drake_haptics.accuracy.peers.our_law import apply_law
-from drake_haptics.accuracy.peers.problem import PeerAnswers, PeerProblem
+from drake_haptics.accuracy.peers.problem import PASSES, PeerAnswers, PeerProblem
 from drake_haptics.bench.mujoco_native import load_mujoco_native
 from drake_haptics.bench.mujoco_pieces import listed, mesh_assets, mesh_geoms
 
@@ -34,8 +34,9 @@ def answer(problem: PeerProblem) -> PeerAnswers:
         raise RuntimeError(f"MuJoCo refused the scene: {error.value.decode()}")
     try:
         X_WTool = np.ascontiguousarray(problem.motion.X_WTool)
-        seconds = np.empty(len(X_WTool))
-        count = native.mujoco_contacts_run(scene, len(X_WTool), X_WTool, seconds)
+        n, seconds = len(X_WTool), np.empty((PASSES, len(X_WTool)))
+        for one_pass in seconds:
+            count = native.mujoco_contacts_run(scene, n, X_WTool, one_pass)
         found = copy_contacts(native.mujoco_contacts_copy, scene, count, seconds)
     finally:
         native.mujoco_contacts_delete(scene)
