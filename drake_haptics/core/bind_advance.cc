@@ -1,4 +1,3 @@
-#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/vector.h>
@@ -10,6 +9,7 @@
 
 #include "autodiff_sets.h"
 #include "bind.h"
+#include "bind_eigen.h"
 #include "contact_advance.h"
 #include "rotation.h"
 
