@@ -93,8 +93,9 @@ def _make_section(section: Section, pictures: dict[str, bytes]) -> str:
 def _make_block(block: Block, pictures: dict[str, bytes]) -> str:
     title = f"<h3>{html.escape(block.title)}</h3>" if block.title else ""
     images = "".join(
-        f'<img alt="{html.escape(picture.alt)}" src="data:image/png;base64,'
-        f'{base64.b64encode(pictures[picture.key]).decode()}">'
+        f'<div class="wide"><img alt="{html.escape(picture.alt)}"'
+        f' src="data:image/png;base64,'
+        f'{base64.b64encode(pictures[picture.key]).decode()}"></div>'
         for picture in block.pictures
     )
     statements = "".join(map(_make_statement, block.statements))

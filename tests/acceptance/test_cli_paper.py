@@ -92,7 +92,9 @@ def test_the_page_is_readable(page, width):
             mobile=width < 500,
         )
         browser.open(page.as_uri())
-        assert browser.evaluate("[...document.images].every(i => i.naturalWidth > 900)")
+        assert browser.evaluate(
+            "[...document.images].every(i => i.naturalWidth > 900 && i.width >= 720)"
+        )
         # Nothing reaches beyond the window's side, but for tables that scroll.
         assert browser.evaluate(
             "document.documentElement.scrollWidth <= window.innerWidth"
