@@ -1,6 +1,7 @@
 """A budget is held by the least that does, on a machine whose times are known."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from accuracy_samples import make_row, make_study
@@ -35,6 +36,18 @@ def scene():
     return load_scene(find_scene("rubbed_sphere"))
 
 
+# Of all together: less than the sum.
+TOGETHER = make_row("several", "all", 1.0, 1.0, 0.25)
+
+
+def measure(settings):
+    """The study of all settings, or that of one."""
+    if settings is None:
+        return STUDY
+    (setting,) = settings
+    return make_study(STUDY.rows[0], replace(TOGETHER, setting=setting))
+
+
 class Machine:
     """Runs scenes in known times and notes them."""
 
@@ -60,7 +73,7 @@ def choose(scene, budget_us, machine, **settings):
     return choose_setting(
         scene,
         budget_us,
-        make_study=lambda: STUDY,
+        make_study=measure,
         measure_p99=machine,
         **settings,
     )
@@ -93,7 +106,10 @@ def test_the_least_that_holds_is_given_up(scene, budget_us, given_up):
 
 def test_nothing_is_measured_where_the_scene_holds(scene):
     choice = choose_setting(
-        scene, 300.0, make_study=lambda: pytest.fail("measured"), measure_p99=Machine()
+        scene,
+        300.0,
+        make_study=lambda _: pytest.fail("measured"),
+        measure_p99=Machine(),
     )
     assert choice.is_scene and choice.holds and choice.scene is scene
     assert len(choice.trial.p99_us) == 5
@@ -193,10 +209,11 @@ def test_what_is_given_up_is_said_from_what_to_what(scene):
         "an EFFECT that the scene names, no shading: effects.shading from"
         ' {"crease_angle_deg": 30.0} to none: the force differs by 0.010 N rms, 0.040 N'
         " at most",
+        "all together: the force differs by 0.250 N rms, 1.000 N at most",
     ]
     head, *lines = describe_file(choice, scene, "a_scene")
     assert head.startswith("a_scene holds 79 µs with what follows: p99 30.0 µs")
-    assert len(lines) == 3
+    assert len(lines) == 4
 
 
 def test_the_figures_are_ready_for_json(scene):
@@ -206,6 +223,10 @@ def test_the_figures_are_ready_for_json(scene):
     assert lost["setting"]["changes"] == {"contact.tolerance_m": 5e-4}
     assert lost["force_rms_N"] == 0.02 and not lost["is_effect"]
     assert len(data["trials"]) == 2
+    # Of one setting alone there is nothing to be put together.
+    assert data["force_rms_N"] is None
+    both = to_budget_data(choose(scene, 100.0, Machine()), scene)
+    assert len(both["given_up"]) == 2 and both["force_rms_N"] == 0.25
 
 
 @pytest.mark.parametrize("budget_us", [0.0, -1.0, math.nan, math.inf])

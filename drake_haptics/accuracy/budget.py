@@ -8,7 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from drake_haptics.accuracy.combinations import Combination, list_combinations
-from drake_haptics.accuracy.figures import AccuracyStudy
+from drake_haptics.accuracy.figures import AccuracyStudy, Errors
+from drake_haptics.accuracy.setting import Setting
 from drake_haptics.errors import UserError
 from drake_haptics.scene import Scene
 
@@ -62,6 +63,8 @@ class BudgetChoice:
         trial: The runs of the choice, or of the fastest.
         holds: Whether the budget is kept.
         trials: All that were run, the scene as it is first.
+        errors: Of all that is given up together; None where it is less than two
+            settings, or where nothing holds.
     """
 
     budget_us: float
@@ -69,6 +72,7 @@ class BudgetChoice:
     trial: Trial
     holds: bool
     trials: tuple[Trial, ...] = field(repr=False)
+    errors: Errors | None = None
 
     @property
     def is_scene(self) -> bool:
@@ -80,7 +84,7 @@ def choose_setting(
     scene: Scene,
     budget_us: float,
     *,
-    make_study: Callable[[], AccuracyStudy],
+    make_study: Callable[[list[Setting] | None], AccuracyStudy],
     measure_p99: Callable[[Scene], float],
     progress: Callable[[str, float], None] | None = None,
     runs: int = RUNS,
@@ -94,7 +98,8 @@ def choose_setting(
     Args:
         scene: What is to be made faster.
         budget_us: For the whole tick, 99th percentile, µs.
-        make_study: Measures all settings; called only if the scene does not hold.
+        make_study: Measures settings, all of them for None; called only if the scene
+            does not hold, and in the end with what is given up together.
         measure_p99: Runs a scene anew and returns the 99th percentile of its ticks, µs.
         progress: Called with what is done now and the share of it, in [0, 1].
         runs: Of each combination.
@@ -114,7 +119,7 @@ def choose_setting(
     as_it_is = Trial(Combination((), math.nan), tuple(p99_us), tuple(p99_us))
     if as_it_is.holds(budget_us):
         return BudgetChoice(budget_us, scene, as_it_is, True, (as_it_is,))
-    chain = list_combinations(make_study(), scene)
+    chain = list_combinations(make_study(None), scene)
     scale = as_it_is.middle_us / chain[0].p99_us
     done = {0: as_it_is}
 
@@ -144,12 +149,16 @@ def choose_setting(
     if done[0].holds(budget_us):
         index = 0
     trial = done[index]
+    errors = None
+    if trial.holds(budget_us) and len(trial.combination.rows) > 1:
+        errors = make_study([trial.combination.setting]).rows[-1].errors
     return BudgetChoice(
         budget_us,
         trial.combination.setting.apply(scene),
         trial,
         trial.holds(budget_us),
         tuple(done.values()),
+        errors,
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from drake_haptics.accuracy.budget import PROMISE, BudgetChoice
-from drake_haptics.accuracy.figures import Row
+from drake_haptics.accuracy.figures import Errors, Row
 from drake_haptics.accuracy.model_changes import find_model_change, is_effect
 from drake_haptics.accuracy.table import format_N, format_us
 from drake_haptics.scene import Scene
@@ -45,8 +45,14 @@ def describe_sacrifices(choice: BudgetChoice, scene: Scene) -> list[str]:
     Args:
         choice: What was chosen.
         scene: As it was.
+
+    Returns:
+        A sentence for each knob, and one for all together where they are several.
     """
-    return [_describe_row(row, scene) for row in choice.trial.combination.rows]
+    sentences = [_describe_row(row, scene) for row in choice.trial.combination.rows]
+    if choice.errors is not None:
+        sentences.append(f"all together: {_describe_errors(choice.errors)}")
+    return sentences
 
 
 def describe_file(choice: BudgetChoice, scene: Scene, name: str) -> list[str]:
@@ -80,16 +86,13 @@ def to_budget_data(choice: BudgetChoice, scene: Scene) -> dict[str, Any]:
         "given_up": [
             {
                 "setting": row.setting.to_dict(),
-                "words": words,
+                "words": _describe_row(row, scene),
                 "force_rms_N": row.errors.force_rms_N if row.errors else None,
                 "is_effect": is_effect(row.setting),
             }
-            for row, words in zip(
-                choice.trial.combination.rows,
-                describe_sacrifices(choice, scene),
-                strict=True,
-            )
+            for row in choice.trial.combination.rows
         ],
+        "force_rms_N": None if choice.errors is None else choice.errors.force_rms_N,
         "trials": [
             {
                 "setting": trial.combination.setting.to_dict(),
@@ -114,15 +117,19 @@ def _describe_row(row: Row, scene: Scene) -> str:
         for key, value in row.setting.changes.items()
         if _read(scene, key) != [value]
     )
-    price = (
-        f"the force differs by {format_N(row.errors.force_rms_N)} rms,"
-        f" {format_N(row.errors.force_max_N)} at most"
-    )
+    price = _describe_errors(row.errors)
     if is_effect(row.setting):
         return f"an EFFECT that the scene names, {row.setting.label}: {turned}: {price}"
     model = find_model_change(row.setting)
     return f"{turned} ({row.setting.label}): {price}" + (
         f"; a difference of model: {model}" if model else ""
+    )
+
+
+def _describe_errors(errors: Errors) -> str:
+    return (
+        f"the force differs by {format_N(errors.force_rms_N)} rms,"
+        f" {format_N(errors.force_max_N)} at most"
     )
 
 

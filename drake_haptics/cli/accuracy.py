@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +101,9 @@ def accuracy(
     page = out or Path(f"{name}-accuracy.html")
     settings = _find_settings(chosen, words)
 
-    def measure(show: Callable[[str, float], None]) -> AccuracyStudy:
+    def measure(
+        show: Callable[[str, float], None], settings: list[Setting] | None
+    ) -> AccuracyStudy:
         return run_accuracy_study(
             chosen,
             name,
@@ -114,14 +117,14 @@ def accuracy(
     with _errors_in_a_line(), progress_bar() as show:
         if budget_us is None:
             check_page_path(page)
-            study = measure(show)
+            study = measure(show, settings)
             if not (quick or no_peers or words):
                 study = add_peers(study, chosen, progress=show)
         else:
             choice = choose_setting(
                 chosen,
                 budget_us,
-                make_study=lambda: measure(show),
+                make_study=partial(measure, show),
                 measure_p99=measure_p99,
                 progress=show,
                 runs=1 if quick else RUNS,
