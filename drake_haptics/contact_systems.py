@@ -89,7 +89,8 @@ def add_contact_systems(
             _find_tolerance(contact, effects),
             cast(DepthSearch, contact.depth),
             contact.max_walk_steps,
-            sheds_load=sheds_load,
+            # Its answer holds for several ticks; `relief` changes in each.
+            sheds_load=sheds_load and contact.query_rate_hz is None,
         ),
     )
     sample = advance = None

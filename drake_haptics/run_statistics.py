@@ -85,7 +85,7 @@ class RunStatistics:
             shed: Of `LoadShedding`, 0 (nothing) to 3.
         """
         for stage, name in enumerate(SHED_STAGES):
-            self._shed_ticks[name] += shed > stage
+            self._shed_ticks[name] += int(shed > stage)
 
     def _digest(self) -> None:
         """Counts the pending ticks."""

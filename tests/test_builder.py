@@ -43,6 +43,24 @@ def test_there_is_a_material_for_each_object(tmp_path):
         add_loop_around_a_cart(tmp_path, materials=[])
 
 
+def test_a_budget_of_ticks_adds_what_keeps_it_first_and_last(tmp_path):
+    scene = over_a_plate(tmp_path, [START])
+    scene.device.tick_budget_us = 500.0
+    haptic = BuildHapticDiagram(scene, meshcat=Meshcat())
+    assert names(haptic.diagram) == SYSTEMS | {
+        "haptic_visualizer",
+        "load_shedding",
+        "tick_end",
+    }
+    systems = [system.get_name() for system in haptic.diagram.GetSystems()]
+    assert (systems[0], systems[-1]) == ("load_shedding", "tick_end")
+    for taker in ("contact_query", "contact_clustering", "haptic_visualizer"):
+        system = haptic.diagram.GetSubsystemByName(taker)
+        context = haptic.diagram.CreateDefaultContext()
+        relief = system.GetInputPort("relief")
+        assert relief.Eval(system.GetMyContextFromRoot(context))[1] == 1.0
+
+
 def test_a_meshcat_adds_the_visualizer(tmp_path):
     haptic = BuildHapticDiagram(over_a_plate(tmp_path, [START]), meshcat=Meshcat())
     assert names(haptic.diagram) == SYSTEMS | {"haptic_visualizer"}

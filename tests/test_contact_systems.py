@@ -49,6 +49,22 @@ def test_contacts_are_looked_for_as_far_as_braking_reaches(core, distance, conta
     assert found.contact_clustering.tolerance_m == 2e-3
 
 
+@pytest.mark.parametrize("query_rate_hz", [None, 250.0])
+def test_a_query_of_several_ticks_is_not_asked_anew_by_relief(core, query_rate_hz):
+    found = add_contact_systems(
+        DiagramBuilder(),
+        core,
+        objects(core)[:1],
+        Contact(query_rate_hz=query_rate_hz),
+        Effects(),
+        [Material()],
+        1e-3,
+        sheds_load=True,
+    )
+    assert found.contact_query.HasInputPort("relief") == (query_rate_hz is None)
+    assert found.contact_clustering.HasInputPort("relief")
+
+
 def test_there_is_a_material_for_each_object(core):
     with pytest.raises(ValueError, match="materials must be one for each of the 2"):
         add_contact_systems(

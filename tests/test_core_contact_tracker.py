@@ -268,3 +268,31 @@ def test_a_bad_pose_changes_nothing_and_a_copy_goes_its_own_way() -> None:
 def test_the_tolerance_is_checked(bad: float) -> None:
     with pytest.raises(ValueError, match="tolerance"):
         _core.SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], bad)
+
+
+def test_a_query_up_to_less_gives_the_nearer_contacts_and_spoils_no_later_one() -> None:
+    """Whatever tolerances were asked in between: those of a tracker that was not."""
+    torus, peg = pieces_of(ring()), box([0.03, 0.03, 0.05])
+    changing = _core.SceneTracker(peg, [torus], T)
+    steady = _core.SceneTracker(peg, [torus], T)
+    rng = np.random.default_rng(2)
+    seen = set()
+    for phase in np.linspace(0, 4 * np.pi, 400):
+        q = pose([6e-3 * np.cos(phase), 6e-3 * np.sin(phase), 0.0])
+        reach = T * rng.uniform(0.1, 1.0)
+        near, all_of_them = changing.query(q, reach), steady.query(q)
+        within = all_of_them.distance <= reach
+        seen |= {len(near), len(all_of_them)}
+        np.testing.assert_array_equal(near.piece_A, all_of_them.piece_A[within])
+        np.testing.assert_array_equal(near.piece_B, all_of_them.piece_B[within])
+        np.testing.assert_allclose(
+            near.distance, all_of_them.distance[within], rtol=0, atol=1e-12
+        )
+    assert len(seen) > 2
+
+
+@pytest.mark.parametrize("bad", [-1e-9, 1.01 * T, np.nan])
+def test_a_query_reaches_no_farther_than_its_tracker(bad: float) -> None:
+    tracker = _core.SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], T)
+    with pytest.raises(ValueError, match="tolerance must be from 0 m to the tracker's"):
+        tracker.query(IDENTITY, bad)

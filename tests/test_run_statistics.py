@@ -78,6 +78,14 @@ def test_what_was_shown_is_counted(ticks):
     assert statistics.to_dict() == figures
 
 
+def test_ticks_are_counted_that_leave_something_out():
+    statistics = RunStatistics(1e-3)
+    for shed in (0.0, 0.02, 1.0, 1.02, 2.5, 3.0):
+        add(statistics)
+        statistics.add_shed(shed)
+    assert list(statistics.to_dict()["shed_ticks"].values()) == [5, 3, 2]
+
+
 def test_memory_is_bounded_and_keeps_the_latest(monkeypatch):
     monkeypatch.setattr(run_statistics, "_FIRST_RECORDS", 4)
     monkeypatch.setattr(run_statistics, "_MAX_RECORDS", 16)

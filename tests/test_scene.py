@@ -118,6 +118,16 @@ def test_a_pose_is_drakes():
         ("mass_kg: 0.08", "mass_kg: 0", r"tool\.mass_kg must be positive, is 0"),
         ("periodic: false", "periodic: 3", r"hand\.path\.periodic: expected true or"),
         ("scale: 1e-3", "scale: -1", r"environment\[0\]\.scale must be positive"),
+        (
+            "hand:",
+            "device: {tick_budget_us: 0}\nhand:",
+            r"device\.tick_budget_us must be positive and at most a tick \(1000 µs\)",
+        ),
+        (
+            "hand:",
+            "device: {rate_hz: 2000, tick_budget_us: 501}\nhand:",
+            r"device\.tick_budget_us must be .* at most a tick \(500 µs\), is 501",
+        ),
         ("mesh: peg.obj", "", r"tool\.mesh is missing"),
         (
             "scale: 1e-3",

@@ -56,6 +56,22 @@ def test_a_force_that_the_device_does_not_show_is_said_to_be_none(gate):
     assert ("(not shown)" in text.getvalue()) == (gate != GateState.ACTIVE)
 
 
+def test_what_a_slow_loop_leaves_out_is_said():
+    scene = load_scene(find_scene("sphere_pen"))
+    scene.device.tick_budget_us = 1e-3
+    haptic = BuildHapticDiagram(scene)
+    text = io.StringIO()
+    console = Console(file=text, force_terminal=True, width=200, color_system=None)
+    clock = itertools.count(0.0, 0.1)
+    with StatusLine(console, haptic, clock=lambda: next(clock)) as status:
+        figures = run(haptic, 0.07, on_tick=status.end_tick).to_dict()
+    assert "leaves out drawing, far near-contacts" in text.getvalue()
+    assert "fine clusters" not in text.getvalue()
+    console = Console(file=io.StringIO(), width=200)
+    console.print(make_summary(figures))
+    assert "far near-contacts in 20 ticks" in console.file.getvalue()
+
+
 def test_a_file_gets_no_status(haptic):
     text, _ = run_with_status(haptic, terminal=False)
     assert text == ""

@@ -102,8 +102,8 @@ class StatusLine(LiveLine):
     def _describe_touch(self, context: Context) -> tuple[str, str]:
         """Returns what is felt, and by how many contacts."""
         loop = self._haptic.loop
-        query = loop.contact_query.GetMyContextFromRoot(context)
-        contacts = loop.contact_query.get_contacts_output_port().Eval(query)
+        found = loop.found_contacts
+        contacts = found.Eval(found.get_system().GetMyContextFromRoot(context))
         clustering = loop.contact_clustering.GetMyContextFromRoot(context)
         clusters = loop.contact_clustering.get_clusters_output_port().Eval(clustering)
         coupling = loop.virtual_coupling.GetMyContextFromRoot(context)
