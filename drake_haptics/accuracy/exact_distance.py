@@ -15,7 +15,9 @@ def calc_exact_distance(haptic: HapticDiagram, X_WTool: np.ndarray) -> np.ndarra
     For each pair whose bounding spheres come near, all poses at which they do are
     asked for the global depth: the least way out of all, proven. No pair knows of
     another, and none of what a tracker holds or leaves out. Where tool and objects are
-    one convex piece each that is the exact penetration depth.
+    one convex piece each that is the exact penetration depth. Of a mesh in many pieces
+    the hulls have faces that the mesh has not: a contact never leaves by such a face,
+    and can so be some micrometres deeper than the pair.
 
     Args:
         haptic: Whose pieces, and objects where they stand.
