@@ -5,12 +5,12 @@ from __future__ import annotations
 import ctypes
 import tempfile
 import weakref
-from pathlib import Path
 
 import mujoco
 import numpy as np
 
-from drake_haptics.bench.native_build import load_native
+from drake_haptics.bench.mujoco_native import load_mujoco_native
+from drake_haptics.bench.mujoco_pieces import listed
 from drake_haptics.bench.pair_library import PairAnswers, PairLibrary, normals_between
 from drake_haptics.bench.pair_shapes import PairShape
 from drake_haptics.bench.timing import clock_interval
@@ -33,7 +33,7 @@ class MujocoQuery:
     """One pair, in C. MuJoCo keeps vertices in single precision."""
 
     def __init__(self, pair: PairShape):
-        xml = _XML.format(A=_listed(pair.A_vertices), B=_listed(pair.B_vertices))
+        xml = _XML.format(A=listed(pair.A_vertices), B=listed(pair.B_vertices))
         error = ctypes.create_string_buffer(1000)
         with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
             file.write(xml)
@@ -53,14 +53,8 @@ class MujocoQuery:
         return PairAnswers(distance, normals, seconds - clock_interval())
 
 
-def _listed(vertices: np.ndarray) -> str:
-    return " ".join(f"{x:.17g}" for x in vertices.ravel())
-
-
 def _load() -> ctypes.CDLL:
-    folder = Path(mujoco.__file__).parent
-    library = next(folder.glob("libmujoco*"))
-    native = load_native("mujoco_pair", [folder / "include"], [library])
+    native = load_mujoco_native("mujoco_pair")
     array = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
     handle, text, integer = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int
     native.mujoco_pair_new.restype = handle
