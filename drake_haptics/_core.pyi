@@ -178,6 +178,46 @@ def adopt_convex_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(
         ValueError: bad indices or values.
     """
 
+class MergedPieces:
+    """Which pieces of a decomposition become one."""
+
+    @property
+    def group_of_piece(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')]:
+        """(k,) group of each piece, from 0 without gaps."""
+
+    @property
+    def departure(self) -> float:
+        """Bound on how far any group's hull departs from the mesh, m."""
+
+def merge_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], piece_of_triangle: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], error: float, progress: Callable[[float], bool] | None = None) -> MergedPieces:
+    """
+    Joins neighbouring pieces of an exact decomposition, the cheapest first, while hulls depart from the mesh by no more than an error.
+
+    Args:
+        vertices: (n, 3) positions, m.
+        triangles: (m, 3) vertex indices, int32.
+        solid: (m,) uint8, whether a triangle bounds a solid.
+        piece_of_triangle: (m,) int32 of the exact decomposition.
+        error: m, zero or more.
+        progress: called with the share done in [0, 1]; returns whether to go on.
+
+    Raises:
+        ValueError: bad indices or values.
+        RuntimeError: `progress` returned False.
+    """
+
+def assemble_merged_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], piece_of_triangle: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], group_of_piece: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], error: float) -> Decomposition:
+    """
+    The pieces of groups that merge_pieces found.
+
+    Args:
+        vertices, triangles, solid, piece_of_triangle, error: as for merge_pieces.
+        group_of_piece: (k,) int32 that it returned.
+
+    Raises:
+        ValueError: bad indices, values or labels.
+    """
+
 def surface_distance(vertices_A: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles_A: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], vertices_B: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles_B: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> float:
     """
     Largest distance, m, of any point of either surface from the other: a bound on it that is above by no more than 5%, or 1e-4 of the size.

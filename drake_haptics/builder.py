@@ -432,5 +432,6 @@ def _decompose(
     return decompose(
         _load_mesh(item),
         cast(Method, item.decomposition),
+        error_m=item.decomposition_error_m,
         progress=partial(progress, name) if progress else None,
     )

@@ -17,16 +17,20 @@ from drake_haptics.decomposition_cache import cache_key, load_cached, store_cach
 from drake_haptics.decomposition_file import read_decomposition, write_decomposition
 from drake_haptics.decomposition_report import DecompositionReport
 from drake_haptics.errors import UserError
+from drake_haptics.merged_pieces import check_error, merge_patches
 from drake_haptics.mesh import Mesh
-from drake_haptics.piece_data import ConvexHulls, PatchLabels, PieceData
+from drake_haptics.piece_data import ConvexHulls, MergedPatches, PatchLabels, PieceData
 
-Method = Literal["surface", "hull", "coacd"]
+Method = Literal["surface", "merged", "hull", "coacd"]
 METHODS: tuple[Method, ...] = get_args(Method)
 Progress = Callable[[float], None]
 
 # Within this share of the mesh's size a facet of a piece is on the mesh: round-off
 # for hulls of the mesh's own vertices, CoACD's remeshing for its pieces.
 _ON_MESH = {"hull": 1e-9, "coacd": 5e-3}
+
+# Of the time of merging, what finding the exact pieces takes, for the progress.
+_EXACT_SHARE = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +91,7 @@ def decompose(
     mesh: Mesh,
     method: Method = "surface",
     *,
+    error_m: float | None = None,
     progress: Progress | None = None,
     cache: bool = True,
 ) -> Decomposition:
@@ -100,16 +105,19 @@ def decompose(
             by rounding alone gives one piece: pieces may leave the solid by 1e-6
             of the mesh's size, by more only in a mesh far from its origin in
             single precision. Pieces of a surface that bounds no solid are
-            one-sided. "hull" is one convex hull for each component: it fills
-            hollows. "coacd" fills solids approximately with few pieces (optional
-            extra); it fills cavities.
+            one-sided. "merged" joins such pieces within `error_m`, see
+            `drake_haptics.merged_pieces`. "hull" is one convex hull for each
+            component: it fills hollows. "coacd" fills solids approximately with
+            few pieces (optional extra); it fills cavities.
+        error_m: for "merged", and only there: how far a piece may depart from the
+            mesh, m.
         progress: called now and then with the share done, from 0 to 1. An
             exception that it raises stops the work and comes out here.
         cache: use and keep results on disk, see `decomposition_cache`.
 
     Raises:
-        UserError: if the mesh is none, the method is unknown or its optional package
-            is missing.
+        UserError: if the mesh is none, the method is unknown, its error is missing or
+            its optional package is.
     """
     if not isinstance(mesh, Mesh):
         raise UserError(
@@ -117,13 +125,25 @@ def decompose(
             f"Mesh.from_arrays()"
         )
     method = _checked_method(method)
+    check_error(method, error_m)
     report_share = progress or (lambda share: None)
-    parameters = _parameters(method)
+    parameters = _parameters(method, error_m)
     key = cache_key(mesh, method, parameters) if cache else ""
     data = load_cached(key, mesh) if cache else None
     from_cache = data is not None
     if data is None:
-        data = _find_pieces(mesh, method, report_share)
+        if error_m is not None:
+            exact = decompose(
+                mesh, progress=lambda s: report_share(_EXACT_SHARE * s), cache=cache
+            )
+            data = merge_patches(
+                mesh,
+                np.array(exact.core.piece_of_triangle, dtype=np.int32),
+                error_m,
+                lambda s: report_share(_EXACT_SHARE + (1 - _EXACT_SHARE) * s),
+            )
+        else:
+            data = _find_pieces(mesh, method, report_share)
         if cache:
             store_cached(key, data)
     report_share(1.0)
@@ -137,7 +157,9 @@ def _checked_method(method: str) -> Method:
     return method
 
 
-def _parameters(method: Method) -> dict[str, Any]:
+def _parameters(method: Method, error_m: float | None) -> dict[str, Any]:
+    if error_m is not None:
+        return {"error_m": error_m}
     return coacd_parameters() if method == "coacd" else {}
 
 
@@ -183,5 +205,6 @@ def _assemble(
         virtual_facets=sum(int((~original).sum()) for original in originals),
         seconds=data.seconds,
         from_cache=from_cache,
+        departure_m=data.departure_m if isinstance(data, MergedPatches) else None,
     )
     return Decomposition(mesh, core, method, report, data)

@@ -12,7 +12,12 @@ from drake_haptics.archive import read_archive, write_archive
 from drake_haptics.errors import DecompositionFileError
 from drake_haptics.mesh import Component, Mesh
 from drake_haptics.mesh_report import MeshReport
-from drake_haptics.piece_data import ConvexHulls, PatchLabels, PieceData
+from drake_haptics.piece_data import (
+    ConvexHulls,
+    MergedPatches,
+    PatchLabels,
+    PieceData,
+)
 
 
 def write_pieces(path: Path, key: str, pieces: PieceData) -> None:
@@ -92,6 +97,19 @@ def _pack_pieces(pieces: PieceData) -> tuple[dict[str, Any], dict[str, np.ndarra
             {"kind": "patches", "seconds": pieces.seconds},
             {"piece_of_triangle": pieces.piece_of_triangle},
         )
+    if isinstance(pieces, MergedPatches):
+        return (
+            {
+                "kind": "merged",
+                "seconds": pieces.seconds,
+                "error_m": pieces.error_m,
+                "departure_m": pieces.departure_m,
+            },
+            {
+                "piece_of_triangle": pieces.piece_of_triangle,
+                "group_of_piece": pieces.group_of_piece,
+            },
+        )
     return (
         {"kind": "hulls", "seconds": pieces.seconds, "tolerance": pieces.tolerance},
         {"hull_points": pieces.points, "hull_start": pieces.start},
@@ -104,6 +122,14 @@ def _unpack_pieces(
     pieces: PieceData
     if facts["kind"] == "patches":
         pieces = PatchLabels(arrays["piece_of_triangle"], facts["seconds"])
+    elif facts["kind"] == "merged":
+        pieces = MergedPatches(
+            arrays["piece_of_triangle"],
+            arrays["group_of_piece"],
+            facts["error_m"],
+            facts["departure_m"],
+            facts["seconds"],
+        )
     else:
         pieces = ConvexHulls(
             arrays["hull_points"],

@@ -10,6 +10,8 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
 
+from drake_haptics.mesh_report import length
+
 
 @dataclass(frozen=True)
 class DecompositionReport:
@@ -17,7 +19,7 @@ class DecompositionReport:
 
     Attributes:
         source: file or name of the mesh.
-        method: "surface", "hull" or "coacd".
+        method: "surface", "merged", "hull" or "coacd".
         triangles: of the mesh.
         one_sided_triangles: those that bound no solid.
         pieces: convex pieces.
@@ -27,6 +29,8 @@ class DecompositionReport:
         virtual_facets: those of them that are not on the mesh.
         seconds: that finding the pieces took, s.
         from_cache: the pieces were found earlier and read from the cache or a file.
+        departure_m: of merged pieces: a bound on how far any of them departs from the
+            mesh, m; None for other methods.
     """
 
     source: str
@@ -39,6 +43,7 @@ class DecompositionReport:
     virtual_facets: int
     seconds: float
     from_cache: bool
+    departure_m: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Returns plain data for JSON."""
@@ -61,6 +66,8 @@ class DecompositionReport:
             f"{self.facets:,}, {self.virtual_facets:,} of them virtual "
             f"(not on the mesh)",
         )
+        if self.departure_m is not None:
+            table.add_row("  error", f"within {length(self.departure_m)} of the mesh")
         when = "found earlier in" if self.from_cache else "found in"
         table.add_row("  time", f"{when} {_duration(self.seconds)}")
         yield table

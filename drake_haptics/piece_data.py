@@ -30,14 +30,53 @@ class PatchLabels:
 
     def fits(self, mesh: Mesh) -> bool:
         """Tells whether the labels can belong to the mesh."""
+        return _are_labels(self.piece_of_triangle, len(mesh.triangles))
+
+
+@dataclass(frozen=True, eq=False)
+class MergedPatches:
+    """Pieces that are hulls of several patches of the mesh's surface.
+
+    Attributes:
+        piece_of_triangle: (m,) int32 of the patches.
+        group_of_piece: (k,) int32: patches of one group are one piece.
+        error_m: allowed departure from the mesh, m.
+        departure_m: bound on the largest departure that there is, m.
+        seconds: that the search took, s.
+    """
+
+    piece_of_triangle: np.ndarray
+    group_of_piece: np.ndarray
+    error_m: float
+    departure_m: float
+    seconds: float
+
+    def assemble(self, mesh: Mesh) -> _core.Decomposition:
+        """Makes the pieces, without the search."""
+        return _core.assemble_merged_pieces(
+            mesh.vertices,
+            mesh.triangles,
+            mesh.solid,
+            self.piece_of_triangle,
+            self.group_of_piece,
+            self.error_m,
+        )
+
+    def fits(self, mesh: Mesh) -> bool:
+        """Tells whether the labels can belong to the mesh."""
         labels = self.piece_of_triangle
-        if (
-            labels.dtype != np.int32
-            or labels.shape != (len(mesh.triangles),)
-            or labels.min() < 0
-        ):
-            return False
-        return bool((np.bincount(labels, minlength=1) > 0).all())
+        return (
+            _are_labels(labels, len(mesh.triangles))
+            and _are_labels(self.group_of_piece, int(labels.max()) + 1)
+            and 0.0 <= self.error_m < np.inf
+        )
+
+
+def _are_labels(labels: np.ndarray, count: int) -> bool:
+    """Whether an array is one of `count` numbers from 0 without gaps."""
+    if labels.dtype != np.int32 or labels.shape != (count,) or labels.min() < 0:
+        return False
+    return bool((np.bincount(labels, minlength=1) > 0).all())
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,4 +130,4 @@ class ConvexHulls:
         )
 
 
-PieceData = PatchLabels | ConvexHulls
+PieceData = PatchLabels | MergedPatches | ConvexHulls

@@ -95,6 +95,8 @@ class Tool:
             that stand for them, m; 1e-4 where not given.
         decomposition: How the mesh is cut into convex pieces: a method of
             `drake_haptics.decomposition.decompose`.
+        decomposition_error_m: For `merged`, and only there: how far a piece may depart
+            from the mesh, m.
         mass_kg: Mass, kg.
         grasp: X_HT, the pose of the tool's frame in the handle's.
     """
@@ -104,6 +106,7 @@ class Tool:
     max_triangles: int | None = None
     chord_error_m: float | None = None
     decomposition: str = "surface"
+    decomposition_error_m: float | None = None
     mass_kg: float = 0.1
     grasp: Pose = field(default_factory=Pose)
 
@@ -119,6 +122,7 @@ class EnvironmentObject:
         max_triangles: As for the tool.
         chord_error_m: As for the tool.
         decomposition: As for the tool.
+        decomposition_error_m: As for the tool.
         pose: X_WO, the pose of the object's frame in the world.
         material: What it is made of.
     """
@@ -129,6 +133,7 @@ class EnvironmentObject:
     max_triangles: int | None = None
     chord_error_m: float | None = None
     decomposition: str = "surface"
+    decomposition_error_m: float | None = None
     pose: Pose = field(default_factory=Pose)
     material: Material = field(default_factory=Material)
 

@@ -151,6 +151,13 @@ def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
         f"{where}.max_triangles",
         f"must be 4 or more, is {item.max_triangles}",
     )
+    require_none_negative(item, where, ["decomposition_error_m"])
+    merged = item.decomposition == "merged"
+    require(
+        merged == (item.decomposition_error_m is not None),
+        f"{where}.decomposition_error_m",
+        "is missing" if merged else "is only for decomposition: merged",
+    )
 
 
 def _check_contact(contact: Contact) -> None:

@@ -93,7 +93,7 @@ def test_without_coacd_the_error_says_what_to_install(monkeypatch):
 
 
 def test_an_unknown_method_is_refused():
-    with pytest.raises(UserError, match=r"'convex'.*surface, hull, coacd"):
+    with pytest.raises(UserError, match=r"'convex'.*surface, merged, hull, coacd"):
         decompose(Mesh.from_arrays(*box()), "convex")
 
 

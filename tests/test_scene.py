@@ -128,6 +128,12 @@ def test_a_pose_is_drakes():
             "device: {rate_hz: 2000, tick_budget_us: 501}\nhand:",
             r"device\.tick_budget_us must be .* at most a tick \(500 µs\), is 501",
         ),
+        (
+            "mass_kg",
+            "decomposition: merged\n  mass_kg",
+            r"decomposition_error_m is miss",
+        ),
+        ("mass_kg", "decomposition_error_m: 0\n  mass_kg", r"only for .* merged"),
         ("mesh: peg.obj", "", r"tool\.mesh is missing"),
         (
             "scale: 1e-3",

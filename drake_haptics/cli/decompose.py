@@ -31,7 +31,15 @@ from drake_haptics.mesh_report import length
     type=click.Choice(METHODS),
     default="surface",
     show_default=True,
-    help="surface: exact cover; hull: one hull per part; coacd: few rough pieces.",
+    help="surface: exact cover; merged: fewer pieces, within --error; hull: one hull"
+    " per part; coacd: few rough pieces.",
+)
+@click.option(
+    "--error",
+    "error_m",
+    type=float,
+    metavar="METRES",
+    help="How far merged pieces may depart from the mesh.",
 )
 @click.option(
     "-o",
@@ -59,6 +67,7 @@ def decompose(
     scale: float | None,
     max_triangles: int | None,
     method: Method,
+    error_m: float | None,
     output: str | None,
     no_cache: bool,
     show: bool,
@@ -67,7 +76,7 @@ def decompose(
 ) -> None:
     """Cut the surface of a mesh into convex pieces, and report them."""
     taken_in = read_mesh(mesh, unit, scale, max_triangles)
-    result = _with_progress(taken_in, method, cache=not no_cache)
+    result = _with_progress(taken_in, method, error_m, cache=not no_cache)
     if output is not None:
         result.save(output)
     if json_file is not None:
@@ -79,7 +88,9 @@ def decompose(
         _view(result, show, html)
 
 
-def _with_progress(mesh: Mesh, method: Method, cache: bool) -> Decomposition:
+def _with_progress(
+    mesh: Mesh, method: Method, error_m: float | None, cache: bool
+) -> Decomposition:
     console = Console(stderr=True)
     columns = (TextColumn("decomposing"), BarColumn(), TimeElapsedColumn())
     with Progress(
@@ -90,7 +101,9 @@ def _with_progress(mesh: Mesh, method: Method, cache: bool) -> Decomposition:
         def show_share(share: float) -> None:
             bar.update(task, completed=share)
 
-        return decompose_mesh(mesh, method, progress=show_share, cache=cache)
+        return decompose_mesh(
+            mesh, method, error_m=error_m, progress=show_share, cache=cache
+        )
 
 
 def _print_report(result: Decomposition) -> None:

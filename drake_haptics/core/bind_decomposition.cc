@@ -9,6 +9,7 @@
 #include "bind.h"
 #include "bind_array.h"
 #include "decomposition.h"
+#include "merge_pieces.h"
 #include "surface_distance.h"
 
 namespace nb = nanobind;
@@ -36,6 +37,15 @@ std::vector<T> ToVector(const PerTriangleArg<T>& array) {
   return {array.data(), array.data() + array.shape(0)};
 }
 
+Progress ToProgress(
+    const std::optional<std::function<bool(double)>>& progress) {
+  if (!progress) return {};
+  return [&](double share) {
+    nb::gil_scoped_acquire acquire;
+    return (*progress)(share);
+  };
+}
+
 DecompositionPtr Decompose(
     const PointsArg& vertices, const TrianglesArg& triangles,
     const PerTriangleArg<std::uint8_t>& solid,
@@ -43,16 +53,39 @@ DecompositionPtr Decompose(
   const std::vector<Vec3> points = ToPoints(vertices);
   const std::vector<Triangle> faces = ToTriangles(triangles);
   const std::vector<std::uint8_t> flags = ToVector(solid);
-  Progress report;
-  if (progress) {
-    report = [&](double share) {
-      nb::gil_scoped_acquire acquire;
-      return (*progress)(share);
-    };
-  }
+  const Progress report = ToProgress(progress);
   nb::gil_scoped_release release;
   return std::make_shared<Decomposition>(
       DecomposeSurface(points, faces, flags, report));
+}
+
+MergedPieces Merge(const PointsArg& vertices, const TrianglesArg& triangles,
+                   const PerTriangleArg<std::uint8_t>& solid,
+                   const PerTriangleArg<std::int32_t>& labels, double error,
+                   std::optional<std::function<bool(double)>> progress) {
+  const std::vector<Vec3> points = ToPoints(vertices);
+  const std::vector<Triangle> faces = ToTriangles(triangles);
+  const std::vector<std::uint8_t> flags = ToVector(solid);
+  const std::vector<std::int32_t> pieces = ToVector(labels);
+  const Progress report = ToProgress(progress);
+  nb::gil_scoped_release release;
+  return MergePieces(points, faces, flags, pieces, error, report);
+}
+
+DecompositionPtr AssembleMerged(const PointsArg& vertices,
+                                const TrianglesArg& triangles,
+                                const PerTriangleArg<std::uint8_t>& solid,
+                                const PerTriangleArg<std::int32_t>& labels,
+                                const PerTriangleArg<std::int32_t>& groups,
+                                double error) {
+  const std::vector<Vec3> points = ToPoints(vertices);
+  const std::vector<Triangle> faces = ToTriangles(triangles);
+  const std::vector<std::uint8_t> flags = ToVector(solid);
+  const std::vector<std::int32_t> pieces = ToVector(labels);
+  const std::vector<std::int32_t> numbers = ToVector(groups);
+  nb::gil_scoped_release release;
+  return std::make_shared<Decomposition>(
+      AssembleMergedPieces(points, faces, flags, pieces, numbers, error));
 }
 
 DecompositionPtr Assemble(const PointsArg& vertices,
@@ -164,6 +197,43 @@ void BindDecomposition(nb::module_& m) {
         "it.\n\n"
         "Raises:\n"
         "    ValueError: bad indices or values.");
+  nb::class_<MergedPieces>(m, "MergedPieces",
+                           "Which pieces of a decomposition become one.")
+      .def_prop_ro(
+          "group_of_piece",
+          [](const MergedPieces& self) {
+            return ToRows<std::int32_t, 1>(
+                self.group_of_piece, [](int group, int) { return group; });
+          },
+          "(k,) group of each piece, from 0 without gaps.")
+      .def_ro("departure", &MergedPieces::departure,
+              "Bound on how far any group's hull departs from the mesh, m.");
+  m.def("merge_pieces", &Merge, nb::arg("vertices"), nb::arg("triangles"),
+        nb::arg("solid"), nb::arg("piece_of_triangle"), nb::arg("error"),
+        nb::arg("progress") = nb::none(),
+        "Joins neighbouring pieces of an exact decomposition, the cheapest "
+        "first, while hulls depart from the mesh by no more than an error.\n\n"
+        "Args:\n"
+        "    vertices: (n, 3) positions, m.\n"
+        "    triangles: (m, 3) vertex indices, int32.\n"
+        "    solid: (m,) uint8, whether a triangle bounds a solid.\n"
+        "    piece_of_triangle: (m,) int32 of the exact decomposition.\n"
+        "    error: m, zero or more.\n"
+        "    progress: called with the share done in [0, 1]; returns whether "
+        "to go on.\n\n"
+        "Raises:\n"
+        "    ValueError: bad indices or values.\n"
+        "    RuntimeError: `progress` returned False.");
+  m.def("assemble_merged_pieces", &AssembleMerged, nb::arg("vertices"),
+        nb::arg("triangles"), nb::arg("solid"), nb::arg("piece_of_triangle"),
+        nb::arg("group_of_piece"), nb::arg("error"),
+        "The pieces of groups that merge_pieces found.\n\n"
+        "Args:\n"
+        "    vertices, triangles, solid, piece_of_triangle, error: as for "
+        "merge_pieces.\n"
+        "    group_of_piece: (k,) int32 that it returned.\n\n"
+        "Raises:\n"
+        "    ValueError: bad indices, values or labels.");
   m.def(
       "surface_distance", &MeasureDistance, nb::arg("vertices_A"),
       nb::arg("triangles_A"), nb::arg("vertices_B"), nb::arg("triangles_B"),
