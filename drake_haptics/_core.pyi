@@ -1455,6 +1455,30 @@ def passivity_control(state: Annotated[NDArray[numpy.float64], dict(shape=(8), o
 def passivity_control(state: AutoDiffVector, F_applied: AutoDiffVector, F_asked: AutoDiffVector, q_WH: AutoDiffVector, V_WH: AutoDiffVector, bounds: PassivityBounds) -> AutoDiffVector:
     """The same with derivatives."""
 
+class FrameChange:
+    """
+    Tells in a frame A what is given in a frame B that does not move in it, and wrenches the other way.
+    """
+
+    def __init__(self, X_AB: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> None:
+        """
+        Pose (7,) of B in A, [qw qx qy qz x y z], m.
+
+        Raises:
+            ValueError: it is none.
+        """
+
+    def change_motion(self, X_BH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_BH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
+        """
+        Pose and spatial velocity of H in A, (13,), of those in B: (7,), m, and (6,), [rad/s; m/s].
+        """
+
+    def change_wrench_back(self, F_A: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """Wrench (6,) in B of one in A, [N·m; N]."""
+
+    def change_slopes_back(self, slopes_A: Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='C')]]:
+        """Stiffness and damping (6, 6) in B of those in A, (72,) by rows."""
+
 class PosePath:
     """A pose over time, a cubic per segment. Immutable."""
 

@@ -16,8 +16,9 @@ from pydrake.systems.framework import (
     State,
 )
 
+from drake_haptics._core import FrameChange
 from drake_haptics.device.backend import DeviceBackend, DeviceCommand, DeviceReading
-from drake_haptics.frame_change import FrameChange
+from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems.vector_ports import export_parts
 
 
@@ -91,21 +92,20 @@ class _Frame:
     """What is said in a device's base frame, in the world, and back."""
 
     def __init__(self, X_WB: RigidTransform):
-        self._to_world = FrameChange(X_WB)
+        self._from_base = FrameChange(pose_to_vector(X_WB))
 
     def to_world(self, reading: DeviceReading) -> np.ndarray:
         """Returns [X_WH; V_WH] (13,)."""
-        return self._to_world.change_motion(reading.X_BH, reading.V_BH)
+        return self._from_base.change_motion(reading.X_BH, reading.V_BH)
 
     def to_base(
         self, F_W: np.ndarray, slopes_W: np.ndarray | None, at: DeviceReading
     ) -> DeviceCommand:
         """Returns a command for the handle that was read."""
-        turn_WB = self._to_world.turn
-        F_B = turn_WB.T @ F_W
+        F_B = self._from_base.change_wrench_back(F_W)
         if slopes_W is None:
             return DeviceCommand(F_B, at.X_BH, at.V_BH)
-        K_B, B_B = turn_WB.T @ slopes_W.reshape(2, 6, 6) @ turn_WB
+        K_B, B_B = self._from_base.change_slopes_back(slopes_W)
         return DeviceCommand(F_B, at.X_BH, at.V_BH, K_B, B_B)
 
 

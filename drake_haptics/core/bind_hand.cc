@@ -7,6 +7,7 @@
 #include "autodiff.h"
 #include "bind.h"
 #include "bind_array.h"
+#include "frame_change.h"
 #include "held_arm.h"
 
 namespace nb = nanobind;
@@ -142,9 +143,42 @@ void BindHeldArm(nb::module_& m) {
           "The same with derivatives; `time_s` is (1,).");
 }
 
+void BindFrameChange(nb::module_& m) {
+  using Slope = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  nb::class_<FrameChange>(m, "FrameChange",
+                          "Tells in a frame A what is given in a frame B that "
+                          "does not move in it, and wrenches the other way.")
+      .def(nb::init<const PoseVector&>(), nb::arg("X_AB"),
+           "Pose (7,) of B in A, [qw qx qy qz x y z], m.\n\n"
+           "Raises:\n    ValueError: it is none.")
+      .def(
+          "change_motion", &FrameChange::ChangeMotion, nb::arg("X_BH"),
+          nb::arg("V_BH"),
+          "Pose and spatial velocity of H in A, (13,), of those in B: (7,), m, "
+          "and (6,), [rad/s; m/s].")
+      .def(
+          "change_wrench_back",
+          [](const FrameChange& self, const Vec6& F_A) {
+            return self.ChangeBack(F_A);
+          },
+          nb::arg("F_A"), "Wrench (6,) in B of one in A, [N·m; N].")
+      .def(
+          "change_slopes_back",
+          [](const FrameChange& self,
+             const Eigen::Matrix<double, 72, 1>& slopes_A) {
+            const double* const K = slopes_A.data();
+            return std::pair<Slope, Slope>(
+                self.ChangeBack(Mat6(Eigen::Map<const Slope>(K))),
+                self.ChangeBack(Mat6(Eigen::Map<const Slope>(K + 36))));
+          },
+          nb::arg("slopes_A"),
+          "Stiffness and damping (6, 6) in B of those in A, (72,) by rows.");
+}
+
 }  // namespace
 
 void BindHand(nb::module_& m) {
+  BindFrameChange(m);
   BindPath(m);
   BindHeldArm(m);
 }

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 
+from drake_haptics._core import FrameChange
 from drake_haptics.device.driver import DeviceDriver
-from drake_haptics.frame_change import FrameChange
+from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.scene import Scene
 from drake_haptics.simulated_device import (
     make_hand_path,
@@ -50,7 +51,8 @@ class SimulatedDriverArm:
         )
         self._X_WH = device.get_handle_pose_output_port()
         self._V_WH = device.get_handle_velocity_output_port()
-        self._to_base = FrameChange(place_base(scene, path).inverse())
+        X_BW = place_base(scene, path).inverse()
+        self._to_base = FrameChange(pose_to_vector(X_BW))
 
     @property
     def max_force_N(self) -> float:
@@ -80,7 +82,7 @@ class SimulatedDriverArm:
             self._ticks += 1
             # The wrench stays as it is over the period, as motors hold it.
             self._F_WH.GetMutableData().get_mutable_value().SetFromVector(
-                self._to_base.turn.T @ F_BH
+                self._to_base.change_wrench_back(F_BH)
             )
             try:
                 self._simulator.AdvanceTo(self._ticks * self._period_s)
