@@ -102,6 +102,7 @@ def test_values_of_ones_own_are_among_the_settings():
     scene.contact.max_walk_steps, scene.contact.query_rate_hz = 3, 160.0
     scene.device.tick_budget_us = 300.0
     scene.tool.max_triangles = 100
+    scene.tool.decomposition, scene.tool.decomposition_error_m = "merged", 2e-4
     scene.effects.gravity = Gravity([0.0, 1.0, -3.0])
     for knob in KNOBS:
         settings = knob.list_settings(scene)
@@ -144,9 +145,12 @@ def test_few_settings_have_one_of_each_knob():
 
 def test_the_reference_is_exact_whatever_the_scene():
     scene = _load("cup_spoon")
-    scene.tool.decomposition = scene.environment[0].decomposition = "hull"
+    scene.environment[0].decomposition = "hull"
+    scene.tool.decomposition, scene.tool.decomposition_error_m = "merged", 2e-4
+    scene.tool.max_triangles = 100
     scene.contact.tolerance_m = 0.7e-3
     exact = make_reference(scene).apply(scene)
     assert exact.tool.decomposition == exact.environment[0].decomposition == "surface"
+    assert exact.tool.decomposition_error_m is exact.tool.max_triangles is None
     assert exact.contact == scene.contact
     assert exact.effects == scene.effects

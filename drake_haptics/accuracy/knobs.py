@@ -70,6 +70,7 @@ def make_reference(scene: Scene) -> Setting:
     changes: dict[str, Any] = {}
     for where in ("tool", "environment"):
         changes[f"{where}.decomposition"] = "surface"
+        changes[f"{where}.decomposition_error_m"] = None
         changes[f"{where}.max_triangles"] = None
         chords = list_chord_errors(scene, where)
         # The finest comes first.
@@ -90,7 +91,7 @@ KNOBS: tuple[Knob, ...] = (
     *(
         _mesh_knob(where, names, list_some)
         for names, list_some in (
-            (("decomposition",), list_decompositions),
+            (("decomposition", "decomposition_error_m"), list_decompositions),
             (("max_triangles",), list_triangle_counts),
             (("chord_error_m",), list_chord_errors),
         )

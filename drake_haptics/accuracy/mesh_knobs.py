@@ -19,6 +19,7 @@ from drake_haptics.scene import EnvironmentObject, Scene, Tool
 # Shares of a mesh's triangles; fewer than this many are no shape any more.
 _TRIANGLES = (2, 4, 8)
 _LEAST_TRIANGLES = 20
+_MERGED_M = (1e-4, 3e-4, 1e-3)
 _CHORDS_M = (2.5e-5, 4e-4, 1.6e-3)
 
 
@@ -29,11 +30,18 @@ def list_decompositions(scene: Scene, where: str) -> list[Setting]:
         scene: Has the meshes.
         where: `tool`, or `environment` for all objects.
     """
-    key = f"{where}.decomposition"
+    key, error = f"{where}.decomposition", f"{where}.decomposition_error_m"
     words = {"surface": "exact pieces", "coacd": "CoACD's pieces", "hull": "one hull"}
     if find_spec("coacd") is None:
         del words["coacd"]
-    return [Setting(key, label, {key: name}) for name, label in words.items()]
+    exact, *approximate = [
+        Setting(key, label, {key: name, error: None}) for name, label in words.items()
+    ]
+    merged = [
+        Setting(key, f"merged within {format_length(m)}", {key: "merged", error: m})
+        for m in with_own(_MERGED_M, _find_own(scene, where, "decomposition_error_m"))
+    ]
+    return [exact, *merged, *approximate]
 
 
 def list_triangle_counts(scene: Scene, where: str) -> list[Setting]:
