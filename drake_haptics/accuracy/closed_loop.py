@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from drake_haptics.accuracy.built_scenes import build_once
 from drake_haptics.accuracy.whole_run import run_whole
 from drake_haptics.analysis.held_loop import analyse_held_scene
-from drake_haptics.analysis.held_scene import hold_scene
+from drake_haptics.analysis.held_scene import HeldScene, hold_scene
 from drake_haptics.analysis.stability_limit import find_stability_limit
 from drake_haptics.scene import Scene
 from drake_haptics.simulation import RunError
@@ -26,10 +26,13 @@ class PressedPlace:
 
     Attributes:
         time_s: When it stops on its path, s; None where the tool rests nowhere.
-        why_not: Why; empty where there is one.
+        near_N_per_m: The scene's own largest stable stiffness there, from which those
+            of other settings are not far, N/m.
+        why_not: Why there is none; empty where there is one.
     """
 
     time_s: float | None
+    near_N_per_m: float = math.inf
     why_not: str = ""
 
 
@@ -79,9 +82,11 @@ def measure_created_energy(scene: Scene, duration_s: float) -> float:
 def find_pressed_place(scene: Scene) -> PressedPlace:
     """Returns where a scene's tool is pressed most and comes to rest."""
     try:
-        return PressedPlace(hold_scene(scene).time_s)
+        held = hold_scene(scene)
+        limit = _find_limit(scene, held, scene.coupling.stiffness_N_per_m)
     except (ValueError, RunError) as error:
-        return PressedPlace(None, str(error))
+        return PressedPlace(None, why_not=str(error))
+    return PressedPlace(held.time_s, limit)
 
 
 def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
@@ -95,24 +100,29 @@ def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
     """
     if place.time_s is None:
         return StableStiffness(None, place.why_not)
-    stiffness = scene.coupling.stiffness_N_per_m
     try:
         held = hold_scene(scene, place.time_s)
-
-        def growth(value: float) -> float:
-            coupling = replace(scene.coupling, stiffness_N_per_m=value)
-            try:
-                return analyse_held_scene(held, coupling).growth
-            except ValueError:  # Beyond it nothing can be told: that is the limit.
-                return math.nan
-
-        limit = find_stability_limit(
-            growth,
-            stiffness,
-            lowest=stiffness / _RANGE,
-            highest=stiffness * _RANGE,
-            relative_tolerance=_TOLERANCE,
-        )
+        return StableStiffness(_find_limit(scene, held, place.near_N_per_m))
     except (ValueError, RunError) as error:
         return StableStiffness(None, str(error))
-    return StableStiffness(limit.value)
+
+
+def _find_limit(scene: Scene, held: HeldScene, near_N_per_m: float) -> float:
+    """Returns the largest stable stiffness, N/m, looked for from one near it."""
+    stiffness = scene.coupling.stiffness_N_per_m
+    lowest, highest = stiffness / _RANGE, stiffness * _RANGE
+
+    def growth(value: float) -> float:
+        coupling = replace(scene.coupling, stiffness_N_per_m=value)
+        try:
+            return analyse_held_scene(held, coupling).growth
+        except ValueError:  # Beyond it nothing can be told: that is the limit.
+            return math.nan
+
+    return find_stability_limit(
+        growth,
+        min(max(near_N_per_m, lowest), highest),
+        lowest=lowest,
+        highest=highest,
+        relative_tolerance=_TOLERANCE,
+    ).value
