@@ -28,8 +28,8 @@ def check_error(method: str, error_m: float | None) -> None:
     """
     if (method == "merged") != (error_m is not None):
         raise UserError(
-            "the method merged needs an error_m, how far its pieces may depart from"
-            " the mesh"
+            "the method merged needs an error_m (decompose: --error; in a scene:"
+            " decomposition_error_m), how far its pieces may depart from the mesh, m"
             if error_m is None
             else f"error_m is for the method merged; {method} has none"
         )

@@ -22,6 +22,7 @@ from drake_haptics.scene import (
     Pose,
     SceneError,
 )
+from drake_haptics.shapes import SHAPES
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.haptic_device import HapticDevice
@@ -184,3 +185,42 @@ def test_an_object_that_does_not_move_cannot_be_moved(tmp_path):
         ConnectMovingObject(
             builder, loop, "plate", rest.get_output_port(), rest.get_output_port()
         )
+
+
+def test_an_object_is_as_exact_as_its_scene_asks_for(tmp_path):
+    scene = over_a_plate(tmp_path, [START])
+    torus = SHAPES["torus"]()
+    path = tmp_path / "torus.npz"
+    np.savez(path, V=torus.vertices, F=torus.triangles)
+    scene.tool.mesh = str(path)
+    scene.tool.max_triangles = 800
+    scene.tool.decomposition = "merged"
+    scene.tool.decomposition_error_m = 2e-3
+    tool = BuildHapticDiagram(scene).tool
+    assert len(tool.mesh.triangles) == 800
+    assert 0 < tool.mesh.report.decimation_error_m < 1e-3
+    assert tool.method == "merged" and 0 < tool.report.departure_m <= 2e-3
+
+
+def test_a_round_shape_of_a_scene_keeps_its_chord_error(tmp_path):
+    ball = tmp_path / "ball.sdf"
+    ball.write_text(
+        '<sdf version="1.9"><model name="ball"><link name="ball"><collision name="c">'
+        "<geometry><sphere><radius>20</radius></sphere></geometry>"
+        "</collision></link></model></sdf>"
+    )
+    scene = over_a_plate(tmp_path, [START])
+    scene.tool.mesh, scene.tool.scale = str(ball), 1e-3
+    for chord_error_m in (1e-3, 2e-5, None):
+        scene.tool.chord_error_m = chord_error_m
+        vertices = BuildHapticDiagram(scene).tool.mesh.vertices
+        error = np.abs(np.linalg.norm(vertices, axis=1) - 0.02).max()
+        expected = chord_error_m or 1e-4
+        assert 0.2 * expected < error <= 1.001 * expected
+
+
+def test_a_mesh_file_has_no_chord_error(tmp_path):
+    scene = over_a_plate(tmp_path, [START])
+    scene.environment[0].chord_error_m = 1e-4
+    with pytest.raises(SceneError, match="chord_error_m is for models with round"):
+        BuildHapticDiagram(scene)

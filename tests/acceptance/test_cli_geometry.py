@@ -14,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from mesh_samples import box, l_prism, real_mesh
 
 from drake_haptics.decomposition import Decomposition
+from drake_haptics.shapes import SHAPES
 
 PROGRAM = [str(Path(sys.executable).with_name("drake-haptics"))]
 
@@ -107,6 +108,25 @@ def test_decompose_writes_file_and_json_and_remembers(environment, l_file, tmp_p
     second = run("decompose", l_file, "--unit", "mm")
     assert "found earlier" in second.stdout
     assert f"{data['pieces']} pieces from 20 triangles" in second.stdout
+
+
+def test_a_mesh_is_reduced_and_its_pieces_are_merged(environment, tmp_path):
+    torus = tmp_path / "torus.npz"
+    surface = SHAPES["torus"]()
+    np.savez(torus, V=surface.vertices, F=surface.triangles)
+    checked = run("check", torus, "--max-triangles", "500")
+    assert "decimated from 2,000 to 500 triangles" in checked.stdout
+    exact = run("decompose", torus, "--max-triangles", "500", "--json", "-")
+    report = json.loads(exact.stdout)
+    assert report["triangles"] == 500
+    assert 0 < report["mesh"]["decimation_error_m"] < 2e-3
+    options = ("--method", "merged", "--error", "1e-3")
+    merged = run("decompose", torus, *options, "--json", "-")
+    fewer = json.loads(merged.stdout)
+    assert fewer["pieces"] <= 20 and 0 < fewer["departure_m"] <= 1e-3
+    assert "µm of the mesh" in run("decompose", torus, *options).stdout
+    wrong = run("decompose", torus, "--method", "merged")
+    assert fails_with_one_message(wrong, 1, "merged needs an error_m", "--error")
 
 
 def test_decompose_says_that_open_surfaces_are_one_sided(environment):

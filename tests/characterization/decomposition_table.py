@@ -25,6 +25,7 @@ from hull_truth import deepest_outside, deepest_surface, lost_share  # noqa: E40
 from mesh_samples import REAL_MESHES  # noqa: E402
 
 from drake_haptics import Mesh, decompose, load_mesh  # noqa: E402
+from drake_haptics.mesh_decimation import decimate  # noqa: E402
 from drake_haptics.shapes import SHAPES  # noqa: E402
 from drake_haptics.shapes.organ import make_organ  # noqa: E402
 
@@ -40,6 +41,18 @@ PAPER |= {
     "digestive_24846.ply": 9913,
 }
 GENERATED = {**SHAPES, "organ": make_organ}
+# Of a mesh: how few triangles at most, and how far its pieces may depart, m.
+VARIANTS: dict[str, tuple[str, int | None, float | None]] = {
+    "torus, merged 0.5 mm": ("torus", None, 5e-4),
+    "torus, merged 1 mm": ("torus", None, 1e-3),
+    "torus, 500 triangles": ("torus", 500, None),
+    "cup, merged 1 mm": ("cup", None, 1e-3),
+    "spoon, merged 1 mm": ("spoon", None, 1e-3),
+    "hammer, merged 1 mm": ("hammer", None, 1e-3),
+    "organ, merged 1 mm": ("organ", None, 1e-3),
+    "organ, 5,000 triangles": ("organ", 5000, None),
+    "organ, 5,000 triangles, merged 1 mm": ("organ", 5000, 1e-3),
+}
 REAL = (
     *list(PAPER)[5:],
     "power_drill.stl",
@@ -65,6 +78,7 @@ TITLES = (
     "virtual facets",
     "outside",
     "within",
+    "reduced",
     "lost",
     "time",
     "peak memory",
@@ -92,11 +106,17 @@ def measure(name: str, points: int) -> dict[str, Any]:
     Returns:
         Counts and shares; lengths as shares of the mesh's size, its box's diagonal.
     """
-    mesh = find_mesh(name)
+    base, max_triangles, error_m = VARIANTS.get(name, (name, None, None))
+    mesh = find_mesh(base)
     if mesh is None:
-        raise SystemExit(f"no mesh {name}")
+        raise SystemExit(f"no mesh {base}")
+    if max_triangles is not None:
+        mesh = decimate(mesh, max_triangles)
     start = time.perf_counter()
-    pieces = decompose(mesh, cache=False)
+    if error_m is None:
+        pieces = decompose(mesh, cache=False)
+    else:
+        pieces = decompose(mesh, "merged", error_m=error_m, cache=False)
     seconds = time.perf_counter() - start
     peak_mib = find_peak_mib()
     size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
@@ -110,7 +130,8 @@ def measure(name: str, points: int) -> dict[str, Any]:
         "virtual": report.virtual_facets / report.facets,
         "outside": deepest_outside(pieces, points) / size if is_solid else None,
         "within": deepest_surface(pieces) / size if is_solid else None,
-        "lost": lost_share(pieces, ON_FACET * size),
+        "reduced": mesh.report.decimation_error_m / size,
+        "lost": lost_share(pieces, ON_FACET * size) if error_m is None else None,
         "seconds": seconds,
         "peak_mib": peak_mib,
     }
@@ -147,6 +168,7 @@ def row(result: dict[str, Any]) -> list[str]:
         f"{result['virtual']:.0%}",
         share(result["outside"]),
         share(result["within"]),
+        share(result["reduced"]),
         share(result["lost"]),
         f"{result['seconds']:.2f} s",
         f"{result['peak_mib']:.0f} MiB",
@@ -168,7 +190,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--meshes", nargs="*", default=[*GENERATED, *REAL])
+    parser.add_argument("--meshes", nargs="*", default=[*GENERATED, *VARIANTS, *REAL])
     parser.add_argument("--measure", metavar="MESH", help="one mesh, in this process")
     parser.add_argument("--points", type=int, default=1000, help="of hulls, per mesh")
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
@@ -179,7 +201,7 @@ def main() -> None:
     rows = []
     print("  ".join(TITLES))
     for name in args.meshes:
-        if name not in GENERATED and not (REAL_MESHES / name).exists():
+        if name in REAL and not (REAL_MESHES / name).exists():
             print(f"{name} is not beside the repository: skipped", file=sys.stderr)
             continue
         command = [sys.executable, __file__, "--measure", name]
