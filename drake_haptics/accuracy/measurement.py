@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from subprocess import SubprocessError
 from typing import Any
 
 from drake_haptics.accuracy.built_scenes import build_once
@@ -22,7 +23,6 @@ from drake_haptics.accuracy.tick_cost import time_ticks
 from drake_haptics.accuracy.truth import Truth
 from drake_haptics.errors import UserError
 from drake_haptics.scene import Scene
-from drake_haptics.simulation import RunError
 
 # Under valgrind a tick takes fifty times as long; no more are needed, as counts do not
 # scatter.
@@ -57,7 +57,8 @@ class Measurement:
         measure = getattr(self, f"_measure_{task['what']}")
         try:
             result: dict[str, Any] = measure(scene)
-        except (UserError, ValueError, RunError) as error:
+        # Drake raises RuntimeError, as a run that diverges does.
+        except (UserError, ValueError, RuntimeError, SubprocessError) as error:
             return {"why_not": str(error)}
         return result
 
