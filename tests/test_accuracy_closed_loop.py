@@ -95,3 +95,11 @@ def test_says_why_there_is_no_limit(tmp_path):
     assert nowhere.stiffness_N_per_m is None and nowhere.why_not == "it rocks for ever"
     late = find_stable_stiffness(scene, PressedPlace(7.0))
     assert late.stiffness_N_per_m is None and "time_s must be on" in late.why_not
+
+
+def test_a_loop_of_two_rates_has_no_limit_that_could_be_told(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    scene.contact.query_rate_hz = 500.0
+    found = find_stable_stiffness(scene, PressedPlace(0.3, 1e5))
+    assert found.stiffness_N_per_m is None
+    assert found.why_not.startswith("several periods")

@@ -108,21 +108,31 @@ def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
 
 
 def _find_limit(scene: Scene, held: HeldScene, near_N_per_m: float) -> float:
-    """Returns the largest stable stiffness, N/m, looked for from one near it."""
+    """Returns the largest stable stiffness, N/m, looked for from one near it.
+
+    Raises:
+        ValueError: No stiffness is stable of which anything can be told.
+    """
     stiffness = scene.coupling.stiffness_N_per_m
     lowest, highest = stiffness / _RANGE, stiffness * _RANGE
+    reasons: list[str] = []
 
     def growth(value: float) -> float:
         coupling = replace(scene.coupling, stiffness_N_per_m=value)
         try:
             return analyse_held_scene(held, coupling).growth
-        except ValueError:  # Beyond it nothing can be told: that is the limit.
+        except ValueError as error:
+            # Where it is stable below, that is the limit.
+            reasons.append(str(error))
             return math.nan
 
-    return find_stability_limit(
+    limit = find_stability_limit(
         growth,
         min(max(near_N_per_m, lowest), highest),
         lowest=lowest,
         highest=highest,
         relative_tolerance=_TOLERANCE,
     ).value
+    if limit == 0.0 and reasons:
+        raise ValueError(reasons[0])
+    return limit
