@@ -1,8 +1,11 @@
 #pragma once
 
+#include <vector>
+
 #include "depth_walk.h"
 #include "pair_state.h"
 #include "support.h"
+#include "supported_facets.h"
 #include "surface_request.h"
 
 namespace drake_haptics {
@@ -22,7 +25,11 @@ class ContactPassage {
   /// Whether a contact of the last tick on other pieces goes on in it.
   bool IsHandedOver(const DepthCandidate& facet) const;
 
+  /// Appends what holds all facets that IsHandedOver.
+  void AppendWanted(std::vector<WantedFacets>* wanted) const;
+
  private:
+  double LeastGap(const PressedContact& last) const;
   bool Follows(const DepthCandidate& facet, const PressedContact& last) const;
 
   const PosedPair& pair_;

@@ -76,12 +76,17 @@ PairContact ContactGrazing(const PosedPair& pair, const Separation& separation,
           ContactStatus::kPenetrating};
 }
 
+Vec3 BetweenCentroids(const PosedPair& pair) {
+  const Vec3 between = pair.A.centroid - pair.X_AB * pair.B.centroid;
+  const double length = between.norm();
+  return length > 1e-12 * pair.scale() ? Vec3(between / length) : Vec3::UnitX();
+}
+
 Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
                 const Hub& hub_last, const WalkBounds& bounds,
                 DepthWorkspace* workspace) {
-  Vec3 between = pair.A.centroid - pair.X_AB * pair.B.centroid;
-  if (!(between.norm() > 1e-12 * pair.scale())) between = Vec3::UnitX();
-  Depth best = WalkAlong(pair, rule, between, hub_last, bounds, workspace);
+  Depth best = WalkAlong(pair, rule, BetweenCentroids(pair), hub_last, bounds,
+                         workspace);
   if (n_last.squaredNorm() > 0) {
     const Depth other =
         WalkAlong(pair, rule, n_last, hub_last, bounds, workspace);

@@ -25,6 +25,9 @@ PairContact ContactAtFacet(const PosedPair& pair, const DepthCandidate& facet,
 PairContact ContactGrazing(const PosedPair& pair, const Separation& separation,
                            const Vec3& n_last);
 
+/// Unit direction from B's centroid to A's; any where they coincide.
+Vec3 BetweenCentroids(const PosedPair& pair);
+
 /// The facet found by the starts of paper 5.2.2 where no facet is known: the
 /// line that joins the centroids and, unless it is zero, the last normal.
 Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,

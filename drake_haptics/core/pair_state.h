@@ -6,6 +6,7 @@
 #include "depth_walk.h"
 #include "simplex.h"
 #include "support.h"
+#include "supported_facets.h"
 #include "types.h"
 
 namespace drake_haptics {
@@ -33,6 +34,7 @@ struct PairWorkspace {
   DepthWorkspace depth;
   std::vector<DepthCandidate> carried;
   PatchWorkspace patch;
+  std::vector<WantedFacets> wanted;
 };
 
 }  // namespace drake_haptics

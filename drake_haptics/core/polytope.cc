@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "carrying_cone.h"
 #include "gauss_turn.h"
 #include "hull_shape.h"
 
@@ -160,6 +161,7 @@ Polytope MakePolytope(std::span<const Vec3> points, const HullShape& shape) {
   AddFansAndRings(&P);
   AddBallAndBox(&P);
   FillGaussTurns(&P);
+  FillCarryingArcs(&P);
   return P;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "direction_cone.h"
 #include "types.h"
 
 namespace drake_haptics {
@@ -31,6 +32,10 @@ struct Polytope {
     /// locally supported by direction n at the edge when n ⟂ edge and
     /// n · wing <= 0 for each wing. Zero vectors where there is no face.
     std::array<Vec3, 2> wings{Vec3::Zero(), Vec3::Zero()};
+    /// Ends of the arc of outward directions along which the edge can carry a
+    /// contact, up to two quarter turns apart, nearly unit; zero where it
+    /// cannot (carrying_cone.h).
+    std::array<Vec3, 2> carrying{Vec3::Zero(), Vec3::Zero()};
     double turn = 0;  ///< see gauss_turn.h
   };
 
@@ -74,6 +79,10 @@ struct Polytope {
   /// each r of its ring.
   std::vector<int> ring_start{0};
   std::vector<Vec3> ring;
+
+  /// Holds all outward directions along which the surface can carry a contact
+  /// (carrying_cone.h).
+  DirectionCone carrying;
 
   Vec3 centroid = Vec3::Zero();  ///< mean of the vertices
   double radius = 0;             ///< of the ball about the centroid, m

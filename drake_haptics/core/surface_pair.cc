@@ -7,8 +7,11 @@
 
 #include "carried_facets.h"
 #include "contact_passage.h"
+#include "facet_press.h"
+#include "facet_prospect.h"
 #include "facet_revisit.h"
 #include "flush_features.h"
+#include "gauss_overlay.h"
 #include "pair_answer.h"
 #include "separation.h"
 #include "surface_support.h"
@@ -37,9 +40,6 @@ constexpr double kEntryShare = 0.25;
 constexpr double kLargestPromotion = 0.5;
 // Cosine of the angle within which two normals count as one.
 constexpr double kSameNormal = 0.996;
-// How far beyond its features' sides a contact in depth may lie, as a share of
-// the size.
-constexpr double kSlideShare = 1e-2;
 constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 
 class Query {
@@ -66,7 +66,7 @@ class Query {
     if (!is_refused_) state_.refusals = 0;
     if (!contact) return contact;
     const bool is_pressed = contact->distance < 0 && facet_hub_;
-    const bool is_within = is_pressed && IsWithinSides(*contact);
+    const bool is_within = is_pressed && IsWithinSides(pair_, *contact);
     if (facet_hub_ && contact->feature_A.kind() == FeatureKind::kEdge &&
         contact->feature_B.kind() == FeatureKind::kEdge) {
       contact->p_a = OnCrossedEdges(pair_, contact->feature_A,
@@ -171,7 +171,14 @@ class Query {
   }
 
   std::optional<PairContact> Overlapping() {
-    const Depth depth = state_.in_contact ? WarmDepth() : EntryDepth();
+    const bool is_new = !state_.in_contact && !WasRefused();
+    if (is_new && !MayBegin()) {
+      is_refused_ = true;
+      return TakenOver();
+    }
+    const Depth depth = state_.in_contact ? WarmDepth()
+                        : is_new          ? EntryDepth()
+                                          : RefusedDepth();
     const bool apart = separation_.status == SeparationStatus::kApart;
     Hub hub = separation_.simplex.hubs[0];
     if (apart && (depth.status == DepthStatus::kNoFacet ||
@@ -188,7 +195,7 @@ class Query {
       if (least) return AtDepth(*least);
     }
     if (!IsPlausible(depth)) {
-      Refuse(depth);
+      Refuse(depth.best.n, depth.hub);
       const auto contact = GoneOn();
       return contact ? contact : TakenOver();
     }
@@ -213,34 +220,57 @@ class Query {
     const Depth least = LeastOfAllFacets(pair_, tracked.hub, global_);
     if (least.status == DepthStatus::kNoFacet) return std::nullopt;
     if (least.best.support == SurfaceSupport::kSupported &&
-        IsWithinFeatures(least)) {
+        IsWithinFeatures(least.best)) {
       return least;
     }
     const bool is_tracked = IsPlausible(tracked);
     ListCarriedFacets(pair_, is_tracked ? tracked.best.h : kNoFloor,
                       &workspace_.carried);
     for (const DepthCandidate& facet : workspace_.carried) {
-      const Depth depth{DepthStatus::kLocalMinimum,
-                        facet,
-                        least.best.h,
-                        {pair_.A.first_vertex_of(facet.feature_A),
-                         pair_.B.first_vertex_of(facet.feature_B)}};
-      if (is_tracked ? IsWithinFeatures(depth) : IsPlausible(depth)) {
+      const Depth depth{DepthStatus::kLocalMinimum, facet, least.best.h,
+                        HubOf(pair_, facet)};
+      if (is_tracked ? IsWithinFeatures(facet) : IsPlausible(depth)) {
         return depth;
       }
     }
     return std::nullopt;
   }
 
-  // Of a pair that was not in contact. One that was refused at the last tick
-  // mostly is again: the thorough search is made anew only now and then.
-  Depth EntryDepth() {
-    if (state_.refusals > 0 && state_.refusals < kRestAfterRefusal) {
-      Hub hub = state_.refused_hub;
-      SupportGap(pair_, state_.refused_n, &hub);
-      return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
-                       Bounds(kRefusedPromotionHubs), &workspace_.depth);
+  bool WasRefused() const {
+    return state_.refusals > 0 && state_.refusals < kRestAfterRefusal;
+  }
+
+  // Of a pair that overlaps: false is a proof that a search for a plausible
+  // facet would be in vain.
+  bool MayBegin() {
+    if (request_.is_first || global_ != nullptr ||
+        separation_.status == SeparationStatus::kApart) {
+      return true;
     }
+    WantedFacets wanted{
+        {state_.n, state_.n.squaredNorm() > 0 ? kComingFrom : -1.0}, kNoFloor};
+    // A search sees a facet around its start that is no deeper than the start;
+    // none but the two faces where both pieces are flat.
+    if (pair_.A.dimension == 3 || pair_.B.dimension == 3) {
+      wanted.least =
+          std::min(GapAlong(state_.n), GapAlong(BetweenCentroids(pair_))) -
+          kEntryShare * request_.tolerance - Tie(pair_);
+    }
+    return MayFind(&wanted);
+  }
+
+  double GapAlong(const Vec3& n) const {
+    Hub hub = state_.hub;
+    return SupportGap(pair_, n, &hub);
+  }
+
+  bool MayFind(const WantedFacets* own) {
+    return MayFindFacet(pair_, request_, passage_, state_.hub, own,
+                        &workspace_);
+  }
+
+  // Of a pair that was not in contact.
+  Depth EntryDepth() {
     // Pairs refused at one tick shall not all be searched at one later tick.
     state_.refusals = (state_.hub.a * 31 + state_.hub.b * 17) % kRefusalSpread;
     return ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
@@ -251,11 +281,21 @@ class Query {
     return {max_promotion_hubs, request_.max_walk_steps};
   }
 
-  void Refuse(const Depth& depth) {
+  // Of one that was refused at the last tick, and mostly is again: the thorough
+  // search is made anew only now and then.
+  Depth RefusedDepth() {
+    Hub hub = state_.refused_hub;
+    SupportGap(pair_, state_.refused_n, &hub);
+    return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
+                     Bounds(kRefusedPromotionHubs), &workspace_.depth);
+  }
+
+  // @param n, hub where the search ended.
+  void Refuse(const Vec3& n, const Hub& hub) {
     is_refused_ = true;
     ++state_.refusals;
-    state_.refused_n = depth.best.n;
-    state_.refused_hub = depth.hub;
+    state_.refused_n = n;
+    state_.refused_hub = hub;
   }
 
   // The contact at a facet of A ⊖ B, which is also the next tick's start.
@@ -276,7 +316,8 @@ class Query {
     if (passage_.GoesOn(depth.best)) return true;
     if (depth.best.support != SurfaceSupport::kSupported) return false;
     // A walk that was cut short may not have come to where the bodies press.
-    if (depth.status != DepthStatus::kBounded && !IsWithinFeatures(depth)) {
+    if (depth.status != DepthStatus::kBounded &&
+        !IsWithinFeatures(depth.best)) {
       return false;
     }
     return request_.is_first || passage_.IsHandedOver(depth.best) ||
@@ -296,10 +337,9 @@ class Query {
       }
     }
     if (best == nullptr) return std::nullopt;
-    const Hub hub{pair_.A.first_vertex_of(best->feature_A),
-                  pair_.B.first_vertex_of(best->feature_B)};
-    return AtFacet({DepthStatus::kLocalMinimum, *best, best->h, hub},
-                   ContactStatus::kPenetrating);
+    return AtFacet(
+        {DepthStatus::kLocalMinimum, *best, best->h, HubOf(pair_, *best)},
+        ContactStatus::kPenetrating);
   }
 
   // A pair that goes on where another one pressed: the tool may be behind this
@@ -309,6 +349,9 @@ class Query {
     const Vec3* tried = nullptr;
     for (const PressedContact& last : request_.pressed) {
       if (last.is_kept || !last.IsNear(pair_.A, pair_.B)) continue;
+      if (tried == nullptr && !state_.in_contact && !MayFind(nullptr)) {
+        return std::nullopt;
+      }
       if (tried != nullptr && tried->dot(last.n) > kSameNormal) continue;
       tried = &last.n;
       const auto contact = Held(pair_.X_AB.R * last.n);
@@ -317,20 +360,9 @@ class Query {
     return std::nullopt;
   }
 
-  // Whether the bodies press on the facet's own features: beside them its plane
-  // means nothing.
-  bool IsWithinFeatures(const Depth& depth) {
-    const PairContact contact =
-        ContactAtFacet(pair_, depth.best, ContactStatus::kPenetrating);
-    return IsWithinSides(contact) ||
-           FindPatch(contact.n, contact.distance, depth.hub, contact.p_a)
-               .center;
-  }
-
-  bool IsWithinSides(const PairContact& contact) const {
-    return LateralOffset(pair_, contact.feature_A, contact.feature_B,
-                         {contact.p_a, contact.p_b}) <=
-           kSlideShare * pair_.scale();
+  bool IsWithinFeatures(const DepthCandidate& facet) {
+    return drake_haptics::IsWithinFeatures(pair_, facet, request_.tolerance,
+                                           &workspace_.patch);
   }
 
   // From the last answer. On coherent motion its facet mostly still is the
@@ -369,7 +401,7 @@ class Query {
         depth.best.support != SurfaceSupport::kSupported ||
         !(depth.best.h < 0) ||
         !(passage_.GoesOn(depth.best) || passage_.IsHandedOver(depth.best)) ||
-        !IsWithinFeatures(depth)) {
+        !IsWithinFeatures(depth.best)) {
       return std::nullopt;
     }
     return AtFacet(depth, ContactStatus::kHeld);
@@ -377,10 +409,8 @@ class Query {
 
   PressurePatch FindPatch(const Vec3& n, double h, const Hub& hub,
                           const Vec3& p_a) {
-    const double layer = PressureLayer(request_.tolerance);
-    return FindPressurePatch(pair_, n, h, hub, p_a,
-                             std::clamp(request_.tolerance - h, 0.0, layer),
-                             layer, &workspace_.patch);
+    return FindSurfacePatch(pair_, n, h, hub, p_a, request_.tolerance,
+                            &workspace_.patch);
   }
 
   void Remember(const std::optional<PairContact>& contact) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "carrying_cone.h"
+
 namespace drake_haptics {
 namespace {
 
@@ -154,6 +156,8 @@ void ConnectToSurface(const MeshTopology& mesh, std::span<const int> patch,
   MarkEdgesFromFacets(piece);
   around.SetOuterWings();
   around.SetRings();
+  FillCarryingArcs(piece);
+  piece->carrying = FindCarryingCone(*piece);
 }
 
 void MarkEdgesFromFacets(Polytope* piece) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "types.h"
+
+namespace drake_haptics {
+
+/// Directions within an angle of an axis.
+struct DirectionCone {
+  Vec3 axis = Vec3::UnitX();  ///< unit
+  double cosine = -1;         ///< of the angle; −1 for all directions
+
+  /// Whether it holds a unit direction, or misses it by a cosine of `slack`.
+  bool Holds(const Vec3& direction, double slack = 0) const {
+    return axis.dot(direction) >= cosine - slack;
+  }
+};
+
+}  // namespace drake_haptics

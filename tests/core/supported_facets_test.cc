@@ -1,0 +1,125 @@
+// The facets that both surfaces carry, found along arcs of directions, against
+// those of all pairs of features.
+#include "supported_facets.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "carried_facets.h"
+#include "check.h"
+#include "decomposition.h"
+
+namespace drake_haptics {
+namespace {
+
+std::mt19937 generator(1);
+
+double Uniform(double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(generator);
+}
+
+Vec3 RandomDirection() {
+  std::normal_distribution<double> normal;
+  return Vec3(normal(generator), normal(generator), normal(generator))
+      .normalized();
+}
+
+// A torus with dents, of about 4 cm: bulges, hollows, saddles and sharp edges.
+Decomposition DentedTorus(int around, int across, double dents) {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+  const auto index = [&](int i, int j) {
+    return (i % around) * across + j % across;
+  };
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < across; ++j) {
+      const double u = 2 * M_PI * i / around, v = 2 * M_PI * j / across;
+      const double r = 0.012 * (1 + Uniform(-dents, dents));
+      const double R = 0.03 + r * std::cos(v);
+      vertices.emplace_back(R * std::cos(u), R * std::sin(u), r * std::sin(v));
+      triangles.emplace_back(index(i, j), index(i + 1, j), index(i + 1, j + 1));
+      triangles.emplace_back(index(i, j), index(i + 1, j + 1), index(i, j + 1));
+    }
+  }
+  const std::vector<std::uint8_t> solid(triangles.size(), 1);
+  return DecomposeSurface(vertices, triangles, solid);
+}
+
+bool IsListed(const DepthCandidate& facet,
+              const std::vector<DepthCandidate>& facets) {
+  return std::any_of(facets.begin(), facets.end(), [&](const auto& other) {
+    return (facet.n - other.n).norm() < 1e-6 &&
+           std::abs(facet.h - other.h) < 1e-9 &&
+           facet.feature_A == other.feature_A &&
+           facet.feature_B == other.feature_B;
+  });
+}
+
+// All facets, and those of a cone down to a depth.
+int CompareAt(const PosedPair& pair) {
+  std::vector<DepthCandidate> all, listed, some;
+  ListCarriedFacets(pair, -1.0, &all);
+  const WantedFacets anything{{Vec3::UnitX(), -1.0}, -1.0};
+  CHECK(ListSupportedFacets(pair, {0, 0}, {&anything, 1}, &listed));
+  const WantedFacets wanted{{RandomDirection(), Uniform(-0.5, 0.9)},
+                            -Uniform(0, 0.01)};
+  CHECK(ListSupportedFacets(pair, {0, 0}, {&wanted, 1}, &some));
+  for (const DepthCandidate& facet : all) {
+    CHECK(IsListed(facet, listed));
+    const bool is_wanted = wanted.Hold(facet.n, facet.h);
+    CHECK(is_wanted == IsListed(facet, some));
+  }
+  for (const DepthCandidate& facet : listed) CHECK(IsListed(facet, all));
+  return static_cast<int>(all.size());
+}
+
+void TestAllPairsOfFeatures() {
+  int found = 0;
+  for (const double dents : {0.0, 0.1, 0.4}) {
+    const Decomposition a = DentedTorus(12, 8, dents);
+    const Decomposition b = DentedTorus(9, 7, dents / 2);
+    for (int k = 0; k < 400; ++k) {
+      const Polytope& A = a.pieces[generator() % a.pieces.size()];
+      const Polytope& B = b.pieces[generator() % b.pieces.size()];
+      Pose X_AB;
+      X_AB.R = Eigen::AngleAxisd(Uniform(0, M_PI), RandomDirection())
+                   .toRotationMatrix();
+      X_AB.p = A.centroid - X_AB.R * B.centroid +
+               Uniform(0, 0.01) * RandomDirection();
+      found += CompareAt({A, B, X_AB});
+    }
+  }
+  CHECK(found > 100);
+}
+
+// The cone of a piece holds the normals along which others meet it.
+void TestConesAreNarrow() {
+  const Decomposition body = DentedTorus(24, 16, 0.02);
+  const auto narrow = std::count_if(
+      body.pieces.begin(), body.pieces.end(),
+      [](const Polytope& piece) { return piece.carrying.cosine > 0; });
+  CHECK(narrow > 0.5 * static_cast<double>(body.pieces.size()));
+}
+
+void TestLargePiecesAreLeftOut() {
+  std::vector<Vec3> points;
+  for (int k = 0; k < 1000; ++k) points.push_back(RandomDirection());
+  const Polytope ball = MakePolytope(points);
+  const WantedFacets anything{{Vec3::UnitX(), -1.0}, -10.0};
+  std::vector<DepthCandidate> facets;
+  CHECK(
+      !ListSupportedFacets({ball, ball, {}}, {0, 0}, {&anything, 1}, &facets));
+}
+
+}  // namespace
+}  // namespace drake_haptics
+
+int main() {
+  drake_haptics::TestAllPairsOfFeatures();
+  drake_haptics::TestConesAreNarrow();
+  drake_haptics::TestLargePiecesAreLeftOut();
+  return drake_haptics::FailedChecks() > 0;
+}
