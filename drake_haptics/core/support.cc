@@ -3,14 +3,12 @@
 namespace drake_haptics {
 namespace {
 
-// How much farther along the direction a spoke leads; zero if less than the
-// round-off of the product. An absolute threshold would end the climb at edges
-// that are short beside the polytope.
-double Gain(const Vec3& direction, const Vec3& along) {
+// Whether a gain along a direction is more than the round-off of the product.
+// An absolute threshold would end the climb at edges that are short beside the
+// polytope.
+bool IsGain(double gain, const Vec3& direction, const Vec3& along) {
   constexpr double kRoundOff = 4e-16;
-  const Vec3 terms = direction.cwiseProduct(along);
-  const double gain = terms.sum();
-  return gain > kRoundOff * terms.cwiseAbs().sum() ? gain : 0.0;
+  return gain > kRoundOff * direction.cwiseProduct(along).cwiseAbs().sum();
 }
 
 }  // namespace
@@ -23,8 +21,8 @@ int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
     double most = 0;
     int next = -1;
     for (const Polytope::Spoke& spoke : polytope.fan_of(best)) {
-      const double gain = Gain(direction, spoke.along);
-      if (gain > most) {
+      const double gain = direction.dot(spoke.along);
+      if (gain > most && IsGain(gain, direction, spoke.along)) {
         most = gain;
         next = spoke.neighbor;
       }
