@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from drake_haptics.accuracy.figures import AccuracyStudy, Row
 from drake_haptics.accuracy.model_changes import is_comparable
 
-# Smaller errors are alike: a hundredth of what a hand can tell from nothing.
+# Smaller errors are alike: nobody feels so little.
 ERROR_FLOOR_N = 1e-3
 # A knee lies this far below its chord, in a front that fills a square of side 1.
 _LEAST_DEPTH = 0.1

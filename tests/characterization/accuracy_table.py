@@ -1,0 +1,200 @@
+"""Tabulates what accuracy costs in some scenes, and what budgets they hold.
+
+python tests/characterization/accuracy_table.py --write
+
+Some minutes, on a machine that does nothing else. Ctrl-C keeps what is measured where
+--store names a folder.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+
+from drake_haptics.accuracy.add_peers import add_peers
+from drake_haptics.accuracy.budget import BudgetChoice, choose_setting
+from drake_haptics.accuracy.budget_words import describe_outcome, describe_sacrifices
+from drake_haptics.accuracy.figures import AccuracyStudy, Row
+from drake_haptics.accuracy.fresh_run import measure_p99
+from drake_haptics.accuracy.model_changes import find_model_change
+from drake_haptics.accuracy.plot import draw_study
+from drake_haptics.accuracy.setting import Setting
+from drake_haptics.accuracy.study import run_accuracy_study
+from drake_haptics.accuracy.table import COLUMNS, get_columns, group_rows, make_cells
+from drake_haptics.accuracy.words import (
+    describe_knees,
+    describe_machine,
+    describe_missing,
+    describe_peers,
+    describe_reference,
+    describe_verdict,
+    make_front,
+)
+from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+
+_DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE = _DOCS / "accuracy.md"
+PICTURE = _DOCS / "accuracy_cup_spoon.png"
+SCENES = ("cup_spoon", "rubbed_sphere")
+BUDGET_SCENES = (*SCENES, "torus_peg")
+_BUDGET_RUNS = 3
+# Of the scene's own p99: a budget that costs something.
+_BUDGET_SHARE = 0.8
+_BUDGET_STEP_US = 10.0
+BEGIN = "<!-- {}: written by tests/characterization/accuracy_table.py -->\n"
+END = "<!-- end of {} -->\n"
+COLUMNS_NAME, BUDGETS_NAME = "columns", "budgets"
+BUDGET_HEADINGS = ("scene", "budget, µs", "p99, µs", "scene's p99, µs", "given up")
+_DPI = 90
+
+
+def make_columns() -> str:
+    """Returns what the columns mean, as a list."""
+    return "\n".join(f"- **{c.head}**, {c.unit}: {c.meaning}" for c in COLUMNS) + "\n"
+
+
+def make_prices(study: AccuracyStudy) -> str:
+    """Returns the price list of a scene with its sentences."""
+    columns = get_columns(study)
+    heads = [f"{column.head}, {column.unit}" for column in columns]
+    rows = [
+        [knob, _make_label(row), *make_cells(row, columns)]
+        for knob, group in group_rows(study)
+        for row in group
+    ]
+    parts = [
+        " ".join([*describe_verdict(study), describe_reference(study)]) + "\n",
+        _to_markdown(["knob", "setting", *heads], rows),
+        _make_list("Knee: ", describe_knees(study, make_front(study))),
+        _make_list("Beside it: ", describe_peers(study)),
+        _make_list("Not measured: ", describe_missing(study)),
+        describe_machine(study) + "\n",
+    ]
+    return "\n".join(part for part in parts if part)
+
+
+def make_budgets(choices: dict[str, BudgetChoice]) -> str:
+    """Returns what was given up for budgets, a row for each scene."""
+    rows = []
+    for name, choice in choices.items():
+        scene = load_scene(find_scene(name))
+        lost = describe_sacrifices(choice, scene) or ["nothing"]
+        rows.append(
+            [
+                name,
+                f"{choice.budget_us:g}",
+                f"{choice.trial.middle_us:.0f}",
+                f"{choice.trial.scene_us:.0f}",
+                "; ".join(lost) if choice.holds else describe_outcome(choice, name),
+            ]
+        )
+    return _to_markdown(list(BUDGET_HEADINGS), rows)
+
+
+def span_of(page: str, name: str) -> slice:
+    """Returns where in the page the part of that name is.
+
+    Raises:
+        ValueError: a mark is missing.
+    """
+    begin = BEGIN.format(name)
+    return slice(page.index(begin) + len(begin), page.index(END.format(name)))
+
+
+def with_parts(page: str, parts: dict[str, str]) -> str:
+    """Returns the page with new parts between their marks."""
+    for name, text in parts.items():
+        span = span_of(page, name)
+        page = f"{page[: span.start]}\n{text}\n{page[span.stop :]}"
+    return page
+
+
+def measure_prices(name: str, store: Path | None) -> AccuracyStudy:
+    """Measures all settings of a scene, and other libraries."""
+    scene = load_scene(find_scene(name))
+    kept = None if store is None else store / f"{name}.jsonl"
+    with progress_bar() as show:
+        study = run_accuracy_study(scene, name, store=kept, progress=show)
+        return add_peers(study, scene, progress=show)
+
+
+def hold_budget(name: str, study: AccuracyStudy | None) -> BudgetChoice:
+    """Holds a budget of four fifths of what a scene takes by itself.
+
+    Args:
+        name: Of the scene.
+        study: Of it; a quick one is made where not given.
+    """
+    scene = load_scene(find_scene(name))
+    with progress_bar() as show:
+
+        def make_study(settings: list[Setting] | None) -> AccuracyStudy:
+            if settings is None and study is not None:
+                return study
+            return run_accuracy_study(
+                scene, name, settings=settings, quick=study is None, progress=show
+            )
+
+        return choose_setting(
+            scene,
+            _choose_budget(measure_p99(scene)),
+            make_study=make_study,
+            measure_p99=measure_p99,
+            progress=show,
+            runs=_BUDGET_RUNS,
+        )
+
+
+def _choose_budget(p99_us: float) -> float:
+    return math.floor(_BUDGET_SHARE * p99_us / _BUDGET_STEP_US) * _BUDGET_STEP_US
+
+
+def _make_label(row: Row) -> str:
+    """Returns a setting; bold is the scene's own, † another model."""
+    if row.is_scene:
+        return f"**{row.setting.label}**"
+    return (
+        f"{row.setting.label} †"
+        if find_model_change(row.setting)
+        else (row.setting.label)
+    )
+
+
+def _make_list(beginning: str, sentences: list[str]) -> str:
+    return "".join(f"- {beginning}{sentence}\n" for sentence in sentences)
+
+
+def _to_markdown(header: list[str], rows: list[list[str]]) -> str:
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines) + "\n"
+
+
+def main() -> None:
+    """Measures, prints, and writes the page if asked to."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    parser.add_argument("--store", type=Path, help="folder that keeps results")
+    arguments = parser.parse_args()
+    if arguments.store is not None:
+        arguments.store.mkdir(parents=True, exist_ok=True)
+    studies = {name: measure_prices(name, arguments.store) for name in SCENES}
+    choices = {name: hold_budget(name, studies.get(name)) for name in BUDGET_SCENES}
+    parts = {
+        COLUMNS_NAME: make_columns(),
+        **{name: make_prices(study) for name, study in studies.items()},
+        BUDGETS_NAME: make_budgets(choices),
+    }
+    print("\n".join(parts.values()))
+    if arguments.write:
+        page = PAGE.read_text(encoding="utf-8")
+        PAGE.write_text(with_parts(page, parts), encoding="utf-8")
+        draw_study(studies[SCENES[0]]).savefig(PICTURE, dpi=_DPI)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,95 @@
+"""docs/accuracy.md has all scenes, knobs, settings and columns of today."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent / "characterization"))
+from accuracy_samples import make_study
+from accuracy_table import (
+    BUDGET_HEADINGS,
+    BUDGET_SCENES,
+    BUDGETS_NAME,
+    COLUMNS_NAME,
+    PAGE,
+    PICTURE,
+    SCENES,
+    make_columns,
+    make_prices,
+    span_of,
+    with_parts,
+)
+from click.testing import CliRunner
+
+from drake_haptics.accuracy.knobs import list_settings
+from drake_haptics.accuracy.table import COLUMNS
+from drake_haptics.cli import main
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+
+TEXT = PAGE.read_text(encoding="utf-8")
+
+
+def rows_of(page: str, name: str) -> list[list[str]]:
+    """The cells of the table of a part, headings first, without the line below."""
+    rows = re.findall(r"^\| (.*) \|$", page[span_of(page, name)], flags=re.MULTILINE)
+    cells = [row.split(" | ") for row in rows]
+    return [cells[0], *cells[2:]]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_setting_has_a_row_with_all_columns(name: str) -> None:
+    head, *rows = rows_of(TEXT, name)
+    assert head[:2] == ["knob", "setting"]
+    assert head[2:] == [f"{column.head}, {column.unit}" for column in COLUMNS]
+    assert all(len(row) == len(head) for row in rows)
+    written = [(knob, label.strip("*† ")) for knob, label, *_ in rows]
+    settings = list_settings(load_scene(find_scene(name)))
+    assert written == [(setting.knob, setting.label) for setting in settings]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_scene_has_its_sentences(name: str) -> None:
+    part = TEXT[span_of(TEXT, name)]
+    assert "The scene as it is takes" in part
+    assert "Errors are against" in part
+    assert "read ratios" in part
+
+
+def test_every_scene_has_a_budget() -> None:
+    head, *rows = rows_of(TEXT, BUDGETS_NAME)
+    assert head == list(BUDGET_HEADINGS)
+    assert [row[0] for row in rows] == list(BUDGET_SCENES)
+
+
+def test_the_columns_are_those_of_today() -> None:
+    assert TEXT[span_of(TEXT, COLUMNS_NAME)].strip() == make_columns().strip()
+
+
+def test_the_picture_is_there() -> None:
+    assert PICTURE.name in TEXT and PICTURE.is_file()
+
+
+def test_commands_that_are_shown_have_options_that_exist() -> None:
+    asked = re.findall(r"^drake-haptics (accuracy .*?)(?: +#.*)?$", TEXT, re.MULTILINE)
+    assert len(asked) == 4
+    known = CliRunner().invoke(main, ["accuracy", "--help"]).stdout
+    for line in asked:
+        for word in shlex.split(line):
+            assert not word.startswith("--") or word in known
+
+
+def test_new_figures_replace_the_old_ones_and_nothing_else() -> None:
+    prices = make_prices(make_study())
+    renewed = with_parts(TEXT, {SCENES[0]: prices})
+    assert "tool.max_triangles" in rows_of(renewed, SCENES[0])[-2][0]
+    assert "**as it is**" in prices and "0.5 mm †" in prices and "| CoACD |" in prices
+    for page in (TEXT, renewed):
+        assert page.count(SCENES[0]) > 1
+    before, after = (page[: span_of(page, SCENES[0]).start] for page in (TEXT, renewed))
+    assert before == after
