@@ -42,6 +42,7 @@ from drake_haptics.accuracy.words import (
     describe_verdict,
     make_front,
 )
+from drake_haptics.page_path import check_page_path
 
 _DPI = 110
 _PEER_COLUMNS = (
@@ -88,19 +89,6 @@ def write_accuracy_page(study: AccuracyStudy, path: Path, scene: str) -> None:
         command=html.escape(f"drake-haptics accuracy {shlex.quote(scene)}"),
     )
     path.write_text(page, encoding="utf-8")
-
-
-def check_page_path(path: Path) -> None:
-    """Checks that page and picture are two files.
-
-    Raises:
-        ValueError: The path has the picture's suffix.
-    """
-    if path.suffix == ".png":
-        raise ValueError(
-            f"the page must not be called {path.name}: its picture will be. Give a"
-            " name that ends with .html"
-        )
 
 
 def _make_price_list(study: AccuracyStudy) -> str:

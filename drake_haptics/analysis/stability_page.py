@@ -14,6 +14,7 @@ from drake_haptics.analysis.delay_margin import LONGEST_DELAY
 from drake_haptics.analysis.motion_words import describe_motion, shorten_paths
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
+from drake_haptics.page_path import check_page_path
 
 _SLOWEST_SHOWN = 12
 _DPI = 110
@@ -53,19 +54,6 @@ def write_stability_page(stability: SceneStability, name: str, path: Path) -> No
         warnings=_make_warnings(stability),
     )
     path.write_text(page, encoding="utf-8")
-
-
-def check_page_path(path: Path) -> None:
-    """Checks that page and picture are two files.
-
-    Raises:
-        ValueError: The path has the picture's suffix.
-    """
-    if path.suffix == ".png":
-        raise ValueError(
-            f"the page must not be called {path.name}: its picture will be. Give a"
-            " name that ends with .html"
-        )
 
 
 def describe_verdict(stability: SceneStability) -> str:

@@ -17,7 +17,7 @@ from drake_haptics.accuracy.figures import AccuracyStudy
 from drake_haptics.accuracy.fresh_run import measure_p99
 from drake_haptics.accuracy.knobs import list_settings
 from drake_haptics.accuracy.one_setting import apply_checked, parse_setting
-from drake_haptics.accuracy.page import check_page_path, write_accuracy_page
+from drake_haptics.accuracy.page import write_accuracy_page
 from drake_haptics.accuracy.scene_file import write_scene
 from drake_haptics.accuracy.setting import Setting
 from drake_haptics.accuracy.study import run_accuracy_study
@@ -27,6 +27,7 @@ from drake_haptics.cli.accuracy_output import make_console, print_choice, print_
 from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
+from drake_haptics.page_path import check_page_path
 from drake_haptics.scene import Scene, load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import RunError

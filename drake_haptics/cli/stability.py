@@ -10,7 +10,6 @@ from rich.table import Table
 
 from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
 from drake_haptics.analysis.stability_page import (
-    check_page_path,
     describe_delay,
     describe_situation,
     describe_verdict,
@@ -21,6 +20,7 @@ from drake_haptics.analysis.study import StudyError
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
+from drake_haptics.page_path import check_page_path
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import RunError
