@@ -46,11 +46,15 @@ def decimate(mesh: Mesh, max_triangles: int) -> Mesh:
         raise ValueError(f"max_triangles must be 4 or more, is {max_triangles}")
     if len(mesh.triangles) <= max_triangles:
         return mesh
-    fewer = _first_sound(mesh, _counts_below(max_triangles))
-    if fewer is not None:
+    all_triangles = len(mesh.triangles)
+    fewer, nearest = (
+        _first_sound(mesh, _counts_below(max_triangles))
+        or _first_sound(mesh, _counts_above(max_triangles, all_triangles))
+        or (mesh, all_triangles)
+    )
+    # Few enough may come even where more are asked for.
+    if len(fewer.triangles) <= max_triangles:
         return _report_error(mesh, fewer)
-    above = _counts_above(max_triangles, len(mesh.triangles))
-    nearest = len((_first_sound(mesh, above) or mesh).triangles)
     raise MeshError(
         f"{mesh.report.source}: cannot be reduced to {max_triangles:,} triangles"
         f" without tearing or folding it: take max_triangles = {nearest:,}, the nearest"
@@ -69,13 +73,16 @@ def _counts_above(least: int, end: int) -> Iterator[int]:
         yield count
 
 
-def _first_sound(mesh: Mesh, counts: Iterator[int]) -> Mesh | None:
-    """Returns what the first count gives that works, None if none does."""
+def _first_sound(mesh: Mesh, counts: Iterator[int]) -> tuple[Mesh, int] | None:
+    """Returns what the first count that works gives, and that count.
+
+    It may give fewer triangles, and the number of those need not be one that works.
+    """
     for count in counts:
         for options in _OPTIONS:
             fewer = _collapse(mesh, count, options)
             if fewer is not None:
-                return fewer
+                return fewer, count
     return None
 
 

@@ -85,6 +85,19 @@ def test_too_few_for_all_solids_is_refused_with_the_nearest_count_that_works():
     assert len(decimate(mesh, nearest).components) == 3
 
 
+def test_every_refusal_names_a_count_that_works():
+    spoon, refused = shape("spoon"), 0
+    for count in range(4, 30):
+        try:
+            assert len(decimate(spoon, count).triangles) <= count
+        except MeshError as error:
+            refused += 1
+            nearest = int(str(error).split("max_triangles = ")[1].split(",")[0])
+            assert count < nearest
+            assert len(decimate(spoon, nearest).triangles) <= nearest
+    assert refused
+
+
 def test_fewer_than_four_triangles_are_no_solid():
     with pytest.raises(ValueError, match="max_triangles must be 4 or more, is 3"):
         decimate(shape("cup"), 3)
