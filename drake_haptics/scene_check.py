@@ -103,7 +103,7 @@ def _check_scalar(schema: Any, data: Any, where: str) -> None:
         raise SceneError(f"{where}: expected a whole number, found {data!r}")
     elif schema is bool and not isinstance(data, bool):
         raise SceneError(f"{where}: expected true or false, found {data!r}")
-    elif schema is str and isinstance(data, list | dict | None):
+    elif schema is str and not isinstance(data, str):
         raise SceneError(f"{where}: expected a text, found {data!r}")
 
 
