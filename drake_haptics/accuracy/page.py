@@ -6,7 +6,6 @@ import base64
 import html
 import io
 import math
-import shlex
 from collections.abc import Iterator, Sequence
 from importlib.resources import files
 from pathlib import Path
@@ -53,13 +52,14 @@ _PEER_COLUMNS = (
 )
 
 
-def write_accuracy_page(study: AccuracyStudy, path: Path, scene: str) -> None:
+def write_accuracy_page(study: AccuracyStudy, path: Path, command: str) -> None:
     """Writes the page as one HTML file, and its picture beside it as PNG.
 
     Args:
         study: What to show.
         path: Of the HTML file; the picture has the suffix `.png` instead.
-        scene: As the command line has it, for the commands that are told.
+        command: The words of the command line that measured it, for those that are
+            told; without them a row would be another motion's.
 
     Raises:
         ValueError: The path has the picture's suffix.
@@ -86,7 +86,7 @@ def write_accuracy_page(study: AccuracyStudy, path: Path, scene: str) -> None:
         columns=_make_meanings(get_columns(study)),
         reference=html.escape(describe_reference(study)),
         machine=html.escape(describe_machine(study)),
-        command=html.escape(f"drake-haptics accuracy {shlex.quote(scene)}"),
+        command=html.escape(command),
     )
     path.write_text(page, encoding="utf-8")
 

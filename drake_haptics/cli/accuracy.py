@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -98,6 +99,8 @@ def accuracy(
         raise click.UsageError("--write needs --budget-us")
     if budget_us is not None and (out is not None or words):
         raise click.UsageError("--budget-us goes with neither --out nor --only")
+    if words and out is not None:
+        raise click.UsageError("--only writes no page: leave --out away")
     chosen, name = load_scene(find_scene(scene)), Path(scene).stem
     page = out or Path(f"{name}-accuracy.html")
     settings = _find_settings(chosen, words)
@@ -131,7 +134,9 @@ def accuracy(
                 runs=1 if quick else RUNS,
             )
     if budget_us is None:
-        _show_study(study, scene, None if words else page, json_file)
+        typed = ["drake-haptics", "accuracy", scene, *(["--quick"] if quick else [])]
+        command = shlex.join(typed)
+        _show_study(study, command, None if words else page, json_file)
     else:
         file = write or Path(f"{name}-{budget_us:g}-us.yaml")
         _show_choice(choice, chosen, name, file, json_file)
@@ -159,11 +164,11 @@ def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None
 
 
 def _show_study(
-    study: AccuracyStudy, scene: str, page: Path | None, json_file: str | None
+    study: AccuracyStudy, command: str, page: Path | None, json_file: str | None
 ) -> None:
     """Prints and writes the price list."""
     if page is not None:
-        write_accuracy_page(study, page, scene)
+        write_accuracy_page(study, page, command)
     if json_file is not None:
         write_json(to_json_data(study), json_file)
     if json_file == "-":

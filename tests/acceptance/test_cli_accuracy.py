@@ -122,6 +122,14 @@ def test_the_terminal_shows_the_price_list(invoke, sample):
     assert Path("hammer_block-accuracy.png").is_file()
 
 
+@pytest.mark.parametrize("options", [[], ["--quick"]])
+def test_the_page_tells_the_command_that_makes_its_rows_again(invoke, sample, options):
+    # A quick motion is another one, and has other errors.
+    assert invoke("hammer_block", *options, "--out", "page.html").exit_code == 0
+    command = " ".join(["drake-haptics accuracy hammer_block", *options])
+    assert Path("page.html").read_text().count(f"<code>{command}</code>") == 2
+
+
 def test_the_scene_is_cup_spoon_where_none_is_named(invoke, sample):
     assert invoke("--out", "my.page.html").exit_code == 0
     assert sample[0][1] == "cup_spoon"
@@ -204,6 +212,7 @@ def test_a_mistake_is_one_line(invoke, arguments, words):
         (["--write", "x.yaml"], "--write needs --budget-us"),
         (["--budget-us", "9", "--out", "x.html"], "neither --out nor --only"),
         (["--budget-us", "9", *ONLY], "neither --out nor --only"),
+        ([*ONLY, "--out", "x.html"], "--only writes no page"),
         (["--budget-us", "0"], "0.0 is not in the range x>0"),
     ],
 )
