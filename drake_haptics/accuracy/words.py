@@ -53,9 +53,13 @@ def describe_verdict(study: AccuracyStudy) -> list[str]:
     if better is None:
         sentences.append("No setting here is both faster and more exact.")
     else:
+        exact = (
+            "more exact"
+            if get_force_error_N(better) < get_force_error_N(scene)
+            else "as exact"
+        )
         sentences.append(
-            f"{name_setting(better)} is both faster and more exact:"
-            f" {_describe_price(better)}."
+            f"{name_setting(better)} is faster and {exact}: {_describe_price(better)}."
         )
     return sentences
 
