@@ -66,6 +66,8 @@ def test_a_key_that_is_there_twice():
     ("word", "complaint"),
     [
         ("contact.tolerance=1", "no such key: .*tolerance"),
+        ("contact={}", "contact: .* cannot be given as a whole"),
+        ('effects.gravity={"g": 9.8}', "effects.gravity: .*'g'"),
         ("tool.mass_kg=heavy", "tool.mass_kg: expected a finite number"),
         ("tool.mass_kg=-1", "tool.mass_kg must be positive, is -1"),
         ("effects.friction=null", "friction_coefficient means nothing without"),

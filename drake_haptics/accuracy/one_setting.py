@@ -65,6 +65,9 @@ def apply_checked(setting: Setting, scene: Scene) -> Scene:
         changed = setting.apply(scene)
     except AttributeError as error:
         raise UserError(f"--only: the scene has no such key: {error}") from error
+    except TypeError as error:
+        keys = " and ".join(setting.changes)
+        raise UserError(f"--only: {keys}: {error}") from error
     check_keys(Scene, _without_none(dataclasses.asdict(changed)))
     check_values(changed)
     return changed

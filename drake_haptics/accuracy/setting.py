@@ -36,6 +36,8 @@ class Setting:
 
         Raises:
             AttributeError: A key is none of the scene's.
+            TypeError: A mapping has a key that is none of its part's, or stands where
+                no part may be left out.
         """
         changed = copy.deepcopy(scene)
         for key, value in self.changes.items():
@@ -71,4 +73,7 @@ def _assign(item: Any, key: str, value: Any) -> None:
 def _find_part(owner: type, name: str) -> Any:
     """Returns the dataclass of a part that may be None, such as an effect."""
     hint = get_type_hints(owner)[name]
-    return next(kind for kind in get_args(hint) if is_dataclass(kind))
+    for kind in get_args(hint):
+        if is_dataclass(kind):
+            return kind
+    raise TypeError(f"{name} cannot be given as a whole; give its keys one by one")
