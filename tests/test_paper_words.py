@@ -119,6 +119,11 @@ def test_smoothness_is_that_of_the_exact_depth():
     assert find(statements, "Distance on").verdict == "differs"
 
 
+def test_a_growth_of_nothing_has_no_sign():
+    statements = judge_analysis(make_analysis(depth_exponent=-1e-4))
+    assert "the power 0.00 of" in find(statements, "Depth over").text
+
+
 def test_growths_are_compared():
     statements = judge_analysis(make_analysis())
     assert verdicts(statements) == ["agrees", "passes", "agrees", "agrees", "differs"]

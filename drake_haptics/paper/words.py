@@ -214,7 +214,9 @@ def judge_analysis(analysis: Analysis) -> list[Statement]:
             "agrees" if growth.exponent <= _CONSTANT_EXPONENT else "differs",
             f"Depth over triangles: from {rows[0].triangles} to"
             f" {rows[-1].triangles:,} the {unit} grow with the power"
-            f" {growth.exponent:.2f} of the triangles; the paper: almost constant.",
+            # What rounds to nothing has no sign.
+            f" {round(growth.exponent, 2) + 0.0:.2f} of the triangles; the paper:"
+            " almost constant.",
         ),
         Statement(
             "passes" if times > 1.0 else "differs",
