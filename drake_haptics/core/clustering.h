@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "contact.h"
+#include "skin_coupling.h"
 #include "types.h"
 
 namespace drake_haptics {
@@ -29,10 +30,9 @@ template <typename T>
 struct ClusterSetOf {
   std::vector<ClusterOf<T>> clusters;
   std::vector<std::int32_t> label;  ///< cluster of each contact; -1 for none
-  /// How the compression of each cluster (row) changes with the depth of each
-  /// (column), n x n by rows; symmetric and positive semidefinite. Empty where
-  /// each has its own: the identity.
-  std::vector<T> coupling;
+  /// How the compression of each cluster changes with the depth of each;
+  /// symmetric and positive semidefinite. Empty where each has its own.
+  SkinCouplingOf<T> coupling;
 };
 using ClusterSet = ClusterSetOf<double>;
 

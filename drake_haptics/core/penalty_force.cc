@@ -30,18 +30,45 @@ Vec6Of<T> Wrench(const Vec3Of<T>& p_WC, const Vec3Of<T>& n,
 template <typename T>
 using Wrenches = Eigen::Matrix<T, 6, Eigen::Dynamic>;
 
-// Σ k H_ij G_i G_jᵀ. Clusters of different objects have nothing in common.
+// Σ k H_ij G_i G_jᵀ. Clusters of different objects have nothing in common. The
+// clusters of a direction count by their mean, and by what they differ from it,
+// so that no rounding makes the sum less than positive semidefinite.
 template <typename T>
 Mat6Of<T> Stiffness(const ClusterSetOf<T>& set, const Wrenches<T>& G,
                     const std::vector<ContactMaterial>& materials) {
-  const Eigen::Index count = G.cols();
-  Wrenches<T> kG = G;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    kG.col(i) *= materials[set.clusters[i].object].stiffness;
+  const auto stiffness = [&](Eigen::Index i) {
+    return materials[set.clusters[i].object].stiffness;
+  };
+  if (set.coupling.empty()) {
+    Wrenches<T> kG = G;
+    for (Eigen::Index i = 0; i < G.cols(); ++i) kG.col(i) *= stiffness(i);
+    return kG * G.transpose();
   }
-  if (set.coupling.empty()) return kG * G.transpose();
-  const Eigen::Map<const MatrixOf<T>> H(set.coupling.data(), count, count);
-  return kG * H * G.transpose();
+  const auto& members = set.coupling.members;
+  const auto& directions = set.coupling.directions;
+  Wrenches<T> mean = Wrenches<T>::Zero(6, directions.size());
+  for (Eigen::Index i = 0; i < G.cols(); ++i) {
+    const auto a = members[i].direction;
+    if (directions[a].slope == 0.0) continue;
+    mean.col(a) += G.col(i) * T(members[i].slope / directions[a].slope);
+  }
+  Mat6Of<T> K = Mat6Of<T>::Zero();
+  std::vector<double> k(directions.size());
+  for (Eigen::Index i = 0; i < G.cols(); ++i) {
+    const auto a = members[i].direction;
+    k[a] = stiffness(i);
+    // One that is alone is its direction's mean.
+    if (members[i].slope == directions[a].slope) continue;
+    const Vec6Of<T> beside = G.col(i) - mean.col(a);
+    K += T(k[a] * members[i].slope) * beside * beside.transpose();
+  }
+  for (std::size_t a = 0; a < directions.size(); ++a) {
+    const auto& [slope, first, count, row] = directions[a];
+    const Eigen::Map<const VectorOf<T>> N(set.coupling.together.data() + row,
+                                          count);
+    K += k[a] * mean.col(a) * (mean.middleCols(first, count) * N).transpose();
+  }
+  return K;
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <span>
 #include <vector>
 
 #include "clustering.h"
@@ -20,9 +18,7 @@ namespace drake_haptics {
 /// The first part is what all feel: contacts along one direction share it
 /// (c = 1), contacts at right angles or opposed have nothing in common (c = 0).
 /// The second is the contact's own, and m_i its share of the constraint that it
-/// is part of: its extent over that of all contacts at the same depth that are
-/// flush in one plane, or in one place with normals not far apart, as on the
-/// facets of a smooth surface. So
+/// is part of (contact_shares.h). So
 /// - a single contact pushes with k w along n (paper, Eq. 6), and a face that
 ///   is cut into any number of pieces as the whole face does;
 /// - contacts along one direction, however many, are together at most 1/(1 − ρ)
@@ -35,10 +31,5 @@ namespace drake_haptics {
 template <typename T>
 void ShareStiffness(const std::vector<ContactOf<T>>& contacts, double tolerance,
                     ClusterSetOf<T>* out);
-
-/// C of contacts of one object, all nearer than `tolerance`.
-template <typename T>
-MatrixOf<T> SkinCompliance(std::span<const ContactOf<T>* const> contacts,
-                           double tolerance);
 
 }  // namespace drake_haptics

@@ -1,128 +1,160 @@
 #include "skin_forces.h"
 
 #include <Eigen/Cholesky>
-#include <vector>
+#include <algorithm>
 
 namespace drake_haptics {
 namespace {
 
 using Indices = std::vector<Eigen::Index>;
 
-// Pivots in blocks are few, but nothing proves that they end; single ones by
-// least index do (Murty 1974).
+// Pivots in blocks that leave no fewer on the wrong side than ever before.
+// Nothing proves that such end; single ones by least index do (Murty 1974).
 constexpr int kBlockPivots = 8;
 // What rounding leaves of a zero, relative to the largest depth.
 constexpr double kNoise = 1e-12;
 
-// The equations of the contacts that push.
+// The directions of the contacts that push, each as one contact.
+template <typename T>
 struct Pressed {
-  Indices chosen;
-  Eigen::LLT<Eigen::MatrixXd> factor;
+  VectorOf<T> slope;  // R of all directions
+  VectorOf<T> depth;  // means over the contacts that push, weighted by r
+  Indices chosen;     // those with any
 
-  Pressed(const Eigen::MatrixXd& C, const std::vector<char>& is_pushing) {
+  Pressed(const SkinOf<T>& skin, const std::vector<char>& is_pushing)
+      : slope(VectorOf<T>::Zero(skin.common.rows())),
+        depth(VectorOf<T>::Zero(skin.common.rows())) {
     for (std::size_t i = 0; i < is_pushing.size(); ++i) {
-      if (is_pushing[i]) chosen.push_back(static_cast<Eigen::Index>(i));
+      if (!is_pushing[i]) continue;
+      slope[skin.direction[i]] += skin.slope[i];
+      depth[skin.direction[i]] += skin.slope[i] * skin.depth[i];
     }
-    Eigen::MatrixXd part(size(), size());
-    for (Eigen::Index i = 0; i < size(); ++i) {
-      for (Eigen::Index j = 0; j < size(); ++j) {
-        part(i, j) = C(chosen[i], chosen[j]);
-      }
+    for (Eigen::Index a = 0; a < slope.size(); ++a) {
+      if (slope[a] == 0.0) continue;
+      chosen.push_back(a);
+      depth[a] /= slope[a];
     }
-    factor.compute(part);
   }
 
-  Eigen::Index size() const { return static_cast<Eigen::Index>(chosen.size()); }
-
-  Eigen::VectorXd Compression(const Eigen::VectorXd& w) const {
-    Eigen::VectorXd part(size());
-    for (Eigen::Index i = 0; i < size(); ++i) part[i] = w[chosen[i]];
-    factor.solveInPlace(part);
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(w.size());
-    for (Eigen::Index i = 0; i < size(); ++i) all[chosen[i]] = part[i];
-    return all;
+  // G + 1/R between them.
+  MatrixOf<T> Compliance(const SkinOf<T>& skin) const {
+    const auto count = static_cast<Eigen::Index>(chosen.size());
+    MatrixOf<T> C(count, count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      for (Eigen::Index l = 0; l < count; ++l) {
+        C(l, k) = skin.common(chosen[l], chosen[k]);
+      }
+      C(k, k) += 1.0 / slope[chosen[k]];
+    }
+    return C;
   }
 
-  Eigen::MatrixXd Coupling(Eigen::Index count) const {
-    Eigen::MatrixXd part = Eigen::MatrixXd::Identity(size(), size());
-    factor.solveInPlace(part);
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count, count);
-    for (Eigen::Index i = 0; i < size(); ++i) {
-      for (Eigen::Index j = 0; j < size(); ++j) {
-        all(chosen[i], chosen[j]) = part(i, j);
-      }
-    }
-    return all;
+  // λ of a contact that pushes, where its direction bears `force`.
+  T Compression(const SkinOf<T>& skin, std::size_t i, const T& force) const {
+    const Eigen::Index a = skin.direction[i];
+    return skin.slope[i] * (force / slope[a] + (skin.depth[i] - depth[a]));
   }
 };
 
-// Whether a contact is on the wrong side of its condition: it pulls, or it is
-// left out and overlaps.
-bool IsWrong(bool is_pushing, double compression, double overlap,
-             double noise) {
-  return is_pushing ? compression < -noise : overlap > noise;
+// The forces of the contacts that push; `inverse` is N of the chosen.
+template <typename T>
+SkinForcesOf<T> Answer(const SkinOf<T>& skin, const Pressed<T>& pressed,
+                       const std::vector<char>& is_pushing,
+                       const MatrixOf<T>& inverse) {
+  const Eigen::Index n = skin.depth.size(), d = skin.common.rows();
+  const Indices& chosen = pressed.chosen;
+  SkinForcesOf<T> found{VectorOf<T>::Zero(n), VectorOf<T>::Zero(n),
+                        pressed.slope, MatrixOf<T>::Zero(d, d)};
+  VectorOf<T> force = VectorOf<T>::Zero(d);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    for (std::size_t l = 0; l < chosen.size(); ++l) {
+      found.together(chosen[l], chosen[k]) = inverse(l, k);
+      force[chosen[l]] += inverse(l, k) * pressed.depth[chosen[k]];
+    }
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!is_pushing[i]) continue;
+    const T compression =
+        pressed.Compression(skin, i, force[skin.direction[i]]);
+    // What rounding leaves below zero.
+    if (compression > 0.0) found.compression[i] = compression;
+    found.slope[i] = skin.slope[i];
+  }
+  return found;
+}
+
+// Contacts on the wrong side of their condition: they pull, or are left out and
+// overlap. `force` is that of the chosen directions.
+void FindWrong(const Skin& skin, const Pressed<double>& pressed,
+               const std::vector<char>& is_pushing,
+               const Eigen::VectorXd& force, std::vector<std::size_t>* wrong) {
+  const double noise = kNoise * skin.depth.maxCoeff();
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(skin.common.rows());
+  all(pressed.chosen) = force;
+  wrong->clear();
+  for (std::size_t i = 0; i < is_pushing.size(); ++i) {
+    const Eigen::Index a = skin.direction[i];
+    if (is_pushing[i] ? pressed.Compression(skin, i, all[a]) < -noise
+                      : skin.depth[i] - skin.common.col(a).dot(all) > noise) {
+      wrong->push_back(i);
+    }
+  }
 }
 
 }  // namespace
 
-SkinForces SolveSkin(const Eigen::MatrixXd& C, const Eigen::VectorXd& w) {
-  const Eigen::Index n = w.size();
-  const double noise = kNoise * w.maxCoeff();
+SkinForces SolveSkin(const Skin& skin) {
+  const auto n = static_cast<std::size_t>(skin.depth.size());
   std::vector<char> is_pushing(n, 1);
-  const Eigen::Index most = kBlockPivots + 4 * n * n;
-  for (Eigen::Index pivot = 0;; ++pivot) {
-    const Pressed pressed(C, is_pushing);
-    const Eigen::VectorXd compression = pressed.Compression(w);
-    const Eigen::VectorXd overlap = w - C * compression;
-    bool is_done = true;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (!IsWrong(is_pushing[i], compression[i], overlap[i], noise)) continue;
-      is_done = false;
-      is_pushing[i] = !is_pushing[i];
-      if (pivot >= kBlockPivots) break;
+  std::vector<std::size_t> wrong;
+  std::size_t fewest = n + 1;
+  int patience = kBlockPivots;
+  const std::size_t most = kBlockPivots + 4 * n * n;
+  for (std::size_t pivot = 0;; ++pivot) {
+    const Pressed<double> pressed(skin, is_pushing);
+    const Eigen::LLT<Eigen::MatrixXd> factor(pressed.Compliance(skin));
+    Eigen::VectorXd force = pressed.depth(pressed.chosen);
+    factor.solveInPlace(force);
+    FindWrong(skin, pressed, is_pushing, force, &wrong);
+    if (wrong.empty() || pivot == most) {
+      Eigen::MatrixXd inverse =
+          Eigen::MatrixXd::Identity(force.size(), force.size());
+      factor.solveInPlace(inverse);
+      return Answer(skin, pressed, is_pushing, inverse);
     }
-    if (is_done || pivot == most) {
-      return {compression.cwiseMax(0.0), pressed.Coupling(n)};
-    }
+    patience = wrong.size() < fewest ? kBlockPivots : std::max(0, patience - 1);
+    fewest = std::min(fewest, wrong.size());
+    if (patience == 0) wrong.resize(1);
+    for (const std::size_t i : wrong) is_pushing[i] = !is_pushing[i];
   }
 }
 
-SkinForcesOf<AutoDiff> SolveSkin(const MatrixOf<AutoDiff>& C,
-                                 const VectorOf<AutoDiff>& w) {
-  const SkinForces forces = SolveSkin(ValuesOf(C), ValuesOf(w));
-  const Eigen::Index variables = w.size() > 0 ? w[0].derivatives().size() : 0;
-  const auto with_variables = [&](double value) {
-    return AutoDiff(value, Eigen::VectorXd::Zero(variables));
-  };
-  SkinForcesOf<AutoDiff> found{forces.compression.unaryExpr(with_variables),
-                               forces.coupling.unaryExpr(with_variables)};
-  Indices chosen;
-  for (Eigen::Index i = 0; i < w.size(); ++i) {
-    if (forces.coupling(i, i) > 0) chosen.push_back(i);
+SkinForcesOf<AutoDiff> SolveSkin(const SkinOf<AutoDiff>& skin) {
+  const SkinForces forces =
+      SolveSkin(Skin{ValuesOf(skin.depth), ValuesOf(skin.slope), skin.direction,
+                     ValuesOf(skin.common)});
+  std::vector<char> is_pushing;
+  for (const double slope : forces.slope) is_pushing.push_back(slope > 0);
+  const Pressed<AutoDiff> pressed(skin, is_pushing);
+  const MatrixOf<AutoDiff> C = pressed.Compliance(skin);
+  const Eigen::MatrixXd N = forces.together(pressed.chosen, pressed.chosen);
+  Eigen::Index variables = 0;
+  for (Eigen::Index i = 0; i < C.size(); ++i) {
+    variables = std::max(variables, C.data()[i].derivatives().size());
   }
-  const Eigen::MatrixXd H = forces.coupling(chosen, chosen);
-  const Eigen::VectorXd pressed = forces.compression(chosen);
-  const auto part = [](const AutoDiff& x, Eigen::Index k) {
-    return x.derivatives().size() > 0 ? x.derivatives()[k] : 0.0;
-  };
+  MatrixOf<AutoDiff> inverse = N.unaryExpr([&](double value) {
+    return AutoDiff(value, Eigen::VectorXd::Zero(variables));
+  });
   for (Eigen::Index k = 0; k < variables; ++k) {
-    const Eigen::MatrixXd dC =
-        C(chosen, chosen).unaryExpr([&](const AutoDiff& x) {
-          return part(x, k);
-        });
-    const Eigen::VectorXd dw =
-        w(chosen).unaryExpr([&](const AutoDiff& x) { return part(x, k); });
-    const Eigen::VectorXd by_force = H * (dw - dC * pressed);
-    const Eigen::MatrixXd by_coupling = -H * dC * H;
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      found.compression[chosen[i]].derivatives()[k] = by_force[i];
-      for (std::size_t j = 0; j < chosen.size(); ++j) {
-        found.coupling(chosen[i], chosen[j]).derivatives()[k] =
-            by_coupling(i, j);
-      }
+    const Eigen::MatrixXd dC = C.unaryExpr([&](const AutoDiff& x) {
+      return x.derivatives().size() > 0 ? x.derivatives()[k] : 0.0;
+    });
+    const Eigen::MatrixXd dN = -N * dC * N;
+    for (Eigen::Index i = 0; i < C.size(); ++i) {
+      inverse.data()[i].derivatives()[k] = dN.data()[i];
     }
   }
-  return found;
+  return Answer(skin, pressed, is_pushing, inverse);
 }
 
 }  // namespace drake_haptics
