@@ -88,7 +88,7 @@ Depth LocalDepth(const PosedPair& pair, DepthWorkspace* workspace) {
   if (!(n.norm() > 1e-12 * pair.scale())) n = Vec3::UnitX();
   Hub hub;
   SupportGap(pair, n, &hub);
-  return WalkDepth(pair, hub, SurfaceRule::kWholeBoundary, nullptr, 1,
+  return WalkDepth(pair, hub, SurfaceRule::kWholeBoundary, nullptr, {1},
                    workspace);
 }
 
