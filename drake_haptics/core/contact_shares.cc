@@ -76,11 +76,8 @@ template <typename T>
 class Kinship {
  public:
   Kinship(std::span<const ContactOf<T>* const> contacts, double tolerance)
-      : contacts_(contacts), tolerance_(tolerance), extent_(contacts.size()) {
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      extent_[i] = contacts[i]->extent + kLeastExtent;
-    }
-    total_ = extent_;
+      : contacts_(contacts), tolerance_(tolerance), total_(contacts.size()) {
+    for (std::size_t i = 0; i < contacts.size(); ++i) total_[i] = Extent(i);
     Compare();
     std::sort(kin_.begin(), kin_.end(), [](const auto& a, const auto& b) {
       return a.of != b.of ? a.of < b.of : a.sameness > b.sameness;
@@ -92,22 +89,25 @@ class Kinship {
   // that is its share of the whole; in between it changes with the sameness by
   // no more than one to one, however different the extents.
   VectorOf<T> Shares() const {
-    VectorOf<T> shares(extent_.size());
+    VectorOf<T> shares(total_.size());
     auto next = kin_.begin();
     for (Eigen::Index i = 0; i < shares.size(); ++i) {
+      const T extent = Extent(i);
       T share{0}, total = total_[i], above{1};
       for (; next != kin_.end() && next->of == static_cast<std::size_t>(i);
            ++next) {
-        share += (above - next->sameness) * extent_[i] / total;
+        share += (above - next->sameness) * extent / total;
         above = next->sameness;
         total += next->extent;
       }
-      shares[i] = share + above * extent_[i] / total;
+      shares[i] = share + above * extent / total;
     }
     return shares;
   }
 
  private:
+  T Extent(std::size_t i) const { return contacts_[i]->extent + kLeastExtent; }
+
   // Looks at all pairs that are near along one axis, and at those of which both
   // are flush.
   void Compare() {
@@ -157,18 +157,17 @@ class Kinship {
   void Compare(std::size_t i, std::size_t j) {
     const T sameness = Sameness(*contacts_[i], *contacts_[j], tolerance_);
     if (sameness >= 1.0) {
-      total_[i] += extent_[j];
-      total_[j] += extent_[i];
+      total_[i] += Extent(j);
+      total_[j] += Extent(i);
     } else if (sameness > 0.0) {
-      kin_.push_back({i, sameness, extent_[j]});
-      kin_.push_back({j, sameness, extent_[i]});
+      kin_.push_back({i, sameness, Extent(j)});
+      kin_.push_back({j, sameness, Extent(i)});
     }
   }
 
   std::span<const ContactOf<T>* const> contacts_;
   double tolerance_;
-  VectorOf<T> extent_;  // m²
-  VectorOf<T> total_;   // of all that are wholly the same
+  VectorOf<T> total_;  // extents of all that are wholly the same, m²
   std::vector<Kin<T>> kin_;
 };
 

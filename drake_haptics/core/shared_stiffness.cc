@@ -144,7 +144,9 @@ void ShareStiffness(const std::vector<ContactOf<T>>& contacts, double tolerance,
   out->clusters.clear();
   out->coupling.clear();
   out->label.assign(contacts.size(), -1);
+  out->clusters.reserve(contacts.size());
   std::vector<const ContactOf<T>*> pushing;
+  pushing.reserve(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactOf<T>& contact = contacts[i];
     if (!(contact.distance < tolerance)) continue;

@@ -2,11 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <utility>
 
 namespace drake_haptics {
 namespace {
-
-using Indices = std::vector<Eigen::Index>;
 
 // Pivots in blocks that leave no fewer on the wrong side than ever before.
 // Nothing proves that such end; single ones by least index do (Murty 1974).
@@ -17,9 +16,8 @@ constexpr double kNoise = 1e-12;
 // The directions of the contacts that push, each as one contact.
 template <typename T>
 struct Pressed {
-  VectorOf<T> slope;  // R of all directions
+  VectorOf<T> slope;  // R, 0 where none pushes
   VectorOf<T> depth;  // means over the contacts that push, weighted by r
-  Indices chosen;     // those with any
 
   Pressed(const SkinOf<T>& skin, const std::vector<char>& is_pushing)
       : slope(VectorOf<T>::Zero(skin.common.rows())),
@@ -30,21 +28,21 @@ struct Pressed {
       depth[skin.direction[i]] += skin.slope[i] * skin.depth[i];
     }
     for (Eigen::Index a = 0; a < slope.size(); ++a) {
-      if (slope[a] == 0.0) continue;
-      chosen.push_back(a);
-      depth[a] /= slope[a];
+      if (slope[a] != 0.0) depth[a] /= slope[a];
     }
   }
 
-  // G + 1/R between them.
+  // G + 1/R between them, and apart from them a 1 where none pushes.
   MatrixOf<T> Compliance(const SkinOf<T>& skin) const {
-    const auto count = static_cast<Eigen::Index>(chosen.size());
-    MatrixOf<T> C(count, count);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      for (Eigen::Index l = 0; l < count; ++l) {
-        C(l, k) = skin.common(chosen[l], chosen[k]);
+    MatrixOf<T> C = skin.common;
+    for (Eigen::Index a = 0; a < slope.size(); ++a) {
+      if (slope[a] != 0.0) {
+        C(a, a) += 1.0 / slope[a];
+        continue;
       }
-      C(k, k) += 1.0 / slope[chosen[k]];
+      C.row(a).setZero();
+      C.col(a).setZero();
+      C(a, a) = T(1);
     }
     return C;
   }
@@ -56,22 +54,18 @@ struct Pressed {
   }
 };
 
-// The forces of the contacts that push; `inverse` is N of the chosen.
+// The forces of the contacts that push; `inverse` is that of the compliance.
 template <typename T>
 SkinForcesOf<T> Answer(const SkinOf<T>& skin, const Pressed<T>& pressed,
                        const std::vector<char>& is_pushing,
-                       const MatrixOf<T>& inverse) {
-  const Eigen::Index n = skin.depth.size(), d = skin.common.rows();
-  const Indices& chosen = pressed.chosen;
-  SkinForcesOf<T> found{VectorOf<T>::Zero(n), VectorOf<T>::Zero(n),
-                        pressed.slope, MatrixOf<T>::Zero(d, d)};
-  VectorOf<T> force = VectorOf<T>::Zero(d);
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    for (std::size_t l = 0; l < chosen.size(); ++l) {
-      found.together(chosen[l], chosen[k]) = inverse(l, k);
-      force[chosen[l]] += inverse(l, k) * pressed.depth[chosen[k]];
-    }
+                       MatrixOf<T> inverse) {
+  const Eigen::Index n = skin.depth.size();
+  for (Eigen::Index a = 0; a < inverse.rows(); ++a) {
+    if (pressed.slope[a] == 0.0) inverse(a, a) = T(0);
   }
+  const VectorOf<T> force = inverse * pressed.depth;
+  SkinForcesOf<T> found{VectorOf<T>::Zero(n), VectorOf<T>::Zero(n),
+                        pressed.slope, std::move(inverse)};
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!is_pushing[i]) continue;
     const T compression =
@@ -84,18 +78,16 @@ SkinForcesOf<T> Answer(const SkinOf<T>& skin, const Pressed<T>& pressed,
 }
 
 // Contacts on the wrong side of their condition: they pull, or are left out and
-// overlap. `force` is that of the chosen directions.
+// overlap. `force` is that of the directions.
 void FindWrong(const Skin& skin, const Pressed<double>& pressed,
                const std::vector<char>& is_pushing,
                const Eigen::VectorXd& force, std::vector<std::size_t>* wrong) {
   const double noise = kNoise * skin.depth.maxCoeff();
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(skin.common.rows());
-  all(pressed.chosen) = force;
   wrong->clear();
   for (std::size_t i = 0; i < is_pushing.size(); ++i) {
     const Eigen::Index a = skin.direction[i];
-    if (is_pushing[i] ? pressed.Compression(skin, i, all[a]) < -noise
-                      : skin.depth[i] - skin.common.col(a).dot(all) > noise) {
+    if (is_pushing[i] ? pressed.Compression(skin, i, force[a]) < -noise
+                      : skin.depth[i] - skin.common.col(a).dot(force) > noise) {
       wrong->push_back(i);
     }
   }
@@ -112,15 +104,16 @@ SkinForces SolveSkin(const Skin& skin) {
   const std::size_t most = kBlockPivots + 4 * n * n;
   for (std::size_t pivot = 0;; ++pivot) {
     const Pressed<double> pressed(skin, is_pushing);
-    const Eigen::LLT<Eigen::MatrixXd> factor(pressed.Compliance(skin));
-    Eigen::VectorXd force = pressed.depth(pressed.chosen);
+    Eigen::MatrixXd C = pressed.Compliance(skin);
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(C);
+    Eigen::VectorXd force = pressed.depth;
     factor.solveInPlace(force);
     FindWrong(skin, pressed, is_pushing, force, &wrong);
     if (wrong.empty() || pivot == most) {
       Eigen::MatrixXd inverse =
           Eigen::MatrixXd::Identity(force.size(), force.size());
       factor.solveInPlace(inverse);
-      return Answer(skin, pressed, is_pushing, inverse);
+      return Answer(skin, pressed, is_pushing, std::move(inverse));
     }
     patience = wrong.size() < fewest ? kBlockPivots : std::max(0, patience - 1);
     fewest = std::min(fewest, wrong.size());
@@ -137,7 +130,7 @@ SkinForcesOf<AutoDiff> SolveSkin(const SkinOf<AutoDiff>& skin) {
   for (const double slope : forces.slope) is_pushing.push_back(slope > 0);
   const Pressed<AutoDiff> pressed(skin, is_pushing);
   const MatrixOf<AutoDiff> C = pressed.Compliance(skin);
-  const Eigen::MatrixXd N = forces.together(pressed.chosen, pressed.chosen);
+  const Eigen::MatrixXd& N = forces.together;
   Eigen::Index variables = 0;
   for (Eigen::Index i = 0; i < C.size(); ++i) {
     variables = std::max(variables, C.data()[i].derivatives().size());
@@ -154,7 +147,7 @@ SkinForcesOf<AutoDiff> SolveSkin(const SkinOf<AutoDiff>& skin) {
       inverse.data()[i].derivatives()[k] = dN.data()[i];
     }
   }
-  return Answer(skin, pressed, is_pushing, inverse);
+  return Answer(skin, pressed, is_pushing, std::move(inverse));
 }
 
 }  // namespace drake_haptics
