@@ -10,6 +10,7 @@ from typing import Any, Literal, get_args
 from drake_haptics.bench.machine import describe_machine
 from drake_haptics.paper.depth_cost import DepthCosts, measure_depth_costs
 from drake_haptics.paper.force_scaling import ForceScaling, measure_force_scaling
+from drake_haptics.paper.models import check_folder
 from drake_haptics.paper.pair_scaling import PairScaling, measure_pair_scaling
 from drake_haptics.paper.pen_pass import PenPass, measure_pen_pass
 from drake_haptics.paper.profile import Profile, measure_profile
@@ -140,7 +141,11 @@ def evaluate_paper(
             hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply), as many as
             there are.
         progress: Called with what is done and its share, in [0, 1].
+
+    Raises:
+        UserError: The folder has none of them.
     """
+    check_folder(meshes)
     effort = effort or Effort()
     report = progress or (lambda what, share: None)
     chosen = [part for part in PARTS if part in parts]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from drake_haptics.decomposition import Decomposition, decompose
+from drake_haptics.errors import UserError
 from drake_haptics.mesh import Mesh, load_mesh
 from drake_haptics.shapes import SHAPES, Surface
 from drake_haptics.shapes.organ import make_organ
@@ -53,6 +54,17 @@ def find_sources(model: str, meshes: Path | None) -> list[str]:
     if meshes is not None and (meshes / source.file).is_file():
         found.append(source.file)
     return found
+
+
+def check_folder(meshes: Path | None) -> None:
+    """Checks that a folder of real meshes has at least one.
+
+    Raises:
+        UserError: It has none of them.
+    """
+    files = [source.file for source in MODELS.values()]
+    if meshes is not None and not any((meshes / file).is_file() for file in files):
+        raise UserError(f"the folder {meshes} has none of {', '.join(files)}")
 
 
 def load_model(model: str, source: str, meshes: Path | None) -> Mesh:

@@ -46,6 +46,13 @@ def test_only_the_parts_named_are_made(called):
     ]
 
 
+def test_a_folder_without_any_of_the_meshes_is_told(tmp_path):
+    arguments = ["--quick", "--meshes", str(tmp_path), "table1"]
+    result = CliRunner().invoke(main, ["paper", *arguments])
+    assert result.exit_code == 1
+    assert f"Error: the folder {tmp_path} has none of torus_2000.obj" in result.stderr
+
+
 def test_json_on_stdout_is_alone(tmp_path):
     arguments = ["--json", "-", "--out", str(tmp_path / "p.html"), "table1"]
     result = CliRunner().invoke(main, ["paper", *arguments])
