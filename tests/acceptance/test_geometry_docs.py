@@ -27,7 +27,7 @@ def printed():
 
 
 def test_each_snippet_is_ten_lines_or_less():
-    assert len(SNIPPETS) == 4
+    assert len(SNIPPETS) == 5
     for snippet in SNIPPETS:
         assert len([line for line in snippet.splitlines() if line.strip()]) <= 10
 
@@ -55,6 +55,10 @@ def test_a_scene(printed):
     objects, distance = printed[3]
     assert set(objects) == {1}
     assert distance.min() == pytest.approx(-0.0007, abs=5e-5)
+
+
+def test_depths_of_two_kinds(printed):
+    assert printed[4] == pytest.approx([-0.0007, -0.0007], abs=5e-5)
 
 
 def test_names_in_the_text_exist():

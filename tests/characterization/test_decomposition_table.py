@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from decomposition_table import GENERATED, PAGE, REAL, TITLES, find_mesh
+from decomposition_table import GENERATED, PAGE, REAL, TITLES, VARIANTS, find_mesh
 from hull_truth import deepest_outside, deepest_surface, lost_share
 from mesh_samples import box, l_prism
 
@@ -29,7 +29,7 @@ def number(cell):
 
 
 def test_the_page_has_a_row_for_each_mesh():
-    assert list(rows_of_page()) == [*GENERATED, *REAL]
+    assert list(rows_of_page()) == [*GENERATED, *VARIANTS, *REAL]
 
 
 @pytest.mark.parametrize("name", GENERATED)
@@ -44,11 +44,30 @@ def test_the_page_has_the_counts_of_today(name):
 
 def test_the_page_says_what_was_asked_for():
     for name, row in rows_of_page().items():
+        if name in VARIANTS:
+            continue
         for title in ("outside", "within"):
             assert row[title] == "–" or number(row[title]) <= BOUND, name
         assert number(row["lost"]) <= BOUND, name
         assert number(row["time"]) < 60, name
         assert number(row["peak memory"]) < GIB, name
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_merged_and_reduced_meshes_are_as_near_as_was_asked_for(name):
+    row = rows_of_page()[name]
+    base, max_triangles, error_m = VARIANTS[name]
+    mesh = find_mesh(base)
+    size_m = np.linalg.norm(np.ptp(mesh.vertices, axis=0))
+    if max_triangles is not None:
+        assert number(row["triangles"]) <= max_triangles
+        assert number(row["reduced"]) > 0
+    # Figures of the page have one digit.
+    bound = BOUND if error_m is None else 1.1 * error_m / size_m
+    assert max(number(row["outside"]), number(row["within"])) <= bound
+    exact = len(decompose(mesh).pieces)
+    assert number(row["pieces"]) < exact or max_triangles is not None
+    assert number(row["peak memory"]) < GIB
 
 
 def test_an_organ_is_cut_exactly_and_in_little_memory():
