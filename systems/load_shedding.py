@@ -11,7 +11,6 @@ from pydrake.systems.framework import (
     Context,
     DiscreteValues,
     EventStatus,
-    LeafSystem,
     OutputPort,
 )
 
@@ -62,7 +61,7 @@ class TickMeter:
             self._start_s = math.inf
 
 
-class TickEnd(LeafSystem):
+class TickEnd(DifferentiableSystem):
     """Ends the `TickMeter`'s tick. It must be the last system of its diagram.
 
     .. pydrake_system::

@@ -123,3 +123,13 @@ def test_between_two_ticks_nothing_is_measured():
     clock.now_s += 5.0
     meter.end()
     assert meter.busy_s == 0.25
+
+
+def test_a_loop_that_may_shed_load_can_be_differentiated():
+    meter = TickMeter(HandClock())
+    builder = DiagramBuilder()
+    builder.AddSystem(LoadShedding(meter, PERIOD_S, BUDGET_S, CELL_M))
+    builder.AddSystem(TickEnd(meter, PERIOD_S))
+    twin = builder.Build().ToAutoDiffXd()
+    state = twin.CreateDefaultContext().get_discrete_state_vector().CopyToVector()
+    assert [x.value() for x in state] == [0.0, 1.0, 0.0]
