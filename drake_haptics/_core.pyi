@@ -172,7 +172,7 @@ def adopt_convex_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(
         vertices: (n, 3) positions, m.
         triangles: (m, 3) vertex indices, int32.
         pieces: list of (k, 3) points, m, whose hulls are the pieces.
-        tolerance: distance from the mesh, m, up to which a facet lies on it.
+        tolerance: distance from the mesh, m, up to which a facet lies on it; infinite where the pieces take its place, all facets original.
 
     Raises:
         ValueError: bad indices or values.

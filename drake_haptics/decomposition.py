@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from collections.abc import Callable
@@ -25,9 +26,9 @@ Method = Literal["surface", "merged", "hull", "coacd"]
 METHODS: tuple[Method, ...] = get_args(Method)
 Progress = Callable[[float], None]
 
-# Within this share of the mesh's size a facet of a piece is on the mesh: round-off
-# for hulls of the mesh's own vertices, CoACD's remeshing for its pieces.
-_ON_MESH = {"hull": 1e-9, "coacd": 5e-3}
+# Within this share of the mesh's size a facet of one of CoACD's pieces is on the mesh,
+# which it has remeshed.
+_ON_MESH = 5e-3
 
 # Of the time of merging, what finding the exact pieces takes, for the progress.
 _EXACT_SHARE = 0.2
@@ -107,8 +108,8 @@ def decompose(
             single precision. Pieces of a surface that bounds no solid are
             one-sided. "merged" joins such pieces within `error_m`, see
             `drake_haptics.merged_pieces`. "hull" is one convex hull for each
-            component: it fills hollows. "coacd" fills solids approximately with
-            few pieces (optional extra); it fills cavities.
+            component, felt all over: it fills hollows. "coacd" fills solids with
+            few pieces approximately (optional extra); it fills cavities.
         error_m: for "merged", and only there: how far a piece may depart from the
             mesh, m.
         progress: called now and then with the share done, from 0 to 1. An
@@ -160,6 +161,8 @@ def _checked_method(method: str) -> Method:
 def _parameters(method: Method, error_m: float | None) -> dict[str, Any]:
     if error_m is not None:
         return {"error_m": error_m}
+    if method == "hull":
+        return {"facets": "all felt"}
     return coacd_parameters() if method == "coacd" else {}
 
 
@@ -178,7 +181,9 @@ def _find_pieces(mesh: Mesh, method: Method, progress: Progress) -> PieceData:
         hulls = [_points(mesh, index) for index in range(len(mesh.components))]
     else:
         hulls = coacd_hulls(mesh, progress)
-    tolerance = _ON_MESH[method] * float(np.linalg.norm(mesh.report.extent))
+    size_m = float(np.linalg.norm(mesh.report.extent))
+    # A hull is the solid itself: what it fills is felt, or a tool would fall through.
+    tolerance = math.inf if method == "hull" else _ON_MESH * size_m
     return ConvexHulls.of(hulls, tolerance, time.perf_counter() - start)
 
 

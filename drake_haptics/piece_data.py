@@ -86,7 +86,8 @@ class ConvexHulls:
     Attributes:
         points: (p, 3) of all hulls, m.
         start: (k + 1,) int32: hull i has the points start[i] to start[i + 1].
-        tolerance: within which a hull's facet is on the mesh, m.
+        tolerance: within which a hull's facet is on the mesh, m; infinite where the
+            hulls take the place of the mesh.
         seconds: that making them took, s.
     """
 
@@ -125,7 +126,6 @@ class ConvexHulls:
             and self.start[0] == 0
             and self.start[-1] == len(self.points)
             and (np.diff(self.start) > 0).all()
-            and np.isfinite(self.tolerance)
             and self.tolerance > 0
         )
 

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -46,7 +47,7 @@ Decomposition AdoptConvexPieces(std::span<const Vec3> vertices,
   result.piece_of_triangle.assign(triangles.size(), -1);
   for (const std::vector<Vec3>& points : pieces) {
     Polytope piece = MakePolytope(points);
-    MarkFacetsOnMesh(mesh, tolerance, &piece);
+    if (std::isfinite(tolerance)) MarkFacetsOnMesh(mesh, tolerance, &piece);
     MarkEdgesFromFacets(&piece);
     result.pieces.push_back(std::move(piece));
   }

@@ -194,7 +194,7 @@ void BindDecomposition(nb::module_& m) {
         "    triangles: (m, 3) vertex indices, int32.\n"
         "    pieces: list of (k, 3) points, m, whose hulls are the pieces.\n"
         "    tolerance: distance from the mesh, m, up to which a facet lies on "
-        "it.\n\n"
+        "it; infinite where the pieces take its place, all facets original.\n\n"
         "Raises:\n"
         "    ValueError: bad indices or values.");
   nb::class_<MergedPieces>(m, "MergedPieces",

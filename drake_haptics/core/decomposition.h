@@ -47,7 +47,8 @@ Decomposition AssembleSurfacePieces(std::span<const Vec3> vertices,
                                     std::span<const int> piece_of_triangle);
 
 /// Pieces made elsewhere (CoACD, or one hull): facets within `tolerance` (m)
-/// of the mesh, and facing as it does, are original, all others virtual.
+/// of the mesh, and facing as it does, are original, all others virtual. Where
+/// it is infinite, the pieces take the place of the mesh: all are original.
 Decomposition AdoptConvexPieces(std::span<const Vec3> vertices,
                                 std::span<const Triangle> triangles,
                                 std::span<const std::vector<Vec3>> pieces,
