@@ -968,6 +968,9 @@ def limit_wrench(F: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')
 
     Returns:
         (7,): the wrench and what became of it: 0 as asked, 1 limited, 2 not finite, for which it is zero.
+
+    Raises:
+        ValueError: a limit is negative or not finite.
     """
 
 class RigidToolDynamics:
@@ -2108,5 +2111,5 @@ def contact_set(distance: Annotated[NDArray[numpy.float64], dict(shape=(None,), 
         object_index: (n,) int32, in ascending order.
 
     Raises:
-        ValueError: the columns do not match or are not ordered.
+        ValueError: the columns do not match or are not ordered, a number is not finite, a normal is not of unit length, or an index is negative.
     """

@@ -63,3 +63,22 @@ def test_columns_must_match_and_be_ordered() -> None:
     descending = np.array([1, 0], dtype=np.int32)
     with pytest.raises(ValueError, match="ordered"):
         _core.contact_set(**{**columns, "object_index": descending})
+
+
+@pytest.mark.parametrize(
+    ("name", "bad", "complaint"),
+    [
+        ("distance", np.nan, "must be finite"),
+        ("p_WCa", np.inf, "must be finite"),
+        ("nhat_BA_W", 0.0, "unit vectors"),
+        ("nhat_BA_W", np.nan, "unit vectors"),
+        ("object_index", -1, "at least 0"),
+    ],
+)
+def test_what_would_give_no_force_is_refused(
+    name: str, bad: float, complaint: str
+) -> None:
+    columns = _columns([0.0, 0.0], [[0, 0, 1], [0, 0, 1]])
+    columns[name] = np.full_like(columns[name], bad)
+    with pytest.raises(ValueError, match=complaint):
+        _core.contact_set(**columns)

@@ -56,3 +56,10 @@ def test_what_is_not_finite_is_nothing(value, entry):
     wrench = np.ones(6)
     wrench[entry] = value
     assert limit_wrench(wrench, 1e9, 1e9).tolist() == [0.0] * 6 + [2.0]
+
+
+@pytest.mark.parametrize("bad", [-1.0, np.nan, np.inf])
+def test_a_limit_that_is_none_is_refused(bad):
+    for limits, name in [((bad, 1.0), "max_torque_Nm"), ((1.0, bad), "max_force_N")]:
+        with pytest.raises(ValueError, match=name):
+            limit_wrench(np.zeros(6), *limits)

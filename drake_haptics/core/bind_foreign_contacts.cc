@@ -1,3 +1,4 @@
+#include <cmath>
 #include <stdexcept>
 
 #include "bind.h"
@@ -10,6 +11,21 @@ namespace drake_haptics {
 namespace {
 
 using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+// How far from 1 the length of another library's normal may be.
+constexpr double kUnitSlack = 1e-6;
+
+void RequireUsable(const Contact& contact) {
+  if (!std::isfinite(contact.distance) || !contact.p_WC.allFinite()) {
+    throw std::invalid_argument("distances and points must be finite");
+  }
+  if (!(std::abs(contact.nhat_BA_W.norm() - 1) <= kUnitSlack)) {
+    throw std::invalid_argument("normals must be unit vectors");
+  }
+  if (contact.object < 0) {
+    throw std::invalid_argument("object_index must be at least 0");
+  }
+}
 
 ContactSet ToContactSet(const Eigen::VectorXd& distance, const Rows3& nhat_BA_W,
                         const Rows3& p_WCa, const Rows3& p_WCb,
@@ -32,6 +48,7 @@ ContactSet ToContactSet(const Eigen::VectorXd& distance, const Rows3& nhat_BA_W,
     contact.p_WCb = p_WCb.row(i);
     contact.p_WC = (contact.p_WCa + contact.p_WCb) / 2;
     contact.object = object_index[i];
+    RequireUsable(contact);
   }
   return set;
 }
@@ -50,7 +67,8 @@ void BindForeignContacts(nb::module_& m) {
         "object, m.\n"
         "    object_index: (n,) int32, in ascending order.\n\n"
         "Raises:\n    ValueError: the columns do not match or are not "
-        "ordered.");
+        "ordered, a number is not finite, a normal is not of unit length, or "
+        "an index is negative.");
 }
 
 }  // namespace drake_haptics

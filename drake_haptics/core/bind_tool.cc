@@ -4,6 +4,7 @@
 #include "autodiff.h"
 #include "bind.h"
 #include "bind_eigen.h"
+#include "require.h"
 #include "rigid_tool.h"
 #include "virtual_coupling.h"
 #include "wrench_limit.h"
@@ -139,6 +140,8 @@ void BindLimit(nb::module_& m) {
   m.def(
       "limit_wrench",
       [](const Vec6& F, double max_torque, double max_force) {
+        RequireNotNegative(max_torque, "max_torque_Nm");
+        RequireNotNegative(max_force, "max_force_N");
         const LimitedWrench limited = LimitWrench(F, max_torque, max_force);
         Eigen::Matrix<double, 7, 1> out;
         out << limited.F, static_cast<double>(limited.fate);
@@ -149,7 +152,9 @@ void BindLimit(nb::module_& m) {
       "limit, along its own direction.\n\n"
       "Returns:\n"
       "    (7,): the wrench and what became of it: 0 as asked, 1 limited, 2 "
-      "not finite, for which it is zero.");
+      "not finite, for which it is zero.\n\n"
+      "Raises:\n"
+      "    ValueError: a limit is negative or not finite.");
 }
 
 }  // namespace
