@@ -98,7 +98,9 @@ def test_what_was_not_measured_is_told_once():
         replace(row, errors=replace(row.errors, stiffness_why_not=reason))
         for row in rows
     ]
-    assert describe_missing(make_study(*rows)) == [f"stable stiffness: {reason}"]
+    assert describe_missing(make_study(*rows)) == [
+        f"stable stiffness of a 0, a 1, a 2: {reason}"
+    ]
     assert describe_missing(STUDY) == [
         "decomposition CoACD: coacd is not installed",
         "coal 3.0.1, every pair: not installed",

@@ -15,6 +15,10 @@ from drake_haptics.simulation import RunError
 
 # The whole; all other accounts are its parts.
 _WHOLE = "device"
+# In words of the scene; the linearization's are those of its systems.
+_TWO_RATES = (
+    "contacts are looked for at another rate than the tick's, and a linear map has one"
+)
 # Stiffnesses are tried within this factor of the scene's, and told to this share.
 _RANGE = 1e4
 _TOLERANCE = 1e-2
@@ -100,6 +104,8 @@ def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
     """
     if place.time_s is None:
         return StableStiffness(None, place.why_not)
+    if scene.contact.query_rate_hz is not None:
+        return StableStiffness(None, _TWO_RATES)
     try:
         held = hold_scene(scene, place.time_s)
         return StableStiffness(_find_limit(scene, held, place.near_N_per_m))

@@ -59,11 +59,17 @@ def draw_study(study: AccuracyStudy) -> Figure:
     )
     figure.draw_without_rendering()  # settles where everything is
     for axes, get_time_us in ((left, get_native_us), (right, get_tick_us)):
+        front = find_front(study, get_time_us)
         label_points(
             axes,
             [
-                (get_time_us(row), get_force_error_N(row), _describe_knee(row))
-                for row in find_front(study, get_time_us).knees
+                (
+                    get_time_us(row),
+                    get_force_error_N(row),
+                    _describe_setting(row, row in front.knees),
+                )
+                for row in front.rows
+                if not row.is_scene
             ],
         )
     return figure
@@ -166,8 +172,8 @@ def _name_peer(peer: PeerRow) -> str:
     return f"{peer.library}, {peer.method}"
 
 
-def _describe_knee(row: Row) -> str:
+def _describe_setting(row: Row, is_knee: bool) -> str:
+    """Returns the words of a setting of the front."""
     assert row.errors is not None
-    return (
-        f"{row.setting.knob}\n{row.setting.label}: {format_N(row.errors.force_rms_N)}"
-    )
+    knob = f"knee: {row.setting.knob}" if is_knee else row.setting.knob
+    return f"{knob}\n{row.setting.label}: {format_N(row.errors.force_rms_N)}"

@@ -116,18 +116,21 @@ def describe_missing(study: AccuracyStudy) -> list[str]:
     """Says what was not measured, and why."""
     rows = [f"{name_setting(row)}: {row.why_not}" for row in study.rows if row.why_not]
     # Many rows have the same reason.
-    reasons = dict.fromkeys(
-        row.errors.stiffness_why_not
-        for row in study.rows
-        if row.errors is not None
-        and row.errors.stiffness_why_not not in ("", _NOT_SOUGHT)
-    )
+    reasons: dict[str, dict[str, None]] = {}
+    for row in study.rows:
+        reason = "" if row.errors is None else row.errors.stiffness_why_not
+        if reason not in ("", _NOT_SOUGHT):
+            reasons.setdefault(reason, {})[name_setting(row)] = None
     peers = [
         f"{peer.library}, {peer.method}: {peer.why_not}"
         for peer in study.peers
         if peer.why_not
     ]
-    return rows + [f"stable stiffness: {reason}" for reason in reasons] + peers
+    stiffness = [
+        f"stable stiffness of {', '.join(names)}: {reason}"
+        for reason, names in reasons.items()
+    ]
+    return rows + stiffness + peers
 
 
 def describe_machine(study: AccuracyStudy) -> str:
