@@ -8,6 +8,7 @@ from accuracy_samples import make_row, make_study
 from drake_haptics.accuracy.figures import Row
 from drake_haptics.accuracy.pareto import (
     ERROR_FLOOR_N,
+    find_bend,
     find_front,
     find_front_points,
     find_knee_points,
@@ -72,6 +73,19 @@ def test_a_tenth_of_the_error_at_one_price_has_no_knee():
 
 def test_a_bulge_away_from_the_corner_is_no_knee():
     assert find_knee_points([(1.0, 9.0), (3.0, 8.9), (4.0, 1.0)]) == []
+
+
+def test_a_front_that_is_nearly_straight_bends_without_a_knee():
+    front = [(1.0, 1e-0), (2.0, 10**-1.05), (3.0, 1e-2)]
+    assert find_knee_points(front) == []
+    assert find_bend(front) == 1
+    assert find_bend([(1.0, 9.0), (3.0, 8.9), (4.0, 1.0)]) is None
+    assert find_bend([(1.0, 9.0), (3.0, 1.0)]) is None
+
+
+def test_the_first_knee_is_the_bend():
+    front = [(1.0, 1.0), (1.5, 0.01), (4.0, 0.001)]
+    assert find_knee_points(front) == [find_bend(front)]
 
 
 def test_times_that_are_alike_have_no_knee():

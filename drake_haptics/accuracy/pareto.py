@@ -24,10 +24,12 @@ class Front:
     Attributes:
         rows: Cheapest first, and so most wrong first; each measured.
         knees: Those of them after which accuracy becomes dear, in the same order.
+        bend: Where it bends most towards the corner; the first knee, if there is one.
     """
 
     rows: tuple[Row, ...]
     knees: tuple[Row, ...]
+    bend: Row | None
 
 
 def get_native_us(row: Row) -> float:
@@ -68,10 +70,12 @@ def find_front(
     ]
     points = [(get_time_us(row), get_force_error_N(row)) for row in rows]
     front = find_front_points(points)
-    knees = find_knee_points([points[i] for i in front])
+    ends = [points[i] for i in front]
+    bend = find_bend(ends)
     return Front(
         rows=tuple(rows[i] for i in front),
-        knees=tuple(rows[front[i]] for i in knees),
+        knees=tuple(rows[front[i]] for i in find_knee_points(ends)),
+        bend=None if bend is None else rows[front[bend]],
     )
 
 
@@ -118,6 +122,26 @@ def find_knee_points(front: Sequence[tuple[float, float]]) -> list[int]:
             knees.append(knee)
             spans += [(first, knee), (knee, last)]
     return sorted(knees)
+
+
+def find_bend(front: Sequence[tuple[float, float]]) -> int | None:
+    """Returns the index of the point where a front bends most towards the corner.
+
+    It is the first knee, if there is one; a front that is nearly straight has a bend
+    and no knee.
+
+    Args:
+        front: As `find_knee_points` takes it.
+
+    Returns:
+        None of fewer than three points, or if none is below the line between the ends.
+    """
+    if len(front) < 3 or front[-1][0] <= front[0][0]:
+        return None
+    x = _scale([time for time, _ in front])
+    y = _scale([math.log(error) for _, error in front])
+    bend, depth = _find_deepest(x, y, 0, len(front) - 1)
+    return bend if depth > 0.0 else None
 
 
 def _scale(values: Sequence[float]) -> list[float]:

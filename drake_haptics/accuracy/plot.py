@@ -68,8 +68,8 @@ def draw_study(study: AccuracyStudy) -> Figure:
                     get_force_error_N(row),
                     _describe_setting(row, row in front.knees),
                 )
-                for row in front.rows
-                if not row.is_scene
+                for row in front.knees or [front.bend]
+                if row is not None and not row.is_scene
             ],
         )
     return figure
@@ -173,7 +173,7 @@ def _name_peer(peer: PeerRow) -> str:
 
 
 def _describe_setting(row: Row, is_knee: bool) -> str:
-    """Returns the words of a setting of the front."""
+    """Returns the words of a setting that is worth a look."""
     assert row.errors is not None
     knob = f"knee: {row.setting.knob}" if is_knee else row.setting.knob
     return f"{knob}\n{row.setting.label}: {format_N(row.errors.force_rms_N)}"
