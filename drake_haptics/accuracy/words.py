@@ -16,7 +16,7 @@ from drake_haptics.accuracy.pareto import (
 from drake_haptics.accuracy.table import format_N, format_us
 
 # Times must differ by this share to be worth a sentence.
-_NOISE = 0.05
+_NOISE = 0.1
 # Of a stiffness that nobody asked for.
 _NOT_SOUGHT = "not sought"
 
