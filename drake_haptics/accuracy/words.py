@@ -15,8 +15,10 @@ from drake_haptics.accuracy.pareto import (
 )
 from drake_haptics.accuracy.table import format_N, format_us
 
-# Times must differ by this share to be worth a sentence.
+# Times must differ by this share to be worth a sentence: two runs do by half of it.
 _NOISE = 0.1
+# A ratio this near to a simple one is told as that.
+_ROUND = 0.05
 # Of a stiffness that nobody asked for.
 _NOT_SOUGHT = "not sought"
 
@@ -170,7 +172,7 @@ def _describe_price(row: Row) -> str:
 def _describe_ratio(ratio: float) -> str:
     """Returns a ratio as people say it."""
     for value, words in ((0.5, "half"), (1.0 / 3.0, "a third of"), (1.0, "as much as")):
-        if abs(ratio - value) < _NOISE * value:
+        if abs(ratio - value) < _ROUND * value:
             return words
     return f"{ratio:.2g} times"
 
