@@ -13,8 +13,8 @@ def export_parts(
 ) -> None:
     """Exports consecutive parts of a vector output as outputs of the diagram.
 
-    Drake's own system splits it, which takes no time to speak of; a port that Python
-    calculates costs some 5 µs per tick.
+    Drake's own system splits it, which takes no time to speak of beside a port that
+    Python calculates.
 
     Args:
         builder: Of the diagram.
@@ -32,7 +32,7 @@ def import_parts(
 ) -> None:
     """Exports consecutive parts of a vector input as inputs of the diagram.
 
-    Drake's own system joins them; each port that Python reads costs 0.7 µs per tick.
+    Drake's own system joins them; a port that Python reads takes longer, in every tick.
 
     Args:
         builder: Of the diagram.
