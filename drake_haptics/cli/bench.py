@@ -16,19 +16,14 @@ from drake_haptics.bench.benchmark import (
     run_benchmarks,
 )
 from drake_haptics.bench.report import machine_line, make_tables, missing_lines
-from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.cli.mesh_options import json_option, meshes_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 
 
 @click.command()
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
 @click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
-@click.option(
-    "--meshes",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    metavar="FOLDER",
-    help="Take the scenes' meshes from here where it has them (cup_500.obj, ...).",
-)
+@meshes_option("Take the scenes' meshes from here where it has them")
 @json_option
 def bench(
     parts: tuple[str, ...], quick: bool, meshes: Path | None, json_file: str | None

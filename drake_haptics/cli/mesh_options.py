@@ -47,6 +47,20 @@ def read_mesh(
     return mesh if max_triangles is None else decimate(mesh, max_triangles)
 
 
+def meshes_option(what: str) -> Callable[[_Function], _Function]:
+    """Adds --meshes FOLDER, of real meshes by their names.
+
+    Args:
+        what: Is done with them, for --help.
+    """
+    return click.option(
+        "--meshes",
+        type=click.Path(exists=True, file_okay=False, path_type=Path),
+        metavar="FOLDER",
+        help=f"{what} (cup_500.obj, ...).",
+    )
+
+
 def json_option(function: _Function) -> _Function:
     """Adds --json FILE, where - is stdout."""
     return click.option(

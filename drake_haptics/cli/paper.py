@@ -10,7 +10,12 @@ from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table as RichTable
 
-from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
+from drake_haptics.cli.mesh_options import (
+    json_option,
+    meshes_option,
+    require_folder,
+    write_json,
+)
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.paper.evaluation import (
     PARTS,
@@ -36,12 +41,7 @@ _ANY_WIDTH = 1000
 @click.command()
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
 @click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
-@click.option(
-    "--meshes",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    metavar="FOLDER",
-    help="Measure these meshes too, as many as there are (cup_500.obj, ...).",
-)
+@meshes_option("Measure these meshes too, as many as there are")
 @click.option(
     "--out",
     type=click.Path(dir_okay=False, path_type=Path),
