@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.drake_haptics
 CORE := $(wildcard drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h) drake_haptics/core/CMakeLists.txt
 
-.PHONY: demo test lint unit format build fuzz clean
+.PHONY: demo test lint unit docs format build fuzz clean
 .DEFAULT_GOAL := demo
 
 demo: $(STAMP)
@@ -23,6 +23,12 @@ lint: $(STAMP)-test
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/clang-format --dry-run -Werror drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h examples/*.c tests/benchmarks/*.c tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
+
+# The pages of docs/ with the reference that is made of the code, as a site.
+docs: $(STAMP)-test
+	$(BIN)/python -m sphinx --builder html --jobs auto --quiet --nitpicky \
+	  --fail-on-warning --keep-going docs build/docs
+	@echo "The front page is $(CURDIR)/build/docs/index.html"
 
 format: $(STAMP)-test
 	$(BIN)/ruff check --fix .
