@@ -1,0 +1,25 @@
+// Numbers as people read them.
+
+export const newtons = f => f.toFixed(2) + " N";
+export const millinewtonmetres = t => (1e3 * t).toFixed(0) + " mN·m";
+export const norm = v => Math.hypot(...v);
+
+/** A time in µs, ms above a thousand of them. */
+export function micros(us) {
+  if (us < 10) return us.toFixed(1) + " µs";
+  if (us < 1000) return us.toFixed(0) + " µs";
+  return (us / 1000).toFixed(us < 10000 ? 1 : 0) + " ms";
+}
+
+/** A length in mm, µm below a tenth of one. */
+export function millimetres(m) {
+  return m < 1e-4 ? (1e6 * m).toFixed(0) + " µm" : (1e3 * m).toFixed(2) + " mm";
+}
+
+export function seconds(s) {
+  const minutes = Math.floor(s / 60);
+  return minutes ? minutes + " min " + (s % 60).toFixed(0).padStart(2, "0") + " s" : s.toFixed(1) + " s";
+}
+
+/** Three significant digits, without an exponent where people would write none. */
+export const rounded = x => Number(x.toPrecision(3));

@@ -1,0 +1,127 @@
+// Joins the run and the page's parts.
+
+import {showFigures, showGate} from "./bar.js";
+import {showDirection} from "./dial.js";
+import {find, write} from "./find.js";
+import "./folds.js";
+import {connect, say} from "./link.js";
+import {notify} from "./notices.js";
+import {showHandle} from "./pointer.js";
+import {isHandleOfPointer, setHandle} from "./pilot.js";
+import {makeSliders, placeWarnings, showValues} from "./sliders.js";
+import "./shortcuts.js";
+import {aim, layOut, makeCameras} from "./stage.js";
+import {makeChoices, makeHandles, makeSwitches, showSwitches} from "./switches.js";
+import {setLimits, showTrace} from "./traces.js";
+import {setYaml} from "./yaml.js";
+
+const FAULT = "The device is at fault: it shows no force. Hold it, mend what is wrong"
+  + " (the terminal says what), and press Enter there to take it up again.";
+let settings = {limits: {force_N: 0, torque_Nm: 0}, period_s: 1e-3};
+let isFramed = false;
+
+const on = {
+  hello(hello) {
+    settings = hello;
+    document.body.classList.remove("connecting", "over");
+    for (const matter of ["link", "over"]) notify(matter, "");
+    if (find("view").src !== hello.meshcat) find("view").src = hello.meshcat;
+    write(find("scene"), hello.scene);
+    write(find("description"), hello.description);
+    find("title").title = hello.description;
+    document.title = hello.scene + " – haptic cockpit";
+    setLimits(hello.limits);
+    makeSliders(hello.keys ?? []);
+    makeChoices(hello.choices ?? []);
+    makeSwitches("effect", hello.effects ?? []);
+    makeSwitches("view", hello.views ?? []);
+    makeHandles(hello.handles ?? []);
+    makeCameras(hello.cameras ?? []);
+    makeLegend(hello.legend ?? []);
+    showPanels(hello);
+    write(find("locked"), hello.locked);
+    find("locked").hidden = !hello.locked;
+    layOut();
+  },
+
+  frame(frame) {
+    document.body.classList.toggle("watching", !frame.drives);
+    notify("watching", frame.drives ? "" : "Another page drives. This one watches.",
+           {button: {label: "Drive from here", act: () => say({do: "take"})}});
+    notify("fault", frame.gate === "fault" ? FAULT : "", {kind: "fault"});
+    notify("shed", frame.shed.length ? "Ticks take too long. Left out: " + frame.shed.join(", ") + "." : "", {kind: "warn"});
+    enable(frame.drives);
+    showFigures(frame, settings.period_s);
+    showTrace(frame);
+    showDirection(frame, settings.limits.force_N);
+    showHandle(frame.handle);
+    if (frame.drives && !isFramed) {
+      isFramed = true;
+      aim("fit");
+    }
+  },
+
+  state(state) {
+    showValues(state.values);
+    showSwitches(state);
+    const rest = placeWarnings(state.warnings);
+    find("warnings").replaceChildren(...rest.map(text => {
+      const note = document.createElement("p");
+      note.textContent = text;
+      return note;
+    }));
+    setHandle(state.handle, settings.handles ?? []);
+    setYaml(state.yaml);
+    notify("error", state.error, {kind: "fault"});
+  },
+
+  over({why}) {
+    end();
+    document.body.classList.add("over");
+    notify("link", "");
+    notify("over", "The run has ended" + (why ? ": " + why : ".") + " What it left is still to be read.");
+  },
+
+  lost() {
+    end();
+    document.body.classList.add("connecting");
+    if (!find("notice-over")) notify("link", "No way to the run: it has ended, or is yet to come. Trying again.");
+  },
+};
+
+/** Nothing can be changed any more; traces and figures stay. */
+function end() {
+  showGate("ended");
+  enable(false);
+  showHandle(null);
+  for (const matter of ["watching", "fault", "shed", "error"]) notify(matter, "");
+}
+
+function enable(drives) {
+  for (const part of document.querySelectorAll(".change")) part.disabled = !drives || Boolean(settings.locked);
+  for (const part of document.querySelectorAll(".view, #cameras button")) part.disabled = !drives;
+  document.body.classList.toggle("piloting", drives && isHandleOfPointer());
+}
+
+function makeLegend(legend) {
+  find("legend").replaceChildren(...legend.map(({color, label}) => {
+    const [item, patch] = [document.createElement("li"), document.createElement("i")];
+    patch.style.background = color;
+    item.append(patch, label);
+    return item;
+  }));
+}
+
+/** Hides what would be empty. */
+function showPanels({keys = [], choices = [], effects = [], handles = [], views = [], legend = []}) {
+  const has = group => keys.some(key => key.group === group);
+  const filled = {
+    coupling: has("coupling"), contact: has("contact") || choices.length, effects: effects.length,
+    handles: handles.length > 1, views: views.length, legend: legend.length,
+  };
+  for (const [name, is] of Object.entries(filled)) find("panel-" + name).hidden = !is;
+  find("actions").hidden = !(keys.length || effects.length);
+}
+
+notify("link", "Connecting to the run.");
+connect(on);

@@ -1,0 +1,130 @@
+// Sliders with a number beside them: what a key of the scene is now, and was in its file.
+
+import {copy, find} from "./find.js";
+import {rounded} from "./format.js";
+import {say} from "./link.js";
+
+const STEPS = 1000;
+const rows = new Map();
+
+/** Makes a slider for each key, in the panel of its group. */
+export function makeSliders(keys) {
+  rows.clear();
+  for (const group of ["coupling", "contact"]) {
+    find(group).querySelectorAll(".slider").forEach(row => row.remove());
+  }
+  for (const key of keys) {
+    const row = new Slider(key);
+    rows.set(key.key, row);
+    find(key.group).append(row.element);
+  }
+}
+
+export function showValues(values) {
+  for (const [key, value] of Object.entries(values)) rows.get(key)?.show(value);
+}
+
+/** Puts each warning at the slider that it is about; returns those that are about none. */
+export function placeWarnings(warnings) {
+  const rest = [];
+  const texts = new Map([...rows.keys()].map(key => [key, []]));
+  for (const warning of warnings) {
+    const key = [...rows.keys()].find(k => startsWithKey(warning, k));
+    (key ? texts.get(key) : rest).push(warning);
+  }
+  for (const [key, row] of rows) row.warn(texts.get(key).join(" "));
+  return rest;
+}
+
+function startsWithKey(sentence, key) {
+  const first = sentence.split(/[\s:,]/, 1)[0];
+  return first === key || first === key.split(".").pop();
+}
+
+class Slider {
+  constructor(key) {
+    this.key = key;
+    this.element = copy("slider-row");
+    const part = selector => this.element.querySelector(selector);
+    [this.number, this.range] = [part("input[type=number]"), part("input[type=range]")];
+    [this.undo, this.note] = [part(".undo"), part(".warning")];
+    const label = part("label");
+    [this.number.id, this.note.id] = [key.key, key.key + ".warning"];
+    label.htmlFor = key.key;
+    label.textContent = key.label;
+    label.title = key.help;
+    part(".unit").textContent = key.unit;
+    [this.number.min, this.number.max] = [key.low, key.high];
+    this.range.setAttribute("aria-label", key.label + ", slider");
+    for (const input of [this.number, this.range]) {
+      input.title = `${key.help} From ${key.low} to ${key.high} ${key.unit}.`;
+      input.setAttribute("aria-describedby", this.note.id);
+    }
+    // The thumb's middle goes from 8 px to 8 px before the end.
+    part(".mark").style.left = `calc(8px + ${this._share(key.file)} * (100% - 16px))`;
+    part(".mark").title = "The scene file has " + key.file;
+    this.isAsked = false;
+    this.range.addEventListener("input", () => this._ask(rounded(this._value(this.range.value / STEPS))));
+    this.number.addEventListener("change", () => this._take());
+    this.range.addEventListener("dblclick", () => this._reset());
+    this.undo.addEventListener("click", () => this._reset());
+  }
+
+  show(value) {
+    // What a hand is on stays as it is: the answer to an older wish is on its way.
+    if (this.isAsked) return;
+    this._write(value);
+  }
+
+  warn(text) {
+    this.note.hidden = text === "";
+    this.note.textContent = text;
+  }
+
+  _write(value) {
+    if (document.activeElement !== this.number) this.number.value = rounded(value);
+    this.range.value = Math.round(STEPS * this._share(value));
+    this.range.setAttribute("aria-valuetext", rounded(value) + " " + this.key.unit);
+    const changed = Math.abs(value - this.key.file) > 1e-9 * Math.abs(this.key.file);
+    this.element.classList.toggle("changed", changed);
+    this.undo.hidden = !changed;
+  }
+
+  /** Sends what was asked for last, once a picture. */
+  _ask(value) {
+    this.wanted = Math.min(Math.max(value, this.key.low), this.key.high);
+    this._write(this.wanted);
+    if (this.isAsked) return;
+    this.isAsked = true;
+    requestAnimationFrame(() => {
+      this.isAsked = false;
+      say({do: "set", key: this.key.key, to: this.wanted});
+    });
+  }
+
+  _take() {
+    const value = this.number.valueAsNumber;
+    if (!Number.isFinite(value)) this.number.value = rounded(this._value(this.range.value / STEPS));
+    else {
+      this._ask(value);
+      this.number.value = this.wanted;
+    }
+  }
+
+  _reset() {
+    this._ask(this.key.file);
+    this.number.value = rounded(this.key.file);
+    if (document.activeElement === this.undo) this.range.focus();
+  }
+
+  _share(value) {
+    const {low, high, log} = this.key;
+    const share = log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+    return Math.min(Math.max(share, 0), 1);
+  }
+
+  _value(share) {
+    const {low, high, log} = this.key;
+    return log ? low * (high / low) ** share : low + share * (high - low);
+  }
+}

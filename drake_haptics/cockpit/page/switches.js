@@ -1,0 +1,68 @@
+// What is on or off, one of several, or held by somebody.
+
+import {copy, find} from "./find.js";
+import {say} from "./link.js";
+
+const choices = new Map();
+const switches = {effect: new Map(), view: new Map()};
+const handles = new Map();
+
+export function makeChoices(list) {
+  find("contact").querySelectorAll(".choice").forEach(row => row.remove());
+  choices.clear();
+  for (const {key, label, options, help} of list) {
+    const row = copy("choice-row"), select = row.querySelector("select");
+    [select.id, row.title] = [key, help];
+    row.querySelector("label").htmlFor = key;
+    row.querySelector("label").textContent = label;
+    select.append(...options.map(option => new Option(option, option)));
+    select.addEventListener("change", () => say({do: "choose", key, to: select.value}));
+    choices.set(key, select);
+    find("contact").prepend(row);
+  }
+}
+
+/** kind is "effect" or "view": what is told to the run. */
+export function makeSwitches(kind, list) {
+  const folder = find(kind + "s"), made = switches[kind];
+  folder.querySelectorAll(".switch").forEach(row => row.remove());
+  made.clear();
+  for (const {name, label, help} of list) {
+    const row = copy("switch-row"), input = row.querySelector("input");
+    input.id = kind + "-" + name;
+    row.querySelector(".name").textContent = label;
+    row.querySelector("small").textContent = help || "";
+    input.addEventListener("change", () => {
+      row.classList.add("waiting");
+      say({do: kind, name, on: input.checked});
+    });
+    made.set(name, input);
+    folder.append(row);
+  }
+}
+
+export function makeHandles(list) {
+  find("handles").querySelectorAll(".handle").forEach(row => row.remove());
+  handles.clear();
+  for (const {name, label} of list) {
+    const row = copy("handle-row"), input = row.querySelector("input");
+    [input.value, input.id] = [name, "handle-" + name];
+    row.querySelector(".name").textContent = label;
+    input.addEventListener("change", () => say({do: "handle", to: name}));
+    handles.set(name, input);
+    find("handles").append(row);
+  }
+}
+
+export function showSwitches(state) {
+  for (const [key, option] of Object.entries(state.choices)) {
+    if (choices.has(key)) choices.get(key).value = option;
+  }
+  for (const [kind, values] of [["effect", state.effects], ["view", state.views]]) {
+    for (const [name, input] of switches[kind]) {
+      input.checked = Boolean(values[name]);
+      input.parentElement.classList.remove("waiting");
+    }
+  }
+  for (const [name, input] of handles) input.checked = name === state.handle;
+}
