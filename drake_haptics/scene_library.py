@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import drake_haptics
-from drake_haptics.scene import SceneError
+from drake_haptics.scene_check import SceneError
 
 _SCENES = Path(drake_haptics.__file__).parent / "models" / "scenes"
 

@@ -24,7 +24,11 @@ from drake_haptics.accuracy.setting import Setting
 from drake_haptics.accuracy.study import run_accuracy_study
 from drake_haptics.accuracy.study_json import to_json_data
 from drake_haptics.analysis.study_error import StudyError
+from drake_haptics.cli import lessons
 from drake_haptics.cli.accuracy_output import make_console, print_choice, print_study
+from drake_haptics.cli.complete import complete_scene, complete_setting
+from drake_haptics.cli.exit_codes import ExitCode
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
@@ -40,8 +44,8 @@ _FILE: dict[str, Any] = {
 }
 
 
-@click.command()
-@click.argument("scene", default="cup_spoon")
+@click.command(cls=TaughtCommand, lesson=lessons.ACCURACY)
+@click.argument("scene", default="cup_spoon", shell_complete=complete_scene)
 @click.option(
     "--quick",
     is_flag=True,
@@ -52,6 +56,7 @@ _FILE: dict[str, Any] = {
     "words",
     multiple=True,
     metavar="KEY=VALUE",
+    shell_complete=complete_setting,
     help="Measure this setting alone, such as contact.tolerance_m=0.0005; once more for"
     " each further key of it. `scene` is the scene as it is. Writes no page.",
 )
@@ -92,8 +97,6 @@ def accuracy(
     cup_spoon if not given. The hand moves along its path once. Every setting of every
     knob answers the same motion, is compared with exact contacts, and is timed. Prints
     the price list and writes a page with a picture. Some minutes.
-
-    Exits with 1 if something given cannot be used or no setting holds the budget.
     """
     if budget_us is None and write is not None:
         raise click.UsageError("--write needs --budget-us")
@@ -149,9 +152,6 @@ def _errors_in_a_line() -> Iterator[None]:
         yield
     except (ValueError, RunError, StudyError) as error:
         raise UserError(str(error)) from error
-    except KeyboardInterrupt as stop:
-        # What a study was asked to keep is kept; its words say how to go on.
-        raise click.ClickException(str(stop) or "stopped") from stop
 
 
 def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None:
@@ -193,4 +193,4 @@ def _show_choice(
         if choice.holds:
             console.print(f"Wrote {file}: drake-haptics run {file}", soft_wrap=True)
     if not choice.holds:
-        raise click.exceptions.Exit(1)
+        raise click.exceptions.Exit(ExitCode.NO)

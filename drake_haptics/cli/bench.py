@@ -16,11 +16,13 @@ from drake_haptics.bench.benchmark import (
     run_benchmarks,
 )
 from drake_haptics.bench.report import machine_line, make_tables, missing_lines
+from drake_haptics.cli import lessons
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, meshes_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 
 
-@click.command()
+@click.command(cls=TaughtCommand, lesson=lessons.BENCH)
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
 @click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
 @meshes_option("Take the scenes' meshes from here where it has them")

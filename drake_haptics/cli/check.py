@@ -5,6 +5,8 @@ from __future__ import annotations
 import click
 from rich.console import Console
 
+from drake_haptics.cli import lessons
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import (
     json_option,
     max_triangles_option,
@@ -15,7 +17,7 @@ from drake_haptics.cli.mesh_options import (
 from drake_haptics.mesh import MeshError
 
 
-@click.command()
+@click.command(cls=TaughtCommand, lesson=lessons.CHECK)
 @click.argument("mesh", type=click.Path())
 @unit_options
 @max_triangles_option
@@ -31,10 +33,7 @@ def check(
     strict: bool,
     json_file: str | None,
 ) -> None:
-    """Report what a mesh file is, what is wrong with it and what is done about it.
-
-    Exits with 0 if the mesh can be used, with 1 if it cannot.
-    """
+    """Report what a mesh file is, what is wrong with it and what is done about it."""
     report = read_mesh(mesh, unit, scale, max_triangles).report
     if json_file is not None:
         write_json(report.to_dict(), json_file)

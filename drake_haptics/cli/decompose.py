@@ -9,6 +9,8 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from drake_haptics.cli import lessons
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import (
     json_option,
     max_triangles_option,
@@ -22,7 +24,7 @@ from drake_haptics.mesh import Mesh
 from drake_haptics.mesh_report import length
 
 
-@click.command()
+@click.command(cls=TaughtCommand, lesson=lessons.DECOMPOSE)
 @click.argument("mesh", type=click.Path())
 @unit_options
 @max_triangles_option

@@ -7,7 +7,10 @@ import shlex
 import click
 from rich.console import Console
 
+from drake_haptics.cli import lessons
+from drake_haptics.cli.complete import complete_scene
 from drake_haptics.cli.driver_status import DriverStatusLine, make_driver_summary
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.device.simulated_driver import make_simulated_driver
 from drake_haptics.device.stop_signals import stop_on_signals
@@ -15,11 +18,12 @@ from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
 
 
-@click.command()
-@click.argument("scene", default="cup_spoon")
+@click.command(cls=TaughtCommand, lesson=lessons.DEVICE)
+@click.argument("scene", default="cup_spoon", shell_complete=complete_scene)
 @click.option(
     "--port",
     type=click.IntRange(0, 65535),
+    metavar="PORT",
     default=7400,
     show_default=True,
     help="UDP port to listen at; 0: any free one.",
@@ -40,6 +44,7 @@ from drake_haptics.scene_library import find_scene
 @click.option(
     "--ttl-ms",
     type=click.FloatRange(0, 1000, min_open=True),
+    metavar="MS",
     default=100.0,
     show_default=True,
     help="A command is shown for so long at most, then the force goes to zero and the"
@@ -68,7 +73,7 @@ def device(
     enables the device.
 
     Whatever fails, host, network or this program's end, the device goes to zero
-    force. Exits with 0 at the end or at Ctrl-C.
+    force.
     """
     console = Console(highlight=False, stderr=json_file == "-")
     driver = make_simulated_driver(

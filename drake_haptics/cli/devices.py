@@ -8,6 +8,8 @@ import click
 from rich.console import Console
 from rich.table import Table
 
+from drake_haptics.cli import lessons
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.device_preset import (
     DevicePreset,
@@ -16,14 +18,14 @@ from drake_haptics.device_preset import (
 )
 
 
-@click.command()
+@click.command(cls=TaughtCommand, lesson=lessons.DEVICES)
 @json_option
 def devices(json_file: str | None) -> None:
     """List the devices whose limits come along.
 
     Forces, torques and stiffnesses are the largest that the device is rated for. A
     device with a twin can be simulated; the others are used with
-    `drake-haptics run --device`. A file of your own takes the place of a name: see
+    `run --device`. A file of your own takes the place of a name: see
     docs/device-twin.md.
     """
     presets = {name: load_device_preset(name) for name in list_device_presets()}

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from drake_haptics.cli import lessons
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.log_words import warn_of_gaps
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
@@ -14,7 +16,7 @@ from drake_haptics.tick_log.csv_export import write_csv
 from drake_haptics.tick_log.tick_log import TickLogReader
 
 
-@click.command()
+@click.command(cls=TaughtCommand, lesson=lessons.LOG_CSV)
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("out", type=click.Path(dir_okay=False, allow_dash=True))
 def csv(file: Path, out: str) -> None:

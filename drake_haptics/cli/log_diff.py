@@ -6,6 +6,9 @@ from pathlib import Path
 
 import click
 
+from drake_haptics.cli import lessons
+from drake_haptics.cli.exit_codes import ExitCode
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.log_words import print_diff, warn_of_gaps
 from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
 from drake_haptics.cli.progress_bar import progress_bar
@@ -13,10 +16,8 @@ from drake_haptics.errors import UserError
 from drake_haptics.tick_log.log_diff import compare_logs
 from drake_haptics.tick_log.tick_log import read_tick_log
 
-_DIFFER = 3
 
-
-@click.command()
+@click.command(cls=TaughtCommand, lesson=lessons.LOG_DIFF)
 @click.argument("a", type=click.Path(path_type=Path))
 @click.argument("b", type=click.Path(path_type=Path))
 @click.option(
@@ -36,9 +37,6 @@ def diff(
     A and B are logs. Says for each quantity at how many ticks it differs, where first,
     where most and by how much. The clocks, which differ in every run, do not count, nor
     what a device told besides its handle.
-
-    Exits with 0 if both are equal to the last bit, with 3 if not, with 1 if they
-    cannot be compared.
     """
     with progress_bar() as show:
         logs = [read_tick_log(file, show) for file in (a, b)]
@@ -57,4 +55,4 @@ def diff(
     if json_file != "-":
         print_diff(difference, logs[0].header.period_s)
     if not difference.is_bit_equal:
-        ctx.exit(_DIFFER)
+        ctx.exit(ExitCode.NO)

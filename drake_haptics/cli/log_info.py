@@ -8,12 +8,14 @@ import click
 from rich.console import Console
 from rich.table import Table
 
+from drake_haptics.cli import lessons
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.tick_log.log_summary import LogSummary, summarize_log
 
 
-@click.command()
+@click.command(cls=TaughtCommand, lesson=lessons.LOG_INFO)
 @click.argument("file", type=click.Path(path_type=Path))
 @json_option
 def info(file: Path, json_file: str | None) -> None:

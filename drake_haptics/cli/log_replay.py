@@ -7,6 +7,9 @@ from pathlib import Path
 
 import click
 
+from drake_haptics.cli import lessons
+from drake_haptics.cli.complete import complete_scene, complete_setting
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.log_words import print_diff, warn_of_gaps
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
@@ -21,14 +24,15 @@ from drake_haptics.tick_log.scene_settings import change_scene
 from drake_haptics.tick_log.tick_log import read_tick_log
 
 
-@click.command()
+@click.command(cls=TaughtCommand, lesson=lessons.LOG_REPLAY)
 @click.argument("file", type=click.Path(path_type=Path))
-@click.argument("scene", required=False)
+@click.argument("scene", required=False, shell_complete=complete_scene)
 @click.option(
     "--set",
     "settings",
     multiple=True,
     metavar="KEY=VALUE",
+    shell_complete=complete_setting,
     help="Change a value of the scene, like contact.stiffness_N_per_m=4000; may be"
     " given again.",
 )

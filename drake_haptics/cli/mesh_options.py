@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 import click
 
+from drake_haptics.cli.complete import complete_unit
 from drake_haptics.errors import UserError
 from drake_haptics.mesh import Mesh, load_mesh
 from drake_haptics.mesh_decimation import decimate
@@ -20,10 +21,15 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 def unit_options(function: _Function) -> _Function:
     """Adds --unit and --scale."""
     scale = click.option(
-        "--scale", type=float, help="Metres per unit of the file, instead of --unit."
+        "--scale",
+        type=float,
+        metavar="METRES",
+        help="Metres per unit of the file, instead of --unit.",
     )
     unit = click.option(
         "--unit",
+        metavar="UNIT",
+        shell_complete=complete_unit,
         help=f"Length unit of the file: {', '.join(METRES_PER_UNIT)}.  [default: m]",
     )
     return unit(scale(function))

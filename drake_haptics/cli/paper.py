@@ -10,6 +10,8 @@ from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table as RichTable
 
+from drake_haptics.cli import lessons
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import (
     json_option,
     meshes_option,
@@ -38,7 +40,7 @@ _STYLES = {
 _ANY_WIDTH = 1000
 
 
-@click.command()
+@click.command(cls=TaughtCommand, lesson=lessons.PAPER)
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
 @click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
 @meshes_option("Measure these meshes too, as many as there are")

@@ -9,6 +9,9 @@ from pydrake.geometry import Meshcat
 from rich.console import Console
 
 from drake_haptics.builder import HapticDiagram
+from drake_haptics.cli import lessons
+from drake_haptics.cli.complete import complete_address, complete_file, complete_scene
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import require_folder, write_json
 from drake_haptics.cli.parts_table import make_parts_table
 from drake_haptics.cli.run_session import run_session
@@ -22,25 +25,38 @@ from drake_haptics.stage import open_meshcat, set_stage
 _EXPLAINED_S = 2.0
 
 
-@click.command()
-@click.argument("scene", required=False)
-@click.option("--tool", help="Instead of SCENE: mesh file of the tool.")
-@click.option("--environment", help="Instead of SCENE: mesh file of what it meets.")
+@click.command(cls=TaughtCommand, lesson=lessons.RUN)
+@click.argument("scene", required=False, shell_complete=complete_scene)
+@click.option(
+    "--tool",
+    metavar="MESH",
+    shell_complete=complete_file,
+    help="Instead of SCENE: mesh file of the tool.",
+)
+@click.option(
+    "--environment",
+    metavar="MESH",
+    shell_complete=complete_file,
+    help="Instead of SCENE: mesh file of what it meets.",
+)
 @click.option(
     "--tool-scale",
     type=click.FloatRange(0, min_open=True),
+    metavar="METRES",
     help="Metres per unit of the tool's file.  [default: 1]",
 )
 @click.option(
     "--environment-scale",
     type=click.FloatRange(0, min_open=True),
+    metavar="METRES",
     help="Metres per unit of the environment's file.  [default: 1]",
 )
 @click.option(
     "--device",
     metavar="ADDRESS",
+    shell_complete=complete_address,
     help="Hold a device instead of the simulated one: udp://HOST:PORT of a driver (try"
-    " `drake-haptics device`), haply://HOST, lcm:, replay:FILE of --log, or without one"
+    " the command `device`), haply://HOST, lcm:, replay:FILE of --log, or without one"
     " mouse: and meshcat: (sliders below Open Controls on the page, gamepad).",
 )
 @click.option(
@@ -73,7 +89,7 @@ _EXPLAINED_S = 2.0
     type=click.Path(dir_okay=False, path_type=Path),
     metavar="FILE",
     callback=require_folder,
-    help="Note every tick in a file, for `drake-haptics log`.",
+    help="Note every tick in a file, for the command `log`.",
 )
 @click.option(
     "--json",
@@ -87,6 +103,7 @@ _EXPLAINED_S = 2.0
 @click.option(
     "--port",
     type=click.IntRange(1024, 65535),
+    metavar="PORT",
     help="TCP port of the page.  [default: the first free one from 7000]",
 )
 def run(
@@ -110,9 +127,6 @@ def run(
     SCENE is the name of a shipped scene (see `drake-haptics scenes`) or a scene
     file. A simulated hand holds a simulated 6-DOF arm and moves the tool, or you do
     with --device.
-
-    Exits with 0 at the end or at Ctrl-C, with 1 if something given cannot be used,
-    with 3 if the simulation became unstable.
     """
     if (headless or explain) and (pieces or port) and not record:
         option = "--headless" if headless else "--explain"

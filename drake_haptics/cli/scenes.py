@@ -6,11 +6,13 @@ import click
 from rich.console import Console
 from rich.table import Table
 
+from drake_haptics.cli import lessons
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import list_scenes
 
 
-@click.command()
+@click.command(cls=TaughtCommand, lesson=lessons.SCENES)
 def scenes() -> None:
     """List the scenes that come along."""
     table = Table(box=None, header_style="bold", pad_edge=False)

@@ -17,6 +17,9 @@ from drake_haptics.analysis.stability_page import (
 )
 from drake_haptics.analysis.stiffness_limits import format_limit
 from drake_haptics.analysis.study import StudyError
+from drake_haptics.cli import lessons
+from drake_haptics.cli.complete import complete_scene
+from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
@@ -26,8 +29,8 @@ from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import RunError
 
 
-@click.command()
-@click.argument("scene")
+@click.command(cls=TaughtCommand, lesson=lessons.STABILITY)
+@click.argument("scene", shell_complete=complete_scene)
 @click.option(
     "--at",
     "time_s",
@@ -39,6 +42,7 @@ from drake_haptics.simulation import RunError
     "--map",
     "map_size",
     type=click.IntRange(0),
+    metavar="N",
     default=20,
     show_default=True,
     help="Stiffnesses and dampings of the map, each; 0 for no map, else at least 2.",
@@ -84,9 +88,6 @@ def stability(
             )
     except (ValueError, RunError, StudyError) as error:
         raise UserError(str(error)) from error
-    except KeyboardInterrupt as stop:
-        # What a study was asked to keep is kept; its words say how to go on.
-        raise click.ClickException(str(stop) or "stopped") from stop
     write_stability_page(result, Path(scene).stem, path)
     if json_file is not None:
         write_json(result.to_dict(), json_file)

@@ -1,0 +1,76 @@
+"""What the Tab key completes besides commands, options and files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import click
+from click.shell_completion import CompletionItem
+
+from drake_haptics.units import METRES_PER_UNIT
+
+_ADDRESSES = {
+    "udp://127.0.0.1:7400": "a driver, as `drake-haptics device` is one",
+    "mouse:": "the mouse, on the page",
+    "meshcat:": "sliders and gamepad, on the page",
+    "haply://127.0.0.1": "Haply's service",
+    "lcm:": "a driver on LCM",
+    "replay:": "the handle of a log",
+}
+
+
+def complete_scene(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes names of shipped scenes, else files."""
+    from drake_haptics.scene_library import list_scenes
+
+    return _complete(list_scenes(), incomplete) or [
+        CompletionItem(incomplete, type="file")
+    ]
+
+
+def complete_file(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes files."""
+    return [CompletionItem(incomplete, type="file")]
+
+
+def complete_address(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes kinds of devices."""
+    return [
+        CompletionItem(address, help=what)
+        for address, what in _ADDRESSES.items()
+        if address.startswith(incomplete)
+    ]
+
+
+def complete_unit(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes length units."""
+    return _complete(METRES_PER_UNIT, incomplete)
+
+
+def complete_setting(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes KEY=VALUE of a scene: keys, and devices after `device.preset=`."""
+    if "=" not in incomplete:
+        from drake_haptics.scene_keys import list_scene_keys
+
+        return _complete([f"{key}=" for key in list_scene_keys()], incomplete)
+    if not incomplete.startswith("device.preset="):
+        return []
+    from drake_haptics.device_preset import list_device_presets
+
+    return _complete(
+        [f"device.preset={name}" for name in list_device_presets()], incomplete
+    )
+
+
+def _complete(words: Iterable[str], incomplete: str) -> list[CompletionItem]:
+    return [CompletionItem(word) for word in words if word.startswith(incomplete)]

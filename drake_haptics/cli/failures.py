@@ -1,0 +1,159 @@
+"""Turns whatever ends a command into words and an exit code."""
+
+from __future__ import annotations
+
+import errno
+import logging
+import traceback
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+
+import drake_haptics
+from drake_haptics.cli.exit_codes import ExitCode
+from drake_haptics.errors import UserError
+
+_REMEDIES = {
+    errno.ENOSPC: "free some space, or write to another disk",
+    errno.EDQUOT: "free some space, or write to another disk",
+    errno.EROFS: "name a file in a folder that can be written",
+    errno.EACCES: "name a file or folder that is yours",
+    errno.EMFILE: "allow more open files, with `ulimit -n 4096`",
+}
+
+
+class _Defect(click.ClickException):
+    """A defect of the program."""
+
+    exit_code = ExitCode.DEFECT
+
+
+class _Interrupted(click.ClickException):
+    """A Ctrl-C, which is no error."""
+
+    exit_code = ExitCode.INTERRUPTED
+
+    def show(self, file: Any = None) -> None:
+        """Writes the message to stderr."""
+        click.echo(self.format_message(), file=file, err=True)
+
+
+@contextmanager
+def failures_in_words(debug: bool) -> Iterator[None]:
+    """Ends with one message where something fails, and a traceback if asked for.
+
+    Python's warnings and what libraries log become a line each on stderr.
+
+    Args:
+        debug: Whether a traceback comes before the message.
+
+    Raises:
+        click.ClickException: With message and exit code.
+    """
+    with _warnings_in_lines(debug), _log_in_lines():
+        try:
+            yield
+        except (click.exceptions.Exit, click.Abort, BrokenPipeError):
+            raise  # no failure, or the reader of our output has gone
+        except click.UsageError:
+            raise  # the call itself: there is nothing to trace
+        except (Exception, KeyboardInterrupt) as error:
+            if debug:
+                traceback.print_exc()
+            if isinstance(error, click.ClickException):
+                raise
+            raise _describe(error) from error
+
+
+def _describe(error: BaseException) -> click.ClickException:
+    """Returns the failure that an exception is to the person at the keyboard."""
+    if isinstance(error, KeyboardInterrupt):
+        # Work that is kept says how to go on.
+        return _Interrupted(str(error) or "Stopped.")
+    if isinstance(error, UserError):
+        return click.ClickException(str(error))
+    if isinstance(error, OSError) and error.errno is not None:
+        return click.ClickException(_describe_refusal(error))
+    if isinstance(error, MemoryError):
+        return click.ClickException(
+            "the computer's memory does not suffice; a mesh can be reduced first, with"
+            " --max-triangles or a scene's max_triangles"
+        )
+    if isinstance(error, ModuleNotFoundError) and not _is_ours(error.name):
+        return click.ClickException(
+            f"the Python package '{error.name}' is missing: pip install {error.name}"
+        )
+    return _Defect(_describe_defect(error))
+
+
+def _describe_refusal(error: OSError) -> str:
+    """Returns what the system refuses, and what may help."""
+    words = str(error.strerror)
+    if error.filename is not None:
+        words = f"{error.filename}: {words}"
+    remedy = _REMEDIES.get(error.errno or 0)
+    return words if remedy is None else f"{words}; {remedy}"
+
+
+def _is_ours(module: str | None) -> bool:
+    return module is None or module.partition(".")[0] == "drake_haptics"
+
+
+def _describe_defect(error: BaseException) -> str:
+    """Returns that it is not the user's fault, and what to report."""
+    home = Path(drake_haptics.__file__).parent
+    places = [
+        f" ({Path(frame.filename).relative_to(home)}:{frame.lineno})"
+        for frame in traceback.extract_tb(error.__traceback__)
+        if Path(frame.filename).is_relative_to(home)
+    ]
+    what = " ".join(f"{type(error).__name__}: {error}".split())
+    return (
+        f"a defect of drake-haptics, not of what you gave: {what}"
+        f"{places[-1] if places else ''}. Please report it, with the command and what"
+        " `drake-haptics --debug` before its name prints"
+    )
+
+
+@contextmanager
+def _warnings_in_lines(debug: bool) -> Iterator[None]:
+    """Shows Python's warnings as one line each, unless they are to be traced."""
+    before = warnings.showwarning
+
+    def show(message: Warning | str, *_: Any, **__: Any) -> None:
+        warn(str(message))
+
+    if not debug:
+        warnings.showwarning = show
+    try:
+        yield
+    finally:
+        warnings.showwarning = before
+
+
+class _LineHandler(logging.Handler):
+    """Writes what is logged as a line each."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Writes a record."""
+        warn(record.getMessage())
+
+
+@contextmanager
+def _log_in_lines() -> Iterator[None]:
+    """Shows what libraries, Drake among them, log from warnings on."""
+    handler = _LineHandler(logging.WARNING)
+    logging.root.addHandler(handler)
+    try:
+        yield
+    finally:
+        logging.root.removeHandler(handler)
+
+
+def warn(words: str) -> None:
+    """Writes a warning to stderr, in one line."""
+    click.secho(f"Warning: {' '.join(words.split())}", fg="yellow", err=True)

@@ -1,0 +1,189 @@
+"""What `--help` of each command teaches."""
+
+from __future__ import annotations
+
+from drake_haptics.cli.lesson import Lesson
+
+_UNUSABLE = "1: something given cannot be used; the message says why"
+
+RUN = Lesson(
+    examples=[
+        ("The spoon in the cup, in the browser", "drake-haptics run cup_spoon"),
+        ("Move the spoon yourself", "drake-haptics run cup_spoon --device mouse:"),
+        (
+            "Your own meshes, the tool in millimetres",
+            "drake-haptics run --tool pen.obj --environment cup.obj --tool-scale 1e-3",
+        ),
+        (
+            "Five seconds into a page to keep, with no browser",
+            "drake-haptics run cup_spoon --headless --duration 5 --record cup.html",
+        ),
+    ],
+    exits=f"0: at the end, or at Ctrl-C. {_UNUSABLE}. 3: the simulation became"
+    " unstable.",
+    further="On a computer without a screen: `ssh -L 7000:localhost:7000 HOST` brings"
+    " port 7000 of its page to your browser, or use --record. `drake-haptics stability"
+    " SCENE` says how stiff a scene may be.",
+)
+
+DEVICE = Lesson(
+    examples=[
+        ("In one terminal", "drake-haptics device cup_spoon"),
+        (
+            "In another",
+            "drake-haptics run cup_spoon --device udp://127.0.0.1:7400",
+        ),
+    ],
+    exits=f"0: at the end, or at Ctrl-C. {_UNUSABLE}.",
+    further="Stop either of the two, or pause it with Ctrl-Z, and see what the other"
+    " does. docs/bridge-a-device.md makes a driver for an arm of your own.",
+)
+
+SCENES = Lesson(
+    examples=[("What there is", "drake-haptics scenes")],
+    further="`drake-haptics run SCENE` runs one. The files, to copy and change, are in"
+    " models/scenes.",
+)
+
+DEVICES = Lesson(
+    examples=[
+        ("What there is", "drake-haptics devices"),
+        ("All figures", "drake-haptics devices --json -"),
+    ],
+    further="A scene file names one under `device: {preset: NAME}`. docs/device-twin.md"
+    " says how to write one for your own arm.",
+)
+
+CHECK = Lesson(
+    examples=[
+        ("A mesh in metres", "drake-haptics check cup.obj"),
+        ("One in millimetres", "drake-haptics check cup.obj --unit mm"),
+        (
+            "Only whether it is without defect, in a script",
+            "drake-haptics check cup.obj --strict --json cup.json",
+        ),
+    ],
+    exits=f"0: it can be used. {_UNUSABLE}; or, with --strict, it has a defect.",
+    further="`decompose MESH --show` shows its convex pieces in the browser,"
+    " `run --tool MESH --environment MESH` touches it.",
+)
+
+DECOMPOSE = Lesson(
+    examples=[
+        ("Exactly, and kept for the next time", "drake-haptics decompose cup.obj"),
+        (
+            "Fewer pieces, within a tenth of a millimetre",
+            "drake-haptics decompose cup.obj --method merged --error 1e-4",
+        ),
+        (
+            "Pieces in colours, as a page to keep",
+            "drake-haptics decompose cup.obj --html pieces.html",
+        ),
+    ],
+    exits=f"0: done. {_UNUSABLE}. 130: Ctrl-C; nothing is left half written, and the"
+    " next call starts anew.",
+    further="`run` cuts the meshes of a scene itself, and finds what was cut before."
+    " docs/decomposition.md compares the methods.",
+)
+
+STABILITY = Lesson(
+    examples=[
+        ("Verdict, limits and a page", "drake-haptics stability cup_spoon"),
+        (
+            "Without the map, at once",
+            "drake-haptics stability cup_spoon --map 0",
+        ),
+    ],
+    exits=f"0: done. {_UNUSABLE}. 130: Ctrl-C; with --store the map goes"
+    " on from there.",
+    further="A scene's `coupling` holds the stiffness to change. docs/stability.md"
+    " explains the page.",
+)
+
+ACCURACY = Lesson(
+    examples=[
+        ("The price list, some seconds", "drake-haptics accuracy sphere_pen --quick"),
+        (
+            "A scene that keeps 400 µs",
+            "drake-haptics accuracy cup_spoon --budget-us 400 --write faster.yaml",
+        ),
+        (
+            "One setting alone",
+            "drake-haptics accuracy sphere_pen --quick --only contact.tolerance_m=1e-3",
+        ),
+    ],
+    exits=f"0: done. {_UNUSABLE}. 3: no setting holds the budget. 130: Ctrl-C; with"
+    " --store it goes on from there.",
+    further="`drake-haptics run faster.yaml` runs what --budget-us has written."
+    " docs/accuracy.md explains the list.",
+)
+
+BENCH = Lesson(
+    examples=[
+        ("Whole ticks, some seconds", "drake-haptics bench loop --quick"),
+        ("All of it, some minutes", "drake-haptics bench"),
+    ],
+    exits=f"0: done. {_UNUSABLE}.",
+    further='Other libraries come with pip install "drake_haptics[peers]".'
+    " docs/benchmarks.md says what is measured and how.",
+)
+
+PAPER = Lesson(
+    examples=[
+        ("One table, at once", "drake-haptics paper table1"),
+        ("All of it, some minutes", "drake-haptics paper --out paper.html"),
+    ],
+    exits=f"0: done, whatever agrees or differs. {_UNUSABLE}.",
+    further="docs/paper.md has the figures and what they mean.",
+)
+
+LOG_INFO = Lesson(
+    examples=[("What is in it", "drake-haptics log info run.tick")],
+    exits=f"0: done, also of a log with gaps. {_UNUSABLE}.",
+    further="`drake-haptics log replay FILE` moves the handle like that again.",
+)
+
+LOG_REPLAY = Lesson(
+    examples=[
+        ("Is it the same again", "drake-haptics log replay run.tick"),
+        (
+            "The same motion with another kind of depth, kept",
+            "drake-haptics log replay run.tick --log other.tick"
+            " --set contact.depth=global",
+        ),
+    ],
+    exits=f"0: done, whether the replay is the same or not. {_UNUSABLE}.",
+    further="`drake-haptics log diff A B --plot FILE` draws two logs;"
+    " `drake-haptics run SCENE --device replay:FILE` shows one in the browser.",
+)
+
+LOG_DIFF = Lesson(
+    examples=[
+        ("Where do they part", "drake-haptics log diff run.tick other.tick"),
+        (
+            "As a picture",
+            "drake-haptics log diff run.tick other.tick --plot diff.png",
+        ),
+    ],
+    exits=f"0: equal to the last bit. {_UNUSABLE}. 3: they differ.",
+)
+
+LOG_CSV = Lesson(
+    examples=[
+        ("For a spreadsheet", "drake-haptics log csv run.tick run.csv"),
+        ("The first lines", "drake-haptics log csv run.tick - | head"),
+    ],
+    exits=f"0: done. {_UNUSABLE}.",
+)
+
+COMPLETION = Lesson(
+    examples=[
+        ("For this terminal", 'eval "$(drake-haptics completion bash)"'),
+        (
+            "For good",
+            "echo 'eval \"$(drake-haptics completion bash)\"' >> ~/.bashrc",
+        ),
+    ],
+    further="Try `drake-haptics run <Tab>`: scenes; after --device, kinds of devices;"
+    " after --set and --only, keys of a scene.",
+)
