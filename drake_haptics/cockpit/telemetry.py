@@ -1,0 +1,151 @@
+"""What the loop notes of each tick, and how it crosses to the page's process.
+
+A packet is a head, and a row for each tick since the last packet: plain doubles, so
+that noting a tick is one call that allocates nothing and that no number can upset.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+# First bytes of packets: numbers here, JSON text where it is a brace.
+KIND = b"#"
+# Names of gates, as the page is told them, by their numbers in a packet.
+GATES = ("idle", "active", "fault", "simulated")
+
+# Kind, gate, stages of shed load; ticks skipped; clock, s; camera's R_WC row by row and
+# p_WC, m; handle's p_WH, m.
+_HEAD = struct.Struct("=cBBxId12d3d")
+# Time, s; then `RunStatistics.latest`; then how late the tick was, s.
+_TICK = struct.Struct("=14d")
+_MOST_TICKS = 256
+_LARGEST_PACKET = _HEAD.size + _MOST_TICKS * _TICK.size
+# The largest of both, packets and JSON text.
+LARGEST_DATAGRAM = 1 << 16
+NOT_KNOWN = math.nan
+
+
+@dataclass(frozen=True)
+class Tick:
+    """What was noted of a tick; NaN where that is not known.
+
+    Attributes:
+        time_s: Simulated time, s.
+        tick_s: Clock time of its work, s.
+        query_s: Clock time of its contact query, s.
+        contacts: Before clustering.
+        clusters: After it.
+        distance_m: Of the nearest contact, m, negative if it penetrates; infinite if
+            there is none.
+        tau_W: (3,) torque on the handle, N·m.
+        f_W: (3,) force on the handle, N.
+        late_s: How late it began, s.
+    """
+
+    time_s: float
+    tick_s: float
+    query_s: float
+    contacts: float
+    clusters: float
+    distance_m: float
+    tau_W: tuple[float, float, float]
+    f_W: tuple[float, float, float]
+    late_s: float
+
+
+@dataclass(frozen=True)
+class Telemetry:
+    """A packet.
+
+    Attributes:
+        gate: Of `GATES`.
+        shed: How many stages of work were left out.
+        skipped: Ticks lost to stalls since the run began.
+        clock_s: The loop's clock, s.
+        R_WC: (9,) the camera's axes x right, y down, z away, row by row.
+        p_WC: (3,) where the camera is, m.
+        p_WH: (3,) where the handle is, m.
+        ticks: Since the last packet.
+    """
+
+    gate: str
+    shed: int
+    skipped: int
+    clock_s: float
+    R_WC: tuple[float, ...]
+    p_WC: tuple[float, ...]
+    p_WH: tuple[float, ...]
+    ticks: list[Tick]
+
+
+class TickBuffer:
+    """Takes the loop's ticks until they are sent.
+
+    Where nobody takes them for long, the latest are left out.
+    """
+
+    def __init__(self) -> None:
+        self._bytes = bytearray(_LARGEST_PACKET)
+        self._view = memoryview(self._bytes)
+        self._end = _HEAD.size
+
+    def note(self, time_s: float, latest: Sequence[float], late_s: float) -> None:
+        """Notes a tick.
+
+        Args:
+            time_s: Simulated time, s.
+            latest: (12,) as `RunStatistics.latest`.
+            late_s: How late the tick began, s.
+        """
+        if self._end < _LARGEST_PACKET:
+            _TICK.pack_into(self._bytes, self._end, time_s, *latest, late_s)
+            self._end += _TICK.size
+
+    def take(
+        self,
+        *,
+        gate: int,
+        shed: int,
+        skipped: int,
+        clock_s: float,
+        camera: Sequence[float],
+        p_WH: Sequence[float],
+    ) -> memoryview:
+        """Returns the packet, valid until the next `note`, and begins the next one.
+
+        Args:
+            gate: Index into `GATES`.
+            shed: How many stages of work are left out.
+            skipped: Ticks lost to stalls since the run began.
+            clock_s: The loop's clock, s.
+            camera: (12,) R_WC row by row and p_WC, m.
+            p_WH: (3,) where the handle is, m.
+        """
+        _HEAD.pack_into(
+            self._bytes, 0, KIND, gate, shed, skipped, clock_s, *camera, *p_WH
+        )
+        packet = self._view[: self._end]
+        self._end = _HEAD.size
+        return packet
+
+
+def read_telemetry(packet: bytes) -> Telemetry:
+    """Returns what a packet says."""
+    _, gate, shed, skipped, clock_s, *places = _HEAD.unpack_from(packet)
+    ticks = [
+        Tick(*row[:6], row[6:9], row[9:12], row[13])
+        for row in _TICK.iter_unpack(memoryview(packet)[_HEAD.size :])
+    ]
+    return Telemetry(
+        gate=GATES[gate],
+        shed=shed,
+        skipped=skipped,
+        clock_s=clock_s,
+        R_WC=tuple(places[:9]),
+        p_WC=tuple(places[9:12]),
+        p_WH=tuple(places[12:]),
+        ticks=ticks,
+    )
