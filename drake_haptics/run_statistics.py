@@ -39,6 +39,7 @@ class RunStatistics:
         self._ledger = ledger
         self._period_s = period_s
         self._pending: list[tuple[float, ...]] = []
+        self._latest: tuple[float, ...] = ()
         self._records = np.zeros((_FIRST_RECORDS, 4))
         self._ticks = 0
         self._max_force_N = 0.0
@@ -52,6 +53,11 @@ class RunStatistics:
     def ticks(self) -> int:
         """Number of ticks so far."""
         return self._ticks + len(self._pending)
+
+    @property
+    def latest(self) -> tuple[float, ...]:
+        """The last tick: what `add` was called with, the (7,) shown in line."""
+        return self._latest
 
     def add(
         self,
@@ -74,7 +80,9 @@ class RunStatistics:
             shown: (7,) state of the `DisplayForceHold`: wrench on the device
                 [τ; f], N·m and N, and status.
         """
-        self._pending.append((tick_s, query_s, contacts, clusters, distance_m, *shown))
+        latest = (tick_s, query_s, contacts, clusters, distance_m, *shown)
+        self._latest = latest
+        self._pending.append(latest)
         if len(self._pending) == _BLOCK:
             self._digest()
 

@@ -41,6 +41,7 @@ class TickClock:
         # From the first tick on: until then the loop is only being prepared.
         self._due_s: float | None = None
         self._late_s = np.zeros(_MAX_RECORDS)
+        self._last_late_s = 0.0
         self._ticks = 0
         self._skipped = 0
 
@@ -53,6 +54,15 @@ class TickClock:
     def skipped(self) -> int:
         """Whole periods lost to stalls, which no tick made up for."""
         return self._skipped
+
+    @property
+    def last_late_s(self) -> float:
+        """How late the last tick was, s."""
+        return self._last_late_s
+
+    def pause(self) -> None:
+        """Lets the next tick be at once, as the first: what was between was no stall."""
+        self._due_s = None
 
     def wait(self) -> float:
         """Returns at the next tick, with how late it is, s; the first is at once."""
@@ -68,6 +78,7 @@ class TickClock:
         # Waking up late by less than a tick is the system's noise and evens out.
         if ahead_s <= 0.0 or late_s >= self._period_s:
             self._due_s += late_s
+        self._last_late_s = late_s
         self._late_s[self._ticks % _MAX_RECORDS] = late_s
         self._ticks += 1
         return late_s

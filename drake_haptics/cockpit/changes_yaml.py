@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 
-def write_changes(changes: dict[str, Any]) -> str:
+def write_changes(changes: dict[str, Any], indent: str = "") -> str:
     """Returns YAML to put into the scene's file in the place of the same keys.
 
     Args:
-        changes: By section, values by key, as `SceneChanges.changes` has them.
+        changes: Sections of a scene with keys and values, as `SceneChanges` has them.
+        indent: Before each line.
     """
-    if not changes:
-        return ""
-    # Only where it is needed: starting is quicker without.
-    import yaml
-
-    text: str = yaml.safe_dump(changes, sort_keys=False, default_flow_style=None)
-    return text
+    lines = []
+    for key, value in changes.items():
+        if isinstance(value, dict) and value:
+            lines.append(f"{indent}{key}:\n{write_changes(value, f'{indent}  ')}")
+        else:
+            # JSON is YAML.
+            lines.append(f"{indent}{key}: {json.dumps(value)}\n")
+    return "".join(lines)

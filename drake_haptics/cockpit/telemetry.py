@@ -135,10 +135,7 @@ class TickBuffer:
 def read_telemetry(packet: bytes) -> Telemetry:
     """Returns what a packet says."""
     _, gate, shed, skipped, clock_s, *places = _HEAD.unpack_from(packet)
-    ticks = [
-        Tick(*row[:6], row[6:9], row[9:12], row[13])
-        for row in _TICK.iter_unpack(memoryview(packet)[_HEAD.size :])
-    ]
+    rows = _TICK.iter_unpack(memoryview(packet)[_HEAD.size :])
     return Telemetry(
         gate=GATES[gate],
         shed=shed,
@@ -147,5 +144,22 @@ def read_telemetry(packet: bytes) -> Telemetry:
         R_WC=tuple(places[:9]),
         p_WC=tuple(places[9:12]),
         p_WH=tuple(places[12:]),
-        ticks=ticks,
+        ticks=[_read_tick(row) for row in rows],
+    )
+
+
+def _read_tick(row: tuple[float, ...]) -> Tick:
+    """Returns what a row says."""
+    time_s, tick_s, query_s, contacts, clusters, distance_m, *wrench, _, late_s = row
+    tau_x, tau_y, tau_z, f_x, f_y, f_z = wrench
+    return Tick(
+        time_s=time_s,
+        tick_s=tick_s,
+        query_s=query_s,
+        contacts=contacts,
+        clusters=clusters,
+        distance_m=distance_m,
+        tau_W=(tau_x, tau_y, tau_z),
+        f_W=(f_x, f_y, f_z),
+        late_s=late_s,
     )
