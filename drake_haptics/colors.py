@@ -18,6 +18,23 @@ VIRTUAL_FACET: Color = (0.25, 0.25, 0.28, 0.30)
 BACKGROUND_TOP: Color = (0.97, 0.97, 0.98, 1.0)
 BACKGROUND_BOTTOM: Color = (0.86, 0.88, 0.91, 1.0)
 
+# What is drawn as lines and letters on white: the force's and the torque's.
+FORCE_INK: Color = (0.69, 0.443, 0.0, 1.0)
+TORQUE_INK: Color = (0.478, 0.259, 0.659, 1.0)
+
+_LEGEND = (
+    (TOOL, "tool"),
+    (ENVIRONMENT, "what it meets"),
+    (HANDLE_GHOST, "where the handle wants the tool"),
+    (COUPLING_LINE, "coupling, force on the hand"),
+    (NEAR_CONTACT, "near contact and its force"),
+    (PENETRATING_CONTACT, "penetrating contact and its force"),
+)
+_FRICTION_LEGEND = (
+    (STICKING_CONTACT, "friction that sticks"),
+    (SLIDING_CONTACT, "friction that slides"),
+)
+
 _GOLDEN_RATIO = (1 + 5**0.5) / 2
 
 
@@ -33,3 +50,22 @@ def piece_color(index: int) -> Color:
     value = (0.92, 0.80, 0.98, 0.70)[index % 4]
     red, green, blue = colorsys.hsv_to_rgb(hue, saturation, value)
     return (red, green, blue, 1.0)
+
+
+def write_css(color: Color) -> str:
+    """Returns a colour as style sheets write it."""
+    red, green, blue = (round(255 * part) for part in color[:3])
+    return f"rgb({red} {green} {blue} / {color[3]:g})"
+
+
+def make_legend(has_friction: bool) -> list[dict[str, str]]:
+    """Returns what the colours of a loop's picture mean.
+
+    Args:
+        has_friction: Whether friction is drawn.
+
+    Returns:
+        For each its `color`, as style sheets write it, and its `label`.
+    """
+    rows = _LEGEND + (_FRICTION_LEGEND if has_friction else ())
+    return [{"color": write_css(color), "label": label} for color, label in rows]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -31,23 +32,35 @@ class ColoredTriangles:
         return np.arange(len(self.vertices)).reshape(-1, 3)
 
 
-def piece_surfaces(
-    pieces: list[_core.ConvexPolytope],
-) -> tuple[ColoredTriangles, ColoredTriangles]:
-    """Returns the facets on the mesh, a colour for each piece, and the virtual ones.
+def each_facet(
+    pieces: Sequence[_core.ConvexPolytope],
+) -> Iterator[tuple[int, bool, np.ndarray]]:
+    """Yields the facets of pieces that are to be drawn, one by one.
 
     Of a flat piece only the front is drawn: its back is in the same place.
+
+    Yields:
+        The index of the piece, whether the facet is on the mesh (a virtual one is
+        not), and the corners (3 k, 3) of its triangles, m.
     """
-    corners: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
-    owners: tuple[list[int], list[int]] = ([], [])
     for index, piece in enumerate(pieces):
         points = np.asarray(piece.vertices)
         sides = list(zip(piece.facets, piece.facet_original, strict=True))
         for loop, original in sides if piece.dimension == 3 else sides[:1]:
-            kind = 0 if original else 1
             fan = np.array([(loop[0], *pair) for pair in pairwise(loop[1:])])
-            corners[kind].append(points[fan.ravel()])
-            owners[kind].append(index)
+            yield index, original, points[fan.ravel()]
+
+
+def piece_surfaces(
+    pieces: list[_core.ConvexPolytope],
+) -> tuple[ColoredTriangles, ColoredTriangles]:
+    """Returns the facets on the mesh, a colour for each piece, and the virtual ones."""
+    corners: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    owners: tuple[list[int], list[int]] = ([], [])
+    for index, original, points in each_facet(pieces):
+        kind = 0 if original else 1
+        corners[kind].append(points)
+        owners[kind].append(index)
     palette = np.array([piece_color(i)[:3] for i in range(len(pieces))])
     surfaces = []
     for kind in (0, 1):

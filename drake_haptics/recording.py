@@ -7,19 +7,7 @@ from pathlib import Path
 
 from pydrake.geometry import Meshcat
 
-from drake_haptics import colors
-
-_LEGEND = (
-    (colors.TOOL, "tool"),
-    (colors.HANDLE_GHOST, "where the handle wants it"),
-    (colors.COUPLING_LINE, "coupling, force on the hand"),
-    (colors.NEAR_CONTACT, "near contact"),
-    (colors.PENETRATING_CONTACT, "penetrating contact"),
-)
-_FRICTION_LEGEND = (
-    (colors.STICKING_CONTACT, "friction that sticks"),
-    (colors.SLIDING_CONTACT, "friction that slides"),
-)
+from drake_haptics.colors import make_legend
 
 
 def write_recording(
@@ -38,9 +26,9 @@ def write_recording(
     """
     rows = "".join(
         f'<div><span style="display:inline-block;width:0.8em;height:0.8em;'
-        f"margin-right:0.6em;border-radius:50%;background:{_css(color)}"
-        f'"></span>{html.escape(text)}</div>'
-        for color, text in _LEGEND + (_FRICTION_LEGEND if has_friction else ())
+        f"margin-right:0.6em;border-radius:50%;background:{row['color']}"
+        f'"></span>{html.escape(row["label"])}</div>'
+        for row in make_legend(has_friction)
     )
     legend = (
         '<div id="legend" style="position:fixed;left:1.2em;bottom:1.2em;'
@@ -51,9 +39,3 @@ def write_recording(
     )
     page = meshcat.StaticHtml().replace("</body>", f"{legend}</body>", 1)
     path.write_text(page, encoding="utf-8")
-
-
-def _css(color: colors.Color) -> str:
-    """Returns a colour as CSS writes it."""
-    red, green, blue, alpha = color
-    return f"rgba({255 * red:.0f},{255 * green:.0f},{255 * blue:.0f},{alpha})"

@@ -14,8 +14,15 @@ from drake_haptics.colors import BACKGROUND_BOTTOM, BACKGROUND_TOP
 from drake_haptics.errors import UserError
 from drake_haptics.scene import Pose
 
-# From where the camera looks: from the right front, above.
-_VIEW = np.array([0.48, -0.74, 0.47]) / np.linalg.norm([0.48, -0.74, 0.47])
+# From where the camera looks, by the name of the view. Straight down it would not know
+# what is up.
+_VIEWS = {
+    "fit": (0.48, -0.74, 0.47),
+    "front": (0.0, -1.0, 0.0),
+    "side": (1.0, 0.0, 0.0),
+    "top": (0.0, -1e-3, 1.0),
+}
+CAMERAS = tuple(_VIEWS)
 # Half the angle of Meshcat's camera is 37.5 degrees; the rest is margin.
 _HALF_VIEW_RAD = np.deg2rad(32.0)
 
@@ -45,22 +52,44 @@ def open_meshcat(port: int | None = None) -> Meshcat:
 
 
 def set_stage(meshcat: Meshcat, haptic: HapticDiagram) -> None:
-    """Points the camera at where tool and objects meet, on a plain background.
-
-    Of large surroundings only what is within a tool's size of the hand's path is
-    framed.
-    """
+    """Points the camera at where tool and objects meet, on a plain background."""
     meshcat.SetProperty("/Background", "top_color", list(BACKGROUND_TOP[:3]))
     meshcat.SetProperty("/Background", "bottom_color", list(BACKGROUND_BOTTOM[:3]))
     meshcat.SetProperty("/Grid", "visible", False)
     meshcat.SetProperty("/Axes", "visible", False)
+    aim_camera(meshcat, haptic, "fit")
+
+
+def aim_camera(
+    meshcat: Meshcat, haptic: HapticDiagram, view: str, within: float = 1.0
+) -> None:
+    """Points the camera at where tool and objects meet.
+
+    Of large surroundings only what is within a tool's size of the hand's path is
+    framed.
+
+    Args:
+        meshcat: Whose camera.
+        haptic: What is to be seen.
+        view: One of `CAMERAS`.
+        within: Share of the picture's height, about its middle, that must hold it.
+
+    Raises:
+        ValueError: There is no such view, or the share is not from 0.1 to 1.
+    """
+    if view not in _VIEWS:
+        raise ValueError(f"view must be one of {', '.join(CAMERAS)}, is {view!r}")
+    if not 0.1 <= within <= 1.0:
+        raise ValueError(f"within must be from 0.1 to 1, is {within}")
+    direction = np.array(_VIEWS[view]) / np.linalg.norm(_VIEWS[view])
     points = _framed_points(haptic)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     # The least distance at which the cone of the view holds every point.
-    towards = (points - middle) @ _VIEW
-    across = np.linalg.norm(points - middle - np.outer(towards, _VIEW), axis=1)
-    distance = float(np.max(towards + across / np.tan(_HALF_VIEW_RAD)))
-    meshcat.SetCameraPose(middle + distance * _VIEW, middle)
+    towards = (points - middle) @ direction
+    across = np.linalg.norm(points - middle - np.outer(towards, direction), axis=1)
+    slope = within * np.tan(_HALF_VIEW_RAD)
+    distance = float(np.max(towards + across / slope))
+    meshcat.SetCameraPose(middle + distance * direction, middle)
 
 
 def _framed_points(haptic: HapticDiagram) -> np.ndarray:

@@ -10,9 +10,10 @@ from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_haptics import colors
 from drake_haptics._core import ClusterSet, ContactSet, Decomposition, FrictionStep
-from drake_haptics.piece_surfaces import piece_surfaces
 from drake_haptics.systems.arrow_pool import ArrowPool
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.drawn_pieces import DrawnPieces
+from drake_haptics.systems.picture_views import SHOWN_AT_FIRST, check_view
 
 _ROOT = "/haptics"
 _MAX_CONTACTS = 64
@@ -27,6 +28,14 @@ _SHORTEST_FORCE_ARROW = 0.07
 _LONGEST_FORCE_ARROW = 0.45
 _GRIP_RADIUS = 0.022
 _LINE_RADIUS = 0.006
+# Of the tool while virtual facets are shown, which are inside of it.
+_TOOL_SEEN_THROUGH = 0.35
+# What a view shows or hides, below the root.
+_FOLDERS = {
+    "ghost": ("handle", "grip", "coupling"),
+    "contacts": ("contacts",),
+    "forces": ("force", "clusters", "friction"),
+}
 # A line that is shorter has no direction.
 _NO_LENGTH_M = 1e-9
 
@@ -59,7 +68,12 @@ class HapticPicture:
             has_friction: Whether there is friction to draw.
         """
         self._meshcat = meshcat
-        self._meshes = {"tool": tool}
+        # Friction of a loop that was drawn here before is no matter of this one.
+        meshcat.Delete(f"{_ROOT}/friction")
+        self._wanted = set(SHOWN_AT_FIRST)
+        self._shown = set(SHOWN_AT_FIRST)
+        self._pieces = {"tool": DrawnPieces(meshcat, f"{_ROOT}/tool", tool.pieces, 1.0)}
+        self._pieces_are_sent = False
         self._X_HT = X_HT
         self._p_TH = X_HT.inverse().translation()
         self._size_m = float(np.linalg.norm(np.ptp(tool.vertices, axis=0)))
@@ -68,7 +82,12 @@ class HapticPicture:
         environment = Rgba(*colors.ENVIRONMENT[:3], _ENVIRONMENT_ALPHA)
         for item in objects:
             path = f"objects/{item.name}"
-            self._meshes[path] = item.decomposition
+            self._pieces[path] = DrawnPieces(
+                meshcat,
+                f"{_ROOT}/{path}",
+                item.decomposition.pieces,
+                _ENVIRONMENT_ALPHA,
+            )
             self._send_mesh(path, item.decomposition, environment)
             if item.X_WO is not None:
                 meshcat.SetTransform(f"{_ROOT}/{path}", item.X_WO)
@@ -87,19 +106,54 @@ class HapticPicture:
         most = _MAX_CLUSTERS if has_friction else 0
         self._friction = ArrowPool(meshcat, f"{_ROOT}/friction", most, pair)
 
-    def color_pieces(self) -> None:
-        """Colours tool and objects by their convex pieces, for good."""
-        for name, mesh in self._meshes.items():
-            drawn, _ = piece_surfaces(mesh.pieces)
-            self._meshcat.SetTriangleColorMesh(
-                f"{_ROOT}/{name}",
-                np.asfortranarray(drawn.vertices.T),
-                np.asfortranarray(drawn.faces.T.astype(np.int32)),
-                np.asfortranarray(drawn.colors.T),
-            )
-            if name != "tool":
-                path = f"{_ROOT}/{name}"
-                self._meshcat.SetProperty(path, "opacity", _ENVIRONMENT_ALPHA)
+    def show(self, view: str, visible: bool) -> None:
+        """Shows or hides a view; `draw_views` does it.
+
+        Args:
+            view: One of `PICTURE_VIEWS`.
+            visible: Whether it is to be seen.
+
+        Raises:
+            ValueError: There is no such view.
+        """
+        check_view(view)
+        (self._wanted.add if visible else self._wanted.discard)(view)
+
+    def draw_views(self) -> Iterator[None]:
+        """Shows and hides the views that are not yet as they were asked for."""
+        changed = self._wanted ^ self._shown
+        if not changed:
+            return
+        if not self._pieces_are_sent and self._wanted & {"pieces", "virtual"}:
+            for pieces in self._pieces.values():
+                yield from pieces.send()
+            self._pieces_are_sent = True
+        self._shown = set(self._wanted)
+        for view in sorted(changed & _FOLDERS.keys()):
+            for folder in _FOLDERS[view]:
+                self._set_visible(folder, view in self._shown)
+            yield
+        if changed & {"pieces", "virtual"}:
+            for path in self._pieces:
+                self._show_facets(path)
+                yield
+
+    def _show_facets(self, path: str) -> None:
+        """Shows of a mesh its surface or its pieces, and virtual facets or none."""
+        has_pieces, has_virtual = ("pieces" in self._shown, "virtual" in self._shown)
+        self._set_visible(f"{path}/<object>", not has_pieces)
+        self._set_visible(f"{path}/pieces", has_pieces)
+        self._set_visible(f"{path}/virtual", has_virtual)
+        if path == "tool":
+            alpha = _TOOL_SEEN_THROUGH if has_virtual else 1.0
+            for part in ("<object>", "pieces"):
+                self._meshcat.SetProperty(
+                    f"{_ROOT}/tool/{part}", "modulated_opacity", alpha
+                )
+
+    def _set_visible(self, path: str, visible: bool) -> None:
+        """Shows or hides a folder, in a recording for all of its time."""
+        self._meshcat.SetProperty(f"{_ROOT}/{path}", "visible", visible)
 
     def place_object(self, name: str, X_WO: RigidTransform, time_s: float) -> None:
         """Places an object that moves."""

@@ -169,9 +169,19 @@ class HapticVisualizer(DifferentiableSystem):
         """Returns the input `X_WO_<name>` of an object that moves."""
         return self.GetInputPort(f"X_WO_{name}")
 
-    def ColorPieces(self) -> None:
-        """Colours tool and objects by their convex pieces."""
-        self._picture.color_pieces()
+    def Show(self, view: str, visible: bool) -> None:
+        """Shows or hides a view from the next frame on.
+
+        The next frame sends what has not been sent yet, in its slices like all of it.
+
+        Args:
+            view: One of `drake_haptics.systems.picture_views.PICTURE_VIEWS`.
+            visible: Whether it is to be seen.
+
+        Raises:
+            ValueError: There is no such view.
+        """
+        self._picture.show(view, visible)
 
     def StartRecording(self) -> None:
         """Records every frame from now on into Meshcat's animation."""
@@ -277,6 +287,7 @@ class HapticVisualizer(DifferentiableSystem):
     ) -> Iterator[None]:
         """Sends what is drawn, a little at each step."""
         picture = self._picture
+        yield from picture.draw_views()
         yield from picture.place_tool(X_WH, X_WTool, time_s)
         for name, X in X_WO.items():
             picture.place_object(name, X, time_s)

@@ -1,6 +1,7 @@
 """The colour scheme: valid, and pieces can be told apart."""
 
 import itertools
+from importlib.resources import files
 
 import numpy as np
 
@@ -8,8 +9,9 @@ from drake_haptics import colors
 
 
 def test_all_colors_are_valid():
-    named = [value for value in vars(colors).values() if isinstance(value, tuple)]
-    assert len(named) >= 7
+    named = [value for name, value in vars(colors).items() if name[0].isupper()]
+    named = [value for value in named if isinstance(value, tuple)]
+    assert len(named) >= 12
     for color in named + [colors.piece_color(i) for i in range(1000)]:
         assert len(color) == 4 and all(0 <= channel <= 1 for channel in color)
 
@@ -25,3 +27,27 @@ def test_the_first_pieces_differ_visibly():
         assert np.abs(a - b).max() > 0.05
     for a, b in itertools.pairwise(first):
         assert np.abs(a - b).max() > 0.25
+
+
+def test_the_legend_names_each_colour_once():
+    legend = colors.make_legend(has_friction=True)
+    assert len({row["color"] for row in legend}) == len(legend) == 8
+    assert [row for row in legend if "friction" not in row["label"]] == (
+        colors.make_legend(has_friction=False)
+    )
+    assert colors.write_css(colors.HANDLE_GHOST) == "rgb(64 120 217 / 0.35)"
+
+
+def test_the_pages_colours_are_those_of_the_scheme():
+    style = files("drake_haptics.cockpit").joinpath("page", "theme.css").read_text()
+    for name, color in {
+        "handle": colors.HANDLE_GHOST,
+        "force": colors.FORCE_INK,
+        "torque": colors.TORQUE_INK,
+        "active": colors.NEAR_CONTACT,
+        "fault": colors.PENETRATING_CONTACT,
+        "top": colors.BACKGROUND_TOP,
+        "bottom": colors.BACKGROUND_BOTTOM,
+    }.items():
+        red, green, blue = (round(255 * part) for part in color[:3])
+        assert f"--{name}: rgb({red} {green} {blue});" in style

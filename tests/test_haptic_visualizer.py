@@ -16,6 +16,7 @@ from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems import haptic_visualizer
 from drake_haptics.systems.arrow_pool import ArrowPool
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.drawn_pieces import DrawnPieces
 from drake_haptics.systems.haptic_visualizer import HapticVisualizer
 
 
@@ -33,6 +34,15 @@ class FakeMeshcat:
     def SetTriangleMesh(self, path, vertices, faces, rgba):
         assert vertices.shape[0] == 3 and faces.max() < vertices.shape[1]
         self.objects.add(path)
+
+    def SetTriangleColorMesh(self, path, vertices, faces, colors):
+        assert vertices.shape == colors.shape and faces.max() < vertices.shape[1]
+        self.objects.add(path)
+
+    def Delete(self, path):
+        self.objects = {
+            p for p in self.objects if p != path and not p.startswith(f"{path}/")
+        }
 
     def SetObject(self, path, shape, rgba):
         self.objects.add(path)
@@ -98,7 +108,14 @@ def make_contacts(distance, nhat=(0, 0, 1.0)):
 def make_mesh(size=0.1):
     corners = size * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
     faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], dtype=np.int32)
-    return SimpleNamespace(vertices=corners, triangles=faces)
+    # A tetrahedron of which one facet is not on the mesh.
+    piece = SimpleNamespace(
+        vertices=corners,
+        facets=faces.tolist(),
+        facet_original=[True, True, True, False],
+        dimension=3,
+    )
+    return SimpleNamespace(vertices=corners, triangles=faces, pieces=[piece])
 
 
 X_HT = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [0.01, 0.02, 0.03])
@@ -310,6 +327,66 @@ def test_objects_that_move_follow_their_port_and_others_are_placed_once():
     visualizer.get_object_pose_input_port("lid").FixValue(context, pose_to_vector(X_WH))
     visualizer.ForcedPublish(context)
     assert meshcat.transforms["/haptics/objects/lid"].IsNearlyEqualTo(X_WH, 1e-12)
+
+
+def test_views_are_sent_once_and_then_only_shown_and_hidden(monkeypatch):
+    clock = SimpleNamespace(now=100.0)
+    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
+    meshcat = FakeMeshcat()
+    table = ContactObject("table", make_mesh(), RigidTransform())
+    visualizer = make_visualizer(meshcat, [table])
+    context = make_context(visualizer)
+
+    def see(view, visible):
+        meshcat.properties.clear()
+        visualizer.Show(view, visible)
+        clock.now += 1.0
+        visualizer.ForcedPublish(context)
+        return {
+            path.removeprefix("/haptics/"): value
+            for (path, name), value in meshcat.properties.items()
+            if name == "visible"
+        }
+
+    assert not any("/pieces/" in path for path in meshcat.objects)
+    seen = see("pieces", True)
+    sent = {path for path in meshcat.objects if "/pieces/" in path}
+    assert sent == {"/haptics/tool/pieces/0", "/haptics/objects/table/pieces/0"}
+    assert (
+        not seen["tool/<object>"] and seen["tool/pieces"] and not seen["tool/virtual"]
+    )
+    meshcat.objects.clear()
+    seen = see("virtual", True)
+    assert seen["objects/table/virtual"] and seen["objects/table/pieces"]
+    seen = see("pieces", False)
+    assert seen["tool/<object>"] and not seen["tool/pieces"] and seen["tool/virtual"]
+    assert see("ghost", False) == {"handle": False, "grip": False, "coupling": False}
+    assert see("contacts", False) == {"contacts": False}
+    assert see("forces", False) == dict.fromkeys(
+        ("force", "clusters", "friction"), False
+    )
+    assert see("forces", True) == dict.fromkeys(("force", "clusters", "friction"), True)
+    assert see("forces", True) == {}
+    assert not meshcat.objects
+
+
+def test_pieces_are_sent_in_steps_that_no_tick_notices():
+    meshcat = FakeMeshcat()
+    mesh = make_mesh()
+    drawn = DrawnPieces(meshcat, "/a", mesh.pieces * 200, 1.0)
+    sizes = []
+    for _ in drawn.send():
+        sizes.append(len(meshcat.objects))
+    assert max(np.diff([0, *sizes])) == 1
+    assert {p for p in meshcat.objects if "virtual" in p} == {
+        f"/a/virtual/{i}" for i in range(2)
+    }
+    assert len(meshcat.objects) == 2 + 5
+
+
+def test_a_view_that_there_is_not_is_refused():
+    with pytest.raises(ValueError, match=r"view must be one of pieces,.*'piece'"):
+        make_visualizer(FakeMeshcat()).Show("piece", True)
 
 
 def test_nothing_is_drawn_while_nobody_looks():

@@ -11,6 +11,7 @@ from rich.console import Console
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.cli import lessons
 from drake_haptics.cli.complete import complete_address, complete_file, complete_scene
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import require_folder, write_json
 from drake_haptics.cli.parts_table import make_parts_table
@@ -140,7 +141,7 @@ def run(
         raise UserError("--record, --log and --json: each needs a file of its own")
     if log is not None and device == f"replay:{log}":
         raise UserError(f"--log: {log} is the log that is replayed; give another file")
-    console = Console(highlight=False, stderr=json_file == "-")
+    console = make_console(stderr=json_file == "-")
     meshcat = None if headless and record is None else open_meshcat(port)
     session = run_session(
         console,
@@ -186,7 +187,7 @@ def _prepare_page(
     set_stage(meshcat, haptic)
     visualizer = haptic.visualizer
     if visualizer is not None and pieces:
-        visualizer.ColorPieces()
+        visualizer.Show("pieces", True)
     if visualizer is not None and record is not None:
         visualizer.StartRecording()
     if not headless:
