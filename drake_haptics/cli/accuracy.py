@@ -25,8 +25,9 @@ from drake_haptics.accuracy.study import run_accuracy_study
 from drake_haptics.accuracy.study_json import to_json_data
 from drake_haptics.analysis.study_error import StudyError
 from drake_haptics.cli import lessons
-from drake_haptics.cli.accuracy_output import make_console, print_choice, print_study
+from drake_haptics.cli.accuracy_output import print_choice, print_study
 from drake_haptics.cli.complete import complete_scene, complete_setting
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.exit_codes import ExitCode
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
@@ -173,7 +174,7 @@ def _show_study(
         write_json(to_json_data(study), json_file)
     if json_file == "-":
         return
-    console = make_console()
+    console = make_console(markup=False)
     print_study(console, study)
     if page is not None:
         console.print(f"Wrote {page} and {page.with_suffix('.png')}.", soft_wrap=True)
@@ -188,7 +189,7 @@ def _show_choice(
     if json_file is not None:
         write_json(to_budget_data(choice, scene), json_file)
     if json_file != "-":
-        console = make_console()
+        console = make_console(markup=False)
         print_choice(console, choice, scene, name)
         if choice.holds:
             console.print(f"Wrote {file}: drake-haptics run {file}", soft_wrap=True)

@@ -33,19 +33,6 @@ from drake_haptics.accuracy.words import (
 )
 from drake_haptics.scene import Scene
 
-# As wide as the price list is, where the output is no terminal.
-_WIDTH = 100
-
-
-def make_console() -> Console:
-    """Returns a console that is wide enough for the price list."""
-    console = Console(highlight=False, markup=False)
-    return (
-        console
-        if console.is_terminal
-        else Console(highlight=False, markup=False, width=_WIDTH)
-    )
-
 
 def print_study(console: Console, study: AccuracyStudy) -> None:
     """Prints verdict, price list, knees, and what to know of them."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from rich.console import Console
 from rich.table import Table as RichTable
 
 from drake_haptics.bench.benchmark import (
@@ -17,6 +16,7 @@ from drake_haptics.bench.benchmark import (
 )
 from drake_haptics.bench.report import machine_line, make_tables, missing_lines
 from drake_haptics.cli import lessons
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, meshes_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
@@ -47,7 +47,7 @@ def bench(
 
 
 def _print(figures: BenchFigures) -> None:
-    console = Console(highlight=False)
+    console = make_console()
     for table in make_tables(figures):
         shown = RichTable(box=None, title=table.title, title_justify="left")
         first, *others = table.header

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import click
-from rich.console import Console
 
 from drake_haptics.cli import lessons
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import (
     json_option,
@@ -38,6 +38,6 @@ def check(
     if json_file is not None:
         write_json(report.to_dict(), json_file)
     if json_file != "-":
-        Console(highlight=False).print(report)
+        make_console().print(report)
     if strict and report.unclean:
         raise MeshError(report.refusal)

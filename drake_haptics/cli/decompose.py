@@ -6,10 +6,9 @@ import contextlib
 import signal
 
 import click
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from drake_haptics.cli import lessons
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import (
     json_option,
@@ -18,6 +17,7 @@ from drake_haptics.cli.mesh_options import (
     unit_options,
     write_json,
 )
+from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.decomposition import METHODS, Decomposition, Method
 from drake_haptics.decomposition import decompose as decompose_mesh
 from drake_haptics.mesh import Mesh
@@ -93,23 +93,18 @@ def decompose(
 def _with_progress(
     mesh: Mesh, method: Method, error_m: float | None, cache: bool
 ) -> Decomposition:
-    console = Console(stderr=True)
-    columns = (TextColumn("decomposing"), BarColumn(), TimeElapsedColumn())
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
-        task = bar.add_task("", total=1.0)
-
-        def show_share(share: float) -> None:
-            bar.update(task, completed=share)
-
+    with progress_bar() as show:
         return decompose_mesh(
-            mesh, method, error_m=error_m, progress=show_share, cache=cache
+            mesh,
+            method,
+            error_m=error_m,
+            progress=lambda share: show("cutting into convex pieces", share),
+            cache=cache,
         )
 
 
 def _print_report(result: Decomposition) -> None:
-    console = Console(highlight=False)
+    console = make_console()
     console.print(result.report)
     if result.mesh.report.decimation_error_m:
         console.print(

@@ -5,10 +5,10 @@ from __future__ import annotations
 import shlex
 
 import click
-from rich.console import Console
 
 from drake_haptics.cli import lessons
 from drake_haptics.cli.complete import complete_scene
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.driver_status import DriverStatusLine, make_driver_summary
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
@@ -75,7 +75,7 @@ def device(
     Whatever fails, host, network or this program's end, the device goes to zero
     force.
     """
-    console = Console(highlight=False, stderr=json_file == "-")
+    console = make_console(stderr=json_file == "-")
     driver = make_simulated_driver(
         load_scene(find_scene(scene)),
         rate_hz=rate,

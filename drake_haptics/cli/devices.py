@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import asdict
 
 import click
-from rich.console import Console
 from rich.table import Table
 
 from drake_haptics.cli import lessons
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.device_preset import (
@@ -60,7 +60,7 @@ def _print(presets: dict[str, DevicePreset]) -> None:
             f"{preset.actuated_axes}",
             "yes" if preset.has_model else "no",
         )
-    console = Console(highlight=False)
+    console = make_console()
     console.print(table)
     console.print("\naxes: how many of the handle's six have motors", style="dim")
     for source in sorted({preset.source for preset in presets.values()}):

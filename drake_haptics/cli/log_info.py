@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from rich.console import Console
 from rich.table import Table
 
 from drake_haptics.cli import lessons
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
@@ -32,7 +32,7 @@ def info(file: Path, json_file: str | None) -> None:
 
 
 def _print(file: Path, summary: LogSummary) -> None:
-    console = Console(highlight=False)
+    console = make_console()
     header, ticks = summary.header, summary.ticks
     table = Table(box=None, show_header=False, pad_edge=False)
     table.add_column(style="dim")

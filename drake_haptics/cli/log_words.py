@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import click
-from rich.console import Console
 from rich.table import Table
 
+from drake_haptics.cli.console import make_console
 from drake_haptics.tick_log.log_diff import LogDiff
 
 
@@ -20,7 +20,7 @@ def warn_of_gaps(file: Path, sentences: Iterable[str]) -> None:
 
 def print_diff(diff: LogDiff, period_s: float) -> None:
     """Writes a comparison as a table, or that there is nothing to compare."""
-    console = Console(highlight=False)
+    console = make_console()
     for name, ticks in [("first", diff.only_a), ("second", diff.only_b)]:
         if ticks:
             console.print(f"{ticks} ticks are only in the {name} log", style="yellow")

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import cast
 
 import click
-from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table as RichTable
 
 from drake_haptics.cli import lessons
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import (
     json_option,
@@ -80,7 +80,7 @@ def paper(
 
 
 def _print(evaluation: PaperEvaluation, out: Path) -> None:
-    console = Console(highlight=False)
+    console = make_console()
     sections = make_sections(evaluation)
     for section in sections:
         console.print(f"[bold]{section.title}[/]")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import click
-from rich.console import Console
 from rich.table import Table
 
 from drake_haptics.cli import lessons
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import list_scenes
@@ -20,6 +20,6 @@ def scenes() -> None:
     table.add_column("what happens")
     for name, path in list_scenes().items():
         table.add_row(name, load_scene(path).description)
-    console = Console(highlight=False)
+    console = make_console()
     console.print(table)
     console.print("\nTo run one: drake-haptics run SCENE", style="dim")

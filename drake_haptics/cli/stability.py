@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from rich.console import Console
 from rich.table import Table
 
 from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
@@ -19,6 +18,7 @@ from drake_haptics.analysis.stiffness_limits import format_limit
 from drake_haptics.analysis.study import StudyError
 from drake_haptics.cli import lessons
 from drake_haptics.cli.complete import complete_scene
+from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
@@ -96,7 +96,7 @@ def stability(
 
 
 def _print(result: SceneStability, path: Path) -> None:
-    console = Console(highlight=False)
+    console = make_console()
     console.print(f"[bold]{describe_verdict(result)}[/]")
     console.print(describe_situation(result), style="dim")
     table = Table(box=None, padding=(0, 1), pad_edge=False)
