@@ -24,7 +24,7 @@ _VIEWS = {
 }
 CAMERAS = tuple(_VIEWS)
 # Half the angle of Meshcat's camera is 37.5 degrees; the rest is margin.
-_HALF_VIEW_RAD = np.deg2rad(32.0)
+_HALF_VIEW_RAD = np.deg2rad(35.0)
 
 
 def open_meshcat(port: int | None = None) -> Meshcat:
@@ -46,7 +46,10 @@ def open_meshcat(port: int | None = None) -> Meshcat:
             except (OSError, OverflowError) as error:
                 raise UserError(f"port {port} cannot be used: {error}") from error
     try:
-        return Meshcat(MeshcatParams(host="localhost", port=port))
+        # How fast it runs is told elsewhere.
+        return Meshcat(
+            MeshcatParams(host="localhost", port=port, show_stats_plot=False)
+        )
     except RuntimeError as error:
         raise UserError(f"Meshcat cannot open a page: {error}") from error
 
@@ -81,15 +84,19 @@ def aim_camera(
         raise ValueError(f"view must be one of {', '.join(CAMERAS)}, is {view!r}")
     if not 0.1 <= within <= 1.0:
         raise ValueError(f"within must be from 0.1 to 1, is {within}")
-    direction = np.array(_VIEWS[view]) / np.linalg.norm(_VIEWS[view])
     points = _framed_points(haptic)
-    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    backwards = np.array(_VIEWS[view]) / np.linalg.norm(_VIEWS[view])
+    right = np.cross([0.0, 0.0, 1.0], backwards)
+    right /= np.linalg.norm(right)
+    R_CW = np.vstack([right, np.cross(backwards, right), backwards])
+    p_CP = points @ R_CW.T
+    middle = (p_CP.min(axis=0) + p_CP.max(axis=0)) / 2
     # The least distance at which the cone of the view holds every point.
-    towards = (points - middle) @ direction
-    across = np.linalg.norm(points - middle - np.outer(towards, direction), axis=1)
+    across = np.linalg.norm(p_CP[:, :2] - middle[:2], axis=1)
     slope = within * np.tan(_HALF_VIEW_RAD)
-    distance = float(np.max(towards + across / slope))
-    meshcat.SetCameraPose(middle + distance * direction, middle)
+    distance = float(np.max(p_CP[:, 2] - middle[2] + across / slope))
+    target = R_CW.T @ middle
+    meshcat.SetCameraPose(target + distance * backwards, target)
 
 
 def _framed_points(haptic: HapticDiagram) -> np.ndarray:

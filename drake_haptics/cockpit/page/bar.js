@@ -1,7 +1,7 @@
 // The bar over the scene: what the loop does and whether it keeps up.
 
 import {find, write} from "./find.js";
-import {micros, millimetres, seconds} from "./format.js";
+import {known, micros, millimetres, seconds} from "./format.js";
 
 const GATES = {active: "active", idle: "idle", fault: "fault", simulated: "simulated"};
 
@@ -11,18 +11,17 @@ export function showGate(gate) {
 }
 
 export function showFigures(frame, period_s) {
-  showGate(frame.gate);
   write(find("time"), seconds(frame.time_s));
-  write(find("rate"), frame.rate_hz.toFixed(0) + " Hz  " + frame.real_time.toFixed(2) + "×");
-  write(find("late"), frame.late_us ? micros(frame.late_us.p50) + " / " + micros(frame.late_us.p99) : "not paced");
+  write(find("rate"), known(frame.rate_hz, hz => hz.toFixed(0) + " Hz · " + frame.real_time.toFixed(2) + "×"));
+  write(find("late"), known(frame.late_us, late => micros(late.p50) + " / " + micros(late.p99)));
   find("late").parentElement.title = "How late ticks begin: half of them, and 99 of 100, are less late than this."
     + (frame.late_us ? " Latest: " + micros(frame.late_us.max) + "." : "")
     + (frame.skipped ? " Ticks left out: " + frame.skipped + "." : "");
-  showTick(frame.tick_us, 1e6 * period_s, frame.shed);
-  write(find("contacts"), frame.contacts + " → " + frame.clusters);
+  if (frame.tick_us) showTick(frame.tick_us, 1e6 * period_s, frame.shed);
+  write(find("contacts"), known(frame.contacts, n => n + " → " + frame.clusters));
   const deep = frame.depth_m > 0;
   write(find("depth-name"), deep ? "Depth" : "Gap");
-  write(find("depth"), deep ? millimetres(frame.depth_m) : frame.near_m === null ? "–" : millimetres(Math.max(frame.near_m, 0)));
+  write(find("depth"), known(deep ? frame.depth_m : frame.near_m, millimetres));
 }
 
 function showTick(tick_us, period_us, shed) {

@@ -1,7 +1,7 @@
 // The force as an arrow in the picture, and both as numbers along the world's axes.
 
 import {find, write} from "./find.js";
-import {norm} from "./format.js";
+import {norm, signed} from "./format.js";
 
 const RADIUS = 45;
 const cells = [...document.querySelectorAll("#components tbody tr")].map(row => row.querySelectorAll("td"));
@@ -11,8 +11,8 @@ export function showDirection({f, f_W, tau_W}, limit) {
   const share = limit > 0 ? Math.min(force / limit, 1) : 0;
   showDial(f.map(part => force > 0 ? RADIUS * share * part / force : 0));
   cells.forEach(([forceCell, torqueCell], i) => {
-    write(forceCell, f_W[i].toFixed(2));
-    write(torqueCell, (1e3 * tau_W[i]).toFixed(0));
+    write(forceCell, signed(f_W[i], 2));
+    write(torqueCell, signed(1e3 * tau_W[i], 0));
   });
 }
 

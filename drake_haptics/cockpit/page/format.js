@@ -1,14 +1,22 @@
-// Numbers as people read them.
+// Numbers as people read them; a dash where nothing is known.
+
+export const known = (value, write) => value === null || value === undefined ? "–" : write(value);
 
 export const newtons = f => f.toFixed(2) + " N";
 export const millinewtonmetres = t => (1e3 * t).toFixed(0) + " mN·m";
 export const norm = v => Math.hypot(...v);
 
+/** A number with its sign as a minus, and none where it rounds to zero. */
+export function signed(x, digits) {
+  const text = Math.abs(x).toFixed(digits);
+  return (x < 0 && Number(text) !== 0 ? "−" : "") + text;
+}
+
 /** A time in µs, ms above a thousand of them. */
 export function micros(us) {
   if (us < 10) return us.toFixed(1) + " µs";
   if (us < 1000) return us.toFixed(0) + " µs";
-  return (us / 1000).toFixed(us < 10000 ? 1 : 0) + " ms";
+  return Number((us / 1000).toFixed(us < 10000 ? 1 : 0)) + " ms";
 }
 
 /** A length in mm, µm below a tenth of one. */

@@ -7,7 +7,7 @@ import "./folds.js";
 import {connect, say} from "./link.js";
 import {notify} from "./notices.js";
 import {showHandle} from "./pointer.js";
-import {isHandleOfPointer, setHandle} from "./pilot.js";
+import {setDriving, setHandle} from "./pilot.js";
 import {makeSliders, placeWarnings, showValues} from "./sliders.js";
 import "./shortcuts.js";
 import {aim, layOut, makeCameras} from "./stage.js";
@@ -50,10 +50,14 @@ const on = {
            {button: {label: "Drive from here", act: () => say({do: "take"})}});
     notify("fault", frame.gate === "fault" ? FAULT : "", {kind: "fault"});
     notify("shed", frame.shed.length ? "Ticks take too long. Left out: " + frame.shed.join(", ") + "." : "", {kind: "warn"});
+    showGate(frame.gate);
     enable(frame.drives);
-    showFigures(frame, settings.period_s);
-    showTrace(frame);
-    showDirection(frame, settings.limits.force_N);
+    // A loop that stands still has no new tick to tell of.
+    if (frame.f_W) {
+      showFigures(frame, settings.period_s);
+      showTrace(frame);
+      showDirection(frame, settings.limits.force_N);
+    }
     showHandle(frame.handle);
     if (frame.drives && !isFramed) {
       isFramed = true;
@@ -72,7 +76,8 @@ const on = {
     }));
     setHandle(state.handle, settings.handles ?? []);
     setYaml(state.yaml);
-    notify("error", state.error, {kind: "fault"});
+    const button = {label: "Dismiss", act: () => notify("error", "")};
+    notify("error", state.error, {kind: "fault", button});
   },
 
   over({why}) {
@@ -100,7 +105,7 @@ function end() {
 function enable(drives) {
   for (const part of document.querySelectorAll(".change")) part.disabled = !drives || Boolean(settings.locked);
   for (const part of document.querySelectorAll(".view, #cameras button")) part.disabled = !drives;
-  document.body.classList.toggle("piloting", drives && isHandleOfPointer());
+  setDriving(drives && !settings.locked);
 }
 
 function makeLegend(legend) {

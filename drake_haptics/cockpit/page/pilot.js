@@ -5,39 +5,51 @@ import {say} from "./link.js";
 import {layOut} from "./stage.js";
 
 let holder = "";
+let giveBackTo = "";
+let drives = false;
 let isCamera = false;
 
-/** Whether what the pointer does is meant for the handle. */
-export const isHandleOfPointer = () => holder === "mouse" && !isCamera;
+/** Gives the pointer to the handle where it is meant for it. */
+function update() {
+  document.body.classList.toggle("piloting", drives && holder === "mouse" && !isCamera);
+}
+
+export function setDriving(is) {
+  drives = is;
+  update();
+}
 
 export function setHandle(name, offered) {
-  const others = offered.filter(handle => handle.name !== "mouse").map(handle => handle.name);
-  // Where there is no choice the pointer is the handle: nobody is asked.
+  const names = offered.map(handle => handle.name);
+  const others = names.filter(other => other !== "mouse");
+  giveBackTo = others.includes("hand") ? "hand" : others[0] ?? "";
   holder = name;
   find("pointer").hidden = find("home").hidden = name !== "mouse";
-  find("take-handle").hidden = name === "mouse" || !offered.some(handle => handle.name === "mouse");
-  giveBackTo = others.includes("hand") ? "hand" : others[0] ?? "";
+  find("take-handle").hidden = name === "mouse" || !names.includes("mouse");
   document.body.classList.toggle("sliders", name === "sliders");
+  update();
   layOut();
 }
-let giveBackTo = "";
 
 /** Takes the handle, or gives it back to who held it. */
-export function toggleHolder() {
-  if (find("take-handle").disabled) return;
+function toggleHolder() {
+  if (!drives) return;
   if (!find("take-handle").hidden) say({do: "handle", to: "mouse"});
   else if (holder === "mouse" && giveBackTo) say({do: "handle", to: giveBackTo});
 }
 
-export function giveToCamera(is) {
+function giveToCamera(is) {
   isCamera = is;
   find("to-camera").setAttribute("aria-pressed", is);
   find("to-handle").setAttribute("aria-pressed", !is);
-  document.body.classList.toggle("piloting", isHandleOfPointer() && !find("home").disabled);
+  update();
 }
 
-export const toggleCamera = () => { if (holder === "mouse") giveToCamera(!isCamera); };
-export const goHome = () => { if (holder === "mouse" && !find("home").disabled) say({do: "home"}); };
+const toggleCamera = () => { if (holder === "mouse") giveToCamera(!isCamera); };
+const goHome = () => { if (holder === "mouse" && drives) say({do: "home"}); };
+
+/** What keys do. */
+export const PILOT_KEYS = {g: toggleHolder, c: toggleCamera, h: goHome};
 
 find("to-camera").addEventListener("click", () => giveToCamera(true));
 find("to-handle").addEventListener("click", () => giveToCamera(false));

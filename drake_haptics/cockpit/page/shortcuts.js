@@ -2,13 +2,13 @@
 
 import {find} from "./find.js";
 import {toggleColumn} from "./folds.js";
-import {goHome, toggleCamera, toggleHolder} from "./pilot.js";
+import {PILOT_KEYS} from "./pilot.js";
 import {aim} from "./stage.js";
 
 const showHelp = () => find("help-dialog").showModal();
 
 const ACTS = {
-  g: toggleHolder, c: toggleCamera, h: goHome,
+  ...PILOT_KEYS,
   1: () => aim("fit"), 2: () => aim("front"), 3: () => aim("side"), 4: () => aim("top"),
   "[": () => toggleColumn("left"), "]": () => toggleColumn("right"), "?": showHelp,
 };

@@ -84,6 +84,7 @@ class Slider {
   _write(value) {
     if (document.activeElement !== this.number) this.number.value = rounded(value);
     this.range.value = Math.round(STEPS * this._share(value));
+    this.range.style.setProperty("--share", `calc(8px + ${this._share(value)} * (100% - 16px))`);
     this.range.setAttribute("aria-valuetext", rounded(value) + " " + this.key.unit);
     const changed = Math.abs(value - this.key.file) > 1e-9 * Math.abs(this.key.file);
     this.element.classList.toggle("changed", changed);

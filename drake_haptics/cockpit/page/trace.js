@@ -78,11 +78,9 @@ export class Trace {
     context.stroke();
     context.textBaseline = "alphabetic";
     context.textAlign = "center";
-    for (let age = 8; age > 0; age -= 2) context.fillText("−" + age, x(age), height - 4);
+    for (let age = 8; age > 0; age -= 2) context.fillText("−" + age + " s", x(age), height - 4);
     context.textAlign = "right";
     context.fillText("now", width - right, height - 4);
-    context.textAlign = "left";
-    context.fillText(this.unit + "  /  s", 6, height - 4);
   }
 
   /** The device's limit: a line where the axis reaches it, else how far it is. */
