@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.mesh_report import length
 from drake_haptics.scene import (
     Contact,
     EnvironmentObject,
@@ -20,10 +21,12 @@ from drake_haptics.scene import (
 )
 from drake_haptics.systems.hand_grip import NOMINAL_GRIP
 from drake_haptics.touch_height import TouchMap
+from drake_haptics.units import METRES_PER_UNIT, guess_unit
 
 _PRESS_N = 2.0
 _LARGEST_TOOL_M = 1.0
-_LARGEST_ENVIRONMENT_M = 100.0
+# Beyond, coordinates are too coarse for contacts of micrometres.
+_LARGEST_ENVIRONMENT_M = 1e3
 _SMALLEST_EXTENT_M = 2e-3
 # The path keeps well inside a workspace of 12 cm radius.
 _CLEARANCE_M = 0.03
@@ -44,8 +47,14 @@ def make_scene_for_meshes(
     """Makes what `Scene.for_meshes` documents."""
     tool = load_mesh(tool_path, scale=tool_scale)
     environment = load_mesh(environment_path, scale=environment_scale)
-    _check_extent("tool", tool, _LARGEST_TOOL_M)
-    _check_extent("environment", environment, _LARGEST_ENVIRONMENT_M)
+    _check_extent("tool", tool_path, tool, tool_scale, _LARGEST_TOOL_M)
+    _check_extent(
+        "environment",
+        environment_path,
+        environment,
+        environment_scale,
+        _LARGEST_ENVIRONMENT_M,
+    )
     tip = _find_tip(tool)
     # The handle is above the tip, at half the tool's height: pressing straight down
     # then turns it little.
@@ -73,14 +82,24 @@ def make_scene_for_meshes(
     )
 
 
-def _check_extent(name: str, mesh: Mesh, largest_m: float) -> None:
-    """Refuses a size that nobody means: most often a wrong unit."""
+def _check_extent(
+    name: str, path: Path, mesh: Mesh, scale: float, largest_m: float
+) -> None:
+    """Refuses a size with which nothing could be felt: most often a wrong unit."""
     extent = max(mesh.report.extent)
-    if not _SMALLEST_EXTENT_M <= extent <= largest_m:
-        raise SceneError(
-            f"the {name} is {extent:.3g} m long; give the scale that makes it between"
-            f" {_SMALLEST_EXTENT_M} m and {largest_m:g} m"
-        )
+    if _SMALLEST_EXTENT_M <= extent <= largest_m:
+        return
+    unit = guess_unit(extent / scale, _SMALLEST_EXTENT_M, _LARGEST_TOOL_M)
+    hint = (
+        ""
+        if unit is None
+        else f". If {path.name} is in {unit}: --{name}-scale {METRES_PER_UNIT[unit]:g},"
+        f" in Python {name}_scale={METRES_PER_UNIT[unit]:g}"
+    )
+    raise SceneError(
+        f"the {name} {path.name} is {length(extent)} long, and must be between"
+        f" {length(_SMALLEST_EXTENT_M)} and {length(largest_m)}{hint}"
+    )
 
 
 def _calc_diagonal(mesh: Mesh) -> float:

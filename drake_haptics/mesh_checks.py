@@ -6,6 +6,7 @@ import numpy as np
 
 from drake_haptics.mesh_report import Finding, Severity, length
 from drake_haptics.mesh_topology import Edges, connected_labels, find_edges
+from drake_haptics.units import guess_unit
 
 # A hand holds the tool: beyond these sizes the unit is more likely wrong than not.
 LARGEST_USUAL_EXTENT_M = 10.0
@@ -127,6 +128,9 @@ def check_size(
     if SMALLEST_USUAL_EXTENT_M <= largest <= LARGEST_USUAL_EXTENT_M:
         return
     size = "large" if largest > LARGEST_USUAL_EXTENT_M else "small"
+    unit = guess_unit(
+        largest / metres_per_unit, SMALLEST_USUAL_EXTENT_M, LARGEST_USUAL_EXTENT_M
+    )
     findings.append(
         Finding(
             "suspicious-size",
@@ -134,6 +138,8 @@ def check_size(
             1,
             f"{length(largest)} is {size} for something to touch "
             f"(1 unit of the file was taken as {length(metres_per_unit)})",
-            "nothing was changed; is the unit right?",
+            "nothing was changed; is the unit right?"
+            if unit is None
+            else f"nothing was changed; state the unit {unit} if the file is in {unit}",
         )
     )

@@ -17,6 +17,10 @@ METRES_PER_UNIT: dict[str, float] = {
     "ft": 0.3048,
 }
 
+# Of files whose unit is not the one stated.
+_LIKELY_UNITS = ("mm", "cm", "in", "m", "km")
+_OF_A_HAND_M = (0.02, 1.0)
+
 _LONG_NAMES = {
     "meter": "m",
     "meters": "m",
@@ -70,6 +74,21 @@ def metres_per_unit(unit: str | None, scale: float | None) -> float:
             f"not {scale!r}"
         )
     return float(scale)
+
+
+def guess_unit(extent: float, smallest_m: float, largest_m: float) -> str | None:
+    """Returns the unit in which a size would be a usual one, the likeliest first.
+
+    Args:
+        extent: In the file's unit, whatever that is.
+        smallest_m: Of usual sizes, m.
+        largest_m: Of usual sizes, m.
+    """
+    for low_m, high_m in (_OF_A_HAND_M, (smallest_m, largest_m)):
+        for unit in _LIKELY_UNITS:
+            if low_m <= extent * METRES_PER_UNIT[unit] <= min(high_m, largest_m):
+                return unit
+    return None
 
 
 def unit_of_name(name: str | None) -> str | None:

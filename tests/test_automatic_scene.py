@@ -61,5 +61,5 @@ def test_scales_are_metres_per_unit(tmp_path):
 def test_a_tool_of_an_unlikely_size_is_refused(tmp_path, size):
     tool = write(tmp_path, "tool.stl", trimesh.creation.box([size] * 3))
     block = write(tmp_path, "block.stl", SHAPES["block"])
-    with pytest.raises(SceneError, match=r"the tool is .* m long; give the scale"):
+    with pytest.raises(SceneError, match=r"the tool tool.stl is .*m long, and must"):
         Scene.for_meshes(tool, block)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import warnings
 
-import click
 from pydrake.geometry import Meshcat
 from rich.console import Console
 from rich.progress import Progress, TaskID
 
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.cli.failures import warn
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.scene import Scene
 from drake_haptics.scene_check import SceneWarning
+from drake_haptics.scene_plausibility import question_scene
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 
@@ -30,13 +31,11 @@ def build_scene(
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SceneWarning)
         haptic = _build(console, scene, meshcat, device, recorder)
+    # Only now, when the bar is gone.
     for warning in caught:
-        if issubclass(warning.category, SceneWarning):
-            click.secho(f"Warning: {warning.message}", fg="yellow", err=True)
-        else:
-            warnings.warn_explicit(
-                warning.message, warning.category, warning.filename, warning.lineno
-            )
+        warn(str(warning.message))
+    for question in question_scene(haptic):
+        warn(question)
     return haptic
 
 

@@ -117,8 +117,8 @@ def test_the_terminal_shows_the_price_list(invoke, sample):
     assert "Errors are against every contact by itself" in text
     assert "~ differences of model, not errors: contact.depth:" in text
     assert "not measured: decomposition CoACD: coacd is not installed" in text
-    (row,) = [x for x in result.stdout.splitlines() if "150/300" in x and "30000" in x]
-    assert len(row) <= 100
+    rows = [x for x in result.stdout.splitlines() if "150/300" in x]
+    assert 0 < max(map(len, rows)) <= 100
     assert Path("hammer_block-accuracy.html").is_file()
     assert Path("hammer_block-accuracy.png").is_file()
 

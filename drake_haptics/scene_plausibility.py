@@ -1,0 +1,190 @@
+"""Questions about a scene that can be run, but hardly does what is wanted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from pydrake.math import RigidTransform
+
+from drake_haptics import _core
+from drake_haptics.builder import HapticDiagram
+from drake_haptics.decomposition import Decomposition
+from drake_haptics.device_preset import load_device_preset
+from drake_haptics.device_site import find_device_site
+from drake_haptics.mesh_checks import LARGEST_USUAL_EXTENT_M, SMALLEST_USUAL_EXTENT_M
+from drake_haptics.mesh_report import length
+from drake_haptics.mesh_topology import winding_numbers
+from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.scene import EnvironmentObject, Tool
+from drake_haptics.simulated_device import make_hand_path
+from drake_haptics.units import METRES_PER_UNIT, guess_unit
+
+# A tool is held in one hand.
+_LARGEST_USUAL_TOOL_M = 1.0
+# So many places of the hand's path, and vertices of the tool, are looked at.
+_PLACES = 100
+_VERTICES = 16
+
+
+def question_scene(haptic: HapticDiagram) -> list[str]:
+    """Returns what is probably not meant in a scene, in sentences.
+
+    Args:
+        haptic: The scene, built.
+    """
+    return [
+        *_question_sizes(haptic),
+        *_question_reach(haptic),
+        *_question_start(haptic),
+    ]
+
+
+def _question_sizes(haptic: HapticDiagram) -> list[str]:
+    """Asks for the unit of what is unlike anything that a hand touches."""
+    scene = haptic.scene
+    objects = zip(scene.environment, haptic.environment, strict=True)
+    sentences = [
+        _question_size("tool", "tool", scene.tool, haptic.tool, _LARGEST_USUAL_TOOL_M)
+    ] + [
+        _question_size(
+            f"environment[{i}]", "environment", item, part, LARGEST_USUAL_EXTENT_M
+        )
+        for i, (item, part) in enumerate(objects)
+    ]
+    return [sentence for sentence in sentences if sentence]
+
+
+def _question_size(
+    key: str,
+    option: str,
+    item: Tool | EnvironmentObject,
+    part: Decomposition,
+    largest_m: float,
+) -> str:
+    extent_m = max(part.mesh.report.extent)
+    if SMALLEST_USUAL_EXTENT_M <= extent_m <= largest_m:
+        return ""
+    size = f"{key}: {Path(item.mesh).name} is {length(extent_m)} wide"
+    unit = guess_unit(extent_m / item.scale, SMALLEST_USUAL_EXTENT_M, largest_m)
+    if unit is None:
+        return f"{size}; is its scale ({item.scale:g}) right?"
+    factor = METRES_PER_UNIT[unit]
+    return (
+        f"{size}; if the file is in {unit}: {key}.scale: {factor:g} in a scene file,"
+        f" --{option}-scale {factor:g} on the command line"
+    )
+
+
+def _question_reach(haptic: HapticDiagram) -> list[str]:
+    """Asks whether there is anything to touch."""
+    if haptic.backend is None:
+        where = "where the hand's path leads the tool"
+        p_WT, radius_m = _sample_tool_box(haptic), 0.0
+    else:
+        where = "where the device's workspace lets the tool go"
+        p_WT, radius_m = _find_workspace(haptic)
+    gap_m = min(
+        (
+            _calc_gap(p_WT, item.pose.to_rigid_transform(), part)
+            for item, part in zip(
+                haptic.scene.environment, haptic.environment, strict=True
+            )
+        ),
+    )
+    gap_m -= radius_m
+    if gap_m <= haptic.scene.contact.tolerance_m:
+        return []
+    return [
+        f"no object is within reach {where}; the nearest is {length(gap_m)} away:"
+        " nothing will be felt. Is environment[...].pose, a scale or"
+        " hand.path.waypoints as meant?"
+    ]
+
+
+def _sample_tool_box(haptic: HapticDiagram) -> np.ndarray:
+    """Returns corners of the tool's box along the hand's path, (n, 8, 3), m."""
+    path = make_hand_path(haptic.scene.hand.path)
+    low, high = _find_box(haptic.tool.mesh.vertices)
+    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1)
+    times = np.linspace(0.0, path.duration_s, _PLACES)
+    return np.array([(vector_to_pose(path.calc(t)[0]) @ corners).T for t in times])
+
+
+def _find_workspace(haptic: HapticDiagram) -> tuple[np.ndarray, float]:
+    """Returns the middle of the workspace, (1, 1, 3), and how far the tool gets, m."""
+    scene = haptic.scene
+    site = find_device_site(scene)
+    center = load_device_preset(scene.device.preset).workspace_center_m
+    X_HT = scene.tool.grasp.to_rigid_transform()
+    p_HTv = haptic.tool.mesh.vertices @ X_HT.rotation().matrix().T + X_HT.translation()
+    reach_m = site.workspace_radius_m + np.linalg.norm(p_HTv, axis=1).max()
+    return (site.X_WB @ np.array(center)).reshape(1, 1, 3), float(reach_m)
+
+
+def _calc_gap(p_WT: np.ndarray, X_WO: RigidTransform, part: Decomposition) -> float:
+    """Returns the least gap between boxes of points and an object's box, m.
+
+    Args:
+        p_WT: (n, k, 3) points; of each k the box is taken, in the object's frame.
+        X_WO: Pose of the object.
+        part: Its mesh.
+    """
+    low, high = _find_box(part.mesh.vertices)
+    R_OW = X_WO.rotation().matrix().T
+    p_OT = (p_WT - X_WO.translation()) @ R_OW.T
+    apart = np.maximum(p_OT.min(axis=1) - high, low - p_OT.max(axis=1))
+    return float(np.linalg.norm(np.maximum(apart, 0.0), axis=1).min())
+
+
+def _find_box(vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return vertices.min(axis=0), vertices.max(axis=0)
+
+
+def _question_start(haptic: HapticDiagram) -> list[str]:
+    """Asks whether the hand's tool is meant to start inside an object."""
+    scene = haptic.scene
+    if haptic.backend is not None:
+        return []
+    X_WT = make_hand_path(scene.hand.path).start
+    limit_N = find_device_site(scene).max_force_N
+    p_WT = _sample_tool_box(haptic)[:1]
+    sentences = []
+    for item, part in zip(scene.environment, haptic.environment, strict=True):
+        X_WO = item.pose.to_rigid_transform()
+        if _calc_gap(p_WT, X_WO, part) > 0.0:
+            continue
+        X_OT = X_WO.inverse() @ X_WT
+        depth_m = _calc_depth(haptic.tool, part, X_OT, scene.contact.tolerance_m)
+        force_N = depth_m * scene.contact.stiffness_N_per_m
+        if _is_inside(haptic.tool, part, X_OT) and force_N < limit_N:
+            how = f"inside '{item.name}', out of which nothing leads it"
+        elif force_N >= limit_N:
+            how = f"{length(depth_m)} deep in '{item.name}'"
+        else:
+            continue
+        sentences.append(
+            f"the tool starts {how}: move hand.path.waypoints[0] to a place beside it"
+        )
+    return sentences
+
+
+def _calc_depth(
+    tool: Decomposition, part: Decomposition, X_OT: RigidTransform, tolerance_m: float
+) -> float:
+    """Returns how deep the deepest contact is, m; 0 where there is none."""
+    tracker = _core.ContactTracker(tool.core, part.core, tolerance_m, "global")
+    distance = tracker.query(X_OT, RigidTransform()).distance
+    return max(0.0, -float(distance.min(initial=0.0)))
+
+
+def _is_inside(tool: Decomposition, part: Decomposition, X_OT: RigidTransform) -> bool:
+    """Whether all of the tool is in the solid, where no surface is near to push it."""
+    solid = part.mesh.triangles[part.mesh.solid.astype(bool)]
+    step = max(1, len(tool.mesh.vertices) // _VERTICES)
+    p_TV = tool.mesh.vertices[::step]
+    p_OV = p_TV @ X_OT.rotation().matrix().T + X_OT.translation()
+    low, high = _find_box(part.mesh.vertices)
+    if not len(solid) or not np.all((p_OV > low) & (p_OV < high)):
+        return False
+    return bool(np.all(winding_numbers(p_OV, part.mesh.vertices, solid) > 0.5))

@@ -1,0 +1,103 @@
+"""Questions about scenes: each is asked where it applies, and none elsewhere."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+from box_scenes import over_a_plate, write
+
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.device.backend import DeviceBackend, DeviceReading
+from drake_haptics.scene import EnvironmentObject, Pose, load_scene
+from drake_haptics.scene_library import list_scenes
+from drake_haptics.scene_plausibility import question_scene
+
+PRESS = [(0.0, 0.0, 0.0, 0.03), (1.0, 0.0, 0.0, 0.005)]
+
+
+def ask(scene, **settings):
+    return question_scene(BuildHapticDiagram(scene, **settings))
+
+
+@pytest.mark.parametrize("name", list_scenes())
+def test_nothing_is_asked_about_what_comes_along(name):
+    assert ask(load_scene(list_scenes()[name])) == []
+
+
+def test_millimetres_taken_for_metres_are_asked_for(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    assert ask(scene) == []
+    size_m = 1e3 * max(trimesh.load(scene.environment[0].mesh).extents)
+    big = trimesh.load(scene.environment[0].mesh)
+    scene.environment[0].mesh = write(tmp_path, "big", big.apply_scale(1e3))
+    (question,) = [q for q in ask(scene) if "big.obj" in q]
+    assert f"is {size_m:.4g} m wide" in question and "in mm:" in question
+    assert "environment[0].scale: 0.001" in question
+    assert "--environment-scale 0.001" in question
+    scene.environment[0].scale = 1e-3
+    assert ask(scene) == []
+
+
+def test_a_scale_too_small_is_asked_for(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    scene.tool.scale = 1e-3
+    (question,) = [q for q in ask(scene) if q.startswith("tool:")]
+    assert "20 µm wide" in question and "tool.scale: 1 in" in question
+
+
+def test_a_path_that_passes_all_objects_is_asked_for(tmp_path):
+    # The cube's lower face comes down to 0.5 mm above the plate, and to 3 mm,
+    # which is more than the tolerance of 2 mm.
+    near = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, 0.03), (1.0, 0.0, 0.0, 0.0105)])
+    assert ask(near) == []
+    far = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, 0.03), (1.0, 0.0, 0.0, 0.013)])
+    (question,) = ask(far)
+    assert "within reach where the hand's path" in question
+    assert "the nearest is 3 mm away" in question
+
+
+def test_a_tool_that_starts_deep_is_asked_for(tmp_path):
+    # 20 kN/m show the device's largest force, 8.5 N, at 0.425 mm.
+    light = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, 0.0097), (1.0, 0.0, 0.0, 0.02)])
+    assert ask(light) == []
+    deep = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, 0.005), (1.0, 0.0, 0.0, 0.02)])
+    (question,) = ask(deep)
+    assert "starts 5 mm deep in 'plate'" in question
+
+
+def test_a_tool_inside_a_solid_whose_surface_is_far_is_asked_for(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    # A hull is felt all over; the pieces of a bowl's surface are not.
+    bowl = trimesh.creation.annulus(0.2, 0.6, 0.8)
+    scene.environment = [
+        EnvironmentObject(
+            "bowl", write(tmp_path, "bowl", bowl), pose=Pose([0.4, 0.0, 0.03])
+        )
+    ]
+    assert any("the tool starts" in q and "'bowl'" in q for q in ask(scene))
+
+
+class Still(DeviceBackend):
+    """A device whose handle rests."""
+
+    is_placed = True
+
+    def read(self):
+        X_BH = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+        return DeviceReading(0, 0.0, X_BH, np.zeros(6), np.zeros(6))
+
+    def write(self, command):
+        """Shows nothing."""
+
+    def close(self):
+        """Has nothing to close."""
+
+
+def test_objects_beyond_the_workspace_of_a_device_are_asked_for(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    assert ask(scene, device=Still()) == []
+    far = replace(scene.environment[0], pose=Pose([0.0, 0.0, -1.0]))
+    scene.environment = [far]
+    (question,) = ask(scene, device=Still())
+    assert "the device's workspace" in question
