@@ -1,4 +1,5 @@
-// Panels and columns fold, and stay so when the page is opened again.
+// Panels and columns fold, and stay so when the page is opened again. Some open by
+// themselves only in a window of so many px.
 
 import {find} from "./find.js";
 
@@ -25,6 +26,7 @@ for (const panel of document.querySelectorAll("details.panel")) {
   const kept = read(panel.id);
   if (kept !== null) panel.open = kept === "open";
   else if (SMALL.matches) panel.open = panel.id === "panel-force";
+  else if (panel.dataset.openFrom) panel.open = innerHeight >= Number(panel.dataset.openFrom);
   panel.querySelector("summary").addEventListener("click", () => keep(panel.id, panel.open ? "folded" : "open"));
 }
 

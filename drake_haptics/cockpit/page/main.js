@@ -17,6 +17,11 @@ import {setYaml} from "./yaml.js";
 
 const FAULT = "The device is at fault: it shows no force. Hold it, mend what is wrong"
   + " (the terminal says what), and press Enter there to take it up again.";
+const MAKERS = {
+  keys: makeSliders, choices: makeChoices, handles: makeHandles, cameras: makeCameras, legend: makeLegend,
+  effects: list => makeSwitches("effect", list), views: list => makeSwitches("view", list),
+};
+const made = {};
 let settings = {limits: {force_N: 0, torque_Nm: 0}, period_s: 1e-3};
 let isFramed = false;
 
@@ -31,13 +36,7 @@ const on = {
     find("title").title = hello.description;
     document.title = hello.scene + " – haptic cockpit";
     setLimits(hello.limits);
-    makeSliders(hello.keys ?? []);
-    makeChoices(hello.choices ?? []);
-    makeSwitches("effect", hello.effects ?? []);
-    makeSwitches("view", hello.views ?? []);
-    makeHandles(hello.handles ?? []);
-    makeCameras(hello.cameras ?? []);
-    makeLegend(hello.legend ?? []);
+    for (const [name, make] of Object.entries(MAKERS)) makeAnew(name, hello[name] ?? [], make);
     showPanels(hello);
     write(find("locked"), hello.locked);
     find("locked").hidden = !hello.locked;
@@ -108,6 +107,13 @@ function enable(drives) {
   setDriving(drives && !settings.locked);
 }
 
+/** Makes controls only where they are others: whoever is at one stays there. */
+function makeAnew(name, list, make) {
+  const text = JSON.stringify(list);
+  if (made[name] !== text) make(list);
+  made[name] = text;
+}
+
 function makeLegend(legend) {
   find("legend").replaceChildren(...legend.map(({color, label}) => {
     const [item, patch] = [document.createElement("li"), document.createElement("i")];
@@ -126,6 +132,8 @@ function showPanels({keys = [], choices = [], effects = [], handles = [], views 
   };
   for (const [name, is] of Object.entries(filled)) find("panel-" + name).hidden = !is;
   find("actions").hidden = !(keys.length || effects.length);
+  // A program that only lends its handle to the pointer has nothing to be changed.
+  find("right").hidden = find("fold-right").hidden = !document.querySelector("#right > .panel:not([hidden])");
 }
 
 notify("link", "Connecting to the run.");

@@ -78,7 +78,7 @@ export class Trace {
     context.stroke();
     context.textBaseline = "alphabetic";
     context.textAlign = "center";
-    for (let age = 8; age > 0; age -= 2) context.fillText("−" + age + " s", x(age), height - 4);
+    for (let age = 8; age > 0; age -= 2) context.fillText("−" + age + (age === 8 ? " s" : ""), x(age), height - 4);
     context.textAlign = "right";
     context.fillText("now", width - right, height - 4);
   }
@@ -88,14 +88,14 @@ export class Trace {
     if (!this.limit) return;
     const [width] = this.size, {left, right} = MARGIN;
     const shown = this.scale * this.limit <= most;
-    const text = "limit " + (this.scale * this.limit).toFixed(this.digits) + " " + this.unit;
+    const text = "limit " + (this.scale * this.limit).toFixed(this.digits);
     context.fillStyle = context.strokeStyle = "rgb(190 40 40 / 0.85)";
     context.textAlign = "left";
     context.fillText(shown ? text : "↑ " + text, left + 3, 11);
     context.fillStyle = this.color;
     context.textAlign = "right";
     const peak = (this.scale * this.peak).toFixed(this.digits);
-    context.fillText("largest " + peak + " " + this.unit, width - right, 11);
+    context.fillText("largest " + peak, width - right, 11);
     if (!shown) return;
     context.setLineDash([5, 4]);
     context.beginPath();
