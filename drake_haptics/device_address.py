@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Callable
 from urllib.parse import SplitResult, urlsplit
 
@@ -22,19 +23,17 @@ def open_device(
 ) -> DeviceBackend:
     """Opens a device by its address.
 
-    | address | device |
-    |---|---|
-    | `udp://HOST:PORT` | a driver that speaks the protocol of docs/device-protocol.md |
-    | `haply://HOST[:PORT]` | an Inverse3 behind Haply's Inverse Service |
-    | `lcm:[URL]` | a driver on LCM, at an LCM URL or the default one |
-    | `meshcat:` | sliders and gamepad of Drake's page |
-    | `mouse:` | the mouse, over the picture of the scene |
-    | `replay:FILE` | the handle of a log of `run --log` |
+    * `udp://HOST:PORT`: a driver that speaks the protocol of docs/device-protocol.md
+    * `haply://HOST[:PORT]`: an Inverse3 behind Haply's Inverse Service
+    * `lcm:[URL]`: a driver on LCM, at an LCM URL or the default one
+    * `meshcat:`: sliders and gamepad of Drake's page
+    * `mouse:`: the mouse, over the picture of the scene
+    * `replay:FILE`: the handle of a log of `run --log`
 
     An Inverse3's may end in options, like `?max_force_N=4`: see `HaplyDevice.open`.
 
     Args:
-        address: Of the table.
+        address: One of these.
         scene: Says where its device stands and within which limits.
         meshcat: The page that `meshcat:` and `mouse:` need.
 
@@ -50,9 +49,11 @@ def open_device(
     """
     parts = urlsplit(address)
     if parts.scheme not in _OPENERS:
+        near = difflib.get_close_matches(parts.scheme or address, _OPENERS, n=1)
+        hint = f"; did you mean '{near[0]}:'?" if near else ""
         raise DeviceError(
             f"device {address!r}: give udp://HOST:PORT, haply://HOST, lcm:, meshcat:,"
-            " mouse: or replay:FILE"
+            f" mouse: or replay:FILE{hint}"
         )
     return _OPENERS[parts.scheme](parts, find_device_site(scene), meshcat)
 
@@ -117,7 +118,7 @@ def _open_meshcat(
 def _open_mouse(
     parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
 ) -> DeviceBackend:
-    from drake_haptics.device.mouse_device import MouseDevice
+    from drake_haptics.cockpit.mouse_device import MouseDevice
 
     return MouseDevice(
         _require_page(parts, meshcat),

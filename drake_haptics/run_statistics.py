@@ -54,6 +54,14 @@ class RunStatistics:
         """Number of ticks so far."""
         return self._ticks + len(self._pending)
 
+    def book(self, ledger: EnergyLedger) -> None:
+        """Tells from now on of the energy in a ledger.
+
+        Args:
+            ledger: Where the run books its energy.
+        """
+        self._ledger = ledger
+
     @property
     def latest(self) -> tuple[float, ...]:
         """The last tick: what `add` was called with, the (7,) shown in line."""

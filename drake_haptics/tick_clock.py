@@ -61,7 +61,7 @@ class TickClock:
         return self._last_late_s
 
     def pause(self) -> None:
-        """Lets the next tick be at once, as the first: what was between was no stall."""
+        """Lets the next tick be at once, like the first: there was no stall."""
         self._due_s = None
 
     def wait(self) -> float:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 KIND = b"#"
 # Names of gates, as the page is told them, by their numbers in a packet.
 GATES = ("idle", "active", "fault", "simulated")
+SIMULATED = GATES.index("simulated")
 
 # Kind, gate, stages of shed load; ticks skipped; clock, s; camera's R_WC row by row and
 # p_WC, m; handle's p_WH, m.

@@ -17,7 +17,7 @@ class Pursuit:
         ẍ = λ² (s − x) − 2 λ ẋ
 
     with the runner's place s. That is two equal first-order lags in series, so that
-    from rest, and from any state that such a run has left, |ẋ| ≤ |u| at all times.
+    from rest, and from any state that such a run has left, `|ẋ| ≤ |u|` at all times.
 
     Attributes:
         rate_per_s: λ, 1/s.

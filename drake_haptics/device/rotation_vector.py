@@ -59,7 +59,7 @@ def normalize(q: Sequence[float]) -> list[float]:
 
 
 def calc_angular_velocity(r: Sequence[float], rate: Sequence[float]) -> list[float]:
-    """Returns ω (3,) = J(r) ṙ, rad/s, J being the left Jacobian. |ω| ≤ |ṙ|."""
+    """Returns ω (3,) = J(r) ṙ, rad/s, J being the left Jacobian. `|ω| ≤ |ṙ|`."""
     angle = math.hypot(*r)
     if angle < _SMALL_RAD:
         first, second = 0.5, 1.0 / 6.0

@@ -10,7 +10,7 @@ from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_haptics.colors import COUPLING_LINE
 from drake_haptics.device.backend import DeviceCommand
-from drake_haptics.device.mouse_device import MouseDevice
+from drake_haptics.cockpit.mouse_device import MouseDevice
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.stage import open_meshcat
 

@@ -56,7 +56,7 @@ class Layout:
 
 
 class FixedMessage:
-    """Base of a frozen dataclass whose fields are `member`s in the file's order.
+    """Base of a frozen dataclass whose fields are each a `member` in the file's order.
 
     It gets its layout by the decorator `lay_out`, above that of the dataclass.
     """

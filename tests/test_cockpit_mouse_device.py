@@ -2,6 +2,7 @@
 
 import gc
 import json
+import select
 import time
 import weakref
 
@@ -13,9 +14,10 @@ from meshcat_page import MeshcatPage
 from pydrake.math import RigidTransform, RollPitchYaw
 from scipy.spatial.transform import Rotation
 
-from drake_haptics.device import mouse_device
-from drake_haptics.device.backend import DeviceCommand, DeviceError, GateState
-from drake_haptics.device.mouse_device import MouseDevice
+from drake_haptics.cockpit import mouse_device, page_handle
+from drake_haptics.cockpit.mouse_device import MouseDevice
+from drake_haptics.device.backend import DeviceCommand, GateState
+from drake_haptics.errors import UserError
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.stage import open_meshcat
 
@@ -30,7 +32,8 @@ HEIGHT_M = 2 * 4 * RADIUS_M * np.tan(np.deg2rad(37.5))
 @pytest.fixture
 def clock(monkeypatch):
     clock = HandClock()
-    monkeypatch.setattr(mouse_device, "monotonic", clock)
+    for module in (mouse_device, page_handle):
+        monkeypatch.setattr(module, "monotonic", clock)
     return clock
 
 
@@ -51,12 +54,13 @@ def device(meshcat, clock):
 
 
 class Page:
-    """A page of the device, without a browser."""
+    """A page of the device, without a browser, while the device's loop goes on."""
 
-    def __init__(self, device):
-        self._device = device
+    def __init__(self, device, clock):
+        self._device, self._clock = device, clock
         url = device.url.replace("http", "ws")
         self._socket = websocket.create_connection(url, timeout=BOUND_S)
+        self.hear("hello", lambda hello: True)
 
     def __enter__(self):
         """Nothing more to open."""
@@ -65,6 +69,12 @@ class Page:
     def __exit__(self, *_):
         """Goes away."""
         self._socket.close()
+
+    def turn(self):
+        """One turn of the loop."""
+        self._clock.now_s += 0.02
+        self._device.read()
+        time.sleep(0.002)
 
     def say(self, message):
         """Says something, as JSON if it is no text, and waits until it was heard."""
@@ -77,14 +87,18 @@ class Page:
         end = time.monotonic() + BOUND_S
         while self._device.get_link_status() == before:
             assert time.monotonic() < end
-            time.sleep(0.002)
+            self.turn()
 
-    def hear(self, wanted):
-        """Returns the first report that is as wanted."""
+    def hear(self, name, wanted):
+        """Returns the first message of a name that is as wanted."""
         end = time.monotonic() + BOUND_S
-        while not wanted(report := json.loads(self._socket.recv())):
-            assert time.monotonic() < end
-        return report
+        while time.monotonic() < end:
+            self.turn()
+            while self._socket.sock in select.select([self._socket.sock], [], [], 0)[0]:
+                [(told, body)] = json.loads(self._socket.recv()).items()
+                if told == name and wanted(body):
+                    return body
+        raise TimeoutError(name)
 
 
 def settle(device, clock):
@@ -110,7 +124,7 @@ def test_it_needs_nobody_to_look_at_it(device, clock):
 
 
 def test_the_pointer_moves_the_handle_as_seen_from_the_front(device, clock):
-    with Page(device) as page:
+    with Page(device, clock) as page:
         page.say({"do": "move", "by": [0.05, 0.0, 0.0]})
         p, turn = settle(device, clock)
         np.testing.assert_allclose(p, [0.05 * HEIGHT_M, 0, 0], atol=1e-9)
@@ -122,7 +136,7 @@ def test_the_pointer_moves_the_handle_as_seen_from_the_front(device, clock):
 
 
 def test_the_pointer_turns_the_handle_where_it_is(device, clock):
-    with Page(device) as page:
+    with Page(device, clock) as page:
         page.say({"do": "turn", "by": [0.25, 0.0, 0.0]})
         p, turn = settle(device, clock)
         # To the right, the near side: about the vertical.
@@ -141,10 +155,10 @@ def test_the_pointer_goes_with_the_camera(meshcat, device, clock):
     R_WC = np.array([[0, 0, 1], [-1, 0, 0], [0, -1, 0]])
     camera = np.eye(4)
     camera[:3, :3], camera[:3, 3] = R_WC, p_WH - [2 * RADIUS_M, 0, 0]
-    with MeshcatPage(meshcat) as view, Page(device) as page:
+    with MeshcatPage(meshcat) as view, Page(device, clock) as page:
         view.send_camera(RigidTransform(camera))
-        clock.now_s += 1.0
-        device.read()
+        for _ in range(10):
+            page.turn()
         page.say({"do": "move", "by": [0.1, 0.0, 0.02]})
         p, _ = settle(device, clock)
     np.testing.assert_allclose(p, HEIGHT_M / 2 * np.array([0.02, -0.1, 0]), atol=1e-9)
@@ -154,7 +168,7 @@ def test_the_pointer_goes_with_the_camera(meshcat, device, clock):
 def test_a_camera_out_of_this_world_changes_nothing(meshcat, device, clock, position):
     elements = np.eye(4)
     elements[3, :3] = position
-    with MeshcatPage(meshcat) as view, Page(device) as page:
+    with MeshcatPage(meshcat) as view, Page(device, clock) as page:
         view.send_camera_numbers(elements.ravel().tolist())
         end = time.monotonic() + 0.3
         while time.monotonic() < end:
@@ -163,14 +177,14 @@ def test_a_camera_out_of_this_world_changes_nothing(meshcat, device, clock, posi
             time.sleep(0.02)
         page.say({"do": "move", "by": [0.05, 0.0, 0.0]})
         page.say({"do": "turn", "by": [0.1, 0.2, 0.0]})
-        report = page.hear(lambda report: True)
+        report = page.hear("frame", lambda report: True)
         p, _ = settle(device, clock)
     np.testing.assert_allclose(p, [0.05 * HEIGHT_M, 0, 0], atol=1e-9)
     assert np.isfinite(report["handle"]).all()
 
 
 def test_a_leap_of_the_pointer_is_no_leap_of_the_handle(device, clock):
-    with Page(device) as page:
+    with Page(device, clock) as page:
         page.say({"do": "move", "by": [0.1, 0.0, 0.0]})
         before = device.read()
         for _ in range(300):
@@ -182,7 +196,7 @@ def test_a_leap_of_the_pointer_is_no_leap_of_the_handle(device, clock):
 
 
 def test_the_handle_stays_in_its_workspace(device, clock):
-    with Page(device) as page:
+    with Page(device, clock) as page:
         for _ in range(3):
             page.say({"do": "move", "by": [1.0, 1.0, 1.0]})
         p, _ = settle(device, clock)
@@ -194,7 +208,7 @@ def test_the_handle_stays_in_its_workspace(device, clock):
 
 
 def test_home_is_where_it_started(device, clock):
-    with Page(device) as page:
+    with Page(device, clock) as page:
         page.say({"do": "move", "by": [0.1, 0.2, -0.1]})
         page.say({"do": "turn", "by": [0.4, -0.2, 0.3]})
         settle(device, clock)
@@ -210,7 +224,7 @@ def test_home_is_where_it_started(device, clock):
      {"do": "fly"}, b"\x00\xff"],
 )  # fmt: skip
 def test_what_a_page_must_not_say_is_counted_and_moves_nothing(device, clock, nonsense):
-    with Page(device) as page:
+    with Page(device, clock) as page:
         page.say(nonsense)
         p, turn = settle(device, clock)
         assert device.get_link_status().rejected == 1
@@ -221,19 +235,19 @@ def test_what_a_page_must_not_say_is_counted_and_moves_nothing(device, clock, no
 
 
 def test_only_one_page_drives(device, clock):
-    with Page(device) as first, Page(device) as second:
-        second.hear(lambda report: report["drives"])
+    with Page(device, clock) as first, Page(device, clock) as second:
+        second.hear("frame", lambda report: report["drives"])
         first.say({"do": "move", "by": [0.1, 0.0, 0.0]})
         assert device.get_link_status().rejected == 1
         np.testing.assert_allclose(settle(device, clock)[0], 0, atol=1e-9)
         first.say({"do": "take"})
-        second.hear(lambda report: not report["drives"])
+        second.hear("frame", lambda report: not report["drives"])
         first.say({"do": "move", "by": [0.1, 0.0, 0.0]})
         assert settle(device, clock)[0][0] > 0.01
 
 
 def test_without_its_page_the_handle_stays_and_goes_on_being_read(device, clock):
-    with Page(device) as page:
+    with Page(device, clock) as page:
         page.say({"do": "move", "by": [0.05, 0.0, 0.0]})
         p, _ = settle(device, clock)
     before = device.read()
@@ -243,7 +257,7 @@ def test_without_its_page_the_handle_stays_and_goes_on_being_read(device, clock)
     assert reading.sequence == before.sequence + 20
     np.testing.assert_allclose(settle(device, clock)[0], p, atol=1e-12)
     # A page that comes later takes over from there.
-    with Page(device) as page:
+    with Page(device, clock) as page:
         page.say({"do": "move", "by": [0.05, 0.0, 0.0]})
         np.testing.assert_allclose(settle(device, clock)[0], 2 * p, atol=1e-9)
 
@@ -254,38 +268,37 @@ def test_a_page_is_told_the_wrench_as_its_picture_shows_it(device, clock):
     f_W, tau_W = np.array([1.0, -3.0, 2.0]), np.array([0.0, -0.2, 0.1])
     R_BW = X_WB.rotation().inverse()
     F_BH = np.concatenate([R_BW @ tau_W, R_BW @ f_W])
-    with Page(device) as page:
-        assert page.hear(lambda report: True)["gate"] == "idle"
+    with Page(device, clock) as page:
+        assert page.hear("frame", lambda report: True)["gate"] == "idle"
         device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
-        report = page.hear(lambda report: report["gate"] == "active")
-        np.testing.assert_allclose(report["force_N"], [1, 2, 3], atol=1e-12)
-        np.testing.assert_allclose(report["torque_Nm"], [0, 0.1, 0.2], atol=1e-12)
+        report = page.hear("frame", lambda report: report["gate"] == "active")
+        np.testing.assert_allclose(report["f"], [1, 2, 3], atol=1e-12)
+        np.testing.assert_allclose(report["tau"], [0, 0.1, 0.2], atol=1e-12)
         np.testing.assert_allclose(report["handle"], [0, 0], atol=1e-12)
         page.say({"do": "move", "by": [0.07, -0.03, 0.0]})
         settle(device, clock)
-        report = page.hear(lambda report: report["handle"][0] > 0.06)
+        report = page.hear("frame", lambda report: report["handle"][0] > 0.06)
         np.testing.assert_allclose(report["handle"], [0.07, -0.03], atol=1e-9)
 
 
-def test_a_wrench_that_is_none_is_shown_as_zero(device):
+def test_a_wrench_that_is_none_is_shown_as_zero(device, clock):
     """JSON has no word for it: a page would fail to read the report."""
     reading = device.read()
-    with Page(device) as page:
+    with Page(device, clock) as page:
         F_BH = np.array([0.0, np.inf, 0, np.nan, 1, 1])
         device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
-        report = page.hear(lambda report: report["gate"] == "active")
-    assert report["force_N"] == report["torque_Nm"] == [0, 0, 0]
+        report = page.hear("frame", lambda report: report["gate"] == "active")
+    assert report["f"] == report["tau"] == [0, 0, 0]
 
 
 def test_close_ends_at_no_force_and_tells_the_page(meshcat, clock):
     device = make(meshcat)
-    with Page(device) as page:
+    with Page(device, clock) as page:
         reading = device.read()
         device.write(DeviceCommand(np.ones(6), reading.X_BH, reading.V_BH))
-        page.hear(lambda report: report["gate"] == "active")
+        page.hear("frame", lambda report: report["gate"] == "active")
         device.close()
-        report = page.hear(lambda report: report["gate"] == "idle")
-        assert report["force_N"] == [0, 0, 0]
+        page.hear("over", lambda over: over["why"] == "The run has ended.")
     device.close()
     device.write(DeviceCommand(np.ones(6), reading.X_BH, reading.V_BH))
     reading = device.read()
@@ -294,9 +307,8 @@ def test_close_ends_at_no_force_and_tells_the_page(meshcat, clock):
 
 
 def test_nothing_holds_it_after_its_end(meshcat, clock):
-    """A Meshcat that only the garbage collector frees may end in a foreign thread."""
     device = make(meshcat)
-    with Page(device) as page:
+    with Page(device, clock) as page:
         page.say({"do": "move", "by": [0.1, 0.0, 0.0]})
         settle(device, clock)
     device.close()
@@ -311,7 +323,7 @@ def test_nothing_holds_it_after_its_end(meshcat, clock):
 
 def test_a_port_in_use_is_refused(meshcat, device):
     port = int(device.url.rstrip("/").rpartition(":")[2])
-    with pytest.raises(DeviceError, match=str(port)):
+    with pytest.raises(UserError, match=str(port)):
         make(meshcat, port=port)
 
 

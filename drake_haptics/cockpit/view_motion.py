@@ -10,12 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 from pydrake.math import RigidTransform
 
+from drake_haptics.cockpit.camera_view import HEIGHT_PER_DEPTH, LEAST_DEPTH_M
 from drake_haptics.device.rotation_vector import multiply, normalize, to_quaternion
-
-# Meshcat's camera sees 75° from the lower to the upper edge.
-_HEIGHT_PER_DEPTH = 2.0 * np.tan(np.deg2rad(75.0) / 2.0)
-# Nearer to the camera, and behind it, the picture would stand still, m.
-_LEAST_DEPTH_M = 0.01
 
 
 def move_in_view(
@@ -30,7 +26,7 @@ def move_in_view(
     """
     right, up, away = by
     p_CG = X_WC.inverse() @ X_WG[4:]
-    height_m = _HEIGHT_PER_DEPTH * max(float(p_CG[2]), _LEAST_DEPTH_M)
+    height_m = HEIGHT_PER_DEPTH * max(float(p_CG[2]), LEAST_DEPTH_M)
     step_W = X_WC.rotation() @ (height_m * np.array([right, -up, away]))
     return np.concatenate([X_WG[:4], X_WG[4:] + step_W])
 
@@ -66,15 +62,3 @@ def keep_near(X_WG: np.ndarray, p_WCenter: np.ndarray, radius_m: float) -> np.nd
     if distance <= radius_m:
         return X_WG
     return np.concatenate([X_WG[:4], p_WCenter + radius_m / distance * offset])
-
-
-def find_in_view(p_WG: np.ndarray, X_WC: RigidTransform) -> list[float] | None:
-    """Returns where a point (3,), m, is seen: right and up of the middle, in heights.
-
-    None for a point that is not before the camera.
-    """
-    x, y, z = (X_WC.inverse() @ p_WG).tolist()
-    if z < _LEAST_DEPTH_M:
-        return None
-    height_m = _HEIGHT_PER_DEPTH * z
-    return [x / height_m, -y / height_m]

@@ -1,0 +1,248 @@
+"""The page, served on this machine for those who opened it here."""
+
+import asyncio
+import json
+import queue
+import socket
+import threading
+import time
+import urllib.error
+import urllib.request
+
+import pytest
+import websocket
+
+from drake_haptics.cockpit.page_port import open_page_port
+from drake_haptics.cockpit.page_server import PageServer
+
+MESHCAT = "http://localhost:6999"
+BOUND_S = 20.0
+HOME = {"do": "home"}
+REFUSED = {"refused": 1}
+
+
+class Served:
+    """A server in a thread, which in the program has a process of its own."""
+
+    def __init__(self):
+        listener = open_page_port()
+        self.port = listener.getsockname()[1]
+        self.url = f"http://localhost:{self.port}/"
+        self.heard = queue.Queue()
+        self._begun = threading.Event()
+        self._thread = threading.Thread(
+            target=lambda: asyncio.run(self._serve(listener))
+        )
+        self._thread.start()
+        self._begun.wait(BOUND_S)
+
+    async def _serve(self, listener):
+        async def hear(asked):
+            self.heard.put(asked)
+
+        self._loop, self._end = asyncio.get_running_loop(), asyncio.Event()
+        server = PageServer(listener, MESHCAT, hear)
+        opened = await server.open()
+        self._server = server
+        self._begun.set()
+        await self._end.wait()
+        opened.close()
+        await opened.wait_closed()
+
+    def do(self, method, *arguments):
+        """Calls a method of the server in its thread."""
+        call = getattr(self._server, method)
+        self._loop.call_soon_threadsafe(call, *arguments)
+
+    def close(self):
+        """Ends it."""
+        self._loop.call_soon_threadsafe(self._end.set)
+        self._thread.join(BOUND_S)
+
+
+@pytest.fixture(scope="module")
+def server():
+    server = Served()
+    yield server
+    server.close()
+
+
+@pytest.fixture(autouse=True)
+def nothing_heard(server):
+    while not server.heard.empty():
+        server.heard.get()
+
+
+def connect(server, **options):
+    """Opens a socket as a page does."""
+    url = f"ws://localhost:{server.port}/"
+    return websocket.create_connection(url, timeout=BOUND_S, **options)
+
+
+def get(server, path="", **headers):
+    """Asks for a page."""
+    request = urllib.request.Request(server.url + path, headers=headers)
+    return urllib.request.urlopen(request, timeout=BOUND_S)
+
+
+def wait_until(server, page, drives):
+    """Shows frames until a page is told that it drives, or does not."""
+    end = time.monotonic() + BOUND_S
+    while True:
+        server.do("show", {"gate": "idle"})
+        if json.loads(page.recv()) == {"frame": {"gate": "idle", "drives": drives}}:
+            return
+        assert time.monotonic() < end
+
+
+@pytest.mark.parametrize(
+    ("path", "media_type", "begin"),
+    [
+        ("", "text/html; charset=utf-8", "<!DOCTYPE html>"),
+        ("?again", "text/html; charset=utf-8", "<!DOCTYPE html>"),
+        ("main.js", "text/javascript; charset=utf-8", "//"),
+        ("theme.css", "text/css; charset=utf-8", "/*"),
+    ],
+)
+def test_it_serves_the_page(server, path, media_type, begin):
+    with get(server, path) as answer:
+        assert answer.read().decode().startswith(begin)
+        assert answer.headers["Content-Type"] == media_type
+        assert answer.headers["Cache-Control"] == "no-store"
+        policy = dict(
+            part.split(maxsplit=1)
+            for part in answer.headers["Content-Security-Policy"].split(";")
+        )
+    assert policy["default-src"] == "'self'"
+    assert policy["frame-src"].strip() == MESHCAT
+    assert policy["frame-ancestors"].strip() == "'none'"
+
+
+@pytest.mark.parametrize(
+    ("path", "headers", "status"),
+    [
+        ("other", {}, 404),
+        ("../../etc/passwd", {}, 404),
+        ("../page_server.py", {}, 404),
+        ("page/index.html", {}, 404),
+        ("/index.html", {}, 404),
+        ("%2e%2e/page_server.py", {}, 404),
+        ("", {"Host": "stranger.example"}, 403),
+        ("", {"Host": "localhost.stranger.example:80"}, 403),
+        ("", {"Host": "]["}, 403),
+    ],
+)
+def test_it_serves_nothing_else_and_to_nobody_else(server, path, headers, status):
+    with pytest.raises(urllib.error.HTTPError) as refusal:
+        get(server, path, **headers)
+    with refusal.value as answer:
+        assert answer.code == status
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"origin": "http://stranger.example"},
+        {"origin": "null"},
+        {"origin": "http://localhost:1"},
+        {"host": "stranger.example", "origin": "http://stranger.example"},
+    ],
+)
+def test_pages_of_other_origins_cannot_talk(server, options):
+    with pytest.raises(websocket.WebSocketBadStatusException, match="403"):
+        connect(server, **options)
+    assert server.heard.empty()
+
+
+def test_a_page_and_a_program_can_talk(server):
+    for options in ({}, {"suppress_origin": True}):
+        page = connect(server, **options)
+        page.send(json.dumps(HOME))
+        assert server.heard.get(timeout=BOUND_S) == HOME
+        page.close()
+
+
+def test_the_page_that_came_last_drives_until_another_takes_over(server):
+    first = connect(server)
+    wait_until(server, first, True)
+    second = connect(server)
+    wait_until(server, second, True)
+    wait_until(server, first, False)
+    first.send(json.dumps(HOME))
+    assert server.heard.get(timeout=BOUND_S) == REFUSED
+    first.send(json.dumps({"do": "take"}))
+    assert server.heard.get(timeout=BOUND_S) == {"do": "take"}
+    wait_until(server, first, True)
+    wait_until(server, second, False)
+    # Who does not drive ends nothing by going.
+    second.close()
+    first.send(json.dumps(HOME))
+    assert server.heard.get(timeout=BOUND_S) == HOME
+    first.close()
+
+
+def test_a_page_that_was_torn_away_does_not_drive(server):
+    first = connect(server)
+    wait_until(server, first, True)
+    first.shutdown()
+    second = connect(server)
+    wait_until(server, second, True)
+    second.close()
+
+
+def test_who_comes_late_is_told_what_lasts(server):
+    server.do("tell", "state", json.dumps({"state": 1}))
+    server.do("tell", "state", json.dumps({"state": 2}))
+    page = connect(server)
+    assert json.loads(page.recv()) == {"state": 2}
+    page.close()
+
+
+def test_what_it_may_not_say_is_told_to_be_refused(server):
+    page = connect(server)
+    for nonsense in ("", "{}", '{"do": "fly"}', '{"do": "move", "by": [NaN, 0, 0]}'):
+        page.send(nonsense)
+        assert server.heard.get(timeout=BOUND_S) == REFUSED
+    page.send_binary(b"\x00\xff")
+    assert server.heard.get(timeout=BOUND_S) == REFUSED
+    page.close()
+
+
+def test_long_messages_end_a_talk_and_not_the_server(server):
+    page = connect(server)
+    page.send("x" * 100_000)
+    with pytest.raises((websocket.WebSocketException, OSError)):
+        for _ in range(10_000):
+            if page.recv() == "":
+                raise websocket.WebSocketConnectionClosedException
+    page = connect(server)
+    page.send(json.dumps(HOME))
+    assert server.heard.get(timeout=BOUND_S) == HOME
+    page.close()
+
+
+def test_noise_on_the_port_is_borne_in_silence(server, capfd):
+    for noise in (b"\x00" * 1000, b"GET\r\n\r\n", b"POST / HTTP/1.1\r\n\r\n"):
+        with socket.create_connection(("127.0.0.1", server.port), BOUND_S) as plain:
+            plain.sendall(noise)
+            plain.shutdown(socket.SHUT_WR)
+            try:
+                while plain.recv(1000):
+                    pass
+            except ConnectionError:
+                pass
+    with get(server) as answer:
+        assert answer.status == 200
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_flood_is_heard_slowly(server):
+    """So that it takes little time from the loop: 500 messages need a second."""
+    page = connect(server)
+    begin = time.monotonic()
+    for _ in range(100):
+        page.send(json.dumps(HOME))
+    for _ in range(100):
+        server.heard.get(timeout=BOUND_S)
+    assert time.monotonic() - begin > 99 * 0.002
+    page.close()
