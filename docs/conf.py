@@ -18,15 +18,41 @@ extensions = [
     "myst_nb",  # Markdown and notebooks; notebooks are shown as they were saved
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
+    "code_role",
+    "module_pages",
     "navigation",
+    "pydrake_system",
+    "property_docstrings",
     "readme_page",
     "repository_links",
     "repository_pages",
+    "system_pages",
+    "template_systems",
 ]
 exclude_patterns = ["_build", "**.ipynb_checkpoints"]
 
+default_role = "code-or-link"
+
+autoclass_content = "both"  # constructors are documented where they are
+autodoc_default_options = {"members": True, "show-inheritance": True}
+autodoc_member_order = "bysource"
+napoleon_google_docstring = True
+napoleon_numpy_docstring = False
+# What stands before a colon or in parentheses is a shape or a unit more often than a
+# type; types are in the signatures.
+napoleon_use_ivar = True
+napoleon_use_param = False
+napoleon_use_rtype = False
+toc_object_entries = False  # the navigation would name every method, and take minutes
+# What is of others is described on other hosts. Names of ours are all found.
+nitpick_ignore_regex = [
+    ("py:.*", r"(?!drake_haptics\.).*"),
+    ("py:class", r"drake_haptics\..*\._.*"),  # private bases and type variables
+    ("py:class", r"drake_haptics\.accuracy\.knob_values\.Number"),
+]
+
 nb_execution_mode = "off"  # the tests run the notebooks
-myst_enable_extensions = ["colon_fence", "dollarmath"]
+myst_enable_extensions = []  # no maths: MathJax would be asked of another host
 myst_heading_anchors = 4  # the anchors that a code host gives to headings
 
 html_theme = "furo"

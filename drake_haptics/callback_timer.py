@@ -31,7 +31,7 @@ class CallbackTimer:
     Inside its block it stands between `LeafSystem` and Drake wherever a callback is
     declared; outside, systems are constructed as ever and nothing is measured. A
     callback's time is its own: what it waits for its inputs belongs to the systems
-    that give them. Each call costs about 0.5 µs more.
+    that give them. Each call costs about 0.5 µs more::
 
         with CallbackTimer() as timer:
             haptic = BuildHapticDiagram(scene)

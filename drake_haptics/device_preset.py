@@ -4,17 +4,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from pydrake.common.yaml import yaml_load_file, yaml_load_typed
+from pydrake.common.yaml import yaml_load_typed
 
 import drake_haptics
+from drake_haptics.errors import SceneError
 from drake_haptics.scene_check import (
-    SceneError,
-    check_keys,
     require,
     require_all_positive,
     require_each,
     require_none_negative,
 )
+from drake_haptics.yaml_keys import check_keys, load_yaml, make_hint
 
 _DEVICES = Path(drake_haptics.__file__).parent / "models" / "devices"
 _SUFFIXES = (".yaml", ".yml")
@@ -123,7 +123,7 @@ def load_device_preset(name_or_path: str) -> DevicePreset:
     """Reads a shipped preset, or a file of one's own.
 
     Args:
-        name_or_path: Name of a preset in models/devices, or a file (*.yaml, *.yml).
+        name_or_path: Name of a preset in models/devices, or a file (`*.yaml`, `*.yml`).
 
     Returns:
         The preset, whose `model` no longer depends on its folder.
@@ -138,18 +138,15 @@ def load_device_preset(name_or_path: str) -> DevicePreset:
     presets = list_device_presets()
     if name_or_path not in presets:
         raise SceneError(
-            f"device.preset: '{name_or_path}' is none of {', '.join(presets)}, nor a"
-            " preset file, which would end in .yaml"
+            f"device.preset: '{name_or_path}' is none of those that come along, nor a"
+            f" preset file (.yaml); {make_hint(name_or_path, presets)}"
         )
     return _read(presets[name_or_path])
 
 
 def _read(path: Path) -> DevicePreset:
     """Reads and checks a preset file."""
-    try:
-        data = yaml_load_file(str(path))
-    except Exception as error:  # Drake passes on whatever its YAML parser raises.
-        raise SceneError(f"{path}: cannot be read as YAML: {error}") from error
+    data = load_yaml(path)
     try:
         check_keys(DevicePreset, data)
         preset: DevicePreset = yaml_load_typed(schema=DevicePreset, filename=str(path))

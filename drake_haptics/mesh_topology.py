@@ -91,12 +91,12 @@ def orientation_flips(
     """Finds components across two-sided edges, and how to wind each coherently.
 
     Works on the double cover: two nodes for each triangle, as wound and turned
-    over. A component is orientable exactly when the two stay unconnected.
+    over. A component is orientable exactly when the two stay unconnected; of one that
+    is not, nothing is turned over.
 
     Returns:
         component: (m,) component of each triangle, 0 ... k - 1.
-        flip: (m,) whether the triangle must be turned over so that its component
-            is wound as its first triangle; all False where that is impossible.
+        flip: (m,) whether to turn it over, as its component's first triangle is wound.
         orientable: (k,) per component.
     """
     component, k = number_labels(connected_labels(num_triangles, edges.pairs))

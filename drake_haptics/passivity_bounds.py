@@ -21,8 +21,8 @@ def calc_passive_damping(
 ) -> float:
     """Returns the physical damping b that makes a sampled K and B passive.
 
-    b > K T/2 + |B| (Colgate and Schenkel 1997): then no passive hand, however it
-    holds, can be driven into motion. With a delay t_d, b > K (T/2 + t_d) + |B| is
+    `b > K T/2 + |B|` (Colgate and Schenkel 1997): then no passive hand, however it
+    holds, can be driven into motion. With a delay t_d, `b > K (T/2 + t_d) + |B|` is
     enough; it is needed too where B is zero or negative. Between whole periods a
     delay counts as the mean of itself and the next whole period
     (docs/stability-theory.md).

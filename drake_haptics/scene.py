@@ -8,13 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from pydrake.common.yaml import yaml_load_file, yaml_load_typed
+from pydrake.common.yaml import yaml_load_typed
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.parsing import PackageMap
 
 import drake_haptics
 from drake_haptics.device_preset import is_preset_file
-from drake_haptics.scene_check import SceneError, check_keys, check_values
+from drake_haptics.errors import SceneError
+from drake_haptics.missing_file import describe_missing
+from drake_haptics.scene_check import check_values
 from drake_haptics.scene_effects import (
     Braking,
     Effects,
@@ -31,6 +33,7 @@ from drake_haptics.scene_twin import (
     Saturation,
     Twin,
 )
+from drake_haptics.yaml_keys import check_keys, load_yaml
 
 __all__ = [
     "Braking",
@@ -198,7 +201,7 @@ class Device:
 
     Attributes:
         preset: Name of a file in models/devices (see `drake-haptics devices`), or a
-            file of one's own (*.yaml), relative to the scene file.
+            file of one's own (`*.yaml`), relative to the scene file.
         base: X_WB, the pose of the device's base in the world. Where not given,
             the middle of its workspace is put at the middle of the hand's path, and
             a device that is not simulated begins where the path does.
@@ -330,23 +333,24 @@ def load_scene(path: str | Path) -> Scene:
 
     Raises:
         SceneError: The file cannot be read, has a key or a value that means
-            nothing, or describes something physically impossible. The message
-            names the file and the key.
+            nothing, names a mesh that is not there, or describes something
+            physically impossible. The message names the file and the key.
     """
     path = Path(path)
-    try:
-        data = yaml_load_file(str(path))
-    except Exception as error:  # Drake passes on whatever its YAML parser raises.
-        raise SceneError(f"{path}: cannot be read as YAML: {error}") from error
+    data = load_yaml(path)
     try:
         check_keys(Scene, data)
         scene: Scene = yaml_load_typed(schema=Scene, filename=str(path))
         check_values(scene)
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error
-    parts: list[Tool | EnvironmentObject] = [scene.tool, *scene.environment]
-    for part in parts:
-        part.mesh = _absolute(part.mesh, path.parent)
+    parts: dict[str, Tool | EnvironmentObject] = {"tool": scene.tool}
+    parts |= {f"environment[{i}]": item for i, item in enumerate(scene.environment)}
+    for key, part in parts.items():
+        file = _absolute(part.mesh, path.parent)
+        if not Path(file).exists():
+            raise SceneError(f"{path}: {key}.mesh: {describe_missing(file)}")
+        part.mesh = file
     if is_preset_file(scene.device.preset):
         scene.device.preset = _absolute(scene.device.preset, path.parent)
     return scene

@@ -22,7 +22,7 @@ class JointFriction(LeafSystem):
         τ = −clamp(k (q − w) + d q̇, ±τ_c) − b q̇,
 
     with the anchor w, which every tick is pulled after the motor so far that
-    |k (q − w)| ≤ τ_c. So a motor below its breakaway torque is held by a damped
+    `|k (q − w)| ≤ τ_c`. So a motor below its breakaway torque is held by a damped
     spring, which does not creep and does not chatter; above it slides against τ_c. Seen
     in continuous time the element never gives more energy than its spring took.
 

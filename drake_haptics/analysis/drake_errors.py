@@ -1,8 +1,8 @@
 """Drake's refusals in an analysis, said as errors that a caller can catch and act on.
 
 pydrake turns a failed C++ assertion into `SystemExit`, which passes every `except
-Exception` and ends the interpreter; others are `RuntimeError`s that tell what failed
-inside Drake, not what to change.
+Exception` and ends the interpreter; each other is a `RuntimeError` that tells what
+failed inside Drake, not what to change.
 """
 
 from __future__ import annotations

@@ -60,7 +60,7 @@ class Mode:
 
     @property
     def growth_per_period(self) -> float:
-        """|λ| - 1: above 0 unstable."""
+        """`|λ| - 1`: above 0 unstable."""
         return abs(self.eigenvalue) - 1.0
 
     @property

@@ -1,0 +1,116 @@
+"""A page for each module of systems, and the directive that lists them.
+
+In a page, ::
+
+    ```{systems}
+    systems.virtual_coupling
+    ```
+
+is a table of the systems in these modules of `drake_haptics`, each with the first line
+of its docstring, and puts their pages into the navigation.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from generated_folder import FOLDER, make_heading, write_pages
+from pydrake.systems.framework import System
+from sphinx import addnodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+_PREFIX = "system-"
+_DIRECTIVE = re.compile(r"```\{systems\}\n(.*?)```", re.DOTALL)
+LIST = "reference/systems.md"
+
+
+def list_system_modules(docs: Path) -> list[str]:
+    """Returns the modules that the page of all systems lists, without the package."""
+    text = (docs / LIST).read_text(encoding="utf-8")
+    return [name for block in _DIRECTIVE.findall(text) for name in block.split()]
+
+
+def find_systems(module_name: str) -> dict[str, type[System]]:
+    """Returns the public systems that a module defines."""
+    module = import_module(f"drake_haptics.{module_name}")
+    return {
+        name: value
+        for name, value in vars(module).items()
+        if not name.startswith("_")
+        and inspect.isclass(value)
+        and issubclass(value, System)
+        and value.__module__ == module.__name__
+    }
+
+
+class SystemList(SphinxDirective):
+    """The directive `systems`."""
+
+    has_content = True
+
+    def run(self) -> list[nodes.Node]:
+        """Returns the table, and the part of the navigation."""
+        modules = [name for line in self.content for name in line.split()]
+        rows: list[nodes.Node] = []
+        for module in modules:
+            for name, system in find_systems(module).items():
+                summary, _ = self.parse_inline(inspect.getdoc(system).split("\n")[0])
+                rows += [
+                    nodes.term("", "", _make_link(self.env.docname, module, name)),
+                    nodes.definition("", nodes.paragraph("", "", *summary)),
+                ]
+        items = [
+            nodes.definition_list_item("", *pair)
+            for pair in zip(rows[::2], rows[1::2], strict=True)
+        ]
+        toctree = addnodes.toctree(
+            parent=self.env.docname,
+            entries=[(None, _page_of(module)) for module in modules],
+            includefiles=[_page_of(module) for module in modules],
+            maxdepth=1,
+            glob=False,
+            hidden=True,
+            titlesonly=True,
+        )
+        table = nodes.definition_list("", *items, classes=["simple"])
+        return [table, nodes.compound("", toctree, classes=["toctree-wrapper"])]
+
+
+def _make_link(page: str, module: str, name: str) -> nodes.Node:
+    """Returns a link to where a system is described."""
+    return addnodes.pending_xref(
+        "",
+        nodes.literal("", name),
+        refdomain="py",
+        refdoc=page,
+        reftype="class",
+        reftarget=f"drake_haptics.{module}.{name}",
+    )
+
+
+def _page_of(module: str) -> str:
+    return f"{FOLDER}/{_PREFIX}{module.rpartition('.')[2]}"
+
+
+def _write(app: Sphinx) -> None:
+    pages = {}
+    for module in list_system_modules(app.srcdir):
+        pages[module.rpartition(".")[2]] = (
+            make_heading(", ".join(find_systems(module)), "=")
+            + f".. automodule:: drake_haptics.{module}\n"
+            "   :ignore-module-all:\n"
+        )
+    write_pages(app.srcdir, _PREFIX, pages)
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Registers the pages and the directive."""
+    app.add_directive("systems", SystemList)
+    app.connect("builder-inited", _write)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
