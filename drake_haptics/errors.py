@@ -13,5 +13,9 @@ class MeshError(UserError):
     """A mesh that cannot be used; says what is wrong and what to do."""
 
 
+class SceneError(UserError):
+    """A scene that cannot be used. The message names the key."""
+
+
 class DecompositionFileError(UserError):
     """A stored decomposition that is damaged, foreign or of another version."""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from drake_haptics.errors import MeshError
+from drake_haptics.missing_file import describe_missing
 from drake_haptics.units import unit_of_name
 
 
@@ -44,7 +45,7 @@ def read_mesh_file(path: str | os.PathLike[str]) -> RawMesh:
     """
     path = Path(path)
     if not path.exists():
-        raise MeshError(f"{path}: no such file")
+        raise MeshError(describe_missing(path))
     if path.is_dir():
         raise MeshError(f"{path}: is a folder; name a mesh file inside it")
     try:

@@ -13,6 +13,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics.errors import MeshError
 from drake_haptics.mesh import Mesh
+from drake_haptics.missing_file import describe_missing
 from drake_haptics.plant_shapes import decompose_body, find_body_geometries
 
 DEFAULT_CHORD_ERROR_M = 1e-4
@@ -51,7 +52,7 @@ def load_model_mesh(
     """
     path = Path(path)
     if not path.is_file():
-        raise MeshError(f"{path}: no such file")
+        raise MeshError(describe_missing(path))
     builder = DiagramBuilder()
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, 0.0)
     try:

@@ -1,15 +1,14 @@
-"""Checks of a scene: keys that mean nothing, values that cannot be."""
+"""Checks of a scene: values that cannot be."""
 
 from __future__ import annotations
 
 import dataclasses
-import difflib
-import math
-import typing
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from drake_haptics.errors import UserError
+from drake_haptics.decomposition import METHODS
+from drake_haptics.errors import SceneError
+from drake_haptics.model_file import is_model_file
+from drake_haptics.yaml_keys import join_key, make_hint
 
 if TYPE_CHECKING:
     from drake_haptics.scene import (
@@ -27,84 +26,12 @@ _CLUSTERINGS = ("shared", "octree")
 _DEPTHS = ("tracked", "global")
 # How far a ratio of two rates may be from a whole number.
 _RATE_SLACK = 1e-9
-
-
-class SceneError(UserError):
-    """A scene that cannot be used. The message names the key."""
+# 5 mm of way at 0.1 m/s, more than near contacts are looked for.
+_LEAST_QUERY_RATE_HZ = 20.0
 
 
 class SceneWarning(UserWarning):
     """A scene that can be used, but may not do what is wanted. Names the bound."""
-
-
-def check_keys(schema: Any, data: Any, where: str = "") -> None:
-    """Checks that data, as YAML gives it, has the shape of a schema.
-
-    Args:
-        schema: A dataclass, `float`, `int`, `str`, `bool`, `list[...]` or `... | None`.
-        data: What stands in its place.
-        where: Key of the place, for messages.
-
-    Raises:
-        SceneError: An unknown key, with the nearest known one, or a value of the
-            wrong kind.
-    """
-    arguments = typing.get_args(schema)
-    if type(None) in arguments:
-        if data is not None:
-            check_keys(arguments[0], data, where)
-        elif dataclasses.is_dataclass(arguments[0]):
-            raise SceneError(f"{where}: is empty; write {{}} for the defaults")
-    elif typing.get_origin(schema) is list:
-        if not isinstance(data, list):
-            raise SceneError(f"{where}: expected a list, found {data!r}")
-        for i, item in enumerate(data):
-            check_keys(arguments[0], item, f"{where}[{i}]")
-    elif dataclasses.is_dataclass(schema):
-        _check_mapping(schema, data, where)
-    else:
-        _check_scalar(schema, data, where)
-
-
-def _join(where: str, key: str) -> str:
-    """Returns the key of what is in a part, which may be the whole file."""
-    return f"{where}.{key}" if where else key
-
-
-def _check_mapping(schema: Any, data: Any, where: str) -> None:
-    """Checks the keys of a mapping, then what stands under them."""
-    if not isinstance(data, dict):
-        raise SceneError(f"{where or 'the file'}: expected keys, found {data!r}")
-    types = typing.get_type_hints(schema)
-    for key, item in data.items():
-        place = _join(where, str(key))
-        if key not in types:
-            raise SceneError(f"{place}: unknown key; {_make_hint(str(key), types)}")
-        check_keys(types[key], item, place)
-
-
-def _make_hint(word: str, known: Iterable[str]) -> str:
-    """Returns the known word that was probably meant, or all of them."""
-    near = difflib.get_close_matches(word, known, n=1)
-    return f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
-
-
-def _check_scalar(schema: Any, data: Any, where: str) -> None:
-    """Checks a number, a flag or a text."""
-    if schema is float:
-        try:
-            # YAML 1.1 reads 1e3 as a text; Drake converts it, and so do we.
-            finite = not isinstance(data, bool) and math.isfinite(float(data))
-        except (TypeError, ValueError):
-            finite = False
-        if not finite:
-            raise SceneError(f"{where}: expected a finite number, found {data!r}")
-    elif schema is int and (isinstance(data, bool) or not isinstance(data, int)):
-        raise SceneError(f"{where}: expected a whole number, found {data!r}")
-    elif schema is bool and not isinstance(data, bool):
-        raise SceneError(f"{where}: expected true or false, found {data!r}")
-    elif schema is str and not isinstance(data, str):
-        raise SceneError(f"{where}: expected a text, found {data!r}")
 
 
 def check_values(scene: Scene) -> None:
@@ -151,6 +78,16 @@ def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
         f"{where}.max_triangles",
         f"must be 4 or more, is {item.max_triangles}",
     )
+    require(
+        item.decomposition in METHODS,
+        f"{where}.decomposition",
+        f"is '{item.decomposition}'; {make_hint(item.decomposition, METHODS)}",
+    )
+    require(
+        item.chord_error_m is None or is_model_file(item.mesh),
+        f"{where}.chord_error_m",
+        "is for models with round shapes (SDF, URDF, MJCF); a mesh file has none",
+    )
     require_none_negative(item, where, ["decomposition_error_m"])
     merged = item.decomposition == "merged"
     require(
@@ -167,7 +104,7 @@ def _check_contact(contact: Contact) -> None:
     require(
         contact.clustering in _CLUSTERINGS,
         "contact.clustering",
-        f"is '{contact.clustering}'; {_make_hint(contact.clustering, _CLUSTERINGS)}",
+        f"is '{contact.clustering}'; {make_hint(contact.clustering, _CLUSTERINGS)}",
     )
     octree = contact.clustering == "octree"
     require(
@@ -178,7 +115,7 @@ def _check_contact(contact: Contact) -> None:
     require(
         contact.depth in _DEPTHS,
         "contact.depth",
-        f"is '{contact.depth}'; {_make_hint(contact.depth, _DEPTHS)}",
+        f"is '{contact.depth}'; {make_hint(contact.depth, _DEPTHS)}",
     )
     require(
         contact.max_walk_steps >= 1,
@@ -198,7 +135,12 @@ def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
         SceneError: The one is not the other divided by a whole number.
     """
     where = "contact.query_rate_hz"
-    require(rate_hz > 0.0, where, f"must be positive, is {rate_hz}")
+    require(
+        rate_hz >= _LEAST_QUERY_RATE_HZ,
+        where,
+        f"must be at least {_LEAST_QUERY_RATE_HZ:g}, is {rate_hz:g}: a hand moves tools"
+        " by millimetres in the meantime",
+    )
     ticks = ticks_per_s / rate_hz
     require(
         round(ticks) >= 1 and abs(ticks - round(ticks)) <= _RATE_SLACK * ticks,
@@ -299,7 +241,7 @@ def require_all_positive(part: Any, where: str, keys: list[str]) -> None:
         value = getattr(part, key)
         require(
             value is None or value > 0.0,
-            _join(where, key),
+            join_key(where, key),
             f"must be positive, is {value}",
         )
 
@@ -310,7 +252,7 @@ def require_none_negative(part: Any, where: str, keys: list[str]) -> None:
         value = getattr(part, key)
         require(
             value is None or value >= 0.0,
-            _join(where, key),
+            join_key(where, key),
             f"must not be negative, is {value}",
         )
 
@@ -330,7 +272,7 @@ def require_each(
     values = getattr(part, key)
     if values is None:
         return
-    place = _join(where, key)
+    place = join_key(where, key)
     require(len(values) == count, place, f"needs {count} numbers")
     for i, value in enumerate(values):
         require(

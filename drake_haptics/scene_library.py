@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import difflib
 from pathlib import Path
 
 import drake_haptics
-from drake_haptics.scene_check import SceneError
+from drake_haptics.errors import SceneError
+from drake_haptics.missing_file import describe_missing
 
+# Given for a scene by mistake; any other name may be a scene's.
+_MESH_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".npz")
 _SCENES = Path(drake_haptics.__file__).parent / "models" / "scenes"
 
 
@@ -24,9 +28,19 @@ def find_scene(name_or_path: str) -> Path:
     scenes = list_scenes()
     if name_or_path in scenes:
         return scenes[name_or_path]
-    if Path(name_or_path).is_file():
-        return Path(name_or_path)
+    path = Path(name_or_path)
+    if path.suffix.lower() in _MESH_SUFFIXES:
+        raise SceneError(
+            f"{path} is a mesh, not a scene: `run --tool MESH --environment MESH` takes"
+            " meshes, and a scene file names them"
+        )
+    if path.is_file():
+        return path
+    if path.suffix or path.parent != Path():
+        raise SceneError(f"no scene: {describe_missing(path)}")
+    near = difflib.get_close_matches(name_or_path, scenes, n=1)
+    hint = f"; did you mean '{near[0]}'?" if near else ""
     raise SceneError(
-        f"'{name_or_path}' is neither a scene file nor a shipped scene"
-        f" ({', '.join(scenes) or 'none'})"
+        f"'{name_or_path}' is neither a scene file in {Path.cwd()} nor a scene that"
+        f" comes along ({', '.join(scenes)}){hint}"
     )

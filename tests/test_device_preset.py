@@ -149,7 +149,7 @@ def test_what_is_wrong_in_a_preset_is_named_with_file_and_key(
 
 
 def test_a_preset_file_that_is_not_there_is_named():
-    with pytest.raises(SceneError, match=r"nowhere\.yaml: .*cannot be read"):
+    with pytest.raises(SceneError, match=r"nowhere\.yaml: .*cannot be opened: No such"):
         load_device_preset("nowhere.yaml")
 
 

@@ -84,6 +84,7 @@ class Still(DeviceBackend):
     is_placed = True
 
     def read(self):
+        """Tells that it rests."""
         X_BH = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
         return DeviceReading(0, 0.0, X_BH, np.zeros(6), np.zeros(6))
 

@@ -11,7 +11,8 @@ from typing import Any
 from drake_haptics.accuracy.setting import Setting
 from drake_haptics.errors import UserError
 from drake_haptics.scene import Scene
-from drake_haptics.scene_check import check_keys, check_values
+from drake_haptics.scene_check import check_values
+from drake_haptics.yaml_keys import check_keys
 
 # Stands for no change at all.
 AS_IT_IS = "scene"

@@ -16,7 +16,7 @@ from pydrake.systems.framework import Context, EventStatus
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.device_site import find_device_site
 from drake_haptics.scene import Scene
-from drake_haptics.scene_check import check_keys, check_values
+from drake_haptics.scene_check import check_values
 from drake_haptics.simulation import make_simulator
 from drake_haptics.systems.haptic_device import HapticDevice
 from drake_haptics.systems.replayed_handle import ReplayedHandle
@@ -24,6 +24,7 @@ from drake_haptics.tick_log.loop_log import make_log_header
 from drake_haptics.tick_log.tick_log import TickLog, read_tick_log
 from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_recorder import TickRecorder
+from drake_haptics.yaml_keys import check_keys
 
 _TICKS_PER_REPORT = 256
 

@@ -13,8 +13,10 @@ from pydrake.common.yaml import (
     yaml_load_typed,
 )
 
+from drake_haptics.errors import SceneError
 from drake_haptics.scene import Scene
-from drake_haptics.scene_check import SceneError, check_keys, check_values
+from drake_haptics.scene_check import check_values
+from drake_haptics.yaml_keys import check_keys
 
 _STEP = re.compile(r"([A-Za-z_]\w*)((?:\[\d+\])*)")
 

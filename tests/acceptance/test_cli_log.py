@@ -162,7 +162,7 @@ def test_a_damaged_log_is_used_as_far_as_it_goes(log, tmp_path):
         (["info", "."], "Is a directory"),
         (["replay", "LOG", "--log", "LOG"], "is the log that is replayed"),
         (["replay", "LOG", "--set", "contact.stifness=1"], "did you mean"),
-        (["replay", "LOG", "no_such_scene"], "neither a scene file nor"),
+        (["replay", "LOG", "no_such_scene"], "neither a scene file in"),
         (["replay", "LOG", "--log", "none/out.tick"], "No such file or directory"),
         (["diff", "LOG", "LOG", "--plot", "none/a.png"], "--plot: there is no folder"),
         (["diff", "LOG", "LOG", "--plot", "a.xyz"], "--plot: Format 'xyz'"),
