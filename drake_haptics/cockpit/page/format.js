@@ -25,8 +25,8 @@ export function millimetres(m) {
 }
 
 export function seconds(s) {
-  const minutes = Math.floor(s / 60);
-  return minutes ? minutes + " min " + (s % 60).toFixed(0).padStart(2, "0") + " s" : s.toFixed(1) + " s";
+  if (s < 60) return s.toFixed(1) + " s";
+  return Math.floor(s / 60) + " min " + String(Math.floor(s % 60)).padStart(2, "0") + " s";
 }
 
 /** Three significant digits, without an exponent where people would write none. */

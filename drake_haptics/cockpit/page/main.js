@@ -13,6 +13,7 @@ import "./shortcuts.js";
 import {aim, layOut, makeCameras} from "./stage.js";
 import {makeChoices, makeHandles, makeSwitches, showSwitches} from "./switches.js";
 import {setLimits, showTrace} from "./traces.js";
+import {warn} from "./warning.js";
 import {setYaml} from "./yaml.js";
 
 const FAULT = "The device is at fault: it shows no force. Hold it, mend what is wrong"
@@ -70,7 +71,7 @@ const on = {
     const rest = placeWarnings(state.warnings);
     find("warnings").replaceChildren(...rest.map(text => {
       const note = document.createElement("p");
-      note.textContent = text;
+      warn(note, text);
       return note;
     }));
     setHandle(state.handle, settings.handles ?? []);

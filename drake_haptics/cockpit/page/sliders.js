@@ -3,9 +3,13 @@
 import {copy, find} from "./find.js";
 import {rounded} from "./format.js";
 import {say} from "./link.js";
+import {warn} from "./warning.js";
 
 const STEPS = 1000;
 const rows = new Map();
+
+/** Units that people read in place of those of the keys, and how many make one. */
+const SHOWN = {m: {unit: "mm", scale: 1e3}};
 
 /** Makes a slider for each key, in the panel of its group. */
 export function makeSliders(keys) {
@@ -32,7 +36,7 @@ export function placeWarnings(warnings) {
     const key = [...rows.keys()].find(k => startsWithKey(warning, k));
     (key ? texts.get(key) : rest).push(warning);
   }
-  for (const [key, row] of rows) row.warn(texts.get(key).join(" "));
+  for (const [key, row] of rows) warn(row.note, texts.get(key).join(" "));
   return rest;
 }
 
@@ -44,6 +48,9 @@ function startsWithKey(sentence, key) {
 class Slider {
   constructor(key) {
     this.key = key;
+    const {unit, scale} = SHOWN[key.unit] ?? {unit: key.unit, scale: 1};
+    [this.unit, this.scale] = [unit, scale];
+    const [low, high, file] = [key.low, key.high, key.file].map(value => this._text(value));
     this.element = copy("slider-row");
     const part = selector => this.element.querySelector(selector);
     [this.number, this.range] = [part("input[type=number]"), part("input[type=range]")];
@@ -53,16 +60,15 @@ class Slider {
     label.htmlFor = key.key;
     label.textContent = key.label;
     label.title = key.help;
-    part(".unit").textContent = key.unit;
-    [this.number.min, this.number.max] = [key.low, key.high];
+    part(".unit").textContent = unit;
+    [this.number.min, this.number.max] = [low, high];
     this.range.setAttribute("aria-label", key.label + ", slider");
     for (const input of [this.number, this.range]) {
-      input.title = `${key.help} From ${key.low} to ${key.high} ${key.unit}.`;
+      input.title = `${key.help} From ${low} to ${high} ${unit}; the scene file has ${file}.`;
       input.setAttribute("aria-describedby", this.note.id);
     }
     // The thumb's middle goes from 8 px to 8 px before the end.
     part(".mark").style.left = `calc(8px + ${this._share(key.file)} * (100% - 16px))`;
-    part(".mark").title = "The scene file has " + key.file;
     this.isAsked = false;
     this.range.addEventListener("input", () => this._ask(rounded(this._value(this.range.value / STEPS))));
     this.number.addEventListener("change", () => this._take());
@@ -76,16 +82,12 @@ class Slider {
     this._write(value);
   }
 
-  warn(text) {
-    this.note.hidden = text === "";
-    this.note.textContent = text;
-  }
-
   _write(value) {
-    if (document.activeElement !== this.number) this.number.value = rounded(value);
+    this.shown = value;
+    if (document.activeElement !== this.number) this.number.value = this._text(value);
     this.range.value = Math.round(STEPS * this._share(value));
     this.range.style.setProperty("--share", `calc(8px + ${this._share(value)} * (100% - 16px))`);
-    this.range.setAttribute("aria-valuetext", rounded(value) + " " + this.key.unit);
+    this.range.setAttribute("aria-valuetext", this._text(value) + " " + this.unit);
     const changed = Math.abs(value - this.key.file) > 1e-9 * Math.abs(this.key.file);
     this.element.classList.toggle("changed", changed);
     this.undo.hidden = !changed;
@@ -104,18 +106,19 @@ class Slider {
   }
 
   _take() {
-    const value = this.number.valueAsNumber;
-    if (!Number.isFinite(value)) this.number.value = rounded(this._value(this.range.value / STEPS));
-    else {
-      this._ask(value);
-      this.number.value = this.wanted;
-    }
+    const value = this.number.valueAsNumber / this.scale;
+    if (Number.isFinite(value)) this._ask(value);
+    this.number.value = this._text(Number.isFinite(value) ? this.wanted : this.shown);
   }
 
   _reset() {
     this._ask(this.key.file);
-    this.number.value = rounded(this.key.file);
+    this.number.value = this._text(this.key.file);
     if (document.activeElement === this.undo) this.range.focus();
+  }
+
+  _text(value) {
+    return Number((this.scale * value).toPrecision(6));
   }
 
   _share(value) {
