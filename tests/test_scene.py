@@ -146,12 +146,12 @@ def test_a_pose_is_drakes():
         (
             "mass_kg",
             "chord_error_m: 1e-4\n  mass_kg",
-            r"tool\.chord_error_m is for mod",
+            r"tool\.chord_error_m is",
         ),
         (
             "peg.obj",
             "peg.ob",
-            r"tool\.mesh: .*peg\.ob: no such file; did .* 'peg\.obj'",
+            r"tool\.mesh: .*no such file; did .*'peg\.obj'",
         ),
         ("peg.obj", "no/peg.obj", r"tool\.mesh: .*: there is no folder .*no"),
         ("mesh: peg.obj", "", r"tool\.mesh is missing"),
@@ -191,7 +191,7 @@ def test_a_pose_is_drakes():
         (
             "hand:",
             "contact: {query_rate_hz: 0}\nhand:",
-            r"query_rate_hz must be at least 20, is 0",
+            r"at least 20, is 0",
         ),
         (
             "hand:",
