@@ -11,6 +11,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    __version__: str
+
     from drake_haptics._core import (
         Contact,
         ContactSet,
@@ -149,11 +151,24 @@ _MODULE_OF = {
 
 def __getattr__(name: str) -> object:
     """Imports a public name from its module when it is first asked for."""
+    if name == "__version__":
+        return import_module("importlib.metadata").version(__name__)
     if name not in _MODULE_OF:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        raise AttributeError(_unknown(name))
     return getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
 
 
 def __dir__() -> list[str]:
     """Lists the public names, for completion."""
-    return sorted(__all__)
+    return sorted([*__all__, "__version__"])
+
+
+def _unknown(name: str) -> str:
+    from difflib import get_close_matches
+    from importlib.util import find_spec
+
+    said = f"module {__name__!r} has no attribute {name!r}"
+    if not name.startswith("_") and find_spec(f"{__name__}.{name}") is not None:
+        return f"{said} yet; it is a module: import {__name__}.{name}"
+    near = get_close_matches(name, __all__, n=1)
+    return f"{said}; did you mean {near[0]!r}?" if near else said
