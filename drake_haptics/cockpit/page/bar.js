@@ -1,7 +1,7 @@
 // The bar over the scene: what the loop does and whether it keeps up.
 
 import {find, write} from "./find.js";
-import {known, micros, millimetres, seconds} from "./format.js";
+import {micros, millimetres, seconds} from "./format.js";
 
 const GATES = {active: "active", idle: "idle", fault: "fault", simulated: "simulated"};
 
@@ -12,20 +12,29 @@ export function showGate(gate) {
 
 export function showFigures(frame, period_s) {
   write(find("time"), seconds(frame.time_s));
-  write(find("rate"), known(frame.rate_hz, hz => hz.toFixed(0) + " Hz · " + frame.real_time.toFixed(2) + "×"));
-  write(find("late"), known(frame.late_us, late => micros(late.p50) + " / " + micros(late.p99)));
+  show("rate", frame.rate_hz, hz => hz.toFixed(0) + " Hz · " + frame.real_time.toFixed(2) + "×");
+  show("late", frame.late_us, late => micros(late.p50) + " / " + micros(late.p99));
   find("late").parentElement.title = "How late ticks begin: half of them, and 99 of 100, are less late than this."
     + (frame.late_us ? " Latest: " + micros(frame.late_us.max) + "." : "")
     + (frame.skipped ? " Ticks left out: " + frame.skipped + "." : "");
+  show("tick", frame.tick_us, tick => micros(tick.median) + " of " + micros(1e6 * period_s));
   if (frame.tick_us) showTick(frame.tick_us, 1e6 * period_s, frame.shed);
-  write(find("contacts"), known(frame.contacts, n => n + " → " + frame.clusters));
+  show("contacts", frame.contacts, n => n + " → " + frame.clusters);
   const deep = frame.depth_m > 0;
   write(find("depth-name"), deep ? "Depth" : "Gap");
-  write(find("depth"), known(deep ? frame.depth_m : frame.near_m, millimetres));
+  // Without a contact there is no distance, but where there could be one its place stays.
+  const distance_m = deep ? frame.depth_m : frame.near_m;
+  show("depth", frame.contacts, () => distance_m === null ? "–" : millimetres(distance_m));
+}
+
+/** Writes a figure; one of which nothing is known is not there. */
+function show(name, value, spell) {
+  const isKnown = value !== null && value !== undefined;
+  find(name).closest("#figures > div").hidden = !isKnown;
+  if (isKnown) write(find(name), spell(value));
 }
 
 function showTick(tick_us, period_us, shed) {
-  write(find("tick"), micros(tick_us.median) + " of " + micros(period_us));
   const share = us => 100 * Math.min(us / period_us, 1) + "%";
   find("tick-bar").style.width = share(tick_us.median);
   find("tick-mark").style.left = `min(${share(tick_us.p99)}, 100% - 2px)`;

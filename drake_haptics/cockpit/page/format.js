@@ -1,6 +1,4 @@
-// Numbers as people read them; a dash where nothing is known.
-
-export const known = (value, write) => value === null || value === undefined ? "–" : write(value);
+// Numbers as people read them.
 
 export const newtons = f => f.toFixed(2) + " N";
 export const millinewtonmetres = t => (1e3 * t).toFixed(0) + " mN·m";

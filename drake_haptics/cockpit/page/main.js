@@ -16,6 +16,8 @@ import {setLimits, showTrace} from "./traces.js";
 import {warn} from "./warning.js";
 import {setYaml} from "./yaml.js";
 
+// What a page is told may leave out what does not apply: the pointer of somebody's own program
+// has no scene to be changed.
 const FAULT = "The device is at fault: it shows no force. Hold it, mend what is wrong"
   + " (the terminal says what), and press Enter there to take it up again.";
 const MAKERS = {
@@ -39,7 +41,7 @@ const on = {
     setLimits(hello.limits);
     for (const [name, make] of Object.entries(MAKERS)) makeAnew(name, hello[name] ?? [], make);
     showPanels(hello);
-    write(find("locked"), hello.locked);
+    write(find("locked"), hello.locked ?? "");
     find("locked").hidden = !hello.locked;
     layOut();
   },
@@ -66,18 +68,18 @@ const on = {
   },
 
   state(state) {
-    showValues(state.values);
+    showValues(state.values ?? {});
     showSwitches(state);
-    const rest = placeWarnings(state.warnings);
+    const rest = placeWarnings(state.warnings ?? []);
     find("warnings").replaceChildren(...rest.map(text => {
       const note = document.createElement("p");
       warn(note, text);
       return note;
     }));
     setHandle(state.handle, settings.handles ?? []);
-    setYaml(state.yaml);
+    setYaml(state.yaml ?? "");
     const button = {label: "Dismiss", act: () => notify("error", "")};
-    notify("error", state.error, {kind: "fault", button});
+    notify("error", state.error ?? "", {kind: "fault", button});
   },
 
   over({why}) {

@@ -55,10 +55,10 @@ export function makeHandles(list) {
 }
 
 export function showSwitches(state) {
-  for (const [key, option] of Object.entries(state.choices)) {
+  for (const [key, option] of Object.entries(state.choices ?? {})) {
     if (choices.has(key)) choices.get(key).value = option;
   }
-  for (const [kind, values] of [["effect", state.effects], ["view", state.views]]) {
+  for (const [kind, values] of [["effect", state.effects ?? {}], ["view", state.views ?? {}]]) {
     for (const [name, input] of switches[kind]) {
       input.checked = Boolean(values[name]);
       input.parentElement.classList.remove("waiting");
