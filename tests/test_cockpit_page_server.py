@@ -46,8 +46,8 @@ class Served:
         self._server = server
         self._begun.set()
         await self._end.wait()
+        # A page that was torn away is not waited for.
         opened.close()
-        await opened.wait_closed()
 
     def do(self, method, *arguments):
         """Calls a method of the server in its thread."""

@@ -1,0 +1,185 @@
+"""The page's process: talks both ways, never keeps the loop, ends with it."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+import websocket
+
+from drake_haptics.cockpit.page_link import PageLink
+from drake_haptics.cockpit.telemetry import TickBuffer
+
+BOUND_S = 20.0
+MESHCAT = "http://localhost:6999"
+HEAD = {
+    "gate": 3,
+    "shed": 0,
+    "skipped": 0,
+    "clock_s": 0.0,
+    "camera": (1, 0, 0, 0, 0, 1, 0, -1, 0, 0, -0.4, 0),
+    "p_WH": (0, 0, 0),
+}
+# A loop that tells the number of its page's process, and goes on.
+LOOP = f"""
+import time
+from drake_haptics.cockpit.page_link import PageLink
+link = PageLink({MESHCAT!r})
+print(link.url, link._process.pid, flush=True)
+while True:
+    time.sleep(0.01)
+"""
+
+
+def wait_for(wanted):
+    """Waits until something is true, and returns it."""
+    end = time.monotonic() + BOUND_S
+    while not (found := wanted()):
+        assert time.monotonic() < end
+        time.sleep(0.005)
+    return found
+
+
+def is_running(pid):
+    """Whether there is such a process; one that has ended and nobody asked for is."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def connect(url):
+    return websocket.create_connection(url.replace("http", "ws"), timeout=BOUND_S)
+
+
+def read_until(page, name):
+    """Returns the next message of a name."""
+    while True:
+        [(told, body)] = json.loads(page.recv()).items()
+        if told == name:
+            return body
+
+
+@pytest.fixture
+def link():
+    with PageLink(MESHCAT) as link:
+        yield link
+
+
+def test_it_talks_both_ways(link):
+    link.tell({"hello": {"scene": "cup", "shed_stages": ["drawing"]}})
+    link.tell({"state": {"handle": "hand", "changes": {"coupling": {"a": 1.0}}}})
+    page = connect(link.url)
+    assert read_until(page, "hello") == {"scene": "cup"}
+    state = read_until(page, "state")
+    assert state == {"handle": "hand", "yaml": "coupling:\n  a: 1.0\n"}
+    ticks = TickBuffer()
+    ticks.note(0.1, (*(0.0,) * 8, 1.0, 0.0, 0.0, 0.0), 0.0)
+    assert link.send(ticks.take(**HEAD))
+    frame = read_until(page, "frame")
+    assert (frame["f"], frame["gate"]) == ([1.0, 0.0, 0.0], "simulated")
+    assert frame["drives"] is True
+    page.send('{"do": "home"}')
+    assert wait_for(link.hear) == [{"do": "home"}]
+    assert link.hear() == []
+    link.close("Enough.")
+    assert read_until(page, "over") == {"why": "Enough."}
+
+
+def test_its_process_needs_neither_drake_nor_numpy():
+    code = (
+        "import sys, drake_haptics.cockpit.page_process;"
+        "print([name for name in ('pydrake', 'numpy') if name in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "[]\n"
+
+
+def test_a_page_that_is_told_nothing_can_wait_for_the_loop(link):
+    page = connect(link.url)
+    link.tell({"hello": {}})
+    assert read_until(page, "hello") == {}
+
+
+def test_nothing_the_loop_says_waits_for_the_process(link):
+    os.kill(link._process.pid, signal.SIGSTOP)
+    packet = bytes(TickBuffer().take(**HEAD)) + bytes(112 * 33)
+    try:
+        sent = 0
+        while link.send(packet):
+            sent += 1
+            assert sent < 100_000
+        for i in range(1000):
+            link.tell({"state": {"number": i}})
+        assert link.hear() == []
+    finally:
+        os.kill(link._process.pid, signal.SIGCONT)
+    # What must not get lost comes when there is room again.
+    page = connect(link.url)
+    told = -1
+    while told < 999:
+        link.flush()
+        [(name, body)] = json.loads(page.recv()).items()
+        told = body["number"] if name == "state" else told
+
+
+def test_a_flood_is_taken_in_small_parts(link):
+    link.tell({"hello": {}})
+    page = connect(link.url)
+    for _ in range(200):
+        page.send('{"do": "home"}')
+    heard = 0
+    while heard < 200:
+        some = wait_for(link.hear)
+        assert len(some) <= 8
+        heard += len(some)
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_the_loop_goes_on_where_the_process_has_gone(link, number):
+    os.kill(link._process.pid, number)
+    wait_for(lambda: not link.send(b"#"))
+    link.tell({"state": {}})
+    assert link.hear() == []
+    link.close()
+
+
+def test_its_end_leaves_no_process_and_a_free_port():
+    link = PageLink(MESHCAT)
+    pid = link._process.pid
+    link.close()
+    link.close()
+    assert not is_running(pid)
+    with PageLink(MESHCAT) as again:
+        assert again.url == link.url
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
+def test_it_ends_with_the_loop_whatever_ends_that(number):
+    loop = subprocess.Popen(
+        [sys.executable, "-c", LOOP],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
+    try:
+        url, pid = loop.stdout.readline().split()
+        page = connect(url)
+        loop.send_signal(number)
+        loop.wait(BOUND_S)
+        assert "why" in read_until(page, "over")
+        wait_for(lambda: not is_running(int(pid)))
+    finally:
+        loop.kill()
+        loop.communicate()
+
+
+def test_a_ctrl_c_at_the_terminal_is_for_the_loop(link):
+    """The terminal sends it to the whole group of the loop's process."""
+    assert os.getpgid(link._process.pid) != os.getpgid(0)

@@ -1,0 +1,35 @@
+"""The page's port is one that nobody else has."""
+
+import socket
+
+import pytest
+
+from drake_haptics.cockpit.page_port import FIRST_PORT, open_page_port
+from drake_haptics.errors import UserError
+
+
+def test_the_first_free_one_is_taken():
+    first = open_page_port()
+    with first:
+        port = first.getsockname()[1]
+        assert port >= FIRST_PORT
+        with open_page_port() as second:
+            assert second.getsockname()[1] > port
+
+
+def test_a_port_in_use_is_refused_with_what_to_do():
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(UserError, match=rf"port {port} .*--port"):
+            open_page_port(port)
+
+
+@pytest.mark.parametrize("port", [-1, 70_000])
+def test_a_port_that_is_none_is_refused(port):
+    with pytest.raises(UserError, match="--port"):
+        open_page_port(port)
+
+
+def test_others_on_the_network_do_not_see_it():
+    with open_page_port() as listener:
+        assert listener.getsockname()[0] == "127.0.0.1"
