@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 
 #include "bind.h"
@@ -97,7 +98,19 @@ class SharedTracker {
       : tracker_(std::move(tracker)) {}
   SharedTracker(const SharedTracker& other) : SharedTracker(other.Copy()) {}
 
+  // For what never changes.
   const ContactTracker& constants() const { return tracker_; }
+
+  double Tolerance() const {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    return tracker_.tolerance();
+  }
+
+  void SetTolerance(nb::handle value) {
+    const double tolerance = ToReal(value, "tolerance");
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    tracker_.SetTolerance(tolerance);
+  }
 
   void Reset() {
     const Turn turn(&mutex_, Turn::Gil::kRelease);
@@ -184,12 +197,14 @@ class SceneTracker : public SharedTracker {
 
   ContactSet Query(nb::handle X_WTool_value, nb::handle tolerance_value) {
     const Pose X_WTool = ToPose(X_WTool_value, "X_WTool");
-    const double tolerance = tolerance_value.is_none()
-                                 ? tracker_.tolerance()
-                                 : ToReal(tolerance_value, "tolerance");
+    std::optional<double> tolerance;
+    if (!tolerance_value.is_none()) {
+      tolerance = ToReal(tolerance_value, "tolerance");
+    }
     ContactSet contacts;
     const Turn turn(&mutex_, Turn::Gil::kRelease);
-    tracker_.Query(X_WTool, tolerance, &contacts);
+    tracker_.Query(X_WTool, tolerance.value_or(tracker_.tolerance()),
+                   &contacts);
     return contacts;
   }
 
@@ -235,10 +250,12 @@ void BindContactTrajectory(nb::module_& m) {
 template <typename Tracker>
 void DefTracker(nb::class_<Tracker>* tracker) {
   tracker
-      ->def_prop_ro(
-          "tolerance",
-          [](const Tracker& self) { return self.constants().tolerance(); },
-          "Distance up to which there are contacts, m.")
+      ->def_prop_rw(
+          "tolerance", &Tracker::Tolerance, &Tracker::SetTolerance,
+          nb::arg("tolerance").none(),
+          "Distance up to which there are contacts, m. May be changed between "
+          "two queries: what was learnt is kept.\n\n"
+          "Raises:\n    ValueError: negative or not finite.")
       .def_prop_ro(
           "depth",
           [](const Tracker& self) {
@@ -303,7 +320,7 @@ void BindContactTracker(nb::module_& m) {
            "numbers of poses differ; nothing was asked then.")
       .def("__repr__", [](const PairTracker& self) {
         return nb::str("ContactTracker(tolerance={} m)")
-            .format(self.constants().tolerance());
+            .format(self.Tolerance());
       });
   DefTracker(&tracker);
 }
@@ -363,8 +380,7 @@ void BindSceneTracker(nb::module_& m) {
            "nothing was asked then.")
       .def("__repr__", [](const SceneTracker& self) {
         return nb::str("SceneTracker({} objects, tolerance={} m)")
-            .format(self.constants().num_objects(),
-                    self.constants().tolerance());
+            .format(self.constants().num_objects(), self.Tolerance());
       });
   DefTracker(&tracker);
 }

@@ -21,6 +21,15 @@ void RequireFinite(const Pose& X, const char* what) {
 // A tool that moves by more than this share of its radius between two queries
 // was put somewhere else.
 constexpr double kTeleportShare = 0.25;
+
+void RequireTolerance(double tolerance) {
+  if (!std::isfinite(tolerance) || tolerance < 0) {
+    throw std::invalid_argument(
+        "tolerance must be finite and at least 0 m, is " +
+        std::to_string(tolerance));
+  }
+}
+
 double RadiusAboutOrigin(const Decomposition& decomposition) {
   double squared = 0;
   for (const Polytope& piece : decomposition.pieces) {
@@ -40,9 +49,7 @@ ContactTracker::ContactTracker(
     : tolerance_(tolerance),
       depth_(depth),
       wake_times_(static_cast<int>(objects.size())) {
-  if (!std::isfinite(tolerance) || tolerance < 0) {
-    throw std::invalid_argument("tolerance must be finite and at least 0 m");
-  }
+  RequireTolerance(tolerance);
   if (depth.max_walk_steps < 1) {
     throw std::invalid_argument("max_walk_steps must be at least 1, is " +
                                 std::to_string(depth.max_walk_steps));
@@ -66,6 +73,18 @@ ContactTracker::ContactTracker(
   for (auto& pieces : objects) {
     if (pieces == nullptr) throw std::invalid_argument("an object is missing");
     objects_.push_back({TrackedObject(shape_of(std::move(pieces))), {}, {}});
+  }
+}
+
+void ContactTracker::SetTolerance(double tolerance) {
+  RequireTolerance(tolerance);
+  const double farther = tolerance - tolerance_;
+  tolerance_ = tolerance;
+  // What was sure to stay beyond the larger one stays beyond a smaller one.
+  if (farther <= 0) return;
+  for (int i = 0; i < num_objects(); ++i) {
+    objects_[i].tracked.WatchFarther(farther);
+    wake_times_.Wake(i);
   }
 }
 

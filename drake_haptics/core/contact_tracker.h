@@ -28,6 +28,12 @@ class ContactTracker {
 
   int num_objects() const { return static_cast<int>(objects_.size()); }
   double tolerance() const { return tolerance_; }
+
+  /// From now on reports contacts up to `tolerance` (m). What was learnt is
+  /// kept: what is in contact goes on from its last answer.
+  /// @throws std::invalid_argument if it is negative or not finite.
+  void SetTolerance(double tolerance);
+
   const DepthSearch& depth() const { return depth_; }
 
   /// Poses object i; the pose that it has costs nothing.

@@ -190,6 +190,10 @@ PosedPair TrackedObject::Posed(const Tick& tick,
           shape_.decomposition->pieces[pieces.b], tick.X_AB};
 }
 
+void TrackedObject::WatchFarther(double growth) {
+  for (WatchedPair& pair : watched_) pair.slack -= growth;
+}
+
 void TrackedObject::ForgetContacts() {
   for (WatchedPair& pair : watched_) {
     states_[pair.state] = {};

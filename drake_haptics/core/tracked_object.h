@@ -62,6 +62,9 @@ class TrackedObject {
   /// The odometer up to which there is nothing to be found.
   double quiet_until() const { return quiet_until_; }
 
+  /// To be called where the watched distance grows, by so much (m).
+  void WatchFarther(double growth);
+
   /// Forgets contacts and what is known of pairs, but not where they are.
   void ForgetContacts();
 
