@@ -668,7 +668,15 @@ class ContactTracker:
 
     @property
     def tolerance(self) -> float:
-        """Distance up to which there are contacts, m."""
+        """
+        Distance up to which there are contacts, m. May be changed between two queries: what was learnt is kept.
+
+        Raises:
+            ValueError: negative or not finite.
+        """
+
+    @tolerance.setter
+    def tolerance(self, tolerance: object | None) -> None: ...
 
     @property
     def depth(self) -> str:
@@ -737,7 +745,15 @@ class SceneTracker:
 
     @property
     def tolerance(self) -> float:
-        """Distance up to which there are contacts, m."""
+        """
+        Distance up to which there are contacts, m. May be changed between two queries: what was learnt is kept.
+
+        Raises:
+            ValueError: negative or not finite.
+        """
+
+    @tolerance.setter
+    def tolerance(self, tolerance: object | None) -> None: ...
 
     @property
     def depth(self) -> str:
@@ -929,9 +945,13 @@ def penalty_force(clusters: AutoDiffClusterSet, p_WTo: AutoDiffVector, V_WTool: 
     """
 
 class CouplingGains:
-    """Spring and damper of the virtual coupling."""
+    """Spring and damper of the virtual coupling. Immutable."""
 
     def __init__(self, stiffness_N_per_m: float, damping_Ns_per_m: float, rotational_stiffness_Nm_per_rad: float, rotational_damping_Nms_per_rad: float) -> None: ...
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
 
     @property
     def stiffness_N_per_m(self) -> float: ...
@@ -1593,6 +1613,14 @@ class EnergyLedger:
 
         Raises:
             ValueError: the tick is not above 0 s, or a name is there twice or that of another account.
+        """
+
+    def begin_again(self, gains: CouplingGains) -> None:
+        """
+        To be called where gains of the coupling or of a source were changed. The tick up to the next `add` is left out of the books, and so is what the change puts into springs or takes out.
+
+        Args:
+            gains: of the coupling from now on.
         """
 
     def add(self, tool_state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], coupling: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], wrench_models: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]], stored_J: Sequence[float]) -> None:

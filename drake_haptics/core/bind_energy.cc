@@ -88,6 +88,17 @@ void BindLedger(nb::module_& m) {
           "there "
           "twice or that of another account.")
       .def(
+          "begin_again",
+          [](NamedLedger& self, const CouplingGains& gains) {
+            self.ledger.BeginAgain(gains);
+          },
+          nb::arg("gains"),
+          "To be called where gains of the coupling or of a source were "
+          "changed. The tick up to the next `add` is left out of the books, "
+          "and so is what the change puts into springs or takes out.\n\n"
+          "Args:\n"
+          "    gains: of the coupling from now on.")
+      .def(
           "add",
           [](NamedLedger& self, const ToolStateVector& tool_state,
              const PoseVector& q_WH, const Vec6& F_applied,

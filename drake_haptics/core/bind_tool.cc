@@ -3,6 +3,7 @@
 
 #include "autodiff.h"
 #include "bind.h"
+#include "bind_columns.h"
 #include "bind_eigen.h"
 #include "require.h"
 #include "rigid_tool.h"
@@ -35,8 +36,11 @@ Eigen::Matrix<T, 13, 1> Step(
 }
 
 void BindCoupling(nb::module_& m) {
-  nb::class_<CouplingGains>(m, "CouplingGains",
-                            "Spring and damper of the virtual coupling.")
+  nb::class_<CouplingGains> gains(
+      m, "CouplingGains",
+      "Spring and damper of the virtual coupling. Immutable.");
+  DefFrozenCopy(&gains);
+  gains
       .def(
           "__init__",
           [](CouplingGains* self, double k, double b, double kr, double br) {

@@ -30,7 +30,12 @@ class LargestFall {
 /// of time does `lost` fall, but by what a tick's sampling explains.
 class EnergyAccount {
  public:
-  void Start(double stored) { stored_ = stored_at_start_ = stored; }
+  /// Says what the part holds where no tick has brought it there: at first, and
+  /// where its gains were changed.
+  void Start(double stored) {
+    stored_at_start_ += stored - stored_;
+    stored_ = stored;
+  }
 
   /// Books what went into the part through one of its ports in a tick; negative
   /// if it came out.
