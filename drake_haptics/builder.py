@@ -16,7 +16,11 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 from drake_haptics import _core
 from drake_haptics.builder_effects import EffectSite, add_effects, find_springs
 from drake_haptics.builder_picture import add_picture
-from drake_haptics.contact_systems import add_contact_systems, connect_by_name
+from drake_haptics.contact_systems import (
+    add_contact_systems,
+    connect_by_name,
+    find_contact_gains,
+)
 from drake_haptics.decomposition import Decomposition, Method, decompose
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.device_site import make_haptic_device, wait_for_reading
@@ -177,7 +181,11 @@ def AddHapticLoop(
         objects=objects,
         materials=materials,
         period_s=period_s,
-        springs=find_springs(device, gains, min(base.penalty_force.stiffness_N_per_m)),
+        springs=find_springs(
+            device,
+            gains,
+            find_contact_gains(contact, materials).stiffness_N_per_m.tolist(),
+        ),
     )
     systems = add_effects(site)
     sources = {

@@ -65,19 +65,19 @@ class EffectSite:
 
 
 def find_springs(
-    device: HapticDevice, gains: _core.CouplingGains, contact_N_per_m: float
+    device: HapticDevice, gains: _core.CouplingGains, contacts_N_per_m: Sequence[float]
 ) -> list[tuple[float, float]]:
     """Returns the springs that push a device, as `EffectSite` wants them.
 
     Args:
         device: Its limits load them.
         gains: Of the coupling.
-        contact_N_per_m: The softest contact, N/m.
+        contacts_N_per_m: Stiffness of contact with each object, N/m.
     """
     return [
         (device.max_force_N, gains.stiffness_N_per_m),
         (device.max_torque_Nm, gains.rotational_stiffness_Nm_per_rad),
-        (device.max_force_N, contact_N_per_m),
+        (device.max_force_N, min(contacts_N_per_m)),
     ]
 
 

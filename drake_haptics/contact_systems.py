@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
 from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 
 from drake_haptics import _core
@@ -13,7 +14,7 @@ from drake_haptics.scene import Contact, Effects, Material
 from drake_haptics.scene_check import check_query_rate
 from drake_haptics.systems.contact_clustering import ClusteringMethod, ContactClustering
 from drake_haptics.systems.contact_query import ContactObject, ContactQuery, DepthSearch
-from drake_haptics.systems.penalty_force import PenaltyForce
+from drake_haptics.systems.penalty_force import ContactGains, PenaltyForce
 
 if TYPE_CHECKING:
     from drake_haptics.systems.contact_advance import ContactAdvance
@@ -79,14 +80,13 @@ def add_contact_systems(
             f"materials must be one for each of the {len(objects)} objects, are"
             f" {len(materials)}"
         )
-    stiffness = [material.stiffness_N_per_m for material in materials]
-    damping = [material.damping_Ns_per_m for material in materials]
+    gains = find_contact_gains(contact, materials)
     query = builder.AddNamedSystem(
         "contact_query",
         ContactQuery(
             tool,
             objects,
-            _find_tolerance(contact, effects),
+            find_query_tolerance(contact, effects),
             cast(DepthSearch, contact.depth),
             contact.max_walk_steps,
             # Its answer holds for several ticks; `relief` changes in each.
@@ -114,8 +114,8 @@ def add_contact_systems(
             "penalty_force",
             PenaltyForce(
                 objects,
-                [contact.stiffness_N_per_m if k is None else k for k in stiffness],
-                [contact.damping_Ns_per_m if b is None else b for b in damping],
+                gains.stiffness_N_per_m.tolist(),
+                gains.damping_Ns_per_m.tolist(),
             ),
         ),
         pose_sample=sample,
@@ -145,7 +145,17 @@ def _add_advance(
     return sample, advance
 
 
-def _find_tolerance(contact: Contact, effects: Effects) -> float:
+def find_contact_gains(contact: Contact, materials: Sequence[Material]) -> ContactGains:
+    """Returns the gains of each object: its material's, or else the contact's."""
+    stiffness = [material.stiffness_N_per_m for material in materials]
+    damping = [material.damping_Ns_per_m for material in materials]
+    return ContactGains(
+        np.array([contact.stiffness_N_per_m if k is None else k for k in stiffness]),
+        np.array([contact.damping_Ns_per_m if b is None else b for b in damping]),
+    )
+
+
+def find_query_tolerance(contact: Contact, effects: Effects) -> float:
     """Returns how far contacts must be looked for, m."""
     if effects.braking is None:
         return contact.tolerance_m

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydrake.systems.framework import Context, OutputPort
 
 from drake_haptics import _core
 from drake_haptics.haptic_loop import HapticLoop
 from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.contact_clustering import ClusteringRule
+from drake_haptics.systems.penalty_force import ContactGains
 
 
 class EnergyLedger:
@@ -32,7 +34,9 @@ class EnergyLedger:
     force can seem to create, is derived in `core/tick_energy.h`.
 
     Objects are taken to stand still: what one that moves does to the tool shows as
-    created by the source of the force.
+    created by the source of the force. Where gains are changed in the context, the
+    tick that begins with them is left out of the books, and so is what the change puts
+    into springs or takes out.
     """
 
     def __init__(self, loop: HapticLoop, root: Context):
@@ -44,9 +48,11 @@ class EnergyLedger:
         """
         sources = dict(loop.wrench_sources)
         coupling = sources.pop("coupling")
+        self._read_gains = _make_gains_reader(loop, root)
+        self._gains = self._read_gains()
         self._ledger = _core.EnergyLedger(
             loop.haptic_tool.dynamics,
-            loop.virtual_coupling.gains,
+            self._gains.coupling,
             pose_to_vector(loop.virtual_coupling.X_HT),
             loop.haptic_tool.period_s,
             list(sources),
@@ -56,7 +62,7 @@ class EnergyLedger:
         self._F_applied = _reader(loop.device.get_applied_wrench_output_port(), root)
         self._coupling = _reader(coupling, root)
         self._sources = [_reader(port, root) for port in sources.values()]
-        stored = _make_stored_readers(loop, root)
+        stored = _make_stored_readers(loop, root, lambda: self._gains)
         self._stored = [stored.get(name, _nothing) for name in sources]
 
     def add(self) -> None:
@@ -66,6 +72,10 @@ class EnergyLedger:
         before the next one, as a monitor is. All that it reads is what the next tick
         will need, so that it costs nothing twice.
         """
+        gains = self._read_gains()
+        if gains != self._gains:
+            self._gains = gains
+            self._ledger.begin_again(gains.coupling)
         self._ledger.add(
             self._tool.get_discrete_state_vector().value(),
             self._X_WH(),
@@ -114,16 +124,40 @@ def _reader(port: OutputPort, root: Context) -> Callable[[], Any]:
     return lambda: port.Eval(context)
 
 
+class _Gains(NamedTuple):
+    """What can be changed in a context, and changes the energy of springs."""
+
+    coupling: _core.CouplingGains
+    contact: ContactGains
+    clustering: ClusteringRule
+
+
+def _make_gains_reader(loop: HapticLoop, root: Context) -> Callable[[], _Gains]:
+    """Returns what reads the gains of a context."""
+    coupling, force = loop.virtual_coupling, loop.penalty_force
+    clustering = loop.contact_clustering
+    contexts = [
+        part.GetMyContextFromRoot(root) for part in (coupling, force, clustering)
+    ]
+    return lambda: _Gains(
+        coupling.get_gains(contexts[0]),
+        force.get_gains(contexts[1]),
+        clustering.get_rule(contexts[2]),
+    )
+
+
 def _make_stored_readers(
-    loop: HapticLoop, root: Context
+    loop: HapticLoop, root: Context, get_gains: Callable[[], _Gains]
 ) -> dict[str, Callable[[], float]]:
     """Returns what tells the energy (J) of each source of wrench that stores some."""
     clusters = _reader(loop.contact_clustering.get_clusters_output_port(), root)
-    stiffness = loop.penalty_force.stiffness_N_per_m
-    tolerance_m = loop.contact_clustering.tolerance_m
-    readers = {
-        "contact": lambda: _core.contact_energy(clusters(), stiffness, tolerance_m)
-    }
+
+    def contact_energy() -> float:
+        gains = get_gains()
+        stiffness = gains.contact.stiffness_N_per_m.tolist()
+        return _core.contact_energy(clusters(), stiffness, gains.clustering.tolerance_m)
+
+    readers: dict[str, Callable[[], float]] = {"contact": contact_energy}
     if (friction := loop.effects.friction) is not None:
         friction_force = _reader(friction.get_friction_force_output_port(), root)
         readers["friction"] = lambda: friction_force().stored_J

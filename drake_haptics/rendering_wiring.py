@@ -10,7 +10,7 @@ from pydrake.systems.primitives import Demultiplexer
 
 from drake_haptics import _core
 from drake_haptics.builder_effects import EffectSite, add_effects, find_springs
-from drake_haptics.contact_systems import add_contact_systems
+from drake_haptics.contact_systems import add_contact_systems, find_contact_gains
 from drake_haptics.rendered_bodies import RenderedBody
 from drake_haptics.scene import Contact, Effects, Material
 from drake_haptics.systems.applied_wrenches import AppliedWrenches
@@ -49,7 +49,7 @@ class RenderingWiring:
         self._on_tool: dict[str, OutputPort] = {}
         self._on_objects: dict[str, OutputPort] = {}
         self._asked: OutputPort | None = None
-        self._contact_stiffness = 0.0
+        self._contact_stiffness: Sequence[float] = []
         self._springs: list[tuple[float, float]] = []
         motions = self.builder.AddNamedSystem(
             "body_motions", BodyMotions(tool.index, self._moving)
@@ -87,7 +87,8 @@ class RenderingWiring:
             period_s,
         )
         force = found.penalty_force
-        self._contact_stiffness = min(force.stiffness_N_per_m)
+        gains = find_contact_gains(contact, materials)
+        self._contact_stiffness = gains.stiffness_N_per_m.tolist()
         self._on_tool["contact"] = force.get_tool_wrench_output_port()
         self.outputs |= {
             "contacts": found.found_contacts,

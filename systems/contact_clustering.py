@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Literal, get_args, overload
 
 import numpy as np
@@ -24,6 +25,40 @@ from drake_haptics.systems.differentiable_system import (
 )
 
 ClusteringMethod = Literal["shared", "octree"]
+
+
+@dataclass(frozen=True)
+class ClusteringRule:
+    """Which contacts push, and which count as one; immutable.
+
+    Attributes:
+        method: "shared" or "octree".
+        tolerance_m: The distance t below which contacts push, m.
+        delta_m: Cluster size δ of the octree, m; None without.
+
+    Raises:
+        ValueError: There is no such method, the tolerance is negative, or δ is not
+            positive, missing, or given where there is no octree.
+    """
+
+    method: ClusteringMethod
+    tolerance_m: float
+    delta_m: float | None = None
+
+    def __post_init__(self) -> None:
+        """Checks the rule."""
+        if self.method not in get_args(ClusteringMethod):
+            raise ValueError(f"method must be 'shared' or 'octree', is {self.method!r}")
+        tolerance_m, delta_m = self.tolerance_m, self.delta_m
+        if not (tolerance_m >= 0.0 and math.isfinite(tolerance_m)):
+            raise ValueError(
+                f"tolerance_m must be finite and not negative, is {tolerance_m}"
+            )
+        if self.method == "octree":
+            if delta_m is None or not (delta_m > 0.0 and math.isfinite(delta_m)):
+                raise ValueError(f"delta_m must be finite and positive, is {delta_m}")
+        elif delta_m is not None:
+            raise ValueError(f"delta_m is of the octree; the method is {self.method!r}")
 
 
 class ContactClustering(DifferentiableSystem):
@@ -56,6 +91,9 @@ class ContactClustering(DifferentiableSystem):
     direction are left out.
     Under AutoDiffXd they are an `AutoDiffContactSet` and an `AutoDiffClusterSet` of
     `drake_haptics._core`: which contacts are together or push stays.
+
+    Method, tolerance and δ are an abstract parameter of the Context, of type
+    `ClusteringRule`; see `set_rule`.
     """
 
     def __init__(
@@ -68,6 +106,8 @@ class ContactClustering(DifferentiableSystem):
     ):
         """Constructs the system.
 
+        Method, tolerance and δ hold in a Context that says no others.
+
         Args:
             method: "shared" or "octree".
             tolerance_m: The distance t below which contacts push, m.
@@ -79,32 +119,36 @@ class ContactClustering(DifferentiableSystem):
                 not positive, missing, or given where there is no octree.
         """
         super().__init__()
-        if method not in get_args(ClusteringMethod):
-            raise ValueError(f"method must be 'shared' or 'octree', is {method!r}")
-        if not (tolerance_m >= 0.0 and math.isfinite(tolerance_m)):
-            raise ValueError(
-                f"tolerance_m must be finite and not negative, is {tolerance_m}"
-            )
-        if method == "octree":
-            if delta_m is None or not (delta_m > 0.0 and math.isfinite(delta_m)):
-                raise ValueError(f"delta_m must be finite and positive, is {delta_m}")
-        elif delta_m is not None:
-            raise ValueError(f"delta_m is of the octree; the method is {method!r}")
-        self._delta_m = delta_m
-        self._tolerance_m = tolerance_m
+        rule = ClusteringRule(method, tolerance_m, delta_m)
+        self._rule = self.DeclareAbstractParameter(Value[object](rule))
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
         self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
         self._clusters = self.DeclareAbstractOutputPort(
             "clusters",
             Value[object],
             self._calc_clusters if self._relief is None else self._calc_fewer,
-            {self.all_input_ports_ticket()},
+            {self.all_input_ports_ticket(), self.pa_ticket()},
         )
 
-    @property
-    def tolerance_m(self) -> float:
-        """The distance t below which contacts push, m."""
-        return self._tolerance_m
+    def get_rule(self, context: Context) -> ClusteringRule:
+        """Returns which contacts push, and which count as one.
+
+        Args:
+            context: Of this system.
+        """
+        return context.get_abstract_parameter(self._rule).get_value()
+
+    def set_rule(self, context: Context, rule: ClusteringRule) -> None:
+        """Changes which contacts push, and which count as one, from now on.
+
+        Contacts are looked for as far as the `ContactQuery` says: a larger tolerance
+        must be told there too.
+
+        Args:
+            context: Of this system.
+            rule: The new one.
+        """
+        context.get_mutable_abstract_parameter(self._rule).set_value(rule)
 
     def get_contacts_input_port(self) -> InputPort:
         """Returns the input `contacts`."""
@@ -120,52 +164,67 @@ class ContactClustering(DifferentiableSystem):
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffClusterSet:
         """Returns the clusters with their derivatives."""
+        rule: ClusteringRule = at.parameters[self._rule]
         if self._relief is None:
-            return self._cluster(at["contacts"], self._tolerance_m)
-        return self._cluster_fewer(at["contacts"], at["relief"].value)
+            return _cluster(at["contacts"], rule.tolerance_m, rule.delta_m)
+        return _cluster_fewer(at["contacts"], rule, at["relief"].value)
 
     def _calc_clusters(self, context: Context, clusters: AbstractValue) -> None:
+        rule = self.get_rule(context)
         clusters.set_value(
-            self._cluster(self._contacts.Eval(context), self._tolerance_m)
+            _cluster(self._contacts.Eval(context), rule.tolerance_m, rule.delta_m)
         )
 
     def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:
         assert self._relief is not None
         clusters.set_value(
-            self._cluster_fewer(
-                self._contacts.Eval(context), self._relief.Eval(context)
+            _cluster_fewer(
+                self._contacts.Eval(context),
+                self.get_rule(context),
+                self._relief.Eval(context),
             )
         )
 
-    @overload
-    def _cluster_fewer(
-        self, contacts: ContactSet, relief: np.ndarray
-    ) -> ClusterSet: ...
 
-    @overload
-    def _cluster_fewer(
-        self, contacts: AutoDiffContactSet, relief: np.ndarray
-    ) -> AutoDiffClusterSet: ...
+@overload
+def _cluster_fewer(
+    contacts: ContactSet, rule: ClusteringRule, relief: np.ndarray
+) -> ClusterSet: ...
 
-    def _cluster_fewer(
-        self, contacts: ContactSet | AutoDiffContactSet, relief: np.ndarray
-    ) -> ClusterSet | AutoDiffClusterSet:
-        _, reach_share, cell_m = relief
-        if cell_m > 0.0:
-            contacts = thin_contacts(contacts, cell_m)
-        return self._cluster(contacts, reach_share * self._tolerance_m)
 
-    @overload
-    def _cluster(self, contacts: ContactSet, tolerance_m: float) -> ClusterSet: ...
+@overload
+def _cluster_fewer(
+    contacts: AutoDiffContactSet, rule: ClusteringRule, relief: np.ndarray
+) -> AutoDiffClusterSet: ...
 
-    @overload
-    def _cluster(
-        self, contacts: AutoDiffContactSet, tolerance_m: float
-    ) -> AutoDiffClusterSet: ...
 
-    def _cluster(
-        self, contacts: ContactSet | AutoDiffContactSet, tolerance_m: float
-    ) -> ClusterSet | AutoDiffClusterSet:
-        if self._delta_m is None:
-            return share_stiffness(contacts, tolerance_m)
-        return cluster_contacts(contacts, self._delta_m, tolerance_m)
+def _cluster_fewer(
+    contacts: ContactSet | AutoDiffContactSet, rule: ClusteringRule, relief: np.ndarray
+) -> ClusterSet | AutoDiffClusterSet:
+    """Applies a rule where the loop sheds load."""
+    _, reach_share, cell_m = relief
+    if cell_m > 0.0:
+        contacts = thin_contacts(contacts, cell_m)
+    return _cluster(contacts, reach_share * rule.tolerance_m, rule.delta_m)
+
+
+@overload
+def _cluster(
+    contacts: ContactSet, tolerance_m: float, delta_m: float | None
+) -> ClusterSet: ...
+
+
+@overload
+def _cluster(
+    contacts: AutoDiffContactSet, tolerance_m: float, delta_m: float | None
+) -> AutoDiffClusterSet: ...
+
+
+def _cluster(
+    contacts: ContactSet | AutoDiffContactSet,
+    tolerance_m: float,
+    delta_m: float | None,
+) -> ClusterSet | AutoDiffClusterSet:
+    if delta_m is None:
+        return share_stiffness(contacts, tolerance_m)
+    return cluster_contacts(contacts, delta_m, tolerance_m)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -10,7 +11,13 @@ from typing import Literal, get_args
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import Context, InputPort, OutputPort
+from pydrake.systems.framework import (
+    AbstractParameterIndex,
+    Context,
+    InputPort,
+    OutputPort,
+    ValueProducer,
+)
 
 from drake_haptics._core import (
     AutoDiffContactSet,
@@ -24,7 +31,6 @@ from drake_haptics.systems.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
 )
-from drake_haptics.systems.scratch import declare_scratch, get_scratch
 
 DepthSearch = Literal["tracked", "global"]
 
@@ -65,6 +71,9 @@ class ContactQuery(DifferentiableSystem):
     `contacts` is a `drake_haptics.ContactSet`, immutable. `relief` is that of
     `LoadShedding`: contacts are looked for only up to its share of the tolerance.
 
+    The tolerance is an abstract parameter of the Context (index 1), a float; see
+    `set_tolerance`.
+
     The search starts from its last answer in the same Context (paper, 5.2), and first
     from the abstract parameter `hint` (index 0): what a query of another Context knew.
     Without one it starts anew, and can find another way out of a deep penetration; so
@@ -91,19 +100,19 @@ class ContactQuery(DifferentiableSystem):
         Args:
             tool: Convex pieces of the tool, in its frame.
             objects: What it can meet, in the order of `ContactSet.object_index`.
-            tolerance_m: Pairs up to this distance are contacts, m.
+            tolerance_m: Pairs up to this distance are contacts, m, in a Context that
+                says no other.
             depth: Of two pieces in overlap: that walked to from the last answer, or
                 the least one of all; see `drake_haptics.SceneTracker`.
             max_walk_steps: Bound on the steps of such a walk, at least 1.
             sheds_load: Whether the loop sheds load, and there is a port for that.
 
         Raises:
-            ValueError: The tolerance is negative, there is no object, a name is used
-                twice, there is no such depth, or no step is allowed.
+            ValueError: The tolerance is negative or not finite, there is no object, a
+                name is used twice, there is no such depth, or no step is allowed.
         """
         super().__init__()
-        if not tolerance_m >= 0.0:
-            raise ValueError(f"tolerance_m must not be negative, is {tolerance_m}")
+        _check_tolerance(tolerance_m)
         if depth not in get_args(DepthSearch):
             raise ValueError(f"depth must be 'tracked' or 'global', is {depth!r}")
         if max_walk_steps < 1:
@@ -114,7 +123,6 @@ class ContactQuery(DifferentiableSystem):
             raise ValueError("two objects have the same name")
         self._tool = tool
         self._objects = tuple(objects)
-        self._tolerance_m = tolerance_m
         self._depth: DepthSearch = depth
         self._max_walk_steps = max_walk_steps
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
@@ -125,12 +133,24 @@ class ContactQuery(DifferentiableSystem):
         }
         self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
         self._hint = self.DeclareAbstractParameter(Value[object](None))
-        self._memory = declare_scratch(self, "memory", _Memory)
+        self._tolerance = self.DeclareAbstractParameter(Value[object](tolerance_m))
+        from_tolerance = self.abstract_parameter_ticket(
+            AbstractParameterIndex(self._tolerance)
+        )
+        # The memory of a Context, which never changes an answer by more than round-off.
+        # That it is told of another tolerance as a cache entry costs a tick nothing.
+        self._tracker = self.DeclareCacheEntry(
+            description="tracker",
+            value_producer=ValueProducer(
+                allocate=lambda: Value[object](None), calc=self._prepare_tracker
+            ),
+            prerequisites_of_calc={from_tolerance},
+        )
         self._contacts = self.DeclareAbstractOutputPort(
             "contacts",
             Value[object],
             self._calc_contacts,
-            {self.all_input_ports_ticket()},
+            {self.all_input_ports_ticket(), from_tolerance},
         )
 
     def get_tool_pose_input_port(self) -> InputPort:
@@ -149,6 +169,29 @@ class ContactQuery(DifferentiableSystem):
         """Returns the output `contacts`."""
         return self._contacts
 
+    def get_tolerance(self, context: Context) -> float:
+        """Returns the distance up to which pairs are contacts, m.
+
+        Args:
+            context: Of this system.
+        """
+        return context.get_abstract_parameter(self._tolerance).get_value()
+
+    def set_tolerance(self, context: Context, tolerance_m: float) -> None:
+        """Changes the distance up to which pairs are contacts, from now on.
+
+        What the query knows is kept: a deep penetration keeps its way out.
+
+        Args:
+            context: Of this system.
+            tolerance_m: The distance, m.
+
+        Raises:
+            ValueError: It is negative or not finite.
+        """
+        _check_tolerance(tolerance_m)
+        context.get_mutable_abstract_parameter(self._tolerance).set_value(tolerance_m)
+
     def prepare_conversion(self, context: Context) -> None:
         """Writes what the query knows into the parameter `hint`.
 
@@ -157,12 +200,34 @@ class ContactQuery(DifferentiableSystem):
         """
         self._contacts.Eval(context)
         context.get_mutable_abstract_parameter(self._hint).set_value(
-            copy.deepcopy(get_scratch(self._memory, context).tracker)
+            copy.deepcopy(self._tracker.Eval(context))
         )
+
+    def learn(
+        self, context: Context, other: ContactQuery, other_context: Context
+    ) -> None:
+        """Begins from what another query knows, if it is of the same pieces.
+
+        Args:
+            context: Of this system, of which nothing has been asked.
+            other: It is asked if it has not been.
+            other_context: Of the other query.
+        """
+        if self._list_searched() == other._list_searched():
+            other._contacts.Eval(other_context)
+            context.get_mutable_abstract_parameter(self._hint).set_value(
+                copy.deepcopy(other._tracker.Eval(other_context))
+            )
+
+    def _list_searched(self) -> list[object]:
+        """Returns what a tracker holds for good, to be compared."""
+        pieces = [id(item.decomposition) for item in self._objects]
+        return [id(self._tool), pieces, self._depth, self._max_walk_steps]
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffContactSet:
         """Returns the contacts with their derivatives."""
-        tracker = self._make_tracker(at.parameters[self._hint])
+        reach_m: float = at.parameters[self._tolerance]
+        tracker = self._make_tracker(at.parameters[self._hint], reach_m)
         X_WO = [
             at[f"X_WO_{item.name}"]
             if item.X_WO is None
@@ -173,7 +238,6 @@ class ContactQuery(DifferentiableSystem):
         ]
         for i in self._X_WO:
             tracker.set_object_pose(i, X_WO[i].value)
-        reach_m = self._tolerance_m
         if self._relief is not None:
             reach_m *= at["relief"].value[1]
         return differentiate_contacts(
@@ -185,40 +249,49 @@ class ContactQuery(DifferentiableSystem):
             X_WO,
         )
 
-    def _make_tracker(self, hint: SceneTracker | None) -> SceneTracker:
-        if hint is not None:
-            return copy.deepcopy(hint)
-        decompositions = [item.decomposition for item in self._objects]
-        tracker = SceneTracker(
-            self._tool,
-            decompositions,
-            self._tolerance_m,
-            self._depth,
-            self._max_walk_steps,
-        )
+    def _make_tracker(
+        self, hint: SceneTracker | None, tolerance_m: float
+    ) -> SceneTracker:
+        if hint is None:
+            tracker = SceneTracker(
+                self._tool,
+                [item.decomposition for item in self._objects],
+                tolerance_m,
+                self._depth,
+                self._max_walk_steps,
+            )
+        else:
+            tracker = copy.deepcopy(hint)
+            tracker.tolerance = tolerance_m
         for i, item in enumerate(self._objects):
             if item.X_WO is not None:
                 tracker.set_object_pose(i, item.X_WO)
         return tracker
 
-    def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
-        memory: _Memory = get_scratch(self._memory, context)
-        tracker = memory.tracker
+    def _prepare_tracker(self, context: Context, value: AbstractValue) -> None:
+        """Makes the tracker of a Context, or tells it of another tolerance."""
+        tolerance_m = self.get_tolerance(context)
+        tracker: SceneTracker | None = value.get_value()
         if tracker is None:
             hint = context.get_abstract_parameter(self._hint).get_value()
-            tracker = memory.tracker = self._make_tracker(hint)
+            value.set_value(self._make_tracker(hint, tolerance_m))
+        else:
+            tracker.tolerance = tolerance_m
+
+    def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
+        tracker: SceneTracker = self._tracker.Eval(context)
         for i, port in self._X_WO.items():
             tracker.set_object_pose(i, port.Eval(context))
         X_WTool = self._X_WTool.Eval(context)
         if self._relief is None:
             contacts.set_value(tracker.query(X_WTool))
             return
-        reach_m = self._tolerance_m * self._relief.Eval(context)[1]
+        reach_m = self.get_tolerance(context) * self._relief.Eval(context)[1]
         contacts.set_value(tracker.query(X_WTool, reach_m))
 
 
-@dataclass
-class _Memory:
-    """What a query of a Context knows; nothing before it is first asked."""
-
-    tracker: SceneTracker | None = None
+def _check_tolerance(tolerance_m: float) -> None:
+    if not (tolerance_m >= 0.0 and math.isfinite(tolerance_m)):
+        raise ValueError(
+            f"tolerance_m must be finite and not negative, is {tolerance_m}"
+        )

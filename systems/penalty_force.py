@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
@@ -26,6 +27,38 @@ from drake_haptics.systems.differentiable_system import (
     DifferentiableSystem,
 )
 from drake_haptics.systems.object_motions import ObjectMotions
+
+
+@dataclass(frozen=True, eq=False)
+class ContactGains:
+    """How each object answers contact; immutable.
+
+    Attributes:
+        stiffness_N_per_m: k of each object, (n,), N/m.
+        damping_Ns_per_m: k_v of each object, (n,), N·s/m.
+
+    Raises:
+        ValueError: A gain is negative or not finite.
+    """
+
+    stiffness_N_per_m: np.ndarray
+    damping_Ns_per_m: np.ndarray
+
+    def __post_init__(self) -> None:
+        """Checks the gains and takes read-only copies."""
+        for name, gains in vars(self).items():
+            for gain in gains:
+                if not (gain >= 0.0 and math.isfinite(gain)):
+                    raise ValueError(
+                        f"{name} must be finite and not negative, has {gain}"
+                    )
+            copied = np.array(gains, dtype=float)
+            copied.flags.writeable = False
+            object.__setattr__(self, name, copied)
+
+    def __deepcopy__(self, memo: object) -> ContactGains:
+        """Returns itself, so that it crosses into copies of a Context."""
+        return self
 
 
 class PenaltyForce(DifferentiableSystem):
@@ -67,6 +100,9 @@ class PenaltyForce(DifferentiableSystem):
     Under AutoDiffXd `clusters` is an `AutoDiffClusterSet` and `contact_wrench` an
     `AutoDiffPenaltyWrench` of `drake_haptics._core`. K and B have derivatives of
     their own there, by which the tool's implicit step changes.
+
+    k and k_v are an abstract parameter of the Context, of type `ContactGains`; see
+    `set_gains`.
     """
 
     def __init__(
@@ -79,21 +115,23 @@ class PenaltyForce(DifferentiableSystem):
 
         Args:
             objects: Those of the `ContactQuery`, in the same order.
-            stiffness_N_per_m: k of each object, N/m.
-            damping_Ns_per_m: k_v of each object, N·s/m.
+            stiffness_N_per_m: k of each object, N/m, in a Context that says no other.
+            damping_Ns_per_m: k_v of each object, N·s/m, the same.
 
         Raises:
             ValueError: A gain is negative or not finite, or there is not one for
                 each object.
         """
         super().__init__()
-        self._stiffness = _check_gains("stiffness_N_per_m", stiffness_N_per_m, objects)
-        self._damping = _check_gains("damping_Ns_per_m", damping_Ns_per_m, objects)
+        self._num_objects = len(objects)
+        gains = ContactGains(np.array(stiffness_N_per_m), np.array(damping_Ns_per_m))
+        self._check_number(gains)
+        self._gains = self.DeclareAbstractParameter(Value[object](gains))
         self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
         self._motions = ObjectMotions(self, objects)
-        from_inputs = {self.all_input_ports_ticket()}
+        from_inputs = {self.all_input_ports_ticket(), self.pa_ticket()}
         self._wrench_model = self.DeclareVectorOutputPort(
             "wrench_model", 78, self._calc_wrench_model, from_inputs
         )
@@ -118,10 +156,26 @@ class PenaltyForce(DifferentiableSystem):
             self._contact_wrench.Eval if self._moving else self._calc_wrench
         )
 
-    @property
-    def stiffness_N_per_m(self) -> list[float]:
-        """Stiffness k of each object, N/m."""
-        return self._stiffness.tolist()
+    def get_gains(self, context: Context) -> ContactGains:
+        """Returns how each object answers contact.
+
+        Args:
+            context: Of this system.
+        """
+        return context.get_abstract_parameter(self._gains).get_value()
+
+    def set_gains(self, context: Context, gains: ContactGains) -> None:
+        """Changes how each object answers contact, from now on.
+
+        Args:
+            context: Of this system.
+            gains: One of each kind for each object, in their order.
+
+        Raises:
+            ValueError: There is not one for each object.
+        """
+        self._check_number(gains)
+        context.get_mutable_abstract_parameter(self._gains).set_value(gains)
 
     def get_clusters_input_port(self) -> InputPort:
         """Returns the input `clusters`."""
@@ -165,14 +219,15 @@ class PenaltyForce(DifferentiableSystem):
         """Returns a wrench, or all that is known of them, with derivatives."""
         X_WTool = at["X_WTool"]
         p_WO, V_WO = self._motions.differentiate(at)
+        gains: ContactGains = at.parameters[self._gains]
         wrench = penalty_force(
             at["clusters"],
             AutoDiffVector(X_WTool.value[4:], X_WTool.gradient[4:]),
             at["V_WTool"],
             p_WO,
             V_WO,
-            self._stiffness,
-            self._damping,
+            gains.stiffness_N_per_m,
+            gains.damping_Ns_per_m,
         )
         if port == "contact_wrench":
             return wrench
@@ -184,15 +239,25 @@ class PenaltyForce(DifferentiableSystem):
 
     def _calc_wrench(self, context: Context) -> PenaltyWrench:
         p_WO, V_WO = self._motions.read(context)
+        gains = self.get_gains(context)
         return penalty_force(
             self._clusters.Eval(context),
             self._X_WTool.Eval(context)[4:],
             self._V_WTool.Eval(context),
             p_WO,
             V_WO,
-            self._stiffness,
-            self._damping,
+            gains.stiffness_N_per_m,
+            gains.damping_Ns_per_m,
         )
+
+    def _check_number(self, gains: ContactGains) -> None:
+        """Refuses gains that are not one for each object."""
+        for name, values in vars(gains).items():
+            if len(values) != self._num_objects:
+                raise ValueError(
+                    f"{name} must have one value for each of the {self._num_objects}"
+                    f" objects, has {len(values)}"
+                )
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._calc_wrench(context).wrench_model)
@@ -206,18 +271,3 @@ class PenaltyForce(DifferentiableSystem):
 
     def _calc_contact_wrench(self, context: Context, output: AbstractValue) -> None:
         output.set_value(self._calc_wrench(context))
-
-
-def _check_gains(
-    name: str, gains: Sequence[float], objects: Sequence[ContactObject]
-) -> np.ndarray:
-    """Returns one gain for each object as an array."""
-    if len(gains) != len(objects):
-        raise ValueError(
-            f"{name} must have one value for each of the {len(objects)} objects, has"
-            f" {len(gains)}"
-        )
-    for gain in gains:
-        if not (gain >= 0.0 and math.isfinite(gain)):
-            raise ValueError(f"{name} must be finite and not negative, has {gain}")
-    return np.array(gains, dtype=float)

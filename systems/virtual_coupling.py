@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
     BasicVector,
@@ -48,30 +49,47 @@ class VirtualCoupling(Diagram):
       documents it.
     * `F_display` (6) is the wrench [τ; f] on the handle at its origin in the world,
       N·m and N.
+
+    The gains are an abstract parameter of the Context, of type
+    `drake_haptics._core.CouplingGains`; see `set_gains`.
     """
 
     def __init__(self, gains: CouplingGains, X_HT: RigidTransform):
         """Constructs the system.
 
         Args:
-            gains: Of the spring and the damper.
+            gains: Of the spring and the damper, in a Context that says no other.
             X_HT: Pose of the tool in the handle at which the spring rests.
         """
         super().__init__()
-        self._gains = gains
         self._X_HT = X_HT
         builder = DiagramBuilder()
         spring = builder.AddNamedSystem("spring", _SpringAndDamper(gains, X_HT))
+        self._spring = spring
         import_parts(builder, spring.get_input_port(), _MOTIONS)
         export_parts(
             builder, spring.get_output_port(), {"wrench_model": 78, "F_display": 6}
         )
         builder.BuildInto(self)
 
-    @property
-    def gains(self) -> CouplingGains:
-        """Of the spring and the damper."""
-        return self._gains
+    def get_gains(self, context: Context) -> CouplingGains:
+        """Returns the gains of the spring and the damper.
+
+        Args:
+            context: Of this system.
+        """
+        return self._spring.get_gains(self.GetSubsystemContext(self._spring, context))
+
+    def set_gains(self, context: Context, gains: CouplingGains) -> None:
+        """Changes the gains, from now on.
+
+        Args:
+            context: Of this system.
+            gains: Of the spring and the damper.
+        """
+        self._spring.set_gains(
+            self.GetMutableSubsystemContext(self._spring, context), gains
+        )
 
     @property
     def X_HT(self) -> RigidTransform:
@@ -113,12 +131,25 @@ class _SpringAndDamper(DifferentiableSystem):
 
     def __init__(self, gains: CouplingGains, X_HT: RigidTransform):
         super().__init__()
-        self._gains = gains
         self._q_HT = pose_to_vector(X_HT)
+        self._gains = self.DeclareAbstractParameter(Value[object](gains))
         self._motions = self.DeclareVectorInputPort("motions", 26)
         self.DeclareVectorOutputPort(
-            "wrenches", 84, self._calc_wrenches, {self.all_input_ports_ticket()}
+            "wrenches",
+            84,
+            self._calc_wrenches,
+            {self.all_input_ports_ticket(), self.pa_ticket()},
         )
+
+    def get_gains(self, context: Context) -> CouplingGains:
+        """Returns the gains."""
+        return context.get_abstract_parameter(self._gains).get_value()
+
+    def set_gains(self, context: Context, gains: CouplingGains) -> None:
+        """Changes the gains."""
+        if not isinstance(gains, CouplingGains):
+            raise TypeError(f"gains must be CouplingGains, is {type(gains).__name__}")
+        context.get_mutable_abstract_parameter(self._gains).set_value(gains)
 
     def _calc_wrenches(self, context: Context, wrenches: BasicVector) -> None:
         motions = self._motions.Eval(context)
@@ -129,7 +160,7 @@ class _SpringAndDamper(DifferentiableSystem):
                 self._q_HT,
                 motions[_X_WTOOL],
                 motions[_V_WTOOL],
-                self._gains,
+                context.get_abstract_parameter(self._gains).get_value(),
             )
         )
 
@@ -140,4 +171,5 @@ class _SpringAndDamper(DifferentiableSystem):
             AutoDiffVector(motions.value[part], motions.gradient[part])
             for part in (_X_WH, _V_WH, _X_WTOOL, _V_WTOOL)
         )
-        return coupling_wrench(X_WH, V_WH, self._q_HT, X_WTool, V_WTool, self._gains)
+        gains = at.parameters[self._gains]
+        return coupling_wrench(X_WH, V_WH, self._q_HT, X_WTool, V_WTool, gains)

@@ -138,16 +138,17 @@ def tilted():
     return pose_to_vector(RigidTransform(R, [0.01, 0.02, 0.0245]))
 
 
-def test_its_twin_has_the_same_ports_and_a_hint(tool, plate):
+def test_its_twin_has_the_same_ports_a_hint_and_a_tolerance(tool, plate):
     query = ContactQuery(tool, [ContactObject("cart", plate)], TOLERANCE)
     context = query.CreateDefaultContext()
-    assert context.num_abstract_parameters() == 1
+    assert context.num_abstract_parameters() == 2
     assert context.get_abstract_parameter(0).get_value() is None
+    assert context.get_abstract_parameter(1).get_value() == TOLERANCE
     twin = query.ToScalarType[AutoDiffXd]()
     names = [twin.get_input_port(i).get_name() for i in range(twin.num_input_ports())]
     assert names == ["X_WTool", "X_WO_cart"]
     assert twin.GetOutputPort("contacts").get_name() == "contacts"
-    assert twin.CreateDefaultContext().num_abstract_parameters() == 1
+    assert twin.CreateDefaultContext().num_abstract_parameters() == 2
 
 
 def test_its_twin_answers_with_derivatives(tool, plate, tilted):

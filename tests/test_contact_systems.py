@@ -27,7 +27,9 @@ def test_a_material_gives_what_the_contact_does_not(core):
     found = add_contact_systems(
         DiagramBuilder(), core, objects(core), contact, Effects(), materials, 1e-3
     )
-    assert found.penalty_force.stiffness_N_per_m == [100.0, 900.0]
+    force = found.penalty_force
+    gains = force.get_gains(force.CreateDefaultContext())
+    assert gains.stiffness_N_per_m.tolist() == [100.0, 900.0]
 
 
 @pytest.mark.parametrize(("distance", "contacts"), [(1e-3, 0), (6e-3, 1)])
@@ -46,7 +48,9 @@ def test_contacts_are_looked_for_as_far_as_braking_reaches(core, distance, conta
     context = query.CreateDefaultContext()
     query.get_tool_pose_input_port().FixValue(context, [1, 0, 0, 0, 0, 0, 0.025])
     assert len(query.get_contacts_output_port().Eval(context)) == contacts
-    assert found.contact_clustering.tolerance_m == 2e-3
+    clustering = found.contact_clustering
+    rule = clustering.get_rule(clustering.CreateDefaultContext())
+    assert rule.tolerance_m == 2e-3
 
 
 @pytest.mark.parametrize("query_rate_hz", [None, 250.0])

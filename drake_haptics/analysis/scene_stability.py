@@ -244,6 +244,8 @@ def _read_contact(loop: HeldLoop) -> tuple[int, float]:
     query, force = parts.contact_query, parts.penalty_force
     contacts = query.get_contacts_output_port().Eval(query.GetMyContextFromRoot(root))
     # The force begins at the tolerance.
-    pushing = contacts.distance < loop.haptic.scene.contact.tolerance_m
+    clustering = parts.contact_clustering
+    rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
+    pushing = contacts.distance < rule.tolerance_m
     wrench = force.get_tool_wrench_output_port().Eval(force.GetMyContextFromRoot(root))
     return int(pushing.sum()), float(np.linalg.norm(wrench[3:]))
