@@ -7,7 +7,11 @@ import math
 import time
 from collections.abc import Callable
 
-from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
+from pydrake.systems.analysis import (
+    InitializeParams,
+    ResetIntegratorFromFlags,
+    Simulator,
+)
 from pydrake.systems.framework import Context, EventStatus
 
 from drake_haptics.builder import HapticDiagram
@@ -50,9 +54,15 @@ def run(
     *,
     pace: TickClock | None = None,
     energy: bool = False,
-    on_tick: Callable[[Context], None] | None = None,
+    on_tick: Callable[[Context], bool | None] | None = None,
+    context: Context | None = None,
+    statistics: RunStatistics | None = None,
 ) -> RunStatistics:
-    """Runs a scene from its start and measures every tick.
+    """Runs a scene and measures every tick.
+
+    A run can be one of several in a row: with the context in which the last one ended,
+    of the same diagram or carried on to another (`drake_haptics.carry_on`), and its
+    statistics.
 
     Args:
         haptic: What `BuildHapticDiagram` returned.
@@ -62,32 +72,46 @@ def run(
         energy: Whether to keep the books of an `EnergyLedger`, for some 10 µs in
             each tick. Only of a simulated device: what any other does between two
             readings is not known.
-        on_tick: Called after every tick with the diagram's context, to be read
-            only. Its time counts in the tick.
+        on_tick: Called after every tick with the diagram's context, of which it may
+            change parameters alone, as `drake_haptics.live_scene` does. Its time counts
+            in the tick. Where it returns True the run ends.
+        context: Where to go on; becomes the simulator's. Nothing in it is initialized.
+            At the scene's start where not given.
+        statistics: Of the runs before, which this one goes on with; its own where not
+            given.
 
     Returns:
         What was measured. Ctrl-C ends a run early and is not an error.
 
     Raises:
-        ValueError: `energy` is asked for, but the device is not simulated.
+        ValueError: `energy` is asked for, but the device is not simulated, or the run
+            goes on with the statistics of others.
         RunError: The tool or the arm has a pose or velocity that is not finite.
     """
     if energy and haptic.backend is not None:
         raise ValueError("energy can be booked for a simulated device only")
-    simulator = make_simulator(haptic)
+    if energy and statistics is not None:
+        raise ValueError("energy can be booked of a run that is all in one only")
+    simulator = make_simulator(haptic, context)
     ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
-    statistics = RunStatistics(haptic.period_s, ledger, pace)
+    if statistics is None:
+        statistics = RunStatistics(haptic.period_s, ledger, pace)
+    end_s = math.inf
+    if duration_s is not None:
+        end_s = _find_end(simulator.get_context().get_time(), duration_s, haptic)
     measure = _make_measure(haptic, simulator.get_context(), statistics, ledger)
     # Collecting garbage over all of pydrake's objects takes many ticks; frozen, they
     # are left alone.
     gc.collect()
     gc.freeze()
     try:
-        simulator.Initialize()
+        simulator.Initialize(
+            InitializeParams(suppress_initialization_events=context is not None)
+        )
         if ledger is not None:
             ledger.add()
         simulator.set_monitor(_make_monitor(measure, on_tick, pace))
-        simulator.AdvanceTo(math.inf if duration_s is None else duration_s)
+        simulator.AdvanceTo(end_s)
     except KeyboardInterrupt:
         pass
     except FloatingPointError as error:
@@ -98,9 +122,16 @@ def run(
     return statistics
 
 
+def _find_end(start_s: float, duration_s: float, haptic: HapticDiagram) -> float:
+    """Returns when a run ends; of two times a round-off apart that of a tick."""
+    end_s = start_s + duration_s
+    tick_s = round(end_s / haptic.period_s) * haptic.period_s
+    return tick_s if math.isclose(end_s, tick_s, rel_tol=1e-12) else end_s
+
+
 def _make_monitor(
     measure: Callable[[Context, float], None],
-    on_tick: Callable[[Context], None] | None,
+    on_tick: Callable[[Context], bool | None] | None,
     pace: TickClock | None,
 ) -> Callable[[Context], EventStatus]:
     """Returns what the simulator calls after each tick."""
@@ -111,8 +142,8 @@ def _make_monitor(
         now_s = time.perf_counter()
         measure(context, now_s - start_s)
         start_s = now_s
-        if on_tick is not None:
-            on_tick(context)
+        if on_tick is not None and on_tick(context):
+            return EventStatus.ReachedTermination(None, "on_tick ends the run")
         if pace is not None:
             now_s = time.perf_counter()
             pace.wait()

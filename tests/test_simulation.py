@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
-from drake_haptics import simulation
 from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.simulation import make_simulator, run
+from drake_haptics.simulation import RunError, make_simulator, run
 from drake_haptics.tick_clock import TickClock
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
@@ -60,6 +59,42 @@ def test_the_energy_of_every_tick_is_booked(haptic):
     assert books["device"]["in"] > books["contact"]["in"] > 0.0
 
 
+def test_a_run_in_parts_measures_what_one_does(haptic):
+    """Each part goes on where the last one was ended from its `on_tick`."""
+    whole = run(haptic, 0.4).to_dict()
+    context, statistics = None, None
+    for ticks in (150, 1, 249):
+        ends = []
+
+        def end_tick(root, ends=ends, ticks=ticks):
+            ends.append(root.Clone())
+            return len(ends) == ticks
+
+        statistics = run(
+            haptic, None, on_tick=end_tick, context=context, statistics=statistics
+        )
+        context = ends[-1]
+    parts = statistics.to_dict()
+    assert context.get_time() == pytest.approx(0.4)
+    exact = ["ticks", "duration_s", "contacts", "clusters", "limit_hits"]
+    assert [parts[key] for key in exact] == [whole[key] for key in exact]
+    for key in ("max_force_N", "max_torque_Nm", "max_penetration_m"):
+        assert parts[key] == pytest.approx(whole[key], rel=1e-9)
+
+
+def test_a_part_of_a_run_takes_its_own_time(haptic):
+    context = haptic.diagram.CreateDefaultContext()
+    context.SetTime(0.1)
+    times = []
+    run(haptic, 0.02, context=context, on_tick=lambda c: times.append(c.get_time()))
+    np.testing.assert_allclose(times, np.arange(101, 121) * 1e-3, atol=1e-12)
+
+
+def test_energy_is_not_booked_of_a_part(haptic):
+    with pytest.raises(ValueError, match="energy"):
+        run(haptic, 0.01, energy=True, statistics=run(haptic, 0.01))
+
+
 def test_garbage_is_thawed_after_a_run(haptic):
     before = gc.get_freeze_count()
     run(haptic, 0.01)
@@ -91,20 +126,14 @@ def test_in_real_time_a_run_is_not_faster_than_the_clock(haptic):
     assert figures["tick_us"]["median"] < 990.0
 
 
-def test_a_value_that_is_not_finite_stops_the_run(haptic, monkeypatch):
-    def make_broken_simulator(haptic):
-        simulator = make_simulator(haptic)
-        tool = haptic.loop.haptic_tool
-        context = tool.GetMyMutableContextFromRoot(simulator.get_mutable_context())
-        context.get_mutable_discrete_state_vector().SetAtIndex(9, np.nan)
-        return simulator
-
-    monkeypatch.setattr(simulation, "make_simulator", make_broken_simulator)
+def test_a_value_that_is_not_finite_stops_the_run(haptic):
+    root = haptic.diagram.CreateDefaultContext()
+    tool = haptic.loop.haptic_tool.GetMyMutableContextFromRoot(root)
+    tool.get_mutable_discrete_state_vector().SetAtIndex(9, np.nan)
     with pytest.raises(
-        simulation.RunError,
-        match=r"stopped at 0.0010 s: the tool's state is not finite",
+        RunError, match=r"stopped at 0.0010 s: the tool's state is not finite"
     ) as caught:
-        run(haptic, 1.0, energy=True)
+        run(haptic, 1.0, energy=True, context=root)
     figures = caught.value.statistics.to_dict()
     assert figures["non_finite_events"] == 1
     # The device was shown nothing, and nothing was booked.
@@ -113,16 +142,12 @@ def test_a_value_that_is_not_finite_stops_the_run(haptic, monkeypatch):
     json.dumps(figures, allow_nan=False)
 
 
-def test_an_arm_that_is_lost_stops_the_run(haptic, monkeypatch):
-    def make_broken_simulator(haptic):
-        simulator = make_simulator(haptic)
-        state = simulator.get_mutable_context().get_mutable_continuous_state_vector()
-        state.SetAtIndex(state.size() - 1, np.inf)
-        return simulator
-
-    monkeypatch.setattr(simulation, "make_simulator", make_broken_simulator)
-    with pytest.raises(simulation.RunError, match="the arm's state is not finite"):
-        run(haptic, 1.0, energy=True)
+def test_an_arm_that_is_lost_stops_the_run(haptic):
+    root = haptic.diagram.CreateDefaultContext()
+    state = root.get_mutable_continuous_state_vector()
+    state.SetAtIndex(state.size() - 1, np.inf)
+    with pytest.raises(RunError, match="the arm's state is not finite"):
+        run(haptic, 1.0, energy=True, context=root)
 
 
 def test_no_coupling_is_too_stiff_for_the_limits_of_the_device(tmp_path):
