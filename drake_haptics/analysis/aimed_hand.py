@@ -16,6 +16,7 @@ from drake_haptics.analysis.held_scene import (
 )
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.device_preset import load_device_preset
+from drake_haptics.live_scene import write_live_values
 from drake_haptics.scene import Coupling, HandPath, Scene, Waypoint
 from drake_haptics.systems.arm_inverse_kinematics import (
     UnreachableError,
@@ -69,6 +70,8 @@ def build_aimed(
     haptic = build_quietly(scene)
     context = haptic.diagram.CreateDefaultContext()
     context.SetTimeStateAndParametersFrom(held.context)
+    # These are parameters too.
+    write_live_values(haptic, context, scene)
     _set_handle(haptic, scene, context, aim)
     return haptic, context
 
