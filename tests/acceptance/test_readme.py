@@ -1,4 +1,4 @@
-"""What the README says to type works, and what it shows exists."""
+"""All that the README says to type works, and what it shows is so."""
 
 import json
 import re
@@ -10,21 +10,22 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from markdown_page import PROGRAM, find_blocks, find_span_commands, find_spans
 
+from drake_haptics import find_scene, load_scene
 from drake_haptics.cli import main
-from drake_haptics.scene_library import list_scenes
 
 ROOT = Path(__file__).parents[2]
 # The installed command, beside the interpreter.
-COMMAND = Path(sys.executable).with_name("drake-haptics")
+COMMAND = Path(sys.executable).with_name(PROGRAM)
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-COMMANDS = [
-    line.split("#")[0].strip()
-    for block in re.findall(r"```sh\n(.*?)```", README, re.DOTALL)
-    for line in block.splitlines()
-    if line.strip()
-]
-HAPTICS = [line for line in COMMANDS if line.startswith("drake-haptics")]
+BLOCKS = find_blocks(README)
+SETUP, *SHELLS = [block for block in BLOCKS if block.language == "sh"]
+(TWO_TERMINALS,) = [b for b in SHELLS if b.text.startswith(f"{PROGRAM} device ")]
+# Each block is a sequence; a command in a sentence stands by itself.
+SEQUENCES = [block.commands for block in SHELLS if block is not TWO_TERMINALS]
+SEQUENCES += [[command] for command in find_span_commands(README)]
+SNIPPETS = [block for block in BLOCKS if block.language == "python"]
 # What measures for minutes is only begun; its own tests let it end.
 SHORTER = {
     "stability": ["--map", "0"],
@@ -32,38 +33,53 @@ SHORTER = {
     "bench": ["--quick"],
     "paper": ["--quick", "table1"],
 }
-TWO_TERMINALS = [line for line in HAPTICS if "device" in line.split()[1:]]
-TWO_TERMINALS += [line for line in HAPTICS if "--device" in line]
+# Other programs that sentences name, and that no test here runs.
+OTHER_PROGRAMS = {
+    "pip install PATH_OF_THE_CHECKOUT",  # make runs it, on the checkout
+    "python -m drake_haptics.shapes",  # tests/test_shapes.py
+    "run",  # a function, and the command in short
+    "run --log FILE",  # tests/acceptance/test_cli_log.py
+}
 
 
-@pytest.mark.parametrize("line", [x for x in HAPTICS if x not in TWO_TERMINALS])
-def test_command_runs(line, tmp_path, monkeypatch):
-    # Files that the command reads are in the checkout; what it writes goes elsewhere.
-    (tmp_path / "models").symlink_to(ROOT / "models")
-    monkeypatch.chdir(tmp_path)
-    arguments = shlex.split(line)[1:]
+def shorten(command):
+    """Returns the arguments of a command that shows no page and soon ends."""
+    program, *arguments = shlex.split(command)
+    assert program == PROGRAM, "the only program beside make"
     if arguments[0] == "run":
         if "--duration" in arguments:
             arguments[arguments.index("--duration") + 1] = "0.3"
         else:
             arguments += ["--duration", "0.3"]
-        if "--headless" not in arguments:
+        if "--headless" not in arguments and "mouse:" not in arguments:
             arguments.append("--headless")
-    if "--budget-us" in arguments:
+    elif "--budget-us" in arguments:
         # So much that nothing has to be tried.
         arguments[arguments.index("--budget-us") + 1] = "1e6"
         arguments.append("--quick")
     else:
         arguments += SHORTER.get(arguments[0], [])
-    result = CliRunner().invoke(main, arguments)
-    assert result.exit_code == 0, result.output
-    for option in ("--record", "--json"):
-        if option in arguments:
-            assert Path(arguments[arguments.index(option) + 1]).stat().st_size > 0
+    return arguments
+
+
+@pytest.mark.parametrize("commands", SEQUENCES, ids=lambda commands: commands[0])
+def test_commands_run(commands, tmp_path, monkeypatch):
+    # Files that the command reads are in the checkout; what it writes goes elsewhere.
+    (tmp_path / "models").symlink_to(ROOT / "models")
+    monkeypatch.chdir(tmp_path)
+    for command in commands:
+        arguments = shorten(command)
+        result = CliRunner().invoke(main, arguments)
+        assert result.exit_code == 0, result.output
+        for option in ("--record", "--json", "--log", "--write"):
+            # A budget that holds as it is leaves nothing to write.
+            if option in arguments and "--budget-us" not in arguments:
+                file = Path(arguments[arguments.index(option) + 1])
+                assert file.stat().st_size > 0
 
 
 def test_two_commands_close_a_loop_over_two_processes(tmp_path):
-    first, second = (shlex.split(line)[1:] for line in TWO_TERMINALS)
+    first, second = (shlex.split(line)[1:] for line in TWO_TERMINALS.commands)
     assert second[-1] == "udp://127.0.0.1:7400", "the port that the first one has"
     # The one of the README may be taken here.
     driver = subprocess.Popen(
@@ -88,38 +104,66 @@ def test_two_commands_close_a_loop_over_two_processes(tmp_path):
         assert driver.wait(30) == 0
 
 
-def test_the_other_commands_are_targets_of_the_makefile():
+def test_two_commands_set_up_and_no_other_does():
+    assert SETUP.commands == ["make demo", "make test"]
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    others = [line for line in COMMANDS if line not in HAPTICS]
-    assert others[:2] == ["make demo", "make test"]
-    for line in others:
-        program, target = line.split()
-        assert program == "make"
-        assert re.search(rf"^{target}:", makefile, re.MULTILINE)
+    for command in SETUP.commands:
+        assert re.search(rf"^{command.split()[1]}:", makefile, re.MULTILINE)
 
 
-@pytest.fixture
-def run_python(capsys, monkeypatch):
-    """Runs a Python example of a section, of few lines, and returns what it prints."""
+def test_every_block_is_of_a_kind_that_is_tested():
+    kinds = [block.language for block in BLOCKS]
+    assert set(kinds) == {"sh", "python", "text"}
+    for i, kind in enumerate(kinds):
+        if kind == "text":
+            assert kinds[i - 1] == "python", "shows what the snippet prints"
+
+
+def test_every_program_in_a_sentence_is_run_somewhere():
+    programs = "drake-haptics|make|pip|python|cmake|git|run|bash|sh|cc"
+    named = {x for x in find_spans(README) if re.match(rf"({programs})( |$)", x)}
+    named -= {*find_span_commands(README), *SETUP.commands, PROGRAM}
+    assert named == OTHER_PROGRAMS
+
+
+@pytest.mark.parametrize("name", sorted({*re.findall(r"`(--[\w-]+)", README)}))
+def test_options_in_sentences_are_those_of_a_command(name):
+    with main.make_context(PROGRAM, ["run", "--help"], resilient_parsing=True) as ctx:
+        options = {
+            option
+            for command in main.list_commands(ctx)
+            for parameter in main.get_command(ctx, command).params
+            for option in parameter.opts
+        }
+    assert name in options
+
+
+@pytest.mark.parametrize("snippet", SNIPPETS, ids=lambda block: f"line {block.line}")
+def test_snippets_print_what_is_shown(snippet, capsys, monkeypatch):
     monkeypatch.chdir(ROOT)
+    shown = BLOCKS[BLOCKS.index(snippet) + 1]
+    assert shown.language == "text"
+    code = "\n" * snippet.line + snippet.text
+    exec(compile(code, "README.md", "exec"), {"__name__": "readme"})
+    printed = capsys.readouterr().out
+    number = re.compile(r"\d+\.?\d*")
+    assert number.sub("", printed) == number.sub("", shown.text)
+    # Of other processors the last digit may differ by one.
+    for here, there in zip(
+        number.findall(printed), number.findall(shown.text), strict=True
+    ):
+        last_digit = 10.0 ** -len(there.partition(".")[2])
+        assert float(here) == pytest.approx(float(there), abs=1.01 * last_digit)
 
-    def run(section, most_lines):
-        text = README.split(f"\n## {section}\n")[1].split("\n## ")[0]
-        (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-        assert len([line for line in block.splitlines() if line.strip()]) <= most_lines
-        exec(compile(block, "README.md", "exec"), {"__name__": "readme"})
-        return capsys.readouterr().out
 
-    return run
+def test_the_first_snippet_is_short():
+    lines = [line for line in SNIPPETS[0].text.splitlines() if line.strip()]
+    assert len(lines) <= 10
 
 
-def test_the_python_example_is_short_and_runs(run_python):
-    assert "N" in run_python("From Python", 12)
-
-
-def test_a_die_lies_in_the_cup_of_ones_own_plant(run_python):
-    printed = run_python("In your own Drake simulation", 32)
-    height_mm, force_N = map(float, re.findall(r"\d+\.\d+", printed))
+def test_the_die_lies_in_the_cup_and_not_on_its_hull():
+    (text,) = (b.text for b in BLOCKS if "die lies" in b.text and b.language == "text")
+    height_mm, force_N = map(float, re.findall(r"\d+\.\d+", text))
     assert force_N == pytest.approx(0.1 * 9.81, abs=0.006)
     # Its corners, 14 mm from the middle, are over a bottom that rises from 5 to 6 mm at
     # 22 mm, within the tolerance of 2 mm. The rim is at 72 mm.
@@ -127,9 +171,13 @@ def test_a_die_lies_in_the_cup_of_ones_own_plant(run_python):
     assert bottom_mm + 10.0 < height_mm < bottom_mm + 10.0 + 2.0
 
 
-def test_the_table_has_every_scene():
-    rows = re.findall(r"^\| `(\w+)` \|", README, re.MULTILINE)
-    assert sorted(rows) == sorted(list_scenes())
+def test_the_softest_contact_of_the_example_gives_way_by_its_spring():
+    """Less its tolerance, and no more than the force over the stiffness."""
+    (text,) = (b.text for b in BLOCKS if "N/m:" in b.text and b.language == "text")
+    tolerance_m = load_scene(find_scene("cup_spoon")).contact.tolerance_m
+    for line in text.splitlines():
+        stiffness, force_N, deep_mm = map(float, re.findall(r"\d+\.?\d*", line))
+        assert deep_mm <= 1e3 * (force_N / stiffness - tolerance_m) + 0.1
 
 
 @pytest.mark.parametrize("target", re.findall(r"\]\(([^)#:]+)\)", README))

@@ -1,0 +1,48 @@
+"""The parts of a Markdown page that a reader types, or is shown as what comes of it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+PROGRAM = "drake-haptics"
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block.
+
+    Attributes:
+        language: Behind the fence; "" where there is none.
+        text: Between the fences.
+        line: Of the opening fence, from 1.
+    """
+
+    language: str
+    text: str
+    line: int
+
+    @property
+    def commands(self) -> list[str]:
+        """The commands of a shell block, without comments."""
+        lines = re.sub(r"\\\n\s*", "", self.text).splitlines()
+        return [x for line in lines if (x := line.split(" #")[0].strip())]
+
+
+def find_blocks(text: str) -> list[Block]:
+    """Returns the fenced blocks of a page in their order."""
+    return [
+        Block(match[1], match[2], text[: match.start()].count("\n") + 1)
+        for match in re.finditer(r"(?ms)^```(\w*)\n(.*?)^```$", text)
+    ]
+
+
+def find_spans(text: str) -> list[str]:
+    """Returns the code spans of a page outside fenced blocks."""
+    prose = re.sub(r"(?ms)^```\w*\n.*?^```$", "", text)
+    return [" ".join(span.split()) for span in re.findall(r"`([^`]+)`", prose)]
+
+
+def find_span_commands(text: str) -> list[str]:
+    """Returns the code spans that are commands of this package."""
+    return [span for span in find_spans(text) if span.startswith(f"{PROGRAM} ")]
