@@ -1,0 +1,285 @@
+"""The cockpit of a real run in a real browser shows what is so, and acts.
+
+One run and one browser serve all tests, which go on from one another.
+"""
+
+import json
+
+import numpy as np
+import pytest
+import websocket
+from cockpit_rig import K_COUPLING, PRESS, CockpitRun, Page, calc_pressed_force
+from headless_browser import HeadlessBrowser, find_browser
+
+# The table has hundredths of a newton; the hand's spring is turned by the arm's rods.
+TOLERANCE_N = 0.03
+STIFFNESS = "coupling.stiffness_N_per_m"
+SLIDER = f"document.getElementById('{STIFFNESS}').closest('.slider')"
+WIDE = {"width": 1440, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+# Keeps the page's way to the run, so that a test can put words into it.
+HOOK = """
+  window.ways = [];
+  const Way = window.WebSocket;
+  window.WebSocket = class extends Way {
+    constructor(url) { super(url); ways.push(this); }
+  };
+"""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """The ball that is pressed onto the block."""
+    if find_browser() is None:
+        pytest.skip("no Chromium on the PATH")
+    file = tmp_path_factory.mktemp("cockpit") / "press.yaml"
+    file.write_text(PRESS)
+    run = CockpitRun(file)
+    yield run
+    run.close()
+
+
+@pytest.fixture(scope="module")
+def page(run):
+    """Its page, open."""
+    with HeadlessBrowser(find_browser()) as browser:
+        browser.call("Emulation.setDeviceMetricsOverride", **WIDE)
+        browser.call("Page.addScriptToEvaluateOnNewDocument", source=HOOK)
+        browser.open(run.url)
+        page = Page(browser)
+        page.wait_for("document.getElementById('gate').className == 'chip simulated'")
+        page.evaluate("document.querySelectorAll('.panel').forEach(p => p.open = true)")
+        yield page
+
+
+def test_it_tells_of_the_scene_and_of_the_loop(page):
+    assert page.read("scene") == "press"
+    assert page.read("description") == "A ball is pressed onto a block."
+    page.wait_for("parseFloat(document.getElementById('time').textContent) > 1")
+    page.wait_for("document.getElementById('contacts').textContent == '1 → 1'")
+    assert " of 1 ms" in page.read("tick") and "×" in page.read("rate")
+    assert page.evaluate("document.getElementById('tick-bar').style.width != '0%'")
+
+
+def test_the_trace_is_drawn_anew_while_the_run_goes_on(page):
+    assert page.trace() > 100
+    shown = "document.getElementById('force-trace').toDataURL()"
+    page.evaluate(f"window.before = {shown}")
+    page.wait_for(f"{shown} != window.before")
+
+
+def test_what_is_felt_is_what_the_springs_make(page):
+    f_W = page.wait_for_rest()
+    np.testing.assert_allclose(
+        f_W, [0, 0, calc_pressed_force(K_COUPLING)], atol=TOLERANCE_N
+    )
+    assert float(page.read("force").split()[0]) == pytest.approx(
+        np.linalg.norm(f_W), abs=0.02
+    )
+
+
+def test_a_slider_that_is_dragged_acts_at_once(page):
+    """Whatever stiffness it says afterwards, the force is that of it."""
+    low, high, row, share = page.evaluate(
+        f"""(slider => {{
+          const box = slider.getBoundingClientRect();
+          return [box.left, box.right, box.top + box.height / 2, slider.value / 1000];
+        }})({SLIDER}.querySelector('input[type=range]'))"""
+    )
+    # The thumb's middle goes from 8 px to 8 px before the end.
+    begin = low + 8 + share * (high - low - 16)
+    page.drag((begin, row), (begin + 0.15 * (high - low), row))
+    page.wait_for(f"{SLIDER}.classList.contains('changed')")
+    K = float(page.evaluate(f"document.getElementById('{STIFFNESS}').value"))
+    assert 1.5 * K_COUPLING < K < 4 * K_COUPLING
+    f_W = page.wait_for_rest()
+    assert f_W[2] == pytest.approx(calc_pressed_force(K), abs=TOLERANCE_N)
+
+
+def type_stiffness(page, text):
+    """Types into the number."""
+    page.evaluate(f"document.getElementById('{STIFFNESS}').select()")
+    page.evaluate(f"document.getElementById('{STIFFNESS}').focus()")
+    page.browser.call("Input.insertText", text=text)
+    page.press("Enter")
+
+
+def test_twice_the_stiffness_typed_makes_the_force_of_the_statics(page):
+    type_stiffness(page, str(2 * K_COUPLING))
+    f_W = page.wait_for_rest()
+    twice = calc_pressed_force(2 * K_COUPLING)
+    assert twice > 1.3 * calc_pressed_force(K_COUPLING)
+    assert f_W[2] == pytest.approx(twice, abs=TOLERANCE_N)
+
+
+def test_what_was_changed_is_there_as_yaml(page):
+    page.click("#copy")
+    page.wait_for("document.getElementById('yaml-dialog').open")
+    assert page.read("yaml").split() == ["coupling:", "stiffness_N_per_m:", "1600"]
+    page.press("Escape")
+    page.wait_for("!document.getElementById('yaml-dialog').open")
+
+
+def test_a_double_click_goes_back_to_the_scene_file(page):
+    page.click(f".slider:has([id='{STIFFNESS}']) input[type=range]", count=2)
+    page.wait_for(f"document.getElementById('{STIFFNESS}').value == {K_COUPLING}")
+    f_W = page.wait_for_rest()
+    assert f_W[2] == pytest.approx(calc_pressed_force(K_COUPLING), abs=TOLERANCE_N)
+
+
+def test_a_coupling_that_may_shake_is_warned_of_at_its_slider(page):
+    type_stiffness(page, "5000")
+    note = f"document.getElementById('{STIFFNESS}.warning')"
+    page.wait_for(f"!{note}.hidden && {note}.textContent.includes('stiffness_N_per_m')")
+    page.click("#reset")
+    page.wait_for(f"{note}.hidden")
+    page.wait_for(f"document.getElementById('{STIFFNESS}').value == {K_COUPLING}")
+
+
+@pytest.mark.parametrize("view", ["pieces", "virtual", "ghost", "contacts", "forces"])
+def test_a_view_changes_the_picture_and_back(page, view):
+    page.wait_for_rest()
+    before = look(page)
+    page.click(f"#view-{view}")
+    assert wait_for_change(page, before) > 20
+    page.click(f"#view-{view}")
+    wait_for_change(page, before, is_same=True)
+
+
+def look(page):
+    """The scene between the panels."""
+    return page.browser.screenshot()[120:800, 340:1080].astype(int)
+
+
+def wait_for_change(page, before, is_same=False):
+    """Waits for another picture, or the same; returns how many pixels differ."""
+    for _ in range(100):
+        differ = int((np.abs(look(page) - before).max(axis=2) > 12).sum())
+        if (differ <= 20) == is_same:
+            return differ
+    raise AssertionError(f"{differ} pixels differ")
+
+
+def test_the_camera_goes_where_a_key_says(page):
+    before = look(page)
+    page.press("4", "Digit4")
+    assert wait_for_change(page, before) > 1000
+    page.press("1", "Digit1")
+    wait_for_change(page, before, is_same=True)
+
+
+def test_every_control_is_reached_by_tab(page):
+    page.evaluate("document.activeElement.blur(); window.scrollTo(0, 0)")
+    reached = set()
+    for _ in range(80):
+        page.press("Tab", "Tab")
+        reached.add(
+            page.evaluate(
+                "NAME(document.activeElement)".replace(
+                    "NAME",
+                    "(e => e.id || e.ariaLabel || e.parentElement?.id || e.tagName)",
+                )
+            )
+        )
+    wanted = page.evaluate(
+        "[...document.querySelectorAll('button, select, input, summary')]"
+        ".filter(e => e.offsetParent && e.type != 'radio' && !e.disabled)"
+        ".map(e => e.id || e.ariaLabel || e.parentElement.id)"
+    )
+    assert set(wanted) <= reached
+    assert page.evaluate(
+        "[...document.querySelectorAll('button, select, input')]"
+        ".every(e => e.labels?.length || e.ariaLabel || e.title"
+        " || e.textContent.trim())"
+    )
+
+
+def test_keys_fold_the_panels_and_list_themselves(page):
+    for key, code, side in [
+        ("[", "BracketLeft", "left"),
+        ("]", "BracketRight", "right"),
+    ]:
+        page.press(key, code)
+        assert page.evaluate(f"!document.getElementById('{side}').offsetWidth")
+        page.press(key, code)
+        assert page.evaluate(f"document.getElementById('{side}').offsetWidth") > 200
+    page.press("?", "Slash")
+    page.wait_for("document.getElementById('help-dialog').open")
+    page.press("Escape")
+    page.wait_for("!document.getElementById('help-dialog').open")
+
+
+def test_the_mouse_takes_the_handle_and_drags_it_over_what_is_rough(page):
+    """Without friction a ball that is dragged feels the block's normal alone."""
+    page.press("2", "Digit2")
+    page.press("g")
+    page.wait_for("document.body.classList.contains('piloting')")
+    f_W = drag_aside(page)
+    assert abs(f_W[0]) < 0.02 and f_W[2] > 1.0
+    page.click("#effect-friction")
+    page.wait_for(
+        "document.getElementById('effect-friction').checked"
+        " && !document.querySelector('.switch.waiting')"
+    )
+    page.wait_for("document.getElementById('legend').textContent.includes('friction')")
+    f_W = drag_aside(page)
+    # It was dragged to the right: what it sticks to holds it back.
+    assert f_W[0] < -0.2
+    assert np.hypot(*f_W[:2]) < 0.31 * f_W[2]
+
+
+def drag_aside(page):
+    """Drags the handle along the block, to the right; returns what is felt at rest."""
+    ring = "['cx', 'cy'].map(a => +document.getElementById('ring').getAttribute(a))"
+    before = page.evaluate(ring)
+    page.drag((700, 600), (730, 600))
+    page.wait_for(f"{ring}[0] > {before[0] + 25}")
+    assert page.evaluate(ring)[1] == pytest.approx(before[1], abs=3)
+    return page.wait_for_rest()
+
+
+def test_a_page_that_comes_later_drives_and_this_one_can_take_over(run, page):
+    other = websocket.create_connection(run.url.replace("http", "ws"), timeout=30)
+    page.wait_for("document.getElementById('notice-watching') != null")
+    assert page.evaluate("document.getElementById('coupling').disabled")
+    page.click("#notice-watching button")
+    page.wait_for("document.getElementById('notice-watching') == null")
+    page.wait_for("!document.getElementById('coupling').disabled")
+    while json.loads(other.recv()).get("frame", {}).get("drives", True):
+        pass
+    other.close()
+
+
+def test_thousands_of_frames_leave_no_more_behind(page):
+    """Fed to the page in one go, so that it takes no time of its own."""
+    page.evaluate("""
+      window.feed = count => {
+        const way = ways.at(-1);
+        for (let n = 0; n < count; n++) way.onmessage({data: JSON.stringify({frame: {
+          time_s: 1e5 + n / 30, trace: {dt_s: 0.004, force_N: Array(8).fill(n % 7),
+          torque_Nm: Array(8).fill(0.1)}, f: [0, 0, 1], tau: [0, 0, 0],
+          f_W: [0, 0, n % 7], tau_W: [0, 0, 0], rate_hz: 1000, real_time: 1,
+          late_us: null, skipped: 0,
+          tick_us: {median: 50, p99: 80, max: 90}, contacts: 1, clusters: 1, depth_m: 0,
+          near_m: 0.001, gate: 'simulated', shed: [], handle: null, drives: true}})});
+        return document.querySelectorAll('*').length;
+      }""")
+
+    def weigh():
+        nodes = page.evaluate("feed(3000)")
+        page.browser.call("HeapProfiler.collectGarbage")
+        return nodes, page.browser.call("Runtime.getHeapUsage")["usedSize"]
+
+    weigh()
+    (nodes, heap), (nodes_later, heap_later) = weigh(), weigh()
+    assert nodes_later == nodes
+    assert heap_later - heap < 200e3
+
+
+def test_the_end_is_told_and_what_was_felt_stays(run, page):
+    assert page.browser.errors == []
+    run.interrupt()
+    page.wait_for("document.getElementById('notice-over') != null")
+    assert "ended" in page.read("notice-over")
+    assert page.read("gate") == "ended"
+    assert page.evaluate("document.getElementById('coupling').disabled")
+    assert page.trace() > 20
