@@ -22,21 +22,15 @@ _BLOCK = 1 << 8
 class RunStatistics:
     """Times, contacts, loads and energies of a run."""
 
-    def __init__(
-        self,
-        period_s: float,
-        ledger: EnergyLedger | None = None,
-        pace: TickClock | None = None,
-    ):
+    def __init__(self, period_s: float, pace: TickClock | None = None):
         """Starts with no tick.
 
         Args:
             period_s: Simulated time of a tick, s.
-            ledger: Where the run books its energy.
             pace: What paces the run, if it is paced.
         """
         self._pace = pace
-        self._ledger = ledger
+        self._ledger: EnergyLedger | None = None
         self._period_s = period_s
         self._pending: list[tuple[float, ...]] = []
         self._latest: tuple[float, ...] = ()
@@ -55,11 +49,7 @@ class RunStatistics:
         return self._ticks + len(self._pending)
 
     def book(self, ledger: EnergyLedger) -> None:
-        """Tells from now on of the energy in a ledger.
-
-        Args:
-            ledger: Where the run books its energy.
-        """
+        """Tells from now on of the energy in a ledger, where the run books it."""
         self._ledger = ledger
 
     @property

@@ -77,8 +77,8 @@ def run(
             in the tick. Where it returns True the run ends.
         context: Where to go on; becomes the simulator's. Nothing in it is initialized.
             At the scene's start where not given.
-        statistics: Of the runs before, which this one goes on with; its own where not
-            given.
+        statistics: Of the runs before, which this one goes on with, or of none yet;
+            its own where not given.
 
     Returns:
         What was measured. Ctrl-C ends a run early and is not an error.
@@ -90,12 +90,14 @@ def run(
     """
     if energy and haptic.backend is not None:
         raise ValueError("energy can be booked for a simulated device only")
-    if energy and statistics is not None:
+    if energy and statistics is not None and statistics.ticks:
         raise ValueError("energy can be booked of a run that is all in one only")
     simulator = make_simulator(haptic, context)
     ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
     if statistics is None:
-        statistics = RunStatistics(haptic.period_s, ledger, pace)
+        statistics = RunStatistics(haptic.period_s, pace=pace)
+    if ledger is not None:
+        statistics.book(ledger)
     end_s = math.inf
     if duration_s is not None:
         end_s = _find_end(simulator.get_context().get_time(), duration_s, haptic)

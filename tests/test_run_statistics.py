@@ -103,7 +103,8 @@ def test_memory_is_bounded_and_keeps_the_latest(monkeypatch):
 
 def test_the_energies_are_those_of_the_ledger_as_it_stands():
     books = {"device": {"in": 1.0}}
-    statistics = RunStatistics(1e-3, SimpleNamespace(to_dict=lambda: dict(books)))
+    statistics = RunStatistics(1e-3)
+    statistics.book(SimpleNamespace(to_dict=lambda: dict(books)))
     assert statistics.to_dict()["energy_J"] == books
     books["tool"] = {"in": 2.0}
     assert statistics.to_dict()["energy_J"] == books

@@ -12,16 +12,19 @@ from drake_haptics.builder import HapticDiagram
 from drake_haptics.cli import lessons
 from drake_haptics.cli.complete import complete_address, complete_file, complete_scene
 from drake_haptics.cli.console import make_console
+from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import require_folder, write_json
 from drake_haptics.cli.parts_table import make_parts_table
-from drake_haptics.cli.run_session import run_session
+from drake_haptics.cli.run_session import PageOptions, run_session
 from drake_haptics.cli.status_line import make_summary
+from drake_haptics.cockpit.page_port import open_page_port
 from drake_haptics.errors import UserError
 from drake_haptics.recording import write_recording
 from drake_haptics.scene import Scene, load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.stage import open_meshcat, set_stage
+from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
 
 _EXPLAINED_S = 2.0
 
@@ -42,13 +45,13 @@ _EXPLAINED_S = 2.0
 )
 @click.option(
     "--tool-scale",
-    type=click.FloatRange(0, min_open=True),
+    type=FiniteRange(0, min_open=True),
     metavar="METRES",
     help="Metres per unit of the tool's file.  [default: 1]",
 )
 @click.option(
     "--environment-scale",
-    type=click.FloatRange(0, min_open=True),
+    type=FiniteRange(0, min_open=True),
     metavar="METRES",
     help="Metres per unit of the environment's file.  [default: 1]",
 )
@@ -62,7 +65,7 @@ _EXPLAINED_S = 2.0
 )
 @click.option(
     "--duration",
-    type=click.FloatRange(0, min_open=True),
+    type=FiniteRange(0, min_open=True),
     metavar="S",
     help="Stop after so many simulated seconds.  [default: at Ctrl-C]",
 )
@@ -105,7 +108,7 @@ _EXPLAINED_S = 2.0
     "--port",
     type=click.IntRange(1024, 65535),
     metavar="PORT",
-    help="TCP port of the page.  [default: the first free one from 7000]",
+    help="TCP port of the page.  [default: the first free one from 7100]",
 )
 def run(
     scene: str | None,
@@ -129,7 +132,7 @@ def run(
     file. A simulated hand holds a simulated 6-DOF arm and moves the tool, or you do
     with --device.
     """
-    if (headless or explain) and (pieces or port) and not record:
+    if (headless or explain) and (port or (pieces and not record)):
         option = "--headless" if headless else "--explain"
         raise click.UsageError(f"{option} has no page for --pieces and --port")
     if explain:
@@ -142,17 +145,27 @@ def run(
     if log is not None and device == f"replay:{log}":
         raise UserError(f"--log: {log} is the log that is replayed; give another file")
     console = make_console(stderr=json_file == "-")
-    meshcat = None if headless and record is None else open_meshcat(port)
+    page = None
+    if not headless:
+        page = PageOptions(
+            open_page_port(port),
+            name=Path(scene).stem if scene else f"{Path(str(tool)).stem} on a mesh",
+            locked=_explain_lock(
+                {"--record": record, "--log": log, "--json": json_file}
+            ),
+            views=SHOWN_AT_FIRST | {"pieces"} if pieces else SHOWN_AT_FIRST,
+        )
+    meshcat = None if headless and record is None else open_meshcat()
     session = run_session(
         console,
         chosen,
         device=device,
         meshcat=meshcat,
-        prepare_page=lambda haptic: _prepare_page(
-            console, haptic, meshcat, pieces, record, headless
+        page=page,
+        prepare=lambda haptic, url: _prepare(
+            console, haptic, meshcat, url, pieces, record
         ),
         duration_s=duration,
-        paced=not headless,
         energy=json_file is not None,
         explained=explain,
         log=log,
@@ -173,25 +186,35 @@ def run(
         raise _UnstableError(str(session.error)) from session.error
 
 
-def _prepare_page(
+def _explain_lock(files: dict[str, object]) -> str:
+    """Returns why nothing may be changed on the page of a run; empty if it may.
+
+    Args:
+        files: What is written of the run as one, by option.
+    """
+    options = " and ".join(option for option, file in files.items() if file)
+    if not options:
+        return ""
+    return f"A run with {options} keeps to its scene. Start one without to change it."
+
+
+def _prepare(
     console: Console,
     haptic: HapticDiagram,
     meshcat: Meshcat | None,
+    url: str | None,
     pieces: bool,
     record: Path | None,
-    headless: bool,
 ) -> None:
     """Sets the stage and says where it is to be seen."""
-    if meshcat is None:
-        return
-    set_stage(meshcat, haptic)
+    if meshcat is not None:
+        set_stage(meshcat, haptic)
     visualizer = haptic.visualizer
     if visualizer is not None and pieces:
         visualizer.Show("pieces", True)
     if visualizer is not None and record is not None:
         visualizer.StartRecording()
-    if not headless:
-        url = (haptic.backend and haptic.backend.url) or meshcat.web_url()
+    if url is not None:
         console.print(f"Open [bold]{url}[/] to see it.", soft_wrap=True)
         console.print("Ctrl-C ends the run.", style="dim")
 

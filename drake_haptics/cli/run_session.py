@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import socket
 from collections.abc import Callable
-from contextlib import ExitStack, nullcontext
+from contextlib import ExitStack, closing, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,12 +19,15 @@ from drake_haptics.cli.build_scene import build_scene
 from drake_haptics.cli.enter_key import is_enter_pressed
 from drake_haptics.cli.lasting_interrupt import lasting_interrupt
 from drake_haptics.cli.status_line import StatusLine
+from drake_haptics.cockpit.cockpit_run import CockpitRun
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.device_address import open_device
 from drake_haptics.device_watch import DeviceWatch
 from drake_haptics.explain import Part, explain_tick
+from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene import Scene
 from drake_haptics.simulation import RunError, run
+from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
 from drake_haptics.tick_clock import TickClock
 from drake_haptics.tick_log.loop_log import make_log_header
 from drake_haptics.tick_log.tick_recorder import TickRecorder
@@ -34,7 +38,7 @@ class Session:
     """What came of a run.
 
     Attributes:
-        haptic: What ran.
+        haptic: What ran last.
         figures: As `RunStatistics.to_dict` has them, and of a device under `device`
             those of `DeviceWatch.to_dict`.
         parts: Of a tick, if they were to be explained.
@@ -47,15 +51,32 @@ class Session:
     error: RunError | None
 
 
+@dataclass(frozen=True)
+class PageOptions:
+    """The page of a run.
+
+    Attributes:
+        listener: Its port.
+        name: Of the scene.
+        locked: Why nothing may be changed on it; empty if it may.
+        views: Of `PICTURE_VIEWS`, what it shows at first.
+    """
+
+    listener: socket.socket
+    name: str
+    locked: str = ""
+    views: frozenset[str] = SHOWN_AT_FIRST
+
+
 def run_session(
     console: Console,
     scene: Scene,
     *,
     device: str | None,
     meshcat: Meshcat | None,
-    prepare_page: Callable[[HapticDiagram], None],
+    page: PageOptions | None,
+    prepare: Callable[[HapticDiagram, str | None], None],
     duration_s: float | None,
-    paced: bool,
     energy: bool,
     explained: bool,
     log: Path | None,
@@ -66,51 +87,110 @@ def run_session(
         console: Where bars and the status line go.
         scene: What to run.
         device: Address of what is held; None for the scene's simulated one.
-        meshcat: The page, if there is one.
-        prepare_page: Called with what was built before it runs.
+        meshcat: Where to draw, if there is to be a picture.
+        page: To show and steer the run, at the pace of the clock; None for none.
+        prepare: Called with what was built before it runs, and the page's address.
         duration_s: Simulated time, s; until Ctrl-C where None.
-        paced: Whether simulated time is clock time. With a device it always is.
         energy: Whether to book energy, where the device is simulated.
         explained: Whether to explain the parts of a tick.
         log: File for every tick, if wanted.
     """
     timer = CallbackTimer() if explained else None
-    with ExitStack() as closing:
-        check_interrupt = closing.enter_context(lasting_interrupt())
-        backend: DeviceBackend | None = None
+    with ExitStack() as stack:
+        check_interrupt = stack.enter_context(lasting_interrupt())
         recorder = None
         if log is not None:
-            recorder = closing.enter_context(TickRecorder(log, make_log_header(scene)))
-        if device is not None:
-            # Closed whatever happens: at zero force.
-            backend = closing.enter_context(open_device(device, scene, meshcat))
+            recorder = stack.enter_context(TickRecorder(log, make_log_header(scene)))
+        # A device is closed whatever happens: at zero force.
+        cockpit = backend = None
+        if page is not None and meshcat is not None:
+            cockpit = CockpitRun(
+                scene,
+                meshcat,
+                page.listener,
+                name=page.name,
+                device=device,
+                locked=page.locked,
+                views=page.views,
+            )
+            stack.enter_context(closing(cockpit))
+            backend = cockpit.backend
+        elif device is not None:
+            backend = stack.enter_context(open_device(device, scene, meshcat))
         with timer or nullcontext():
             haptic = build_scene(console, scene, meshcat, backend, recorder)
-        prepare_page(haptic)
-        pace = TickClock(haptic.period_s) if paced or backend is not None else None
-        watch = None if backend is None else DeviceWatch(backend, is_enter_pressed)
+        prepare(haptic, None if cockpit is None else cockpit.url)
+        is_paced = cockpit is not None or backend is not None
+        pace = TickClock(haptic.period_s) if is_paced else None
         status = StatusLine(console, haptic, pace)
-        closing.enter_context(status)
-        ends = [part.end_tick for part in (status, watch, timer) if part is not None]
-
-        def end_tick(context: Context) -> None:
-            check_interrupt()
-            for end in ends:
-                end(context)
-
+        stack.enter_context(status)
+        onlookers = _Onlookers(check_interrupt, status, timer)
+        energy = energy and backend is None
+        statistics = RunStatistics(haptic.period_s, pace=pace)
         error = None
         try:
-            statistics = run(
-                haptic,
-                duration_s,
-                pace=pace,
-                energy=energy and backend is None,
-                on_tick=end_tick,
-            )
+            if cockpit is not None and pace is not None:
+                haptic = cockpit.run(
+                    haptic,
+                    lambda scene, backend: build_scene(
+                        console, scene, meshcat, backend
+                    ),
+                    duration_s,
+                    pace=pace,
+                    statistics=statistics,
+                    energy=energy,
+                    on_begin=onlookers.begin,
+                    on_tick=onlookers.end_tick,
+                )
+            else:
+                onlookers.begin(haptic)
+                run(
+                    haptic,
+                    duration_s,
+                    pace=pace,
+                    energy=energy,
+                    on_tick=onlookers.end_tick,
+                    statistics=statistics,
+                )
         except RunError as stopped:
-            statistics, error = stopped.statistics, stopped
-        figures = statistics.to_dict()
-        if watch is not None:
-            figures["device"] = watch.to_dict()
+            error = stopped
+        figures = statistics.to_dict() | onlookers.describe_device()
     parts = explain_tick(haptic, timer) if timer is not None else []
     return Session(haptic, figures, parts, error)
+
+
+class _Onlookers:
+    """Those who look at every tick: the status line, the device's watch, the timer."""
+
+    def __init__(
+        self,
+        check_interrupt: Callable[[], None],
+        status: StatusLine,
+        timer: CallbackTimer | None,
+    ):
+        self._check_interrupt = check_interrupt
+        self._status = status
+        self._timer = timer
+        self._backend: DeviceBackend | None = None
+        self._watch: DeviceWatch | None = None
+        self._ends: list[Callable[[Context], None]] = []
+
+    def begin(self, haptic: HapticDiagram) -> None:
+        """Looks at a diagram from now on."""
+        self._status.follow(haptic)
+        if haptic.backend is not self._backend:
+            self._backend, self._watch = haptic.backend, None
+            if haptic.backend is not None:
+                self._watch = DeviceWatch(haptic.backend, is_enter_pressed)
+        looking = (self._status, self._watch, self._timer)
+        self._ends = [part.end_tick for part in looking if part is not None]
+
+    def end_tick(self, context: Context) -> None:
+        """Looks at a tick."""
+        self._check_interrupt()
+        for end in self._ends:
+            end(context)
+
+    def describe_device(self) -> dict[str, Any]:
+        """Returns `device` of the figures, of the device that was held last."""
+        return {} if self._watch is None else {"device": self._watch.to_dict()}

@@ -53,6 +53,10 @@ class StatusLine(LiveLine):
         self._context: Context | None = None
         self._before_s = 0.0
 
+    def follow(self, haptic: HapticDiagram) -> None:
+        """Tells from now on of another diagram, with which the run goes on."""
+        self._haptic = haptic
+
     def end_tick(self, context: Context) -> None:
         """Writes the line anew, if it is time.
 
@@ -66,7 +70,8 @@ class StatusLine(LiveLine):
         """Returns the line."""
         assert self._context is not None
         time_s = self._context.get_time()
-        run_s, self._before_s = time_s - self._before_s, time_s
+        # A scene that is begun anew has gone nowhere yet.
+        run_s, self._before_s = max(0.0, time_s - self._before_s), time_s
         backend = self._haptic.backend
         force, contacts = self._describe_touch(self._context)
         if backend is None or self._pace is None:

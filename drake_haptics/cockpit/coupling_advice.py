@@ -1,0 +1,34 @@
+"""What is wrong with a scene's coupling while people change it."""
+
+from __future__ import annotations
+
+from drake_haptics.coupling_check import check_coupling
+from drake_haptics.held_handle import calc_force_delay, calc_scene_handle
+from drake_haptics.scene import Scene, SceneError
+from drake_haptics.simulated_device import make_hand_path, make_simulated_device
+
+
+class CouplingAdvice:
+    """`check_scene_coupling`, without a new arm for each value that is tried."""
+
+    def __init__(self, scene: Scene):
+        """Makes the arm.
+
+        Args:
+            scene: Its device and hand hold for all that are checked.
+        """
+        self._period_s = 1.0 / scene.device.rate_hz
+        self._delay_s = calc_force_delay(scene)
+        try:
+            device = make_simulated_device(scene, make_hand_path(scene.hand.path))
+        except SceneError:
+            # Nothing is known of a device without a model.
+            self._held = None
+        else:
+            self._held = calc_scene_handle(scene, device)
+
+    def check(self, scene: Scene) -> list[str]:
+        """Returns a sentence for each bound that a scene's coupling breaks."""
+        if self._held is None:
+            return []
+        return check_coupling(scene.coupling, self._held, self._period_s, self._delay_s)

@@ -1,0 +1,132 @@
+"""Who holds the handle of a run, and how it changes hands."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from pydrake.geometry import Meshcat
+from pydrake.math import RigidTransform, RollPitchYaw
+
+from drake_haptics.cockpit.page_handle import PageHandle
+from drake_haptics.device.backend import DeviceBackend, DeviceError
+from drake_haptics.device.meshcat_device import MeshcatDevice
+from drake_haptics.device_address import open_device
+from drake_haptics.device_site import find_device_site, wait_for_reading
+from drake_haptics.scene import Pose, Scene
+
+HAND, MOUSE, SLIDERS, DEVICE = "hand", "mouse", "sliders", "device"
+_LABELS = {HAND: "Simulated hand", MOUSE: "Mouse", SLIDERS: "Sliders, gamepad"}
+# Addresses of what this page can do by itself.
+_OF_PAGE = {"mouse:": MOUSE, "meshcat:": SLIDERS}
+
+
+class Holding:
+    """The handle in somebody's hand: the scene's, the mouse's, a device's.
+
+    Attributes:
+        name: `HAND`, `MOUSE`, `SLIDERS` or `DEVICE`.
+        backend: What is held; None in the scene's own simulated hand.
+    """
+
+    def __init__(self, scene: Scene, meshcat: Meshcat, address: str | None):
+        """Takes what an address names, or the scene's simulated device.
+
+        Args:
+            scene: Says where its device stands.
+            meshcat: Has a page.
+            address: As `open_device`; None for the simulated one.
+
+        Raises:
+            DeviceError, SceneError, TickLogError, OSError: As `open_device`.
+        """
+        self._scene = scene
+        self._meshcat = meshcat
+        self._address = address
+        self._site = find_device_site(scene)
+        # Where the base of a device stands that was put to the scene's hand.
+        self._base: Pose | None = None
+        self.name = HAND
+        self.backend: DeviceBackend | None = None
+        if address is not None:
+            self.take(_OF_PAGE.get(address, DEVICE))
+
+    @property
+    def names(self) -> dict[str, str]:
+        """Who can hold it, and what people read of them."""
+        if self._address is None or self._address in _OF_PAGE:
+            return _LABELS
+        return {DEVICE: self._address, **_LABELS}
+
+    @property
+    def pointer(self) -> PageHandle | None:
+        """What the pointer on the page moves, if it holds the handle."""
+        return self.backend if isinstance(self.backend, PageHandle) else None
+
+    def take(self, name: str, X_WH: RigidTransform | None = None) -> None:
+        """Gives the handle to somebody; whoever had it lets go at zero force.
+
+        Args:
+            name: One of `names`.
+            X_WH: Where the mouse and the sliders take it; where the scene's hand
+                starts if not given.
+
+        Raises:
+            DeviceError, SceneError, TickLogError, OSError: As `open_device`. It is
+                held as before then.
+        """
+        if name not in self.names:
+            raise DeviceError(f"There is nobody called {name!r} to hold the handle.")
+        if name == SLIDERS and self.name == SLIDERS:
+            # There can be one set of them.
+            self.close()
+        backend = self._open(name, X_WH)
+        self.close()
+        self.name, self.backend, self._base = name, backend, None
+
+    def place(self, scene: Scene) -> Scene:
+        """Returns a scene in which a device stands where it stood until now."""
+        if self._base is None:
+            return scene
+        device = dataclasses.replace(scene.device, base=self._base)
+        return dataclasses.replace(scene, device=device)
+
+    def note_place(self, X_WB: RigidTransform) -> None:
+        """Notes where the base of the device stands that is held now."""
+        if self.backend is not None and not self.backend.is_placed:
+            rpy = RollPitchYaw(X_WB.rotation()).vector()
+            self._base = Pose(X_WB.translation().tolist(), np.rad2deg(rpy).tolist())
+
+    def close(self) -> None:
+        """Lets go, at zero force; may be called again."""
+        if self.backend is not None:
+            self.backend.close()
+
+    def _open(self, name: str, X_WH: RigidTransform | None) -> DeviceBackend | None:
+        """Returns what is to be held."""
+        site = self._site
+        X_BH = site.X_BH if X_WH is None else site.X_WB.InvertAndCompose(X_WH)
+        if name == MOUSE:
+            return PageHandle(
+                X_WB=site.X_WB, X_BH=X_BH, workspace_radius_m=site.workspace_radius_m
+            )
+        if name == SLIDERS:
+            return MeshcatDevice(
+                self._meshcat,
+                X_WB=site.X_WB,
+                X_BH=X_BH,
+                workspace_radius_m=site.workspace_radius_m,
+            )
+        if name == DEVICE and self._address is not None:
+            return self._open_device(self._address)
+        return None
+
+    def _open_device(self, address: str) -> DeviceBackend:
+        """Returns a device that has been heard of."""
+        device = open_device(address, self._scene, self._meshcat)
+        try:
+            wait_for_reading(device)
+        except BaseException:
+            device.close()
+            raise
+        return device

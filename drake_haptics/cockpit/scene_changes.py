@@ -1,0 +1,205 @@
+"""A scene while people change it."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+from drake_haptics.errors import UserError
+from drake_haptics.live_keys import LiveKey, live_keys
+from drake_haptics.scene import (
+    Braking,
+    Effects,
+    Friction,
+    Gravity,
+    Material,
+    Passivity,
+    Scene,
+    Shading,
+)
+
+SCENE_VERBS = ("set", "choose", "effect", "reset")
+CLUSTERING = "contact.clustering"
+CLUSTERINGS = ("shared", "octree")
+EFFECTS = {
+    "shading": Shading,
+    "friction": Friction,
+    "braking": Braking,
+    "gravity": Gravity,
+    "passivity": Passivity,
+}
+# What a material says of an effect means nothing without it.
+_OF_MATERIAL = {"shading": "shading", "friction": "friction_coefficient"}
+_CLUSTER_SIZE = "contact.cluster_size_m"
+# Where `octree` is chosen and nobody has said how large clusters are, m.
+_CLUSTER_SIZE_M = 5e-3
+
+
+class ChangeError(UserError):
+    """A change that cannot be made; says why."""
+
+
+class SceneChanges:
+    """What people have made of a scene, and how a scene file says so.
+
+    Attributes:
+        scene: As it is now. Replaced, never changed.
+    """
+
+    def __init__(self, scene: Scene):
+        """Begins with a scene as its file has it."""
+        self._file = scene
+        # Ranges are those of the file: what was set last does not move them.
+        self._keys_of_file = _find_keys(scene)
+        self._keys = self._keys_of_file
+        self.scene = scene
+
+    @property
+    def file(self) -> Scene:
+        """The scene as its file has it."""
+        return self._file
+
+    def list_keys(self) -> tuple[LiveKey, ...]:
+        """Returns the values that can be set now."""
+        return tuple(self._keys.values())
+
+    def set(self, key: str, to: float) -> None:
+        """Sets a value.
+
+        Raises:
+            ChangeError: There is no such value, or the number is out of range.
+        """
+        if key not in self._keys:
+            raise ChangeError(f"There is no value {key!r} to set.")
+        item = self._keys[key]
+        if not item.low <= to <= item.high:
+            raise ChangeError(
+                f"{key} must be from {item.low:g} to {item.high:g} {item.unit},"
+                f" is {to:g}."
+            )
+        self.scene = item.change(self.scene, float(to))
+
+    def choose(self, key: str, to: str) -> None:
+        """Chooses one of several ways.
+
+        Raises:
+            ChangeError: There is no such choice.
+        """
+        if key != CLUSTERING or to not in CLUSTERINGS:
+            raise ChangeError(f"There is no choice {to!r} of {key!r}.")
+        if to == self.scene.contact.clustering:
+            return
+        size_m = None
+        if to == "octree":
+            size_m = self._file.contact.cluster_size_m or _CLUSTER_SIZE_M
+        contact = dataclasses.replace(
+            self.scene.contact, clustering=to, cluster_size_m=size_m
+        )
+        self.restore(dataclasses.replace(self.scene, contact=contact))
+
+    def switch_effect(self, name: str, on: bool) -> None:
+        """Adds an effect, with the file's values or its defaults, or takes it out.
+
+        Raises:
+            ChangeError: There is no such effect.
+        """
+        if name not in EFFECTS:
+            raise ChangeError(f"There is no effect {name!r}.")
+        effect = (getattr(self._file.effects, name) or EFFECTS[name]()) if on else None
+        effects = dataclasses.replace(self.scene.effects, **{name: effect})
+        environment = [
+            dataclasses.replace(
+                now, material=_make_material(file.material, now.material, effects)
+            )
+            for file, now in zip(
+                self._file.environment, self.scene.environment, strict=True
+            )
+        ]
+        self.scene = dataclasses.replace(
+            self.scene, effects=effects, environment=environment
+        )
+
+    def restore(self, scene: Scene) -> None:
+        """Makes the scene what it was before, or what its file says."""
+        self.scene = scene
+        self._keys = {**_find_keys(scene), **self._keys_of_file}
+        if scene.contact.cluster_size_m is None:
+            self._keys.pop(_CLUSTER_SIZE, None)
+
+    def obey(self, request: dict[str, Any]) -> None:
+        """Does what a page asks for.
+
+        Args:
+            request: As `read_page_request` returns it, of `SCENE_VERBS`.
+
+        Raises:
+            ChangeError: It cannot be.
+        """
+        match request["do"]:
+            case "set":
+                self.set(request["key"], request["to"])
+            case "choose":
+                self.choose(request["key"], request["to"])
+            case "effect":
+                self.switch_effect(request["name"], request["on"])
+            case "reset":
+                self.restore(self._file)
+
+    def describe(self) -> dict[str, Any]:
+        """Returns `values`, `choices`, `effects` and `changes`, ready for JSON."""
+        effects = self.scene.effects
+        return {
+            "values": {item.key: item.read(self.scene) for item in self.list_keys()},
+            "choices": {CLUSTERING: self.scene.contact.clustering},
+            "effects": {name: getattr(effects, name) is not None for name in EFFECTS},
+            "changes": self._list_changes(),
+        }
+
+    def _list_changes(self) -> dict[str, Any]:
+        """Returns the keys of a scene file that differ, and all effects if one does.
+
+        An effect is off where a file does not name it: so its place is told whole.
+        """
+        changes: dict[str, Any] = {}
+        for section in ("contact", "coupling"):
+            file, now = getattr(self._file, section), getattr(self.scene, section)
+            differing = {
+                field.name: getattr(now, field.name)
+                for field in dataclasses.fields(now)
+                if getattr(now, field.name) != getattr(file, field.name)
+            }
+            if differing:
+                changes[section] = differing
+        if self.scene.effects != self._file.effects:
+            changes["effects"] = {
+                name: _list_given(effect)
+                for name in EFFECTS
+                if (effect := getattr(self.scene.effects, name)) is not None
+            }
+        return changes
+
+
+def _find_keys(scene: Scene) -> dict[str, LiveKey]:
+    """Returns the values that can be set, by their keys."""
+    return {item.key: item for item in live_keys(scene)}
+
+
+def _make_material(file: Material, now: Material, effects: Effects) -> Material:
+    """Returns a material without what means nothing with these effects."""
+    return dataclasses.replace(
+        now,
+        **{
+            key: None if getattr(effects, name) is None else getattr(file, key)
+            for name, key in _OF_MATERIAL.items()
+        },
+    )
+
+
+def _list_given(effect: Any) -> dict[str, Any]:
+    """Returns the values of an effect that are not its defaults."""
+    default = type(effect)()
+    return {
+        field.name: getattr(effect, field.name)
+        for field in dataclasses.fields(effect)
+        if getattr(effect, field.name) != getattr(default, field.name)
+    }
