@@ -36,6 +36,9 @@ def write_archive(
     digest = np.frombuffer(_digest(entries), dtype=np.uint8)
     buffer = io.BytesIO()
     np.savez(buffer, digest=digest, **entries)  # type: ignore[arg-type]
+    if path.exists() and not path.is_file():
+        path.write_bytes(buffer.getbuffer())  # a device or a pipe, not to be replaced
+        return
     temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
     try:
         with open(temporary, "xb") as stream:

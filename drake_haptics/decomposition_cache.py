@@ -82,7 +82,12 @@ def store_cached(key: str, pieces: PieceData) -> None:
         write_pieces(path, key, pieces)
         _tidy(path.parent, keep=path)
     except OSError as error:
-        _log.warning("the decomposition could not be cached: %s", error)
+        _log.warning(
+            "no decomposition can be kept in %s (%s), so that each run cuts its meshes"
+            " anew; DRAKE_HAPTICS_CACHE names another folder",
+            path.parent,
+            error.strerror,
+        )
 
 
 def _path(key: str) -> Path:

@@ -29,6 +29,7 @@ from drake_haptics.cli.accuracy_output import print_choice, print_study
 from drake_haptics.cli.complete import complete_scene, complete_setting
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.exit_codes import ExitCode
+from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
 from drake_haptics.cli.progress_bar import progress_bar
@@ -73,7 +74,7 @@ _FILE: dict[str, Any] = {
 @click.option("--store", **_FILE, help="Keep results here, and go on from them.")
 @click.option(
     "--budget-us",
-    type=click.FloatRange(0, min_open=True),
+    type=FiniteRange(0, min_open=True),
     metavar="N",
     help="Instead of a page: pick the most accurate setting whose ticks take at most N"
     " µs, 99th percentile, and write it as a scene file.",

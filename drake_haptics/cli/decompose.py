@@ -9,11 +9,13 @@ import click
 
 from drake_haptics.cli import lessons
 from drake_haptics.cli.console import make_console
+from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import (
     json_option,
     max_triangles_option,
     read_mesh,
+    require_folder,
     unit_options,
     write_json,
 )
@@ -21,7 +23,7 @@ from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.decomposition import METHODS, Decomposition, Method
 from drake_haptics.decomposition import decompose as decompose_mesh
 from drake_haptics.mesh import Mesh
-from drake_haptics.mesh_report import length
+from drake_haptics.mesh_report import Severity, length
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.DECOMPOSE)
@@ -39,7 +41,7 @@ from drake_haptics.mesh_report import length
 @click.option(
     "--error",
     "error_m",
-    type=float,
+    type=FiniteRange(0),
     metavar="METRES",
     help="How far merged pieces may depart from the mesh.",
 )
@@ -48,6 +50,7 @@ from drake_haptics.mesh_report import length
     "--output",
     type=click.Path(dir_okay=False),
     metavar="FILE",
+    callback=require_folder,
     help="Write mesh and pieces to an .npz file.",
 )
 @click.option(
@@ -60,6 +63,7 @@ from drake_haptics.mesh_report import length
     "--html",
     type=click.Path(dir_okay=False),
     metavar="FILE",
+    callback=require_folder,
     help="Write the view of the pieces as one self-contained web page.",
 )
 @json_option
@@ -111,6 +115,9 @@ def _print_report(result: Decomposition) -> None:
             f"  The mesh was reduced: its surface is within"
             f" {length(result.mesh.report.decimation_error_m)} of the original one."
         )
+    for finding in result.mesh.report.findings:
+        if finding.severity is Severity.QUESTION:
+            console.print(f"  Question: {finding.message}: {finding.action}")
     unclean = len(result.mesh.report.unclean)
     if unclean:
         console.print(

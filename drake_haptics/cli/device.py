@@ -10,6 +10,7 @@ from drake_haptics.cli import lessons
 from drake_haptics.cli.complete import complete_scene
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.driver_status import DriverStatusLine, make_driver_summary
+from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.device.simulated_driver import make_simulated_driver
@@ -37,13 +38,13 @@ from drake_haptics.scene_library import find_scene
 )
 @click.option(
     "--rate",
-    type=click.FloatRange(10, 10000),
+    type=FiniteRange(10, 10000),
     metavar="HZ",
     help="Ticks per second.  [default: the scene's]",
 )
 @click.option(
     "--ttl-ms",
-    type=click.FloatRange(0, 1000, min_open=True),
+    type=FiniteRange(0, 1000, min_open=True),
     metavar="MS",
     default=100.0,
     show_default=True,
@@ -52,7 +53,7 @@ from drake_haptics.scene_library import find_scene
 )
 @click.option(
     "--duration",
-    type=click.FloatRange(0, min_open=True),
+    type=FiniteRange(0, min_open=True),
     metavar="S",
     help="Stop after so many seconds.  [default: at Ctrl-C]",
 )

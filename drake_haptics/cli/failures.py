@@ -136,17 +136,24 @@ def _warnings_in_lines(debug: bool) -> Iterator[None]:
 
 
 class _LineHandler(logging.Handler):
-    """Writes what is logged as a line each."""
+    """Writes what is logged as a line each, once."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self._written: set[str] = set()
 
     def emit(self, record: logging.LogRecord) -> None:
         """Writes a record."""
-        warn(record.getMessage())
+        words = record.getMessage()
+        if words not in self._written:
+            self._written.add(words)
+            warn(words)
 
 
 @contextmanager
 def _log_in_lines() -> Iterator[None]:
     """Shows what libraries, Drake among them, log from warnings on."""
-    handler = _LineHandler(logging.WARNING)
+    handler = _LineHandler()
     logging.root.addHandler(handler)
     try:
         yield

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -85,10 +86,19 @@ def require_folder(
     """Returns the file of an option, so that no result is computed for nowhere.
 
     Raises:
-        UserError: There is no such folder.
+        UserError: There is no such folder, or nothing can be written there.
     """
-    if file is not None and not Path(file).absolute().parent.is_dir():
-        raise UserError(f"{option.opts[0]}: there is no folder {Path(file).parent}")
+    if file is None or str(file) == "-":
+        return file
+    path = Path(file)
+    folder = path.absolute().parent
+    if not folder.is_dir():
+        raise UserError(f"{option.opts[0]}: there is no folder {path.parent}")
+    if not os.access(path if path.exists() else folder, os.W_OK):
+        raise UserError(
+            f"{option.opts[0]}: {path} cannot be written; name a file in a folder of"
+            " yours"
+        )
     return file
 
 
@@ -98,5 +108,7 @@ def write_json(data: dict[str, Any], file: str) -> None:
     if file == "-":
         click.echo(text)
         return
-    with open(file, "w", encoding="utf-8") as stream:
-        stream.write(text + "\n")
+    try:
+        Path(file).write_text(text + "\n", encoding="utf-8")
+    except OSError as error:  # Of a full disk, which names no file.
+        raise OSError(error.errno, error.strerror, file) from error

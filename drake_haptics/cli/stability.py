@@ -19,8 +19,9 @@ from drake_haptics.analysis.study import StudyError
 from drake_haptics.cli import lessons
 from drake_haptics.cli.complete import complete_scene
 from drake_haptics.cli.console import make_console
+from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
 from drake_haptics.page_path import check_page_path
@@ -34,7 +35,7 @@ from drake_haptics.simulation import RunError
 @click.option(
     "--at",
     "time_s",
-    type=click.FloatRange(0),
+    type=FiniteRange(0),
     metavar="S",
     help="Stop the hand at this time of its path.  [default: at the firmest contact]",
 )
@@ -51,12 +52,14 @@ from drake_haptics.simulation import RunError
     "--out",
     type=click.Path(dir_okay=False, path_type=Path),
     metavar="FILE",
+    callback=require_folder,
     help="The page; its picture is written beside it.  [default: SCENE-stability.html]",
 )
 @click.option(
     "--store",
     type=click.Path(dir_okay=False, path_type=Path),
     metavar="FILE",
+    callback=require_folder,
     help="Keep the map's results here, and go on from them.",
 )
 @json_option
@@ -76,10 +79,10 @@ def stability(
     the poles, the margins, the largest stable stiffness by eigenvalue, by simulation
     and by formula, and a map over the coupling's stiffness and damping.
     """
+    if map_size == 1:
+        raise click.BadParameter("0 for no map, else at least 2", param_hint="--map")
     chosen = load_scene(find_scene(scene))
     path = out or Path(f"{Path(scene).stem}-stability.html")
-    if not path.absolute().parent.is_dir():
-        raise UserError(f"--out: there is no folder {path.parent}")
     try:
         check_page_path(path)
         with progress_bar() as show:

@@ -91,8 +91,7 @@ def test_out_says_where_the_page_is_written(invoke, sample, tmp_path):
     ("arguments", "words"),
     [
         (["--at", "1e3"], "time_s must be on the hand's path, from 0 to"),
-        (["--at", "nan"], "time_s must be on the hand's path, from 0 to"),
-        (["--map", "1"], "map_size must be 0 or at least 2, is 1"),
+        (["--at", "99"], "time_s must be on the hand's path, from 0 to"),
         (["--out", "page.png"], "must not be called page.png"),
         (["--out", "nowhere/page.html"], "--out: there is no folder nowhere"),
     ],
@@ -103,6 +102,18 @@ def test_a_mistake_is_one_line(invoke, arguments, words, tmp_path):
     (line,) = result.stderr.splitlines()
     assert line.startswith("Error: ") and words in line
     assert result.stdout == "" and list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--map", "1"], "Invalid value for --map: 0 for no map, else at least 2"),
+        (["--at", "nan"], "Invalid value for '--at': nan is no finite number"),
+    ],
+)
+def test_a_value_that_cannot_be_is_a_wrong_call(invoke, arguments, words):
+    result = invoke("hammer_block", *arguments)
+    assert result.exit_code == 2 and words in result.stderr
 
 
 @pytest.mark.parametrize(
