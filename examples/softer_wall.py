@@ -2,15 +2,12 @@
 
     python examples/softer_wall.py
 
-Runs the peg in the torus with three contact stiffnesses. The hand hardly notices the
-first step, because the coupling is the softer spring there; the last one lets the peg
-deep into the torus.
+Runs the peg in the torus with three contact stiffnesses. Coupling and contact are two
+springs in a row: while the contact is the stiffer one, the hand hardly notices how
+stiff it is; softer than the coupling, it lets the peg deep into the torus.
 """
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import run
+from drake_haptics import BuildHapticDiagram, find_scene, load_scene, run
 
 print("stiffness N/m   largest force N   penetration mm")
 for stiffness_N_per_m in (2e4, 2e3, 5e2):

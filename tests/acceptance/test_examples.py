@@ -40,12 +40,36 @@ def run(tmp_path_factory):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_example_runs(name, run):
-    assert "N" in run(name)
+    text = (EXAMPLES / name).read_text(encoding="utf-8")
+    assert f"\n    python examples/{name}" in text
+    assert run(name)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_example_is_short(name):
     assert len((EXAMPLES / name).read_text(encoding="utf-8").splitlines()) < 100
+
+
+def test_every_example_is_in_the_list():
+    listed = re.findall(
+        r"\]\((\w+\.\w+)\)", (EXAMPLES / "README.md").read_text("utf-8")
+    )
+    found = [path.name for path in EXAMPLES.iterdir() if path.suffix in (".py", ".c")]
+    assert sorted(listed) == sorted(found)
+
+
+def test_the_pen_touches_the_ring_on_both_sides_of_its_hole(run):
+    edges_mm = numbers(
+        r"from x = (\S+) mm to (\S+) mm", run("contact_query_without_drake.py")
+    )
+    # The ring's hole has a radius of 22 mm, the ring one of 46 mm, the pen of 4.5 mm;
+    # all three are polygons that are drawn inside of those circles.
+    np.testing.assert_allclose(edges_mm, [[-50.5, -17.5], [17.5, 50.5]], atol=0.16)
+
+
+def test_the_loop_of_the_cup_ticks_once_in_a_millisecond(run):
+    (ticks,) = numbers(r"(\d+) ticks of \d+ µs", run("cup_and_spoon.py"))
+    assert ticks == pytest.approx(500, abs=1)
 
 
 def test_a_softer_wall_is_penetrated_deeper(run):
