@@ -5,8 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 from pydrake.geometry import Meshcat
@@ -21,19 +20,16 @@ from drake_haptics.contact_systems import (
     connect_by_name,
     find_contact_gains,
 )
-from drake_haptics.decomposition import Decomposition, Method, decompose
+from drake_haptics.decomposition import Decomposition
 from drake_haptics.device.backend import DeviceBackend
-from drake_haptics.device_site import make_haptic_device, wait_for_reading
+from drake_haptics.device_site import (
+    make_haptic_device,
+    place_device,
+    wait_for_reading,
+)
 from drake_haptics.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.held_handle import check_scene_coupling
 from drake_haptics.mass_properties import calc_mass_properties
-from drake_haptics.mesh import Mesh, load_mesh
-from drake_haptics.mesh_decimation import decimate
-from drake_haptics.model_file import (
-    DEFAULT_CHORD_ERROR_M,
-    is_model_file,
-    load_model_mesh,
-)
 from drake_haptics.scene import (
     Contact,
     Coupling,
@@ -44,6 +40,7 @@ from drake_haptics.scene import (
     Tool,
 )
 from drake_haptics.scene_check import SceneError, SceneWarning
+from drake_haptics.scene_pieces import cut_scene
 from drake_haptics.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.hand_path import HandPath
@@ -77,6 +74,7 @@ class HapticDiagram:
         environment: The same for each object of the scene, in its order.
         visualizer: Draws it; None without a Meshcat.
         backend: The device behind the port; None where it is simulated.
+        X_WB: Where the base of that backend stands; None where it is simulated.
     """
 
     diagram: Diagram
@@ -87,6 +85,7 @@ class HapticDiagram:
     environment: tuple[Decomposition, ...]
     visualizer: HapticVisualizer | None
     backend: DeviceBackend | None = None
+    X_WB: RigidTransform | None = None
 
 
 def AddHapticLoop(
@@ -291,6 +290,8 @@ def BuildHapticDiagram(
     recorder: TickRecorder | None = None,
     meshcat: Meshcat | None = None,
     progress: Callable[[str, float], None] | None = None,
+    reuse: HapticDiagram | None = None,
+    X_WH: RigidTransform | None = None,
 ) -> HapticDiagram:
     """Builds the diagram of a scene: loads, cuts, wires.
 
@@ -304,6 +305,10 @@ def BuildHapticDiagram(
             not in the diagram.
         progress: Called during the decomposition with the name of the object and
             the share done in [0, 1].
+        reuse: What was built before of a similar scene. Pieces are taken from it
+            instead of being cut again, and a backend stays where its base stands.
+        X_WH: Where the handle of a backend that can stand anywhere is put; where the
+            scene's hand starts if not given.
 
     Returns:
         The diagram and its parts. All systems have snake_case names.
@@ -322,18 +327,19 @@ def BuildHapticDiagram(
     X_HT = scene.tool.grasp.to_rigid_transform()
     X_WT = path.start
     port = _find_port(scene, path, device)
-    tool = _decompose("tool", scene.tool, progress)
-    environment = tuple(
-        _decompose(item.name, item, progress) for item in scene.environment
-    )
+    tool, environment = cut_scene(scene, _list_pieces(reuse), progress)
     objects = [
         ContactObject(item.name, part.core, item.pose.to_rigid_transform())
         for item, part in zip(scene.environment, environment, strict=True)
     ]
     p_TTcm, I_TTcm_T = calc_mass_properties(tool.mesh, scene.tool.mass_kg)
+    X_WB = None
     if isinstance(device, DeviceBackend):
         # Only now: while meshes are cut, a hand moves on.
-        port, X_WH = make_haptic_device(scene, device)
+        if reuse is not None and reuse.backend is device:
+            X_WB = reuse.X_WB
+        X_WB = X_WB or place_device(scene, device, X_WH)
+        port, X_WH = make_haptic_device(scene, device, X_WB)
         X_WT = X_WH @ X_HT
     assert port is not None
     meter = None if scene.device.tick_budget_us is None else TickMeter()
@@ -372,7 +378,21 @@ def BuildHapticDiagram(
         environment=environment,
         visualizer=visualizer,
         backend=device if isinstance(device, DeviceBackend) else None,
+        X_WB=X_WB,
     )
+
+
+def _list_pieces(
+    haptic: HapticDiagram | None,
+) -> list[tuple[Tool | EnvironmentObject, Decomposition]]:
+    """Returns the pieces of a diagram with what they were cut from."""
+    if haptic is None:
+        return []
+    scene = haptic.scene
+    return [
+        (scene.tool, haptic.tool),
+        *zip(scene.environment, haptic.environment, strict=True),
+    ]
 
 
 def _make_load_shedding(
@@ -412,34 +432,3 @@ def _find_port(
             return port
     wait_for_reading(device)
     return None
-
-
-def _load_mesh(item: Tool | EnvironmentObject) -> Mesh:
-    """Reads the mesh of an object of a scene, as exact as the scene asks for."""
-    if is_model_file(item.mesh):
-        chord_error_m = item.chord_error_m or DEFAULT_CHORD_ERROR_M
-        mesh = load_model_mesh(
-            item.mesh, scale=item.scale, chord_error_m=chord_error_m / item.scale
-        )
-    elif item.chord_error_m is not None:
-        raise SceneError(
-            f"{item.mesh}: chord_error_m is for models with round shapes"
-            f" (SDF, URDF, MJCF); a mesh file has none"
-        )
-    else:
-        mesh = load_mesh(item.mesh, scale=item.scale)
-    return mesh if item.max_triangles is None else decimate(mesh, item.max_triangles)
-
-
-def _decompose(
-    name: str,
-    item: Tool | EnvironmentObject,
-    progress: Callable[[str, float], None] | None,
-) -> Decomposition:
-    """Loads and cuts the mesh of an object of a scene."""
-    return decompose(
-        _load_mesh(item),
-        cast(Method, item.decomposition),
-        error_m=item.decomposition_error_m,
-        progress=partial(progress, name) if progress else None,
-    )

@@ -1,6 +1,8 @@
 """Device presets: limits, workspace and model of a device, in files of YAML."""
 
+from copy import deepcopy
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -134,17 +136,28 @@ def load_device_preset(name_or_path: str) -> DevicePreset:
             nothing: it names the file and the key.
     """
     if is_preset_file(name_or_path):
-        return _read(Path(name_or_path))
+        return _read_once(Path(name_or_path))
     presets = list_device_presets()
     if name_or_path not in presets:
         raise SceneError(
             f"device.preset: '{name_or_path}' is none of those that come along, nor a"
             f" preset file (.yaml); {make_hint(name_or_path, presets)}"
         )
-    return _read(presets[name_or_path])
+    return _read_once(presets[name_or_path])
 
 
-def _read(path: Path) -> DevicePreset:
+def _read_once(path: Path) -> DevicePreset:
+    """Reads a file that was not read before as it is now, and returns a copy."""
+    try:
+        stat = path.stat()
+    except OSError:
+        return _read(path, None)  # Says what is wrong.
+    return deepcopy(_read(path, (stat.st_mtime_ns, stat.st_size)))
+
+
+# A build asks for the preset in several places, and YAML takes 10 ms to read.
+@lru_cache(maxsize=16)
+def _read(path: Path, version: object) -> DevicePreset:
     """Reads and checks a preset file."""
     data = load_yaml(path)
     try:

@@ -108,14 +108,41 @@ def _check_reading(reading: DeviceReading) -> None:
         )
 
 
+def place_device(
+    scene: Scene, backend: DeviceBackend, X_WH: RigidTransform | None = None
+) -> RigidTransform:
+    """Returns X_WB, where a scene's device stands.
+
+    Where nobody says where the base stands, the handle, wherever it is held at first,
+    is put where the scene's hand would start: beside the objects and in none.
+
+    Args:
+        scene: Says where the device stands, or does not.
+        backend: Open.
+        X_WH: Where the handle is put instead, where nobody says.
+
+    Raises:
+        SceneError: As `find_device_site`.
+        DeviceError: The backend says nothing.
+    """
+    site = find_device_site(scene)
+    if scene.device.base is not None or backend.is_placed:
+        return site.X_WB
+    X_WH = X_WH or site.X_WB @ site.X_BH
+    R_WB = site.X_WB.rotation()
+    p_BH = wait_for_reading(backend).X_BH[4:]
+    return RigidTransform(R_WB, X_WH.translation() - R_WB @ p_BH)
+
+
 def make_haptic_device(
-    scene: Scene, backend: DeviceBackend
+    scene: Scene, backend: DeviceBackend, X_WB: RigidTransform
 ) -> tuple[HapticDevice, RigidTransform]:
     """Returns a scene's device port before a backend, and X_WH, where its handle is.
 
     Args:
-        scene: Says where the device stands, its rate and its limits.
+        scene: Says the rate and the limits.
         backend: Open.
+        X_WB: Where its base stands.
 
     Raises:
         SceneError: As `find_device_site`.
@@ -124,7 +151,6 @@ def make_haptic_device(
     site = find_device_site(scene)
     period_s = 1.0 / scene.device.rate_hz
     reading = wait_for_reading(backend)
-    X_WB = _place(scene, backend, site, vector_to_pose(reading.X_BH))
     io = DeviceIo(backend, X_WB, period_s, reading)
     io.set_name("device_io")
     device = HapticDevice(
@@ -134,18 +160,3 @@ def make_haptic_device(
         max_torque_Nm=site.max_torque_Nm,
     )
     return device, X_WB @ vector_to_pose(reading.X_BH)
-
-
-def _place(
-    scene: Scene, backend: DeviceBackend, site: DeviceSite, X_BH: RigidTransform
-) -> RigidTransform:
-    """Returns X_WB.
-
-    Where nobody says where the base stands, the handle, wherever it is held at first,
-    is put where the scene's hand would start: beside the objects and in none.
-    """
-    if scene.device.base is not None or backend.is_placed:
-        return site.X_WB
-    R_WB = site.X_WB.rotation()
-    p_WH = (site.X_WB @ site.X_BH).translation()
-    return RigidTransform(R_WB, p_WH - R_WB @ X_BH.translation())
