@@ -64,7 +64,7 @@ from drake_haptics.mesh_report import Severity, length
     type=click.Path(dir_okay=False),
     metavar="FILE",
     callback=require_folder,
-    help="Write the view of the pieces as one self-contained web page.",
+    help="Write the view of the pieces as a web page that needs no other file.",
 )
 @json_option
 def decompose(

@@ -24,9 +24,7 @@ def devices(json_file: str | None) -> None:
     """List the devices whose limits come along.
 
     Forces, torques and stiffnesses are the largest that the device is rated for. A
-    device with a twin can be simulated; the others are used with
-    `run --device`. A file of your own takes the place of a name: see
-    docs/device-twin.md.
+    device with a twin can be simulated; the others are used with `run --device`.
     """
     presets = {name: load_device_preset(name) for name in list_device_presets()}
     if json_file is not None:

@@ -148,7 +148,7 @@ LOG_REPLAY = Lesson(
         ("Is it the same again", "drake-haptics log replay run.tick"),
         (
             "The same motion with another kind of depth, kept",
-            "drake-haptics log replay run.tick --log other.tick"
+            "drake-haptics log replay run.tick --log new.tick"
             " --set contact.depth=global",
         ),
     ],
@@ -159,10 +159,10 @@ LOG_REPLAY = Lesson(
 
 LOG_DIFF = Lesson(
     examples=[
-        ("Where do they part", "drake-haptics log diff run.tick other.tick"),
+        ("Where do they part", "drake-haptics log diff run.tick new.tick"),
         (
             "As a picture",
-            "drake-haptics log diff run.tick other.tick --plot diff.png",
+            "drake-haptics log diff run.tick new.tick --plot diff.png",
         ),
     ],
     exits=f"0: equal to the last bit. {_UNUSABLE}. 3: they differ.",

@@ -53,7 +53,7 @@ from drake_haptics.simulation import RunError
     type=click.Path(dir_okay=False, path_type=Path),
     metavar="FILE",
     callback=require_folder,
-    help="The page; its picture is written beside it.  [default: SCENE-stability.html]",
+    help="The page to write; its picture goes beside it.  [default: SCENE-stability.html]",
 )
 @click.option(
     "--store",
