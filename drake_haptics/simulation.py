@@ -103,8 +103,9 @@ def run(
         end_s = _find_end(simulator.get_context().get_time(), duration_s, haptic)
     measure = _make_measure(haptic, simulator.get_context(), statistics, ledger)
     # Collecting garbage over all of pydrake's objects takes many ticks; frozen, they
-    # are left alone.
-    gc.collect()
+    # are left alone. What goes on has no time for it.
+    if context is None:
+        gc.collect()
     gc.freeze()
     try:
         simulator.Initialize(

@@ -9,6 +9,7 @@ from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
     DiscreteValues,
+    EventStatus,
     InputPort,
     OutputPort,
 )
@@ -64,8 +65,8 @@ class PassivityControl(Diagram):
       samples it.
     * `energy_J` (1) is the balance, J.
 
-    The state is one discrete group (8), [balance; X_WH at the last tick], updated
-    every period from 0 s on.
+    The state is one discrete group (8), [balance; X_WH at the last tick], which takes
+    X_WH at initialization and is updated every period from 0 s on.
 
     Derivatives are those of the branch taken: nothing is damped, a share, or with all
     of the damping; the balance is below the reserve or kept at it.
@@ -146,8 +147,10 @@ class _ObservedPort(DifferentiableSystem):
         self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
         self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
-        # At the first tick no wrench has been held: any pose does.
         self.DeclareDiscreteState(np.array([0.0, *_AT_ORIGIN]))
+        # Where a wrench is held already, as where the control is added to a loop that
+        # runs, what it does counts from here on.
+        self.DeclareInitializationDiscreteUpdateEvent(self._begin)
         # What is shown, and the state after it.
         self._shown_and_state = self.DeclareVectorOutputPort(
             "shown_and_state",
@@ -168,6 +171,10 @@ class _ObservedPort(DifferentiableSystem):
                 self._bounds,
             )
         )
+
+    def _begin(self, context: Context, next_state: DiscreteValues) -> EventStatus:
+        next_state.set_value(np.array([0.0, *self._X_WH.Eval(context)]))
+        return EventStatus.Succeeded()
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         next_state.set_value(self._shown_and_state.Eval(context)[6:])
