@@ -183,10 +183,11 @@ class Coupling:
     are stable on the shipped device, with and without a hand.
 
     Attributes:
-        stiffness_N_per_m: N/m.
-        damping_Ns_per_m: N·s/m.
-        rotational_stiffness_Nm_per_rad: N·m/rad.
-        rotational_damping_Nms_per_rad: N·m·s/rad.
+        stiffness_N_per_m: Force per metre between handle and tool, N/m.
+        damping_Ns_per_m: Force per speed of one against the other, N·s/m.
+        rotational_stiffness_Nm_per_rad: Torque per angle between them, N·m/rad.
+        rotational_damping_Nms_per_rad: Torque per speed of rotation of one against
+            the other, N·m·s/rad.
     """
 
     stiffness_N_per_m: float = 800.0
