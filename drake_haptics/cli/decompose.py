@@ -19,6 +19,7 @@ from drake_haptics.cli.mesh_options import (
     unit_options,
     write_json,
 )
+from drake_haptics.cli.page_words import describe_page
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.decomposition import METHODS, Decomposition, Method
 from drake_haptics.decomposition import decompose as decompose_mesh
@@ -133,6 +134,8 @@ def _view(result: Decomposition, show: bool, html: str | None) -> None:
         if html is not None:
             viewer.write_html(html)
         if show:
-            click.echo(f"Open {viewer.url} in a browser; Ctrl-C ends.", err=True)
+            for line in describe_page(viewer.url):
+                click.echo(line, err=True)
+            click.echo("Ctrl-C ends.", err=True)
             with contextlib.suppress(KeyboardInterrupt):
                 signal.pause()

@@ -21,9 +21,9 @@ RUN = Lesson(
     ],
     exits=f"0: at the end, or at Ctrl-C. {_UNUSABLE}. 3: the simulation became"
     " unstable.",
-    further="On a computer without a screen: `ssh -L 7000:localhost:7000 HOST` brings"
-    " port 7000 of its page to your browser, or use --record. `drake-haptics stability"
-    " SCENE` says how stiff a scene may be.",
+    further="On a computer without a browser: `ssh -N -L 7100:localhost:7100 -L"
+    " 7000:localhost:7000 HOST` brings the page to yours, or use --record."
+    " `drake-haptics stability SCENE` says how stiff a scene may be.",
 )
 
 DEVICE = Lesson(

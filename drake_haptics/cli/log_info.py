@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
+from rich.markup import escape
 from rich.table import Table
 
 from drake_haptics.cli import lessons
@@ -55,8 +56,8 @@ def _print(file: Path, summary: LogSummary) -> None:
     table.add_row("device limit", f"{summary.limited_ticks} ticks at it")
     for mesh in header.mesh_sha256:
         changed = "  [yellow]changed since[/]" if mesh in summary.changed_meshes else ""
-        table.add_row("mesh", f"{mesh}{changed}")
-    console.print(f"[bold]{file}[/]", soft_wrap=True)
+        table.add_row("mesh", f"{escape(mesh)}{changed}")
+    console.print(str(file), style="bold", soft_wrap=True, markup=False)
     console.print(table, soft_wrap=True)
     for sentence in summary.gaps:
         console.print(f"[yellow]{sentence}[/]", soft_wrap=True)

@@ -107,6 +107,7 @@ def _print(evaluation: PaperEvaluation, out: Path) -> None:
     console.print(summarize(sections))
     console.print(describe_machine_line(evaluation), style="dim")
     console.print(
-        f"Wrote [bold]{out}[/] with all tables, and its pictures beside it.",
+        f"Wrote {out} with all tables, and its pictures beside it.",
         soft_wrap=True,
+        markup=False,
     )

@@ -15,6 +15,7 @@ from drake_haptics.cli.console import make_console
 from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import require_folder, write_json
+from drake_haptics.cli.page_words import describe_page
 from drake_haptics.cli.parts_table import make_parts_table
 from drake_haptics.cli.run_session import PageOptions, run_session
 from drake_haptics.cli.status_line import make_summary
@@ -177,9 +178,9 @@ def run(
         console.print(make_parts_table(session.parts))
     if record is not None:
         _write_recording(session.haptic, meshcat, record)
-        console.print(f"Wrote [bold]{record}[/].", soft_wrap=True)
+        console.print(f"Wrote {record}.", soft_wrap=True, markup=False)
     if log is not None:
-        console.print(f"Wrote [bold]{log}[/].", soft_wrap=True)
+        console.print(f"Wrote {log}.", soft_wrap=True, markup=False)
     if json_file is not None:
         write_json(session.figures, json_file)
     if session.error is not None:
@@ -215,7 +216,9 @@ def _prepare(
     if visualizer is not None and record is not None:
         visualizer.StartRecording()
     if url is not None:
-        console.print(f"Open [bold]{url}[/] to see it.", soft_wrap=True)
+        picture = [] if meshcat is None else [meshcat.web_url()]
+        for line in describe_page(url, picture):
+            console.print(line, soft_wrap=True, markup=False)
         console.print("Ctrl-C ends the run.", style="dim")
 
 

@@ -53,7 +53,8 @@ from drake_haptics.simulation import RunError
     type=click.Path(dir_okay=False, path_type=Path),
     metavar="FILE",
     callback=require_folder,
-    help="The page to write; its picture goes beside it.  [default: SCENE-stability.html]",
+    help="The page to write; its picture goes beside it.  [default:"
+    " SCENE-stability.html]",
 )
 @click.option(
     "--store",
@@ -126,5 +127,5 @@ def _print(result: SceneStability, path: Path) -> None:
         )
     console.print(f"further delay that is stable: {describe_delay(result)}")
     console.print(
-        f"Wrote [bold]{path}[/] and {path.with_suffix('.png')}.", soft_wrap=True
+        f"Wrote {path} and {path.with_suffix('.png')}.", soft_wrap=True, markup=False
     )
