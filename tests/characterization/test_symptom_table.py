@@ -2,6 +2,7 @@
 
 import io
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -133,6 +134,19 @@ def test_figures_that_the_page_names_are_in_the_summary_of_a_run():
     named = set(re.findall(r"(?<!\*)\*([a-z9. ]+)\*(?!\*)", TEXT))
     assert {"whole tick", "late", "device limit", "penetration", "energy"} <= named
     # Words of this page, and of other commands.
-    named -= {"cured by", "goes through the wall", "not shown", "fit"}
+    named -= {"cured by", "goes through the wall", "not shown"}
     named -= {"pieces", "formula", "error"}
     assert [word for word in named if word not in summary] == []
+
+
+def test_messages_that_the_page_quotes_are_those_of_the_program():
+    package = PAGE.parents[1] / "drake_haptics"
+    python = "".join(map(Path.read_text, package.rglob("*.py")))
+    # Texts that go on in the next line, and what is filled into them.
+    python = re.sub(r"\{[^{}]*\}", "", re.sub(r'"\s*\n?\s*f?"', "", python))
+    source = python + "".join(map(Path.read_text, package.rglob("*.js")))
+    quoted = re.findall(r'"([^"`]+)"', re.sub(r"`[^`]*`", "", TEXT))
+    assert len(quoted) > 5
+    for message in quoted:
+        for part in message.split("…"):
+            assert part.strip() in source, message
