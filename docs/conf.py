@@ -19,6 +19,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "code_role",
+    "config_reference",
     "module_pages",
     "navigation",
     "pydrake_system",
@@ -34,7 +35,7 @@ exclude_patterns = ["_build", "**.ipynb_checkpoints"]
 default_role = "code-or-link"
 
 autoclass_content = "both"  # constructors are documented where they are
-autodoc_default_options = {"members": True, "show-inheritance": True}
+autodoc_default_options = {"members": True}
 autodoc_member_order = "bysource"
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False

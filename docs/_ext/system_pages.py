@@ -99,14 +99,29 @@ def _page_of(module: str) -> str:
 
 
 def _write(app: Sphinx) -> None:
-    pages = {}
-    for module in list_system_modules(app.srcdir):
-        pages[module.rpartition(".")[2]] = (
-            make_heading(", ".join(find_systems(module)), "=")
-            + f".. automodule:: drake_haptics.{module}\n"
-            "   :ignore-module-all:\n"
-        )
+    modules = list_system_modules(app.srcdir)
+    pages = {name.rpartition(".")[2]: _make_page(name) for name in modules}
     write_pages(app.srcdir, _PREFIX, pages)
+
+
+def _make_page(module_name: str) -> str:
+    """Returns a page on which the systems of a module come before what they need."""
+    systems = find_systems(module_name)
+    module = import_module(f"drake_haptics.{module_name}")
+    others = [
+        (name, "autofunction" if inspect.isfunction(value) else "autoclass")
+        for name, value in vars(module).items()
+        if not name.startswith("_")
+        and name not in systems
+        and (inspect.isfunction(value) or inspect.isclass(value))
+        and value.__module__ == module.__name__
+    ]
+    text = make_heading(", ".join(systems), "=")
+    text += f".. automodule:: {module.__name__}\n   :no-members:\n\n"
+    text += f".. currentmodule:: {module.__name__}\n\n"
+    for name in systems:
+        text += f".. autoclass:: {name}\n   :show-inheritance:\n\n"
+    return text + "".join(f".. {directive}:: {name}\n\n" for name, directive in others)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
