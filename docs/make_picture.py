@@ -16,7 +16,7 @@ from pathlib import Path
 from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-from cockpit_rig import CockpitRun, Page
+from cockpit_page import CockpitRun, Page
 from headless_browser import HeadlessBrowser, find_browser
 
 _FOLDER = Path(__file__).parent

@@ -102,9 +102,17 @@ class HeadlessBrowser:
             raise RuntimeError(f"{expression}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
-    def screenshot(self) -> np.ndarray:
-        """Returns the page as pixels (height, width, 3) in 0..255."""
-        data = base64.b64decode(self.call("Page.captureScreenshot")["data"])
+    def screenshot(self, *box: int) -> np.ndarray:
+        """Returns the page as pixels (height, width, 3) in 0..255.
+
+        Args:
+            box: x, y, width, height of a part of it, px; all of it where not given.
+        """
+        clip = {}
+        if box:
+            x, y, width, height = box
+            clip = {"clip": dict(x=x, y=y, width=width, height=height, scale=1)}
+        data = base64.b64decode(self.call("Page.captureScreenshot", **clip)["data"])
         return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
