@@ -1,156 +1,101 @@
-"""A run of a scene of known statics, with its page open in a browser."""
+"""A cockpit whose page is a list of what it asks for at which tick."""
 
-import json
-import re
-import signal
-import subprocess
-import sys
-import time
+from types import SimpleNamespace
 
-import numpy as np
-from headless_browser import HeadlessBrowser
-
-# A ball pressed straight into a flat block by the hand's spring: F acts in series on
-# the hand, the coupling and the contact, which pushes from the tolerance on.
-BALL_RADIUS_M, TOP_M, DEEP_M, TOLERANCE_M = 0.02, 0.03, 0.005, 0.002
-K_HAND, K_CONTACT, K_COUPLING = 1000.0, 2e4, 800.0
-PRESS = f"""
-description: A ball is pressed onto a block.
-tool:
-  mesh: package://drake_haptics/models/meshes/sphere.obj
-  scale: 0.5
-environment:
-  - name: block
-    mesh: package://drake_haptics/models/meshes/block.obj
-contact: {{tolerance_m: {TOLERANCE_M}, stiffness_N_per_m: {K_CONTACT}}}
-coupling: {{stiffness_N_per_m: {K_COUPLING}}}
-hand:
-  grip: firm
-  path:
-    waypoints:
-      - {{time_s: 0.0, position_m: [0, 0, {TOP_M + BALL_RADIUS_M + 0.01}]}}
-      - {{time_s: 0.4, position_m: [0, 0, {TOP_M + BALL_RADIUS_M - DEEP_M}]}}
-"""
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.cockpit.cockpit import Cockpit
+from drake_haptics.cockpit.holding import Holding
+from drake_haptics.cockpit.page_camera import look_from_the_front
+from drake_haptics.cockpit.scene_changes import SceneChanges
+from drake_haptics.cockpit.segments import Segments
+from drake_haptics.run_statistics import RunStatistics
+from drake_haptics.tick_clock import TickClock
 
 
-def calc_pressed_force(K_coupling):
-    """Force, N, of springs in series, however stiff the coupling is, N/m."""
-    return (DEEP_M + TOLERANCE_M) / (1 / K_HAND + 1 / K_coupling + 1 / K_CONTACT)
+class ScriptedPage:
+    """Asks for things after some ticks, and keeps what it is told."""
+
+    def __init__(self, script):
+        self._script = {tick: list(asked) for tick, asked in script.items()}
+        self.meshcat_url = "http://localhost:6999/"
+        self.camera = SimpleNamespace(X_WC=look_from_the_front([0, 0, 0.05], 0.4))
+        self.times, self.hellos, self.states, self.outlooks = [], [], [], []
+
+    def note(self, time_s, latest, late_s):
+        """Keeps a tick."""
+        assert len(latest) == 12
+        self.times.append(time_s)
+
+    def act(self, now_s, describe):
+        """Returns what is asked for after this tick."""
+        if len(self.times) % 33 == 0:
+            self.outlooks.append(describe())
+        return self._script.get(len(self.times), [])
+
+    def tell(self, name, body):
+        """Keeps what is told."""
+        {"hello": self.hellos, "state": self.states}[name].append(body)
 
 
-class CockpitRun:
-    """`drake-haptics run`, in a process of its own, with its page.
+class CockpitRig:
+    """A scene that runs as fast as it can, by a clock that goes with its ticks.
 
     Attributes:
-        url: Address of the page.
+        page: A `ScriptedPage`.
+        haptics: What ran, one after the other.
+        seen: What `watch` returned of each tick.
+        built: How often a diagram was built.
     """
 
-    def __init__(self, *arguments):
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "drake_haptics.cli", "run", *map(str, arguments)],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-        )  # fmt: skip
-        said = ""
-        for line in self.process.stdout:
-            said += line
-            if match := re.search(r"http://localhost:\d+/", said):
-                self.url = match[0]
-                return
-        raise RuntimeError(f"the run gave no page: {said}")
-
-    def interrupt(self):
-        """Ctrl-C."""
-        self.process.send_signal(signal.SIGINT)
-
-    def close(self):
-        """Ends it."""
-        self.process.terminate()
-        self.process.communicate(timeout=30)
-
-
-class Page:
-    """The cockpit in a browser, as somebody sees and touches it."""
-
-    def __init__(self, browser: HeadlessBrowser):
-        self.browser = browser
-        self.evaluate, self.wait_for = browser.evaluate, browser.wait_for
-
-    def read(self, name):
-        """Text of a part."""
-        return self.evaluate(f"document.getElementById({json.dumps(name)}).textContent")
-
-    def force_W(self):
-        """Force on the hand (3,), N, as the table has it."""
-        cells = self.evaluate(
-            "[...document.querySelectorAll('#components tbody tr')]"
-            ".map(row => row.cells[1].textContent)"
+    def __init__(
+        self,
+        scene,
+        meshcat,
+        monkeypatch,
+        script,
+        *,
+        address=None,
+        watch=None,
+        **options,
+    ):
+        self.page = ScriptedPage(script)
+        monkeypatch.setattr(
+            "drake_haptics.cockpit.cockpit.monotonic",
+            lambda: self.ticks * self.period_s,
         )
-        return np.array([float(cell.replace("−", "-")) for cell in cells])
-
-    def wait_for_rest(self):
-        """Waits until the numbers have stood still for ten looks; returns the force."""
-        same, before = 0, None
-        deadline = time.monotonic() + 30.0
-        while same < 10:
-            assert time.monotonic() < deadline, "the force never came to rest"
-            time.sleep(0.05)
-            now = self.force_W()
-            same = same + 1 if before is not None and np.array_equal(now, before) else 0
-            before = now
-        return before
-
-    def middle(self, selector):
-        """The middle of an element, px."""
-        quoted = json.dumps(selector)
-        return self.evaluate(
-            f"(() => {{ const e = document.querySelector({quoted});"
-            " e.scrollIntoView({block: 'nearest'});"
-            " const b = e.getBoundingClientRect();"
-            " return [b.left + b.width / 2, b.top + b.height / 2]; })()"
+        self.period_s = 1.0 / scene.device.rate_hz
+        self.ticks = 0
+        self.changes = SceneChanges(scene)
+        self.holding = Holding(scene, meshcat, address)
+        self.cockpit = Cockpit(
+            self.page, meshcat, self.changes, self.holding, name="test", **options
         )
+        self.haptics, self.seen, self.built = [], [], 0
+        self._watch = watch or (lambda haptic, root: root.get_time())
 
-    def mouse(self, kind, x, y, **options):
-        """Does something with the mouse."""
-        self.browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **options)
+    def build(self, scene, backend):
+        """Builds a diagram as the command line does."""
+        self.built += 1
+        return BuildHapticDiagram(scene, device=backend)
 
-    def click(self, selector, count=1):
-        """Clicks on an element."""
-        x, y = self.middle(selector)
-        self.mouse("mouseMoved", x, y)
-        for press in range(1, count + 1):
-            for kind in ("mousePressed", "mouseReleased"):
-                self.mouse(kind, x, y, button="left", clickCount=press)
+    def run(self, duration_s, *, energy=False):
+        """Runs and returns the statistics."""
+        pace = TickClock(
+            self.period_s, lambda: self.ticks * self.period_s, lambda _: None
+        )
+        self.statistics = RunStatistics(self.period_s, pace)
+        haptic = self.build(self.changes.scene, self.holding.backend)
+        segments = Segments(haptic, self.cockpit, self.holding, self.build)
+        self.last = segments.run(
+            duration_s,
+            pace=pace,
+            statistics=self.statistics,
+            energy=energy,
+            on_begin=self.haptics.append,
+            on_tick=self._end_tick,
+        )
+        return self.statistics.to_dict()
 
-    def drag(self, begin, end):
-        """Drags from one pixel to another."""
-        self.mouse("mouseMoved", *begin)
-        self.mouse("mousePressed", *begin, button="left", buttons=1, clickCount=1)
-        for share in np.linspace(0.1, 1.0, 10):
-            x, y = (1 - share) * np.array(begin) + share * np.array(end)
-            self.mouse("mouseMoved", x, y, button="left", buttons=1)
-        self.mouse("mouseReleased", *end, button="left", clickCount=1)
-
-    def press(self, key, code=""):
-        """Presses a key."""
-        options = {"key": key, "code": code or f"Key{key.upper()}"}
-        if len(key) == 1:
-            options["text"] = key
-        else:
-            options["windowsVirtualKeyCode"] = {"Tab": 9, "Enter": 13, "Escape": 27}[
-                key
-            ]
-            options["text"] = "\r" if key == "Enter" else ""
-        for kind in ("keyDown", "keyUp"):
-            self.browser.call("Input.dispatchKeyEvent", type=kind, **options)
-
-    def trace(self):
-        """Pixels of the force's trace that are of the force's colour."""
-        return self.evaluate("""(() => {
-          const canvas = document.getElementById('force-trace');
-          const [w, h] = [canvas.width, canvas.height];
-          const {data} = canvas.getContext('2d').getImageData(0, 0, w, h);
-          let found = 0;
-          for (let i = 0; i < data.length; i += 4)
-            if (data[i] > 150 && data[i + 2] < 60 && data[i + 3] > 200) found += 1;
-          return found;
-        })()""")
+    def _end_tick(self, root):
+        self.ticks += 1
+        self.seen.append(self._watch(self.haptics[-1], root))

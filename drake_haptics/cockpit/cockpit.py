@@ -11,12 +11,12 @@ from pydrake.geometry import Meshcat
 from pydrake.systems.framework import Context
 
 from drake_haptics.builder import HapticDiagram
-from drake_haptics.carry_on import find_handle
 from drake_haptics.cockpit.coupling_advice import CouplingAdvice
 from drake_haptics.cockpit.greeting import make_greeting
 from drake_haptics.cockpit.holding import DEVICE, HAND, Holding
 from drake_haptics.cockpit.live_page import LivePage, Outlook
 from drake_haptics.cockpit.page_picture import PagePicture
+from drake_haptics.cockpit.page_request import REFUSED
 from drake_haptics.cockpit.scene_changes import (
     SCENE_VERBS,
     ChangeError,
@@ -24,6 +24,7 @@ from drake_haptics.cockpit.scene_changes import (
 )
 from drake_haptics.cockpit.telemetry import SIMULATED
 from drake_haptics.errors import UserError
+from drake_haptics.live_keys import LiveKey
 from drake_haptics.live_scene import is_live_change, write_live_values
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
@@ -33,6 +34,7 @@ from drake_haptics.tick_clock import TickClock
 _TELL_PERIOD_S = 0.1
 # A slider that needs another diagram builds it when it has rested for so long.
 _REST_S = 0.25
+_AT_ONCE = -math.inf
 
 
 @dataclass(frozen=True)
@@ -92,8 +94,9 @@ class Cockpit:
         self._change: Change | None = None
         # When to tell the page how things are, and when to end the segment.
         self._tell_s = self._end_s = math.inf
-        self._told_s = -math.inf
+        self._told_s = self._failed_s = -math.inf
         self._root: Context | None = None
+        self._greeted: tuple[LiveKey, ...] = ()
 
     def begin(
         self, haptic: HapticDiagram, statistics: RunStatistics, pace: TickClock | None
@@ -110,7 +113,8 @@ class Cockpit:
         self._change, self._end_s = None, math.inf
         self._picture.begin(haptic)
         self._running = self.changes.scene
-        self._greet()
+        # Other effects draw, and are told, other things.
+        self._greeted = ()
         self._tell()
 
     def end_tick(self, context: Context) -> bool:
@@ -156,8 +160,11 @@ class Cockpit:
         self._page.tell("hello", greeting)
 
     def _tell(self) -> None:
-        """Tells the page how things are."""
+        """Tells the page how things are, and if that is new what can be set."""
         self._told_s, self._tell_s = monotonic(), math.inf
+        if self._greeted != (keys := self.changes.list_keys()):
+            self._greet()
+            self._greeted = keys
         scene = self.changes.scene
         state = {
             **self.changes.describe(),
@@ -173,13 +180,15 @@ class Cockpit:
         assert self._root is not None
         loop, backend = self._haptic.loop, self._holding.backend
         reading = None if backend is None else backend.read()
+        handle = loop.device.get_handle_pose_output_port()
+        X_WH = handle.Eval(loop.device.GetMyContextFromRoot(self._root))
         shed = 0
         if loop.load_shedding is not None:
             relief = loop.load_shedding.GetMyContextFromRoot(self._root)
             shed = math.ceil(relief.get_discrete_state_vector().value()[0])
         return Outlook(
             gate=SIMULATED if reading is None else int(reading.gate),
-            p_WH=find_handle(self._haptic, self._root).translation(),
+            p_WH=X_WH[4:].tolist(),
             shed=shed,
             skipped=0 if self._pace is None else self._pace.skipped,
         )
@@ -188,19 +197,31 @@ class Cockpit:
         """Does what pages have asked for."""
         before = self.changes.scene
         for request in asked:
-            pointer = self._holding.pointer
-            if pointer is not None and pointer.obey(request, self._page.camera.X_WC):
+            if self._point(request):
                 continue
             try:
-                if self._picture.obey(request) or self._steer(request):
-                    self._error = ""
-                else:
+                if not (self._picture.obey(request) or self._steer(request)):
                     continue
+                # What has not been told yet is told first.
+                if self._told_s > self._failed_s:
+                    self._error = ""
             except (UserError, ValueError) as error:
-                self._error = str(error)
+                self._error, self._failed_s = str(error), now_s
             self._tell_s = max(now_s, self._told_s + _TELL_PERIOD_S)
         if self.changes.scene is not before:
-            self._apply(now_s)
+            try:
+                self._apply(now_s)
+            except ValueError as error:
+                self.refuse(str(error))
+
+    def _point(self, request: dict[str, Any]) -> bool:
+        """Moves the handle, if that is what is asked; returns whether it is."""
+        pointer = self._holding.pointer
+        if pointer is None:
+            return False
+        if REFUSED in request:
+            pointer.note_refused()
+        return pointer.obey(request, self._page.camera.X_WC)
 
     def _steer(self, request: dict[str, Any]) -> bool:
         """Changes the run, if that is what is asked; returns whether it is.
@@ -216,23 +237,35 @@ class Cockpit:
         if verb in SCENE_VERBS:
             self.changes.obey(request)
             return True
-        handle = request.get("to", self._holding.name)
-        if handle not in self._holding.names:
+        handle = request.get("to")
+        if handle is not None and handle not in self._holding.names:
             raise ChangeError(f"There is nobody called {handle!r} to hold the handle.")
         # A real hand takes the tool with it; the simulated one begins its path.
-        self._end(Change(handle, verb == "restart" or handle in (HAND, DEVICE)), 0.0)
+        self._end(_AT_ONCE, handle, verb == "restart" or handle in (HAND, DEVICE))
         return True
 
     def _apply(self, now_s: float) -> None:
         """Makes the loop run the scene as it is now."""
         scene = self._holding.place(self.changes.scene)
         if not is_live_change(self._haptic.scene, scene):
-            self._end(Change(self._holding.name, False), now_s + _REST_S)
+            self._end(now_s + _REST_S)
             return
         write_live_values(self._haptic, self._root, scene)
         self._running = self.changes.scene
 
-    def _end(self, change: Change, end_s: float) -> None:
-        """Ends the segment for a change; what restarts it needs no other."""
-        if self._change is None or not self._change.restarts:
-            self._change, self._end_s = change, end_s
+    def _end(
+        self, end_s: float, handle: str | None = None, restarts: bool = False
+    ) -> None:
+        """Ends the segment at a time, for this and for what it is to end for already.
+
+        Args:
+            end_s: When, if it is not to end at once.
+            handle: Who is to hold the handle, if somebody else is.
+            restarts: Whether the scene is to begin anew.
+        """
+        if self._change is not None:
+            handle = handle or self._change.handle
+            restarts = restarts or self._change.restarts
+        self._change = Change(handle or self._holding.name, restarts)
+        if self._end_s != _AT_ONCE:
+            self._end_s = end_s

@@ -94,7 +94,8 @@ class MouseDevice(PageHandle):
     def read(self) -> DeviceReading:
         """Returns where the handle is now."""
         for asked in self._page.act(monotonic(), self._describe):
-            self.obey(asked, self._page.camera.X_WC)
+            if not self.obey(asked, self._page.camera.X_WC):
+                self.note_refused()
         reading = super().read()
         self._p_WH = self._X_WB @ reading.X_BH[4:]
         return reading

@@ -64,11 +64,11 @@ class PageHandle(DeviceBackend):
         """Does what a page asks for, and counts it.
 
         Args:
-            asked: A request as `read_page_request` returns it, or {"refused": 1}.
+            asked: A request as `read_page_request` returns it.
             X_WC: Pose of the page's camera.
 
         Returns:
-            Whether it was something for a handle.
+            Whether it was something for a handle. What is not is not counted.
         """
         match asked.get("do"):
             case "move":
@@ -80,10 +80,13 @@ class PageHandle(DeviceBackend):
             case "take":
                 pass  # Whoever talks with the pages has seen to that.
             case _:
-                self._rejected += 1
                 return False
         self._received += 1
         return True
+
+    def note_refused(self) -> None:
+        """Counts a request that was refused."""
+        self._rejected += 1
 
     def read(self) -> DeviceReading:
         """Returns where the handle is now."""

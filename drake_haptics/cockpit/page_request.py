@@ -14,6 +14,9 @@ _LONGEST_NAME = 64
 TAKE = "take"
 """Asks that its page be the one that drives; any page may."""
 
+REFUSED = "refused"
+"""The loop is told {REFUSED: 1} of a message that is not one of those allowed."""
+
 
 def _is_number(value: object) -> bool:
     """Whether it is a number, not a truth value, and finite."""

@@ -16,7 +16,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from drake_haptics.cockpit.page_files import read_page_file
-from drake_haptics.cockpit.page_request import TAKE, read_page_request
+from drake_haptics.cockpit.page_request import REFUSED, TAKE, read_page_request
 
 # By any other name this machine is reached only through a stranger's name server.
 _OWN_NAMES = ("localhost", "127.0.0.1")
@@ -51,7 +51,7 @@ class PageServer:
             listener: Listens on a port of this machine.
             frame_origin: Origin of the Meshcat: the only stranger on the page.
             forward: Called with what the page that drives asks for, and with
-                {"refused": 1} for every message that was refused.
+                {REFUSED: 1} for every message that was refused.
         """
         self._listener = listener
         port = listener.getsockname()[1]
@@ -123,7 +123,7 @@ class PageServer:
         if asked is not None and asked["do"] == TAKE:
             self._driver = page
         if asked is None or page is not self._driver:
-            asked = {"refused": 1}
+            asked = {REFUSED: 1}
         await self._forward(asked)
 
     def _answer(

@@ -1,0 +1,96 @@
+"""Counts what the cockpit costs a tick, in instructions that no other program disturbs.
+
+python tests/benchmarks/cockpit_instructions.py [SCENE]
+
+Needs valgrind; half a minute. A paced run without a page, and one with the page's
+process beside it; time is that of the ticks, so that as many messages go to the page
+for each tick as in a run at the pace of a clock.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from contextlib import ExitStack, closing
+
+from pydrake.systems.framework import Context
+
+from drake_haptics.bench.valgrind import count_by_library, counted, require_valgrind
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.cockpit import cockpit
+from drake_haptics.cockpit.cockpit_run import CockpitRun
+from drake_haptics.cockpit.page_port import open_page_port
+from drake_haptics.errors import UserError
+from drake_haptics.run_statistics import RunStatistics
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
+from drake_haptics.simulation import run
+from drake_haptics.stage import open_meshcat
+from drake_haptics.tick_clock import TickClock
+
+_KINDS = ("without", "with")
+# The shipped hands are in contact then.
+_WARM_UP, _TICKS = 1200, 1000
+
+
+def run_counted(name: str, kind: str) -> None:
+    """Runs a scene, and counts some ticks of it."""
+    scene = load_scene(find_scene(name))
+    haptic = BuildHapticDiagram(scene)
+    ticks = 0
+    with ExitStack() as stack:
+        counting = stack.enter_context(ExitStack())
+
+        def on_tick(context: Context) -> None:
+            nonlocal ticks
+            ticks += 1
+            if ticks == _WARM_UP:
+                counting.enter_context(counted())
+            elif ticks == _WARM_UP + _TICKS:
+                counting.close()
+
+        def read_clock() -> float:
+            return ticks * haptic.period_s
+
+        pace = TickClock(haptic.period_s, read_clock, lambda _: None)
+        duration_s = (_WARM_UP + _TICKS + 1) * haptic.period_s
+        if kind == "without":
+            run(haptic, duration_s, pace=pace, on_tick=on_tick)
+            return
+        cockpit.monotonic = read_clock
+        shown = CockpitRun(scene, open_meshcat(), open_page_port(), name=name)
+        stack.enter_context(closing(shown))
+        shown.run(
+            haptic,
+            lambda scene, backend: BuildHapticDiagram(scene, device=backend),
+            duration_s,
+            pace=pace,
+            statistics=RunStatistics(haptic.period_s, pace),
+            energy=False,
+            on_begin=lambda haptic: None,
+            on_tick=on_tick,
+        )
+
+
+def main() -> None:
+    """Prints the counts; with a kind too, is the program counted."""
+    if len(sys.argv) == 3:
+        run_counted(*sys.argv[1:])
+        return
+    scene = sys.argv[1] if len(sys.argv) == 2 else "cup_spoon"
+    try:
+        require_valgrind()
+        counts = {
+            kind: sum(count_by_library([__file__, scene, kind]).values()) / _TICKS
+            for kind in _KINDS
+        }
+    except UserError as error:
+        sys.exit(str(error))
+    except subprocess.CalledProcessError as error:
+        sys.exit(error.stderr)
+    print(f"{scene}: {counts['without']:,.0f} instructions per tick, with the cockpit")
+    print(f"{counts['with'] - counts['without']:,.0f} more")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,323 @@
+"""A run that is changed while it goes on, against the same made by hand."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+from cockpit_rig import CockpitRig
+from fake_device import ScriptedDevice, make_reading
+
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.carry_on import find_handle
+from drake_haptics.cockpit import holding
+from drake_haptics.device.backend import DeviceError
+from drake_haptics.live_scene import write_live_values
+from drake_haptics.scene import Gravity
+from drake_haptics.scene_check import SceneError
+from drake_haptics.simulation import run
+from drake_haptics.stage import open_meshcat
+
+ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
+PRESSING = (0.2, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.01)
+FRICTION = {"do": "effect", "name": "friction", "on": True}
+STIFFER = {"do": "set", "key": "coupling.stiffness_N_per_m", "to": 1200}
+MOUSE = {"do": "handle", "to": "mouse"}
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    return over_a_plate(tmp_path_factory.mktemp("scene"), [ABOVE, PRESSING])
+
+
+@pytest.fixture(scope="module")
+def meshcat():
+    return open_meshcat()
+
+
+@pytest.fixture
+def make(scene, meshcat, monkeypatch):
+    rigs = []
+
+    def make(script, **options):
+        rigs.append(CockpitRig(scene, meshcat, monkeypatch, script, **options))
+        return rigs[-1]
+
+    yield make
+    for rig in rigs:
+        rig.holding.close()
+
+
+def find_tool(haptic, root):
+    """The tool's pose (7,)."""
+    tool = haptic.loop.haptic_tool
+    return tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root)).copy()
+
+
+def test_nothing_asked_is_a_plain_run(make, scene):
+    rig = make({}, watch=find_tool)
+    figures = rig.run(0.4)
+    poses = []
+    haptic = BuildHapticDiagram(scene)
+    plain = run(
+        haptic, 0.4, on_tick=lambda root: poses.append(find_tool(haptic, root))
+    ).to_dict()
+    assert figures["ticks"] == plain["ticks"] == 400
+    np.testing.assert_array_equal(rig.seen, poses)
+    assert rig.built == 1
+    np.testing.assert_allclose(rig.page.times, 1e-3 * np.arange(1, 401), atol=1e-12)
+
+
+def test_a_value_acts_from_the_next_tick_on(make, scene):
+    rig = make({300: [STIFFER]}, watch=find_tool)
+    rig.run(0.4)
+    poses = []
+    haptic = BuildHapticDiagram(scene)
+    coupling = dataclasses.replace(scene.coupling, stiffness_N_per_m=1200.0)
+    stiffer = dataclasses.replace(scene, coupling=coupling)
+
+    def end_tick(root):
+        poses.append(find_tool(haptic, root))
+        if len(poses) == 300:
+            write_live_values(haptic, root, stiffer)
+
+    run(haptic, 0.4, on_tick=end_tick)
+    np.testing.assert_array_equal(rig.seen, poses)
+    assert rig.built == 1
+    state = rig.page.states[-1]
+    assert state["values"]["coupling.stiffness_N_per_m"] == 1200.0
+    assert state["changes"] == {"coupling": {"stiffness_N_per_m": 1200.0}}
+
+
+def test_an_effect_goes_on_in_another_diagram(make):
+    rig = make({250: [FRICTION]}, watch=find_tool)
+    figures = rig.run(0.9)
+    first, second = rig.haptics
+    assert first.loop.effects.friction is None
+    assert second.loop.effects.friction is not None
+    assert rig.last is second
+    # Time and statistics go on; the duration is that of both.
+    assert figures["ticks"] == 900
+    np.testing.assert_allclose(rig.page.times, 1e-3 * np.arange(1, 901), atol=1e-9)
+    steps = np.linalg.norm(np.diff(np.array(rig.seen)[:, 4:], axis=0), axis=1)
+    assert steps.max() < 0.5e-3
+    assert rig.page.states[-1]["effects"]["friction"] is True
+    assert figures["lateness_us"]["skipped"] == 0
+    # A new page's legend, and so on.
+    assert len(rig.page.hellos) == 2
+
+
+def test_effects_switched_together_build_one_diagram(make):
+    rig = make({100: [FRICTION], 150: [{**FRICTION, "name": "gravity"}]})
+    rig.run(0.6)
+    assert rig.built == 2
+    effects = rig.haptics[-1].loop.effects
+    assert effects.friction is not None and effects.gravity is not None
+
+
+def test_the_mouse_takes_the_handle_where_it_is(make):
+    rig = make(
+        {300: [MOUSE], 400: [{"do": "move", "by": [0.0, 0.05, 0.0]}]}, watch=find_tool
+    )
+    rig.run(0.5)
+    assert [haptic.backend for haptic in rig.haptics] == [None, rig.holding.backend]
+    assert rig.page.states[-1]["handle"] == "mouse"
+    steps = np.linalg.norm(np.diff(np.array(rig.seen)[:, 4:], axis=0), axis=1)
+    assert steps.max() < 0.5e-3
+    assert [outlook.gate for outlook in rig.page.outlooks] == [3] * 9 + [1] * 6
+    assert rig.holding.pointer.get_link_status().received == 1
+
+
+def test_the_simulated_hand_begins_the_scene_anew(make):
+    rig = make({200: [MOUSE], 300: [{"do": "handle", "to": "hand"}]})
+    figures = rig.run(0.5)
+    assert figures["ticks"] == 500
+    np.testing.assert_allclose(rig.page.times[300:], 1e-3 * np.arange(1, 201))
+    assert rig.last.backend is None
+
+
+@pytest.mark.parametrize("handle", ["hand", "mouse", "sliders"])
+def test_a_scene_can_begin_anew_in_any_hand(make, handle):
+    rig = make(
+        {100: [{"do": "handle", "to": handle}], 200: [{"do": "restart"}]},
+        watch=lambda haptic, root: find_handle(haptic, root).translation(),
+    )
+    rig.run(0.3)
+    np.testing.assert_allclose(rig.page.times[200:], 1e-3 * np.arange(1, 101))
+    assert rig.page.states[-1]["handle"] == handle
+    np.testing.assert_allclose(rig.seen[201], rig.seen[0], atol=1e-3)
+
+
+def test_what_is_asked_at_once_is_all_done(make):
+    rig = make({100: [MOUSE, FRICTION, STIFFER, {"do": "restart"}]})
+    rig.run(0.3)
+    assert rig.built == 2
+    assert rig.last.loop.effects.friction is not None
+    assert rig.last.scene.coupling.stiffness_N_per_m == 1200.0
+    assert rig.page.states[-1]["handle"] == "mouse"
+    np.testing.assert_allclose(rig.page.times[100:], 1e-3 * np.arange(1, 201))
+
+
+def test_the_reserve_of_passivity_waits_until_a_slider_rests(make):
+    script = {100: [{"do": "effect", "name": "passivity", "on": True}]}
+    for tick in range(500, 700, 10):
+        script[tick] = [{**STIFFER, "to": 1000 + tick}]
+    rig = make(script)
+    rig.run(1.2)
+    assert rig.built == 3
+    assert rig.last.scene.coupling.stiffness_N_per_m == 1690.0
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({**STIFFER, "to": 1e300}, "from 50 to 5000"),
+        ({**STIFFER, "key": "no.key"}, "no value 'no.key'"),
+        ({"do": "choose", "key": "contact.clustering", "to": "x"}, "no choice 'x'"),
+        ({"do": "effect", "name": "x", "on": True}, "no effect 'x'"),
+        ({"do": "handle", "to": "x"}, "nobody called 'x'"),
+        ({"do": "handle", "to": "device"}, "nobody called 'device'"),
+        ({"do": "view", "name": "x", "on": True}, "view"),
+        ({"do": "camera", "to": "x"}, "view"),
+        ({"do": "camera", "to": "fit", "within": 0.0}, "within"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_the_run_goes_on(make, asked, message):
+    rig = make({10: [asked], 200: [{"do": "take"}]})
+    figures = rig.run(0.25)
+    assert figures["ticks"] == 250
+    assert message in rig.page.states[-1]["error"]
+    assert rig.built == 1
+
+
+def test_an_error_is_told_until_something_else_is_asked(make):
+    rig = make({10: [{**STIFFER, "to": -1}], 150: [STIFFER]})
+    rig.run(0.2)
+    assert [bool(state["error"]) for state in rig.page.states] == [False, True, False]
+
+
+def test_requests_of_no_concern_are_ignored(make):
+    nothing = [{"refused": 1}, {"do": "home"}, {"do": "take"}, {}, {"do": "fly"}]
+    rig = make({10: nothing})
+    rig.run(0.1)
+    assert len(rig.page.states) == 1
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [STIFFER, FRICTION, MOUSE, {"do": "reset"}, {"do": "restart"},
+     {"do": "choose", "key": "contact.clustering", "to": "octree"}],
+)  # fmt: skip
+def test_a_locked_run_is_only_looked_at(make, asked):
+    rig = make({10: [asked], 20: [{"do": "view", "name": "pieces", "on": True}]},
+               locked="It is logged.")  # fmt: skip
+    figures = rig.run(0.3, energy=True)
+    assert figures["energy_J"]["tool"]["stored"] > 0.0
+    assert rig.built == 1
+    assert rig.changes.scene is rig.changes.file
+    assert "It is logged." in [state["error"] for state in rig.page.states]
+    assert rig.page.states[-1]["views"]["pieces"] is True
+    assert rig.page.hellos[0]["locked"] == "It is logged."
+
+
+def test_what_cannot_be_built_is_taken_back(make):
+    rig = make({100: [FRICTION], 500: [STIFFER]})
+    build = rig.build
+
+    def refuse(scene, backend):
+        if scene.effects.friction is not None:
+            raise SceneError("no friction today")
+        return build(scene, backend)
+
+    rig.build = refuse
+    figures = rig.run(0.7)
+    assert figures["ticks"] == 700
+    np.testing.assert_allclose(rig.page.times, 1e-3 * np.arange(1, 701), atol=1e-9)
+    assert "no friction today" in [state["error"] for state in rig.page.states]
+    assert rig.page.states[-1]["changes"] == {"coupling": {"stiffness_N_per_m": 1200.0}}
+
+
+def test_ctrl_c_ends_it_also_while_a_diagram_is_built(make):
+    rig = make({100: [FRICTION]})
+    build = rig.build
+
+    def interrupt(scene, backend):
+        if rig.built == 1:
+            raise KeyboardInterrupt
+        return build(scene, backend)
+
+    rig.build = interrupt
+    assert rig.run(None)["ticks"] == 350
+
+
+def test_the_coupling_is_judged_as_it_is_now(make):
+    damped = {"do": "set", "key": "coupling.damping_Ns_per_m", "to": 20}
+    rig = make({10: [damped], 150: [{"do": "reset"}]})
+    rig.run(0.3)
+    warned = [bool(state["warnings"]) for state in rig.page.states]
+    assert warned == [False, True, False]
+    assert rig.page.states[1]["warnings"][0].startswith("coupling.damping_Ns_per_m is")
+
+
+@pytest.fixture
+def device(monkeypatch):
+    """A device whose handle moves on, wherever its base stands."""
+    opened = []
+
+    def open_device(address, scene, meshcat):
+        opened.append(
+            ScriptedDevice(lambda k: make_reading(k, position=(1e-6 * k, 0, 0)))
+        )
+        return opened[-1]
+
+    monkeypatch.setattr(holding, "open_device", open_device)
+    return opened
+
+
+def test_a_device_stays_where_it_was_put(make, device):
+    """Its base is put so that the handle is where the scene starts, once."""
+    rig = make(
+        {200: [FRICTION], 600: [{"do": "restart"}]},
+        address="udp://there",
+        watch=lambda haptic, root: find_handle(haptic, root).translation(),
+    )
+    rig.run(0.8)
+    assert len(device) == 1 and not device[0].closed
+    assert len(rig.haptics) == 3
+    steps = np.linalg.norm(np.diff(rig.seen, axis=0), axis=1)
+    assert steps.max() < 50e-6
+    assert rig.page.hellos[0]["handles"][0] == {
+        "name": "device",
+        "label": "udp://there",
+    }
+
+
+def test_a_device_is_let_go_and_taken_again(make, device):
+    rig = make(
+        {100: [MOUSE], 200: [{"do": "handle", "to": "device"}]}, address="udp://there"
+    )
+    rig.run(0.3)
+    assert [opened.closed for opened in device] == [True, False]
+    assert rig.last.backend is device[1]
+
+
+def test_a_device_that_is_gone_leaves_the_handle_where_it_is(make, monkeypatch, device):
+    rig = make(
+        {100: [MOUSE], 200: [{"do": "handle", "to": "device"}]}, address="udp://there"
+    )
+
+    def fail(address, scene, meshcat):
+        raise DeviceError("the device has said nothing")
+
+    monkeypatch.setattr(holding, "open_device", fail)
+    rig.run(0.3)
+    assert rig.page.states[-1]["error"] == "the device has said nothing"
+    assert rig.last.backend is rig.holding.pointer is not None
+
+
+def test_gravity_of_the_page_is_that_of_a_scene_file(make, scene):
+    """The same diagram comes of a switch as of a scene that names the effect."""
+    rig = make({0: [], 1: [{"do": "effect", "name": "gravity", "on": True}]})
+    rig.run(0.4)
+    effects = dataclasses.replace(scene.effects, gravity=Gravity())
+    assert rig.last.scene == dataclasses.replace(scene, effects=effects)
