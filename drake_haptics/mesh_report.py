@@ -209,7 +209,9 @@ class MeshReport:
 
     def __str__(self) -> str:
         out = io.StringIO()
-        Console(file=out, width=100, color_system=None).print(self)
+        # In a notebook rich would show it at once and leave nothing to return.
+        console = Console(file=out, width=80, color_system=None, force_jupyter=False)
+        console.print(self)
         return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
 
 
