@@ -291,6 +291,59 @@ def test_a_query_up_to_less_gives_the_nearer_contacts_and_spoils_no_later_one() 
     assert len(seen) > 2
 
 
+def test_a_tolerance_that_changes_on_the_way_misses_no_contact() -> None:
+    """Bodies that were out of reach, and asleep, are found as soon as it grows."""
+    rng = np.random.default_rng(3)
+    tool, solid = swarm(rng, 20), swarm(rng, 20)
+    changing = _core.SceneTracker(tool, [solid, solid], T)
+    widest = _core.SceneTracker(tool, [solid, solid], 5 * T)
+    for tracker in (changing, widest):
+        tracker.set_object_pose(1, pose([0.02, 0.2, 0.0]))
+    grown = 0
+    for phase in np.linspace(0, 2 * np.pi, 300):
+        q = pose([0.1 + 0.02 * np.cos(phase), 0.1 + 0.02 * np.sin(phase), 0.0])
+        last = changing.tolerance
+        if rng.random() < 0.3:
+            changing.tolerance = T * rng.choice([0.0, 0.5, 1.0, 4.0, 5.0])
+        found, all_of_them = changing.query(q), widest.query(q)
+        within = all_of_them.distance <= changing.tolerance
+        np.testing.assert_array_equal(
+            np.column_stack([found.object_index, found.piece_A, found.piece_B]),
+            np.column_stack(
+                [all_of_them.object_index, all_of_them.piece_A, all_of_them.piece_B]
+            )[within],
+        )
+        np.testing.assert_allclose(
+            found.distance, all_of_them.distance[within], rtol=0, atol=1e-12
+        )
+        grown += changing.tolerance > last and found.distance.max(initial=0.0) > last
+    assert grown > 10
+
+
+def test_a_tolerance_that_changes_keeps_the_way_out() -> None:
+    """Out of a thin sheet that is all but passed, the pose alone shows another."""
+    cube, sheet = box([0.02, 0.02, 0.02]), box([0.2, 0.2, 1e-3])
+    tracker = _core.SceneTracker(cube, [sheet], T)
+    for z in np.linspace(0.012, -0.004, 40):
+        tracker.query(pose([0, 0, z]))
+    for tolerance in (5 * T, 0.0, T):
+        tracker.tolerance = tolerance
+        contacts = tracker.query(pose([0, 0, -0.004]))
+        assert contacts.distance.min() == pytest.approx(-0.0145)
+        np.testing.assert_allclose(contacts.nhat_BA_W, [[0, 0, 1]], atol=1e-9)
+    tracker.reset()
+    anew = tracker.query(pose([0, 0, -0.004]))
+    np.testing.assert_allclose(anew.nhat_BA_W, [[0, 0, -1]], atol=1e-9)
+
+
+@pytest.mark.parametrize("bad", [-1e-9, np.nan, np.inf, None, "1 mm"])
+def test_a_bad_tolerance_leaves_the_tracker_as_it_is(bad: float) -> None:
+    tracker = _core.SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], T)
+    with pytest.raises(ValueError, match="^tolerance must be "):
+        tracker.tolerance = bad
+    assert tracker.tolerance == T
+
+
 @pytest.mark.parametrize("bad", [-1e-9, 1.01 * T, np.nan])
 def test_a_query_reaches_no_farther_than_its_tracker(bad: float) -> None:
     tracker = _core.SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], T)
