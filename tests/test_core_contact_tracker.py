@@ -339,7 +339,7 @@ def test_a_tolerance_that_changes_keeps_the_way_out() -> None:
 @pytest.mark.parametrize("bad", [-1e-9, np.nan, np.inf, None, "1 mm"])
 def test_a_bad_tolerance_leaves_the_tracker_as_it_is(bad: float) -> None:
     tracker = _core.SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], T)
-    with pytest.raises(ValueError, match="^tolerance must be "):
+    with pytest.raises(ValueError, match=r"^tolerance must be "):
         tracker.tolerance = bad
     assert tracker.tolerance == T
 
