@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,6 +31,7 @@ from drake_haptics.device_site import (
 from drake_haptics.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.held_handle import check_scene_coupling
 from drake_haptics.mass_properties import calc_mass_properties
+from drake_haptics.one_line import count
 from drake_haptics.scene import (
     Contact,
     Coupling,
@@ -86,6 +88,15 @@ class HapticDiagram:
     visualizer: HapticVisualizer | None
     backend: DeviceBackend | None = None
     X_WB: RigidTransform | None = None
+
+    def __repr__(self) -> str:
+        held = "a simulated hand" if self.backend is None else repr(self.backend)
+        tool = Path(self.tool.mesh.report.source).name
+        objects = count(len(self.environment), "object")
+        return (
+            f"HapticDiagram({self.scene.description!r}, {tool} and {objects}, "
+            f"ticks of {1e3 * self.period_s:g} ms, held by {held})"
+        )
 
 
 def AddHapticLoop(

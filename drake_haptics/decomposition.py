@@ -20,6 +20,7 @@ from drake_haptics.decomposition_report import DecompositionReport
 from drake_haptics.errors import UserError
 from drake_haptics.merged_pieces import check_error, merge_patches
 from drake_haptics.mesh import Mesh
+from drake_haptics.one_line import count
 from drake_haptics.piece_data import ConvexHulls, MergedPatches, PatchLabels, PieceData
 
 Method = Literal["surface", "merged", "hull", "coacd"]
@@ -57,10 +58,9 @@ class Decomposition:
         return self.core.pieces
 
     def __repr__(self) -> str:
-        count = len(self.core.pieces)
+        pieces = count(len(self.core.pieces), "piece")
         return (
-            f"Decomposition({self.report.source!r}, {count} pieces, "
-            f"method={self.method!r})"
+            f"Decomposition({self.report.source!r}, {pieces}, method={self.method!r})"
         )
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -65,6 +65,13 @@ class EnergyLedger:
         stored = _make_stored_readers(loop, root, lambda: self._gains)
         self._stored = [stored.get(name, _nothing) for name in sources]
 
+    def __repr__(self) -> str:
+        device = self.to_dict()["device"]
+        return (
+            f"EnergyLedger({device['in']:.3g} J from the hand, {device['out']:.3g} J "
+            f"back to it, {device['created']:.3g} J from nothing)"
+        )
+
     def add(self) -> None:
         """Books the tick since the last call; the first one only begins.
 

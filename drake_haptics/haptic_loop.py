@@ -71,6 +71,10 @@ class HapticLoop(BaseSystems):
     effects: EffectSystems
     wrench_sources: Mapping[str, OutputPort]
 
+    def __repr__(self) -> str:
+        device = self.device.get_name() or type(self.device).__name__
+        return f"HapticLoop({device!r} feels {', '.join(self.wrench_sources)})"
+
     @property
     def contacts(self) -> OutputPort:
         """What is clustered: the contacts, shaded if the scene asks for it."""

@@ -107,6 +107,10 @@ class HapticRendering(Diagram):
             wiring.builder.ExportOutput(port, name)
         wiring.builder.BuildInto(self)
 
+    def __repr__(self) -> str:
+        objects = ", ".join(one.name for one in self._objects)
+        return f"HapticRendering({self._tool.name!r} against {objects})"
+
     @property
     def tool(self) -> RenderedBody:
         """The body that is moved."""

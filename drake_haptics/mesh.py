@@ -83,6 +83,13 @@ class Mesh:
     components: tuple[Component, ...]
     report: MeshReport
 
+    def __repr__(self) -> str:
+        size_mm = " × ".join(f"{1e3 * side:.4g}" for side in self.report.extent)
+        return (
+            f"Mesh({self.report.source!r}, {len(self.vertices)} vertices, "
+            f"{len(self.triangles)} triangles, {size_mm} mm)"
+        )
+
     @staticmethod
     def from_arrays(
         vertices: Any, triangles: Any, *, name: str = "mesh", strict: bool = False

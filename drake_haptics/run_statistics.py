@@ -43,6 +43,14 @@ class RunStatistics:
         self._shed_ticks = dict.fromkeys(SHED_STAGES, 0)
         self._non_finite_events = 0
 
+    def __repr__(self) -> str:
+        self._digest()
+        return (
+            f"RunStatistics({self._ticks} ticks of {1e3 * self._period_s:g} ms, at "
+            f"most {self._max_force_N:.3g} N, {self._max_torque_Nm:.3g} N·m and "
+            f"{1e3 * self._max_penetration_m:.3g} mm deep)"
+        )
+
     @property
     def ticks(self) -> int:
         """Number of ticks so far."""

@@ -291,6 +291,14 @@ class Scene:
     hand: Hand = field(default_factory=Hand)
     effects: Effects = field(default_factory=Effects)
 
+    def __repr__(self) -> str:
+        objects = ", ".join(Path(one.mesh).name for one in self.environment) or "none"
+        return (
+            f"Scene({self.description!r}, tool {Path(self.tool.mesh).name or 'none'}, "
+            f"environment {objects}, contact {self.contact.stiffness_N_per_m:g} N/m, "
+            f"coupling {self.coupling.stiffness_N_per_m:g} N/m)"
+        )
+
     @classmethod
     def for_meshes(
         cls,

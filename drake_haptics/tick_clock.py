@@ -45,6 +45,12 @@ class TickClock:
         self._ticks = 0
         self._skipped = 0
 
+    def __repr__(self) -> str:
+        return (
+            f"TickClock({1e3 * self._period_s:g} ms, {self._ticks} ticks, "
+            f"{self._skipped} skipped)"
+        )
+
     @property
     def ticks(self) -> int:
         """Ticks waited for so far, without the first."""

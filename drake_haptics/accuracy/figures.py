@@ -135,6 +135,13 @@ class AccuracyStudy:
     rows: tuple[Row, ...]
     peers: tuple[PeerRow, ...] = ()
 
+    def __repr__(self) -> str:
+        return (
+            f"AccuracyStudy({self.scene!r}, {len(self.rows)} settings and "
+            f"{len(self.peers)} peers over {self.ticks} ticks, {self.contact_ticks} in "
+            f"contact)"
+        )
+
     def to_dict(self) -> dict[str, Any]:
         """Returns the study ready for JSON."""
         return asdict(self)

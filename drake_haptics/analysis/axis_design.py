@@ -14,6 +14,7 @@ from drake_haptics.analysis.sampled_wall import (
     calc_largest_delay,
     calc_largest_stiffness,
 )
+from drake_haptics.one_line import one_line
 from drake_haptics.passivity_bounds import (
     calc_passive_damping,
     calc_passive_stiffness,
@@ -94,6 +95,8 @@ class AxisDesign:
     required_damping: float
     device: AxisDevice
     margins: tuple[GripMargins, ...]
+
+    __repr__ = one_line
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers, words and lists only."""

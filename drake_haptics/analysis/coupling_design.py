@@ -18,6 +18,7 @@ from drake_haptics.analysis.coupling_plot import plot_axis_design
 from drake_haptics.coupling_check import HeldHandle
 from drake_haptics.device_preset import DevicePreset, load_device_preset
 from drake_haptics.held_handle import calc_held_handle
+from drake_haptics.one_line import one_line
 from drake_haptics.scene import Coupling
 from drake_haptics.systems.hand_grip import HAND_GRIPS, HandGrip
 from drake_haptics.systems.simulated_arm import make_arm_plant
@@ -45,6 +46,8 @@ class CouplingDesign:
     margin: float
     translation: AxisDesign
     rotation: AxisDesign | None
+
+    __repr__ = one_line
 
     def describe(self) -> str:
         """Returns the gains and what limits them, a line each."""

@@ -13,6 +13,7 @@ from drake_haptics.analysis.sampled_wall import (
     calc_largest_delay,
     calc_largest_stiffness,
 )
+from drake_haptics.one_line import one_line
 from drake_haptics.passivity_bounds import calc_passive_stiffness, calc_stable_stiffness
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ class DelayBounds:
     law: np.ndarray
     passive: np.ndarray
     largest_delay_s: float
+
+    __repr__ = one_line
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draws the three over the delay, and the wall as a point."""

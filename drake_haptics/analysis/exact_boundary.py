@@ -25,6 +25,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import brentq
 
+from drake_haptics.one_line import one_line
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -59,6 +61,8 @@ class ExactBoundary:
     beta: np.ndarray
     alpha: np.ndarray
     peak: BoundaryPoint
+
+    __repr__ = one_line
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draws the curve, its peak and its tangent, the law of Gil et al."""

@@ -12,6 +12,7 @@ from pydrake.systems.framework import Context
 from drake_haptics.analysis.delay_margin import find_shown_wrench
 from drake_haptics.analysis.held_loop import HeldLoop
 from drake_haptics.device_preset import load_device_preset
+from drake_haptics.one_line import one_line
 from drake_haptics.systems.hand_grip import HAND_GRIPS
 
 
@@ -48,6 +49,8 @@ class FeltImpedance:
     period_s: float
     curl: np.ndarray
     handle_damping: np.ndarray
+
+    __repr__ = one_line
 
 
 def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:

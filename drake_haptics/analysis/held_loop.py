@@ -19,6 +19,7 @@ from drake_haptics.analysis.sampled_linearization import (
 from drake_haptics.analysis.simulated_growth import measure_growth
 from drake_haptics.analysis.stability_limit import calc_growth, drop_neutral
 from drake_haptics.builder import HapticDiagram
+from drake_haptics.one_line import one_line
 from drake_haptics.scene import Coupling, Scene
 
 # A motion of 250 Hz turns by 0.3 rad in such a step of third order.
@@ -38,6 +39,8 @@ class HeldLoop:
     haptic: HapticDiagram
     context: Context
     linearization: SampledLinearization
+
+    __repr__ = one_line
 
     @property
     def growth(self) -> float:
@@ -106,6 +109,8 @@ class CouplingGrowth:
 
     scene: Scene
     time_s: float
+
+    __repr__ = one_line
 
     def __call__(self, stiffness: float, damping: float) -> dict[str, Any]:
         """Returns the growth per tick.

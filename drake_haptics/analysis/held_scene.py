@@ -14,6 +14,7 @@ from pydrake.systems.framework import Context
 from drake_haptics.analysis.equilibrium import find_equilibrium
 from drake_haptics.analysis.sampled_preconditions import check_conversion
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.one_line import one_line
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.scene import Coupling, HandPath, Pose, Scene, Waypoint
 from drake_haptics.scene_check import SceneWarning
@@ -51,6 +52,8 @@ class HeldScene:
     X_WT: RigidTransform
     F_Tool_W: np.ndarray
     restless_s: tuple[float, ...] = ()
+
+    __repr__ = one_line
 
 
 def find_firmest_contact(scene: Scene) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.linalg import block_diag, eig
 
 from drake_haptics.analysis.period_map import PeriodMap
+from drake_haptics.one_line import one_line
 
 # An eigenvalue this near to 1 moves too slowly to be told from one that stays; the
 # two of a free mass, which are exactly 1, are found to the root of round-off.
@@ -57,6 +58,8 @@ class Mode:
     eigenvalue: complex
     period_s: float
     participation: tuple[tuple[str, float], ...]
+
+    __repr__ = one_line
 
     @property
     def growth_per_period(self) -> float:

@@ -26,6 +26,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from drake_haptics.analysis.transfer_function import TransferFunction, as_transfer
+from drake_haptics.one_line import one_line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,6 +62,8 @@ class Passivity:
     required_damping: np.ndarray
     worst_damping: float
     worst_frequency_Hz: float
+
+    __repr__ = one_line
 
     def calc_usage(self, damping: np.ndarray) -> np.ndarray:
         """Returns how much of a damping is needed, (n,), without unit.

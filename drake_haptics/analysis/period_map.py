@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from drake_haptics.one_line import one_line
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -34,6 +36,8 @@ class PeriodMap:
     state: np.ndarray
     quaternions: tuple[tuple[int, ...], ...]
     equilibrium_residual: float
+
+    __repr__ = one_line
 
     def eigenvalues(self) -> np.ndarray:
         """Returns the eigenvalues of A (n,), complex, largest magnitude first."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from drake_haptics.one_line import one_line
 from drake_haptics.passivity_bounds import calc_quantized_stiffness
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ class QuantizationBounds:
     resolutions: np.ndarray
     stiffness: np.ndarray
     sufficient_resolution: float
+
+    __repr__ = one_line
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draws the stiffness over the resolution."""

@@ -38,6 +38,7 @@ from drake_haptics.analysis.sampled_preconditions import (
     find_period,
 )
 from drake_haptics.analysis.state_layout import find_state_layout
+from drake_haptics.one_line import one_line
 
 _Port = TypeVar("_Port", InputPort, OutputPort)
 
@@ -64,6 +65,8 @@ class SampledLinearization(PeriodMap):
     update: np.ndarray
     rates: np.ndarray
     kinks: tuple[str, ...]
+
+    __repr__ = one_line
 
     def to_linear_system(self) -> LinearSystem:
         """Returns Drake's discrete-time system of the same matrices and period."""

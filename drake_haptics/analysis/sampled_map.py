@@ -17,6 +17,7 @@ from pydrake.systems.framework import (
 
 from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
 from drake_haptics.analysis.diagram_systems import Timing, calc_path, walk_leaves
+from drake_haptics.one_line import one_line
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,8 @@ class SampledValues:
     update: np.ndarray
     rates: np.ndarray
     output: np.ndarray
+
+    __repr__ = one_line
 
     def stack(self) -> np.ndarray:
         """Returns all rows, (n_d + n_c + p, ...)."""

@@ -33,6 +33,7 @@ from drake_haptics.analysis.study_chunk import one_blas_thread
 from drake_haptics.analysis.z_width_map import ZWidth, z_width
 from drake_haptics.coupling_check import HeldHandle
 from drake_haptics.held_handle import calc_scene_handle, check_scene_coupling
+from drake_haptics.one_line import one_line
 from drake_haptics.scene import Scene
 
 if TYPE_CHECKING:
@@ -86,6 +87,8 @@ class SceneStability:
     broken_bounds: tuple[str, ...]
     map: ZWidth | None
     restless_s: tuple[float, ...] = ()
+
+    __repr__ = one_line
 
     @property
     def period_s(self) -> float:

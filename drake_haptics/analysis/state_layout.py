@@ -9,6 +9,7 @@ from pydrake.multibody.tree import QuaternionFloatingJoint
 from pydrake.systems.framework import Context, System
 
 from drake_haptics.analysis.diagram_systems import calc_path, walk_leaves
+from drake_haptics.one_line import one_line
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,8 @@ class StateLayout:
 
     names: tuple[str, ...]
     quaternions: tuple[tuple[int, ...], ...]
+
+    __repr__ = one_line
 
 
 def find_state_layout(root: System) -> StateLayout:

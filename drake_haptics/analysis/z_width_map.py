@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drake_haptics.analysis.study import run_study
+from drake_haptics.one_line import one_line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,6 +42,8 @@ class ZWidth:
     spectral_radius: np.ndarray
     passive_damping: np.ndarray
     reasons: Mapping[tuple[int, int], str] = field(default_factory=dict)
+
+    __repr__ = one_line
 
     def largest_stable_stiffness(self) -> np.ndarray:
         """Returns for each damping the stiffness below which all of the map is stable.

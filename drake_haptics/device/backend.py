@@ -13,6 +13,7 @@ from enum import IntEnum
 import numpy as np
 
 from drake_haptics.errors import UserError
+from drake_haptics.one_line import one_line
 
 
 class GateState(IntEnum):
@@ -67,6 +68,8 @@ class DeviceReading:
     gate: GateState = GateState.ACTIVE
     fault: Fault = Fault.NONE
 
+    __repr__ = one_line
+
     def __deepcopy__(self, memo: dict[int, object]) -> DeviceReading:
         """Returns itself: a reading never changes, so that Drake copies it for free."""
         return self
@@ -96,6 +99,8 @@ class DeviceCommand:
     V_BH: np.ndarray
     K_B: np.ndarray | None = None
     B_B: np.ndarray | None = None
+
+    __repr__ = one_line
 
 
 @dataclass(frozen=True)
@@ -127,6 +132,11 @@ class DeviceBackend(ABC):
     `write` and none after `close`. Use it as a context manager, so that it is closed
     whatever happens.
     """
+
+    def __repr__(self) -> str:
+        link = self.get_link_status()
+        counts = f"{link.received} samples, {link.lost} lost, {link.rejected} refused"
+        return f"{type(self).__name__}({counts})"
 
     @property
     def url(self) -> str | None:

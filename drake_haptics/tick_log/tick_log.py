@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from drake_haptics.one_line import count
 from drake_haptics.tick_log.log_scanner import Damage, EndMark, scan_blocks
 from drake_haptics.tick_log.tick_log_header import TickLogHeader, read_header
 from drake_haptics.tick_log.tick_rows import TickRows, join_rows
@@ -50,6 +51,11 @@ class TickLog:
     rows: TickRows
     gaps: tuple[Gap, ...]
     damaged_blocks: int
+
+    def __repr__(self) -> str:
+        ticks = count(len(self.rows), "tick")
+        period_ms = 1e3 * self.header.period_s
+        return f"TickLog({ticks} of {period_ms:g} ms, {count(len(self.gaps), 'gap')})"
 
     def describe_gaps(self) -> list[str]:
         """Returns a sentence for each gap."""

@@ -9,6 +9,7 @@ import zlib
 from dataclasses import asdict, dataclass, fields
 from typing import BinaryIO
 
+from drake_haptics.one_line import one_line
 from drake_haptics.tick_log.tick_log_error import TickLogError
 
 FILE_MAGIC = b"\x89DHLOG\r\n"
@@ -36,6 +37,8 @@ class TickLogHeader:
     scene: str
     mesh_sha256: dict[str, str]
     X_WB: list[float]
+
+    __repr__ = one_line
 
 
 def pack_header(header: TickLogHeader) -> bytes:

@@ -92,6 +92,9 @@ class TickRecorder:
         """Ticks so far."""
         return self._ticks
 
+    def __repr__(self) -> str:
+        return f"TickRecorder({str(self._path)!r}, {self._ticks} ticks noted)"
+
     def add(
         self,
         time_s: float,

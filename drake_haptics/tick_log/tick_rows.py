@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from drake_haptics.one_line import one_line
+
 POSE = ("qw", "qx", "qy", "qz", "x_m", "y_m", "z_m")
 VELOCITY = (
     *("wx_rad_per_s", "wy_rad_per_s", "wz_rad_per_s"),
@@ -69,6 +71,8 @@ class TickRows:
     ticks: np.ndarray
     reals: np.ndarray
     counts: np.ndarray
+
+    __repr__ = one_line
 
     def __len__(self) -> int:
         """Returns the number of ticks."""

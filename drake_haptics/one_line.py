@@ -1,0 +1,68 @@
+"""What an object says of itself in one line, where its fields would fill pages."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+# A wrench, a pose: up to here an array's numbers are told, beyond only its size.
+_MOST_NUMBERS = 7
+_MOST_ITEMS = 3
+
+
+def one_line(instance: Any) -> str:
+    """Returns a dataclass's name and fields, long ones by their size.
+
+    To be a class's `__repr__`: arrays of up to seven numbers, numbers and texts are
+    told, larger arrays and collections counted, other objects named by their class.
+
+    Args:
+        instance: Of a dataclass.
+    """
+    shown = (
+        f"{field.name}={brief(getattr(instance, field.name))}"
+        for field in fields(instance)
+        if field.repr and not field.name.startswith("_")
+    )
+    return f"{type(instance).__name__}({', '.join(shown)})"
+
+
+def brief(value: object) -> str:
+    """Returns a value in a few words, numbers with four digits."""
+    if isinstance(value, Enum):
+        return value.name
+    if isinstance(value, float | np.floating):
+        return f"{value:.4g}"
+    if value is None or isinstance(value, bool | int | str | np.generic):
+        return str(value) if not isinstance(value, str) else repr(value)
+    if isinstance(value, np.ndarray):
+        return _array(value)
+    if isinstance(value, tuple | list):
+        return _items(value)
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(map(str, value))}}}"
+    if is_dataclass(value):
+        return f"{type(value).__name__}(...)"
+    return type(value).__name__
+
+
+def count(number: int, noun: str) -> str:
+    """Returns "1 piece", "2 pieces"."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def _array(value: np.ndarray) -> str:
+    if value.ndim == 1 and value.size <= _MOST_NUMBERS:
+        return f"[{' '.join(brief(number) for number in value)}]"
+    return f"{'×'.join(map(str, value.shape))} numbers"
+
+
+def _items(value: tuple[Any, ...] | list[Any]) -> str:
+    if len(value) <= _MOST_ITEMS:
+        return f"({', '.join(map(brief, value))})"
+    kinds = {type(item).__name__ for item in value}
+    return f"{len(value)} × {kinds.pop() if len(kinds) == 1 else 'items'}"
