@@ -135,13 +135,13 @@ def test_a_chain_with_other_parameters_has_their_force_in_both_scalars(states, r
 def test_damping_and_stiffness_of_contact_are_each_felt_at_once(states):
     state = next(s for s in states if s.wrench().wrench_model[42:].any())
     chain = ContactChain(state, (True, True))
-    x = chain.variables(state)
-    model = chain.evaluate("wrench_model", x)
+    port = chain.diagram.GetOutputPort("wrench_model")
+    model = port.Eval(chain.context)
     write(chain, "penalty_force", ContactGains(2 * K_CONTACT, KV))
-    stiffer = chain.evaluate("wrench_model", x)
+    stiffer = port.Eval(chain.context)
     np.testing.assert_allclose(stiffer[42:], model[42:])
     write(chain, "penalty_force", ContactGains(K_CONTACT, 2 * KV))
-    damped = chain.evaluate("wrench_model", x)
+    damped = port.Eval(chain.context)
     np.testing.assert_allclose(damped[42:], 2 * model[42:])
     np.testing.assert_allclose(
         stiffer[:6] + damped[:6], 3 * model[:6], atol=1e-9 * abs(model[:6]).max()
@@ -161,7 +161,8 @@ def test_a_query_looks_as_far_as_its_context_says_and_relief_leaves(query):
     assert len(query_at(query, context, 0.023)) == 0
     query.set_tolerance(context, 8e-3)
     assert query.get_tolerance(context) == 8e-3
-    np.testing.assert_allclose(query_at(query, context, 0.023).distance, 3e-3)
+    found = query.get_contacts_output_port().Eval(context)
+    np.testing.assert_allclose(found.distance, 3e-3)
     relief.FixValue(context, [2.0, 0.25, 0.0])
     assert len(query_at(query, context, 0.023)) == 0
     np.testing.assert_allclose(query_at(query, context, 0.0219).distance, 1.9e-3)
