@@ -44,7 +44,6 @@ class CockpitRig:
         page: A `ScriptedPage`.
         haptics: What ran, one after the other.
         seen: What `watch` returned of each tick.
-        built: How often a diagram was built.
     """
 
     def __init__(
@@ -70,22 +69,18 @@ class CockpitRig:
         self.cockpit = Cockpit(
             self.page, meshcat, self.changes, self.holding, name="test", **options
         )
-        self.haptics, self.seen, self.built = [], [], 0
+        self._meshcat = meshcat
+        self.haptics, self.seen = [], []
         self._watch = watch or (lambda haptic, root: root.get_time())
 
-    def build(self, scene, backend):
-        """Builds a diagram as the command line does."""
-        self.built += 1
-        return BuildHapticDiagram(scene, device=backend)
-
-    def run(self, duration_s, *, energy=False):
+    def run(self, duration_s, *, energy=False, pace=None):
         """Runs and returns the statistics."""
-        pace = TickClock(
+        pace = pace or TickClock(
             self.period_s, lambda: self.ticks * self.period_s, lambda _: None
         )
         self.statistics = RunStatistics(self.period_s, pace)
-        haptic = self.build(self.changes.scene, self.holding.backend)
-        segments = Segments(haptic, self.cockpit, self.holding, self.build)
+        haptic = BuildHapticDiagram(self.changes.scene, device=self.holding.backend)
+        segments = Segments(haptic, self.cockpit, self.holding, self._meshcat)
         self.last = segments.run(
             duration_s,
             pace=pace,

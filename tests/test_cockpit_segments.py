@@ -1,22 +1,26 @@
 """A run that is changed while it goes on, against the same made by hand."""
 
 import dataclasses
+import time
 
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from cockpit_rig import CockpitRig
+from driver_process import device_command, running
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.carry_on import find_handle
-from drake_haptics.cockpit import holding
-from drake_haptics.device.backend import DeviceError
+from drake_haptics.cockpit import holding, segments
+from drake_haptics.device.backend import DeviceError, GateState
+from drake_haptics.device.udp_device import UdpDevice
 from drake_haptics.live_scene import write_live_values
 from drake_haptics.scene import Gravity
 from drake_haptics.scene_check import SceneError
 from drake_haptics.simulation import run
 from drake_haptics.stage import open_meshcat
+from drake_haptics.tick_clock import TickClock
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
 PRESSING = (0.2, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.01)
@@ -64,7 +68,7 @@ def test_nothing_asked_is_a_plain_run(make, scene):
     ).to_dict()
     assert figures["ticks"] == plain["ticks"] == 400
     np.testing.assert_array_equal(rig.seen, poses)
-    assert rig.built == 1
+    assert len(rig.haptics) == 1
     np.testing.assert_allclose(rig.page.times, 1e-3 * np.arange(1, 401), atol=1e-12)
 
 
@@ -83,7 +87,7 @@ def test_a_value_acts_from_the_next_tick_on(make, scene):
 
     run(haptic, 0.4, on_tick=end_tick)
     np.testing.assert_array_equal(rig.seen, poses)
-    assert rig.built == 1
+    assert len(rig.haptics) == 1
     state = rig.page.states[-1]
     assert state["values"]["coupling.stiffness_N_per_m"] == 1200.0
     assert state["changes"] == {"coupling": {"stiffness_N_per_m": 1200.0}}
@@ -110,7 +114,7 @@ def test_an_effect_goes_on_in_another_diagram(make):
 def test_effects_switched_together_build_one_diagram(make):
     rig = make({100: [FRICTION], 150: [{**FRICTION, "name": "gravity"}]})
     rig.run(0.6)
-    assert rig.built == 2
+    assert len(rig.haptics) == 2
     effects = rig.haptics[-1].loop.effects
     assert effects.friction is not None and effects.gravity is not None
 
@@ -151,7 +155,7 @@ def test_a_scene_can_begin_anew_in_any_hand(make, handle):
 def test_what_is_asked_at_once_is_all_done(make):
     rig = make({100: [MOUSE, FRICTION, STIFFER, {"do": "restart"}]})
     rig.run(0.3)
-    assert rig.built == 2
+    assert len(rig.haptics) == 2
     assert rig.last.loop.effects.friction is not None
     assert rig.last.scene.coupling.stiffness_N_per_m == 1200.0
     assert rig.page.states[-1]["handle"] == "mouse"
@@ -164,7 +168,7 @@ def test_the_reserve_of_passivity_waits_until_a_slider_rests(make):
         script[tick] = [{**STIFFER, "to": 1000 + tick}]
     rig = make(script)
     rig.run(1.2)
-    assert rig.built == 3
+    assert len(rig.haptics) == 3
     assert rig.last.scene.coupling.stiffness_N_per_m == 1690.0
 
 
@@ -187,7 +191,7 @@ def test_what_cannot_be_is_refused_and_the_run_goes_on(make, asked, message):
     figures = rig.run(0.25)
     assert figures["ticks"] == 250
     assert message in rig.page.states[-1]["error"]
-    assert rig.built == 1
+    assert len(rig.haptics) == 1
 
 
 def test_an_error_is_told_until_something_else_is_asked(make):
@@ -213,23 +217,20 @@ def test_a_locked_run_is_only_looked_at(make, asked):
                locked="It is logged.")  # fmt: skip
     figures = rig.run(0.3, energy=True)
     assert figures["energy_J"]["tool"]["stored"] > 0.0
-    assert rig.built == 1
+    assert len(rig.haptics) == 1
     assert rig.changes.scene is rig.changes.file
     assert "It is logged." in [state["error"] for state in rig.page.states]
     assert rig.page.states[-1]["views"]["pieces"] is True
     assert rig.page.hellos[0]["locked"] == "It is logged."
 
 
-def test_what_cannot_be_built_is_taken_back(make):
+def test_what_cannot_be_built_is_taken_back(make, monkeypatch):
     rig = make({100: [FRICTION], 500: [STIFFER]})
-    build = rig.build
 
-    def refuse(scene, backend):
-        if scene.effects.friction is not None:
-            raise SceneError("no friction today")
-        return build(scene, backend)
+    def refuse(scene, **_):
+        raise SceneError("no friction today")
 
-    rig.build = refuse
+    monkeypatch.setattr(segments, "BuildHapticDiagram", refuse)
     figures = rig.run(0.7)
     assert figures["ticks"] == 700
     np.testing.assert_allclose(rig.page.times, 1e-3 * np.arange(1, 701), atol=1e-9)
@@ -237,16 +238,13 @@ def test_what_cannot_be_built_is_taken_back(make):
     assert rig.page.states[-1]["changes"] == {"coupling": {"stiffness_N_per_m": 1200.0}}
 
 
-def test_ctrl_c_ends_it_also_while_a_diagram_is_built(make):
+def test_ctrl_c_ends_it_also_while_a_diagram_is_built(make, monkeypatch):
     rig = make({100: [FRICTION]})
-    build = rig.build
 
-    def interrupt(scene, backend):
-        if rig.built == 1:
-            raise KeyboardInterrupt
-        return build(scene, backend)
+    def interrupt(scene, **_):
+        raise KeyboardInterrupt
 
-    rig.build = interrupt
+    monkeypatch.setattr(segments, "BuildHapticDiagram", interrupt)
     assert rig.run(None)["ticks"] == 350
 
 
@@ -315,9 +313,42 @@ def test_a_device_that_is_gone_leaves_the_handle_where_it_is(make, monkeypatch, 
     assert rig.last.backend is rig.holding.pointer is not None
 
 
+def test_a_driver_bears_the_pause_of_a_rebuild(make, monkeypatch, tmp_path, meshcat):
+    """The servo's thread goes on: the gate is at no fault, and the force comes back."""
+    file = tmp_path / "figures.json"
+    with running(device_command(file, "--ttl-ms", 500), file) as driver:
+        # What it shows without a host for so long would be a fault.
+        monkeypatch.setattr(
+            holding,
+            "open_device",
+            lambda *_: UdpDevice("127.0.0.1", driver.port, ttl_s=0.5),
+        )
+        build = segments.BuildHapticDiagram
+
+        def build_slowly(scene, **options):
+            time.sleep(0.6)
+            return build(scene, **options)
+
+        monkeypatch.setattr(segments, "BuildHapticDiagram", build_slowly)
+        gates = []
+        rig = make(
+            {100: [FRICTION]},
+            address="udp://there",
+            watch=lambda *_: gates.append(rig.holding.backend.read().gate),
+        )
+        rig.run(0.8, pace=TickClock(rig.period_s))
+        rig.holding.close()
+        figures = driver.end()
+    assert len(rig.haptics) == 2
+    assert GateState.ACTIVE in gates[-100:]
+    assert GateState.FAULT not in gates
+    assert figures["faults"] == {}
+    assert figures["limit_violations"] == 0
+
+
 def test_gravity_of_the_page_is_that_of_a_scene_file(make, scene):
     """The same diagram comes of a switch as of a scene that names the effect."""
-    rig = make({0: [], 1: [{"do": "effect", "name": "gravity", "on": True}]})
+    rig = make({1: [{"do": "effect", "name": "gravity", "on": True}]})
     rig.run(0.4)
     effects = dataclasses.replace(scene.effects, gravity=Gravity())
     assert rig.last.scene == dataclasses.replace(scene, effects=effects)

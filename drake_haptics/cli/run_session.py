@@ -132,9 +132,6 @@ def run_session(
             if cockpit is not None and pace is not None:
                 haptic = cockpit.run(
                     haptic,
-                    lambda scene, backend: build_scene(
-                        console, scene, meshcat, backend
-                    ),
                     duration_s,
                     pace=pace,
                     statistics=statistics,

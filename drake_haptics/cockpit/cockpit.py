@@ -246,7 +246,7 @@ class Cockpit:
 
     def _apply(self, now_s: float) -> None:
         """Makes the loop run the scene as it is now."""
-        scene = self._holding.place(self.changes.scene)
+        scene = self.changes.scene
         if not is_live_change(self._haptic.scene, scene):
             self._end(now_s + _REST_S)
             return

@@ -62,6 +62,7 @@ class CockpitRun:
         site = find_device_site(scene)
         p_WH = (site.X_WB @ site.X_BH).translation()
         distance_m = _FIRST_DISTANCE * site.workspace_radius_m
+        self._meshcat = meshcat
         with ExitStack() as stack:
             self._page = LivePage(
                 meshcat, look_from_the_front(p_WH, distance_m), listener
@@ -94,7 +95,6 @@ class CockpitRun:
     def run(
         self,
         haptic: HapticDiagram,
-        build: Callable[[Scene, DeviceBackend | None], HapticDiagram],
         duration_s: float | None,
         *,
         pace: TickClock,
@@ -107,7 +107,6 @@ class CockpitRun:
 
         Args:
             haptic: Of the scene, with `backend`.
-            build: Returns the diagram of a scene with what is held then.
             duration_s: Simulated time, s; until Ctrl-C where None.
             pace: Waits for each tick.
             statistics: Of all that runs.
@@ -121,7 +120,7 @@ class CockpitRun:
         Raises:
             RunError: As `simulation.run`.
         """
-        segments = Segments(haptic, self._cockpit, self._holding, build)
+        segments = Segments(haptic, self._cockpit, self._holding, self._meshcat)
         return segments.run(
             duration_s,
             pace=pace,

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import dataclasses
-
-import numpy as np
 from pydrake.geometry import Meshcat
-from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.math import RigidTransform
 
 from drake_haptics.cockpit.page_handle import PageHandle
 from drake_haptics.device.backend import DeviceBackend, DeviceError
 from drake_haptics.device.meshcat_device import MeshcatDevice
 from drake_haptics.device_address import open_device
 from drake_haptics.device_site import find_device_site, wait_for_reading
-from drake_haptics.scene import Pose, Scene
+from drake_haptics.scene import Scene
 
 HAND, MOUSE, SLIDERS, DEVICE = "hand", "mouse", "sliders", "device"
 _LABELS = {HAND: "Simulated hand", MOUSE: "Mouse", SLIDERS: "Sliders, gamepad"}
@@ -44,8 +41,6 @@ class Holding:
         self._meshcat = meshcat
         self._address = address
         self._site = find_device_site(scene)
-        # Where the base of a device stands that was put to the scene's hand.
-        self._base: Pose | None = None
         self.name = HAND
         self.backend: DeviceBackend | None = None
         if address is not None:
@@ -82,20 +77,7 @@ class Holding:
             self.close()
         backend = self._open(name, X_WH)
         self.close()
-        self.name, self.backend, self._base = name, backend, None
-
-    def place(self, scene: Scene) -> Scene:
-        """Returns a scene in which a device stands where it stood until now."""
-        if self._base is None:
-            return scene
-        device = dataclasses.replace(scene.device, base=self._base)
-        return dataclasses.replace(scene, device=device)
-
-    def note_place(self, X_WB: RigidTransform) -> None:
-        """Notes where the base of the device stands that is held now."""
-        if self.backend is not None and not self.backend.is_placed:
-            rpy = RollPitchYaw(X_WB.rotation()).vector()
-            self._base = Pose(X_WB.translation().tolist(), np.rad2deg(rpy).tolist())
+        self.name, self.backend = name, backend
 
     def close(self) -> None:
         """Lets go, at zero force; may be called again."""

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 
+from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context
 
-from drake_haptics.builder import HapticDiagram
+from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.carry_on import carry_on, find_handle
 from drake_haptics.cockpit.cockpit import Change, Cockpit
 from drake_haptics.cockpit.holding import Holding
-from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.errors import UserError
-from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene import Scene
+from drake_haptics.scene_check import SceneWarning
 from drake_haptics.simulation import run
 from drake_haptics.tick_clock import TickClock
 
@@ -28,7 +28,7 @@ class Segments:
         haptic: HapticDiagram,
         cockpit: Cockpit,
         holding: Holding,
-        build: Callable[[Scene, DeviceBackend | None], HapticDiagram],
+        meshcat: Meshcat,
     ):
         """Begins with no tick.
 
@@ -36,12 +36,12 @@ class Segments:
             haptic: Of the cockpit's scene, with the backend that is held.
             cockpit: Says what is to be otherwise.
             holding: Who holds the handle.
-            build: Returns the diagram of a scene that somebody holds.
+            meshcat: Where to draw what is drawn.
         """
         self._haptic = haptic
         self._cockpit = cockpit
         self._holding = holding
-        self._build = build
+        self._meshcat = meshcat
 
     def run(
         self,
@@ -102,18 +102,13 @@ class Segments:
         """
         old, holding = self._haptic, self._holding
         backend = holding.backend
-        X_WB = _find_device_base(old, last)
-        if X_WB is not None:
-            holding.note_place(X_WB)
+        X_WH = None if change.restarts else find_handle(old, last)
+        # What can be put anywhere is put where the scene starts.
+        moves_to_start = change.restarts and backend is not None and backend.is_placed
         try:
-            # What can be put anywhere is put where the scene starts.
-            is_movable = backend is not None and backend.is_placed
-            if change.handle != holding.name or (change.restarts and is_movable):
-                X_WH = None if change.restarts else find_handle(old, last)
+            if change.handle != holding.name or moves_to_start:
                 holding.take(change.handle, X_WH)
-            new = self._build(
-                holding.place(self._cockpit.changes.scene), holding.backend
-            )
+            new = self._build(old, X_WH)
         except UserError as error:
             if holding.backend is not backend:
                 raise
@@ -121,16 +116,20 @@ class Segments:
             return old, last
         return new, None if change.restarts else carry_on(old, last, new)
 
+    def _build(self, old: HapticDiagram, X_WH: RigidTransform | None) -> HapticDiagram:
+        """Returns the diagram of the scene as it is now, held as it is now.
 
-def _find_device_base(haptic: HapticDiagram, root: Context) -> RigidTransform | None:
-    """Returns X_WB of a device's base; None where it is simulated.
-
-    Args:
-        haptic: What ran.
-        root: Context of its diagram.
-    """
-    if haptic.backend is None:
-        return None
-    io = haptic.loop.device.GetSubsystemByName("device_io")
-    reading = io.GetOutputPort("reading").Eval(io.GetMyContextFromRoot(root))
-    return find_handle(haptic, root) @ vector_to_pose(reading.X_BH).inverse()
+        Args:
+            old: What ran.
+            X_WH: Where the handle goes on; None where the scene begins.
+        """
+        with warnings.catch_warnings():
+            # The page tells it.
+            warnings.simplefilter("ignore", SceneWarning)
+            return BuildHapticDiagram(
+                self._cockpit.changes.scene,
+                device=self._holding.backend,
+                meshcat=self._meshcat if old.visualizer is not None else None,
+                reuse=old,
+                X_WH=X_WH,
+            )

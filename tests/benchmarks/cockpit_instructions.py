@@ -62,7 +62,6 @@ def run_counted(name: str, kind: str) -> None:
         stack.enter_context(closing(shown))
         shown.run(
             haptic,
-            lambda scene, backend: BuildHapticDiagram(scene, device=backend),
             duration_s,
             pace=pace,
             statistics=RunStatistics(haptic.period_s, pace),
