@@ -7,11 +7,16 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.drake_haptics
 CORE := $(wildcard drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h) drake_haptics/core/CMakeLists.txt
 
-.PHONY: demo test lint unit docs format build fuzz clean
+.PHONY: demo tutorials test lint unit docs format build fuzz clean
 .DEFAULT_GOAL := demo
 
 demo: $(STAMP)
 	$(BIN)/drake-haptics run cup_spoon
+
+# The tutorials in the browser, to be run and changed.
+tutorials: $(STAMP)
+	$(BIN)/pip install --quiet --disable-pip-version-check "jupyterlab>=4" "coal>=3.0" "pygraphviz>=2.0"
+	$(BIN)/jupyter lab docs/tutorials
 
 test: lint unit
 
@@ -53,7 +58,7 @@ $(VENV)/bin/python:
 	  echo "drake_haptics needs a C++20 compiler and found none (tried '$${CXX:-c++}')."; \
 	  echo "On Debian or Ubuntu: sudo apt-get install g++. On macOS: xcode-select --install."; \
 	  echo "Or name one: CXX=clang++ make demo"; exit 1; fi
-	$(PYTHON) -m venv $(VENV)
+	$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); exit 1; }
 
 $(STAMP): pyproject.toml $(CORE) | $(VENV)/bin/python
 	@echo "Setting up $(VENV): Drake and the C++ core, a few minutes the first time."
