@@ -19,7 +19,9 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "code_role",
+    "command_help",
     "config_reference",
+    "core_signatures",
     "module_pages",
     "navigation",
     "pydrake_system",
@@ -58,5 +60,6 @@ myst_heading_anchors = 4  # the anchors that a code host gives to headings
 
 html_theme = "furo"
 html_static_path = ["_static"]
+html_css_files = ["reference.css"]
 html_show_sphinx = False
 html_copy_source = False

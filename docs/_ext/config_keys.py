@@ -130,6 +130,8 @@ def _write_default(field: dataclasses.Field[Any]) -> str:
         value = field.default_factory()
     if value is None or value == "":
         return ""
+    if isinstance(value, float):
+        return f"{value:g}"
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

@@ -87,7 +87,8 @@ class ConfigKeys(SphinxDirective):
 def _write_part(part: Part, facts: _Facts) -> Iterator[str]:
     """Yields the Markdown of a part."""
     yield f"## `{part.path}`\n" if part.path else "## The whole file\n"
-    yield f"{part.text} {part.summary}".strip() + "\n"
+    yield " ".join(dict.fromkeys(text for text in (part.text, part.summary) if text))
+    yield ""
     if part.is_optional:
         name = part.path.rpartition(".")[2]
         yield f"Not there unless it is named; `{name}: {{}}` takes all defaults.\n"
@@ -100,7 +101,6 @@ def _write_part(part: Part, facts: _Facts) -> Iterator[str]:
 
 def _write_key(key: Key, path: str, facts: _Facts) -> Iterator[str]:
     """Yields the Markdown of a key."""
-    rule = facts.rules.get(path, "")
     unit = f", {key.unit}" if key.unit else ""
     yield f"```{{confval}} {path}"
     yield f":type: {key.type_words}{unit}"
@@ -108,17 +108,21 @@ def _write_key(key: Key, path: str, facts: _Facts) -> Iterator[str]:
         yield ":no-index:"
     if key.default:
         yield f":default: {key.default}"
-    yield f"\n{key.text}"
-    if rule.startswith("known: "):
-        names = (f"`{name}`" for name in rule.removeprefix("known: ").split(", "))
-        yield f"\nOne of {', '.join(names)}."
-    elif rule == "is missing":
-        yield "\nMust be given."
-    elif rule:
-        yield f"\n{rule[0].upper()}{rule[1:]}."
+    words = [key.text, _write_rule(facts.rules.get(path, ""))]
     if path in facts.live:
-        yield "\nLive: it can be changed while the scene runs."
+        words.append("Live: it can be changed while the scene runs.")
+    yield f"\n{' '.join(filter(None, words))}"
     yield "```\n"
+
+
+def _write_rule(rule: str) -> str:
+    """Returns what a value must be as a sentence."""
+    if rule.startswith("known: "):
+        names = rule.removeprefix("known: ").split(", ")
+        return f"One of {', '.join(f'`{name}`' for name in names)}."
+    if rule == "is missing":
+        return "Must be given."
+    return f"{rule[0].upper()}{rule[1:]}." if rule else ""
 
 
 def _make_anchor(path: str) -> str:

@@ -12,6 +12,7 @@ from sphinx.application import Sphinx
 from sphinx.ext.napoleon import GoogleDocstring
 
 _KINDS = ("attribute", "data", "property")
+_NOTHING = "\\ "  # what reStructuredText shows as nothing at all
 _BEFORE_NAPOLEON = 400  # whose own listener has Sphinx's default, 500
 
 
@@ -20,7 +21,7 @@ def _read(
 ) -> None:
     if what in _KINDS and lines:
         read = GoogleDocstring(lines, app.config, app, "method", name, thing, options)
-        lines[:] = ["", *read.lines()]  # Napoleon looks at the first line only
+        lines[:] = [_NOTHING, *read.lines()]  # Napoleon looks at the first line only
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from sphinx.environment import BuildEnvironment
 from sphinx.transforms import SphinxTransform
 
 _README = ("README.md", "start")  # the file, and the page that shows it
+_FRONT_PAGE = "index"  # where links to folders of pages lead
 _REFERENCE_TYPE = "repository"
 METADATA = "repository_links"  # key of a page's metadata: the paths that it links to
 
@@ -32,11 +33,15 @@ class RepositoryLinks(SphinxTransform):
         folder = Path(self.env.doc2path(self.env.docname)).parent
         for kind in (addnodes.pending_xref, addnodes.download_reference):
             for link in list(self.document.findall(kind)):
-                path = folder / link["reftarget"].partition("#")[0]
+                target = link["reftarget"].partition("#")[0]
+                path = folder / target
                 if link.get("refdomain") == "doc":  # MyST took the suffix away
                     path = path.with_suffix(".md")
                 path = path.resolve()
-                if path.exists() and not path.is_relative_to(docs):
+                if path.is_relative_to(docs):
+                    if target and path.is_dir():  # as of the tutorials
+                        link.attributes.update(refdomain="doc", reftarget=_FRONT_PAGE)
+                elif path.exists():
                     self._mark(link, path.relative_to(docs.parent).as_posix())
 
     def _mark(self, link: nodes.Element, name: str) -> None:
