@@ -162,10 +162,10 @@ def test_a_query_looks_as_far_as_its_context_says_and_relief_leaves(query):
     query.set_tolerance(context, 8e-3)
     assert query.get_tolerance(context) == 8e-3
     found = query.get_contacts_output_port().Eval(context)
-    np.testing.assert_allclose(found.distance, 3e-3)
+    assert found.least_distance == pytest.approx(3e-3)
     relief.FixValue(context, [2.0, 0.25, 0.0])
     assert len(query_at(query, context, 0.023)) == 0
-    np.testing.assert_allclose(query_at(query, context, 0.0219).distance, 1.9e-3)
+    assert query_at(query, context, 0.0219).least_distance == pytest.approx(1.9e-3)
     # Others look as far as they did.
     anew = query.CreateDefaultContext()
     relief.FixValue(anew, [0.0, 1.0, 0.0])
