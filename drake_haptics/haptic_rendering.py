@@ -28,7 +28,6 @@ class HapticRendering(Diagram):
         - X_WH (with a coupling, without a device)
         - V_WH (with a coupling, without a device)
         output_ports:
-        - applied_spatial_force
         - X_WTool
         - V_WTool
         - X_WO_<name of each body that moves>
@@ -38,13 +37,14 @@ class HapticRendering(Diagram):
         - contact_wrench
         - F_Tool_W
         - F_O_W (with bodies that move)
-        - friction_force (with friction)
         - F_display (with a coupling)
         - X_WH (with a device)
         - V_WH (with a device)
         - F_applied (with a device)
         - status (with a device)
+        - friction_force (with friction)
         - energy_J (with passivity control)
+        - applied_spatial_force
 
     * `body_poses`, `body_spatial_velocities` and `applied_spatial_force` belong to the
       plant's ports of these names.
