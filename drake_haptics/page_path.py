@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from drake_haptics.errors import UserError
+
 
 def check_page_path(path: Path) -> None:
     """Checks that page and picture are two files.
 
     Raises:
-        ValueError: The path has the picture's suffix.
+        UserError: The path has the picture's suffix.
     """
     if path.suffix == ".png":
-        raise ValueError(
+        raise UserError(
             f"the page must not be called {path.name}: its picture will be. Give a"
             " name that ends with .html"
         )

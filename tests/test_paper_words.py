@@ -70,6 +70,15 @@ def test_contacts_and_overhead_are_compared():
     assert statement.verdict == "differs"
 
 
+def test_the_beginning_of_a_path_decides_nothing_but_the_rate():
+    figures = make_run(figure="11-(c)", touched=9).figures
+    rate, *others = judge_run(figures, is_cut_short=True)
+    assert rate == judge_run(figures)[0]
+    assert len(others) == len(judge_run(figures)) - 1 > 0
+    assert {statement.verdict for statement in others} == {"lacks"}
+    assert all("cut short" in statement.text for statement in others)
+
+
 def test_the_room_must_be_the_papers():
     room = make_run(figure="11-(c)", touched=17)
     assert find(judge_run(room.figures), "897 objects").verdict == "agrees"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -116,14 +116,18 @@ def run_benchmarks(
         effort: how much.
         meshes: a folder of real meshes for the scenes, see `scene_makers`.
         progress: called before each step.
+
+    Raises:
+        UserError: The folder has none of the meshes.
     """
+    makers = scene_makers(effort.motions, meshes)  # first, as it may refuse the folder
     figures = BenchFigures(machine=describe_machine())
     if "pairs" in parts:
         _run_pairs(figures, effort, progress)
     if "python" in parts:
         _run_python(figures, effort, progress)
     if "scenes" in parts:
-        _run_scenes(figures, effort, meshes, progress)
+        _run_scenes(figures, effort, makers, progress)
     if "loop" in parts:
         _run_loop(figures, effort, progress)
     return figures
@@ -155,9 +159,11 @@ def _run_python(figures: BenchFigures, effort: Effort, progress: Progress) -> No
 
 
 def _run_scenes(
-    figures: BenchFigures, effort: Effort, meshes: Path | None, progress: Progress
+    figures: BenchFigures,
+    effort: Effort,
+    makers: Mapping[str, Callable[[], SceneProblem]],
+    progress: Progress,
 ) -> None:
-    makers = scene_makers(effort.motions, meshes)
     if not effort.large_scenes:
         makers = {n: make for n, make in makers.items() if n not in _LARGE_SCENES}
     for done, (name, make) in enumerate(makers.items()):

@@ -10,6 +10,7 @@ import numpy as np
 from drake_haptics.bench.scene_motion import make_touches
 from drake_haptics.bench.scene_problem import SceneProblem
 from drake_haptics.decomposition import decompose
+from drake_haptics.errors import UserError
 from drake_haptics.mesh import Mesh, load_mesh
 from drake_haptics.shapes import SHAPES, Surface
 from drake_haptics.shapes.machine_room import (
@@ -23,6 +24,17 @@ from drake_haptics.shapes.organ import make_organ
 _ARMADILLO_SCALE = 0.25
 
 
+# Real meshes, of which a folder need not have all.
+_FILES = (
+    "cup_500.obj",
+    "spoon_336.obj",
+    "torus_2000.obj",
+    "hammer_1692.obj",
+    "armadillo_31240.stl",
+    "digestive_24846.ply",
+)
+
+
 def scene_makers(
     motions: int, meshes: Path | None = None
 ) -> dict[str, Callable[[], SceneProblem]]:
@@ -34,7 +46,12 @@ def scene_makers(
             hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply); those that it
             lacks are replaced by the package's own shapes, and the armadillo is left
             out without it.
+
+    Raises:
+        UserError: The folder has none of them.
     """
+    if meshes is not None and not any((meshes / file).exists() for file in _FILES):
+        raise UserError(f"the folder {meshes} has none of {', '.join(_FILES)}")
     cup = _source("cup", meshes, "cup_500.obj")
     spoon = _source("spoon", meshes, "spoon_336.obj")
     torus = _source("torus", meshes, "torus_2000.obj")

@@ -19,6 +19,7 @@ from drake_haptics.cli.mesh_options import (
     write_json,
 )
 from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.page_path import check_page_path
 from drake_haptics.paper.evaluation import (
     PARTS,
     QUICK,
@@ -67,6 +68,7 @@ def paper(
     passes over a sphere) and analysis (section 6.3); all if none is named. Some two
     minutes. The paper is Kim, Otaduy, Lin, Manocha 2003.
     """
+    check_page_path(out)
     effort = QUICK if quick else Effort()
     with progress_bar() as show:
         evaluation = evaluate_paper(

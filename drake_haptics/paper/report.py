@@ -144,12 +144,12 @@ def _section_figure11(evaluation: PaperEvaluation) -> Section:
     return Section(
         "figure11",
         "Figure 11: time of each tick",
-        tuple(map(_block_of_run, runs)),
+        tuple(_block_of_run(run, evaluation.is_cut_short) for run in runs),
         (make_run_table(runs), make_profile_table(runs)),
     )
 
 
-def _block_of_run(run: Run) -> Block:
+def _block_of_run(run: Run, is_cut_short: bool) -> Block:
     figures = run.figures
     picture = Picture(
         f"figure11-{figures.name.replace(', ', '-').replace(' ', '-')}",
@@ -158,7 +158,8 @@ def _block_of_run(run: Run) -> Block:
     )
     like = f", as Figure {figures.figure}" if figures.figure else ""
     title = f"{figures.name[0].upper()}{figures.name[1:]}{like}"
-    return Block(title, tuple(judge_run(figures)), (picture,))
+    statements = judge_run(figures, is_cut_short=is_cut_short)
+    return Block(title, tuple(statements), (picture,))
 
 
 def _section_figure12(evaluation: PaperEvaluation) -> Section:

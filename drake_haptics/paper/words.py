@@ -65,14 +65,29 @@ def _list_rows(rows: Sequence[ModelFigures]) -> str:
     )
 
 
-def judge_run(figures: ProfileFigures) -> list[Statement]:
-    """Returns what a run of Figure 11 comes to."""
-    statements = [_judge_rate(figures)]
-    if figures.figure == "11-(a)":
-        statements.append(_judge_contacts(figures))
+def judge_run(
+    figures: ProfileFigures, *, is_cut_short: bool = False
+) -> list[Statement]:
+    """Returns what a run of Figure 11 comes to.
+
+    Args:
+        figures: Of the run.
+        is_cut_short: Whether only the beginning of the path was run: nothing but the
+            rate is judged then.
+    """
+    statements = [*_judge_overhead(figures), *_judge_growth(figures)]
     if figures.figure == "11-(c)":
-        statements.append(_judge_room(figures))
-    return [*statements, *_judge_overhead(figures), *_judge_growth(figures)]
+        statements.insert(0, _judge_room(figures))
+    if figures.figure == "11-(a)":
+        statements.insert(0, _judge_contacts(figures))
+    if is_cut_short:
+        statements = [_leave_open(statement) for statement in statements]
+    return [_judge_rate(figures), *statements]
+
+
+def _leave_open(statement: Statement) -> Statement:
+    """Returns a statement that the beginning of a path cannot decide."""
+    return Statement("lacks", f"{statement.text} (So far: the path was cut short.)")
 
 
 def _judge_rate(figures: ProfileFigures) -> Statement:

@@ -6,6 +6,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
+
+from drake_haptics.cli import main
 
 PROGRAM = [str(Path(sys.executable).with_name("drake-haptics")), "bench"]
 
@@ -39,3 +42,9 @@ def test_an_unknown_part_is_a_wrong_call():
     result = run("paris")
     assert result.returncode == 2 and "paris" in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_a_folder_without_any_of_the_meshes_is_told_at_once(tmp_path):
+    result = CliRunner().invoke(main, ["bench", "--meshes", str(tmp_path)])
+    assert result.exit_code == 1 and result.stdout == ""
+    assert f"Error: the folder {tmp_path} has none of cup_500.obj" in result.stderr

@@ -33,16 +33,17 @@ def _make_times(scene: str, by_name: dict[str, LoopFigures]) -> Table:
     return Table(
         title=f"Whole ticks of the 1 kHz loop, {scene}: µs",
         note=(
-            "First over the ticks at which all loops have a contact; from `all` on, "
-            "over all ticks, median and p99. The last two are ratios of medians in "
-            "contact, to the row's: `whole` of this package's whole tick, from the "
-            "device's reading through Drake's Simulator to the device's wrench, "
-            "`native` of its native part."
+            "Median, p99 and p99.9 over the ticks at which all loops have a contact; "
+            "then median and p99 over all ticks. `ours / it` is the time of this "
+            "package's whole tick, from the device's reading through Drake's Simulator "
+            "to the device's wrench, divided by that of the row; `native / it` is that "
+            "of its native part: medians in contact, and below 1 this package is "
+            "faster."
         ),
         header=(
             *("loop", "median", "p99", "p99.9"),
-            *("all", "p99"),
-            *("whole", "native"),
+            *("median, all", "p99, all"),
+            *("ours / it", "native / it"),
         ),
         rows=[
             (
