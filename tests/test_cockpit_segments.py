@@ -18,7 +18,7 @@ from drake_haptics.device.udp_device import UdpDevice
 from drake_haptics.live_scene import write_live_values
 from drake_haptics.scene import Gravity
 from drake_haptics.scene_check import SceneError
-from drake_haptics.simulation import run
+from drake_haptics.simulation import RunError, run
 from drake_haptics.stage import open_meshcat
 from drake_haptics.tick_clock import TickClock
 
@@ -248,6 +248,15 @@ def test_ctrl_c_ends_it_also_while_a_diagram_is_built(make, monkeypatch):
     assert rig.run(None)["ticks"] == 350
 
 
+def test_ctrl_c_ends_it_though_something_else_was_asked(make):
+    def interrupt(haptic, root):
+        if root.get_time() > 0.1995:
+            raise KeyboardInterrupt
+
+    rig = make({100: [FRICTION]}, watch=interrupt)
+    assert rig.run(None)["ticks"] == 200
+
+
 def test_the_coupling_is_judged_as_it_is_now(make):
     damped = {"do": "set", "key": "coupling.damping_Ns_per_m", "to": 20}
     rig = make({10: [damped], 150: [{"do": "reset"}]})
@@ -255,6 +264,36 @@ def test_the_coupling_is_judged_as_it_is_now(make):
     warned = [bool(state["warnings"]) for state in rig.page.states]
     assert warned == [False, True, False]
     assert rig.page.states[1]["warnings"][0].startswith("coupling.damping_Ns_per_m is")
+
+
+def fail_once(at_tick):
+    """Returns what makes a run fail as a state that is not finite does."""
+    ticks = []
+
+    def watch(haptic, root):
+        ticks.append(root.get_time())
+        if len(ticks) == at_tick:
+            raise FloatingPointError("not finite")
+
+    return watch
+
+
+def test_a_run_that_fails_of_changes_begins_anew_without_them(make):
+    rig = make({100: [STIFFER, FRICTION]}, watch=fail_once(600))
+    assert rig.run(0.8)["ticks"] == 800
+    np.testing.assert_allclose(rig.page.times[-200:], 1e-3 * np.arange(1, 201))
+    assert rig.last.scene == rig.changes.file
+    assert "not finite" in rig.page.states[-1]["error"]
+
+
+def test_a_run_that_fails_by_itself_is_over(make, device):
+    rig = make({}, watch=fail_once(100))
+    with pytest.raises(RunError, match="not finite"):
+        rig.run(0.3)
+    # And so is one that somebody feels.
+    rig = make({50: [STIFFER]}, watch=fail_once(100), address="udp://there")
+    with pytest.raises(RunError, match="not finite"):
+        rig.run(0.3)
 
 
 @pytest.fixture

@@ -148,6 +148,22 @@ class Cockpit:
         self.changes.restore(self._running)
         self._error = why
 
+    def fall_back(self, why: str) -> bool:
+        """Takes all changes back, with which a run has failed.
+
+        Args:
+            why: It has; the page is told.
+
+        Returns:
+            Whether there were any, of a run that nobody feels: else it is over.
+        """
+        changes = self.changes
+        if changes.scene is changes.file or self._holding.name == DEVICE:
+            return False
+        changes.restore(changes.file)
+        self._error = f"It was too much: {why}. The scene begins anew, as in its file."
+        return True
+
     def _greet(self) -> None:
         """Tells the page what there is to see and to change."""
         greeting = make_greeting(

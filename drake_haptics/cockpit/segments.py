@@ -16,7 +16,7 @@ from drake_haptics.cockpit.holding import Holding
 from drake_haptics.errors import UserError
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene_check import SceneWarning
-from drake_haptics.simulation import run
+from drake_haptics.simulation import RunError, run
 from drake_haptics.tick_clock import TickClock
 
 
@@ -69,17 +69,24 @@ class Segments:
 
             self._cockpit.begin(self._haptic, statistics, pace)
             on_begin(self._haptic)
-            run(
-                self._haptic,
-                left_s,
-                pace=pace,
-                energy=energy,
-                on_tick=end_tick,
-                context=context,
-                statistics=statistics,
-            )
-            change = self._cockpit.take_change()
-            if last is None or change is None:
+            change: Change | None = None
+            try:
+                run(
+                    self._haptic,
+                    left_s,
+                    pace=pace,
+                    energy=energy,
+                    on_tick=end_tick,
+                    context=context,
+                    statistics=statistics,
+                )
+                if last is not None:
+                    change = self._cockpit.take_change()
+            except RunError as error:
+                if not self._cockpit.fall_back(str(error)):
+                    raise
+                change = Change(self._holding.name, restarts=True)
+            if change is None:
                 break
             try:
                 self._haptic, context = self._change(change, last)
@@ -92,17 +99,18 @@ class Segments:
         return self._haptic
 
     def _change(
-        self, change: Change, last: Context
+        self, change: Change, last: Context | None
     ) -> tuple[HapticDiagram, Context | None]:
         """Returns what runs next, and from where.
 
         Args:
             change: What the segment ended for.
-            last: Where it ended.
+            last: Where it ended; None where it failed, and restarts.
         """
         old, holding = self._haptic, self._holding
         backend = holding.backend
-        X_WH = None if change.restarts else find_handle(old, last)
+        goes_on = last is not None and not change.restarts
+        X_WH = find_handle(old, last) if goes_on else None
         # What can be put anywhere is put where the scene starts.
         moves_to_start = change.restarts and backend is not None and backend.is_placed
         try:
@@ -114,7 +122,7 @@ class Segments:
                 raise
             self._cockpit.refuse(str(error))
             return old, last
-        return new, None if change.restarts else carry_on(old, last, new)
+        return new, carry_on(old, last, new) if goes_on else None
 
     def _build(self, old: HapticDiagram, X_WH: RigidTransform | None) -> HapticDiagram:
         """Returns the diagram of the scene as it is now, held as it is now.
