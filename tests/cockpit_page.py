@@ -6,10 +6,12 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 from headless_browser import HeadlessBrowser
 
+COMMAND = Path(sys.executable).with_name("drake-haptics")
 # A ball pressed straight into a flat block by the hand's spring: F acts in series on
 # the hand, the coupling and the contact, which pushes from the tolerance on.
 BALL_RADIUS_M, TOP_M, DEEP_M, TOLERANCE_M = 0.02, 0.03, 0.005, 0.002
@@ -47,7 +49,7 @@ class CockpitRun:
 
     def __init__(self, *arguments):
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "drake_haptics.cli", "run", *map(str, arguments)],
+            [COMMAND, "run", *map(str, arguments)],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         )  # fmt: skip
         said = ""
@@ -88,15 +90,18 @@ class Page:
         return np.array([float(cell.replace("−", "-")) for cell in cells])
 
     def wait_for_rest(self):
-        """Waits until the numbers have stood still for ten looks; returns the force."""
-        same, before = 0, None
-        deadline = time.monotonic() + 30.0
-        while same < 10:
+        """Waits until the force stands still for a while of the run; returns it."""
+        same, before, then = 0, None, ""
+        deadline = time.monotonic() + 60.0
+        while same < 4:
             assert time.monotonic() < deadline, "the force never came to rest"
-            time.sleep(0.05)
-            now = self.force_W()
-            same = same + 1 if before is not None and np.array_equal(now, before) else 0
-            before = now
+            time.sleep(0.02)
+            now = self.read("time")
+            if now == then:
+                continue
+            force = self.force_W()
+            same = same + 1 if before is not None and (force == before).all() else 0
+            before, then = force, now
         return before
 
     def middle(self, selector):
@@ -151,6 +156,6 @@ class Page:
           const {data} = canvas.getContext('2d').getImageData(0, 0, w, h);
           let found = 0;
           for (let i = 0; i < data.length; i += 4)
-            if (data[i] > 150 && data[i + 2] < 60 && data[i + 3] > 200) found += 1;
+            if (data[i] > 150 && data[i + 2] < 60 && data[i + 3] > 120) found += 1;
           return found;
         })()""")

@@ -16,7 +16,8 @@ TOLERANCE_N = 0.03
 DAMPING = "coupling.damping_Ns_per_m"
 STIFFNESS = "coupling.stiffness_N_per_m"
 SLIDER = f"document.getElementById('{STIFFNESS}').closest('.slider')"
-WIDE = {"width": 1200, "height": 750, "deviceScaleFactor": 1, "mobile": False}
+# Fewer pixels: without a graphics card each takes its time.
+WIDE = {"width": 1200, "height": 750, "deviceScaleFactor": 0.75, "mobile": False}
 # Keeps the page's way to the run, so that a test can put words into it.
 HOOK = """
   window.ways = [];
@@ -62,7 +63,7 @@ def test_it_tells_of_the_scene_and_of_the_loop(page):
 
 
 def test_the_trace_is_drawn_anew_while_the_run_goes_on(page):
-    assert page.trace() > 100
+    assert page.trace() > 50
     shown = "document.getElementById('force-trace').toDataURL()"
     page.evaluate(f"window.before = {shown}")
     page.wait_for(f"{shown} != window.before")
@@ -90,9 +91,9 @@ def test_a_slider_that_is_dragged_acts_at_once(page):
     begin = low + 8 + share * (high - low - 16)
     page.drag((begin, row), (begin + 0.15 * (high - low), row))
     page.wait_for(f"{SLIDER}.classList.contains('changed')")
+    f_W = page.wait_for_rest()
     K = float(page.evaluate(f"document.getElementById('{STIFFNESS}').value"))
     assert 1.5 * K_COUPLING < K < 4 * K_COUPLING
-    f_W = page.wait_for_rest()
     assert f_W[2] == pytest.approx(calc_pressed_force(K), abs=TOLERANCE_N)
 
 
@@ -143,7 +144,7 @@ def test_views_change_the_picture_and_back(page):
     first = look(page)
     for view in ("pieces", "virtual", "ghost"):
         page.click(f"#view-{view}")
-        assert wait_for_change(page, first) > 20
+        assert wait_for_change(page, first) > 50
         page.click(f"#view-{view}")
         wait_for_change(page, first, is_same=True)
     # The one contact is inside the arrow of its force.
@@ -166,7 +167,7 @@ def wait_for_change(page, before, is_same=False):
     """Waits for another picture, or the same; returns how many pixels differ."""
     for _ in range(100):
         differ = int((np.abs(look(page) - before).max(axis=2) > 12).sum())
-        if (differ <= 20) == is_same:
+        if (differ <= 8) == is_same:
             return differ
     raise AssertionError(f"{differ} pixels differ")
 
@@ -179,24 +180,21 @@ def test_the_camera_goes_where_a_key_says(page):
     wait_for_change(page, before, is_same=True)
 
 
-def test_every_control_is_reached_by_tab(page):
-    page.evaluate("document.activeElement.blur(); window.scrollTo(0, 0)")
-    name = "(e => e.id || e.ariaLabel || e.parentElement.id)"
-    reached = set()
-    for _ in range(120):
+def test_every_control_is_reached_by_tab_and_has_a_name(page):
+    page.evaluate("""
+      window.nameOf = e => e.id || e.ariaLabel || e.parentElement.id;
+      window.controls = [...document.querySelectorAll('button, select, input, summary')]
+        .filter(e => e.offsetParent && e.type != 'radio' && !e.disabled);
+      window.reached = new Set();
+      addEventListener('focusin', event => reached.add(nameOf(event.target)));
+      document.activeElement.blur();""")
+    assert page.evaluate("controls.length") > 40
+    for _ in range(page.evaluate("controls.length") + 10):
         page.press("Tab", "Tab")
-        reached.add(page.evaluate(f"{name}(document.activeElement)"))
     page.evaluate("document.activeElement.blur()")
-    wanted = page.evaluate(
-        "[...document.querySelectorAll('button, select, input, summary')]"
-        ".filter(e => e.offsetParent && e.type != 'radio' && !e.disabled)"
-        f".map({name})"
-    )
-    assert len(wanted) > 40
-    assert set(wanted) <= reached
+    assert page.evaluate("controls.map(nameOf).filter(n => !reached.has(n))") == []
     assert page.evaluate(
-        "[...document.querySelectorAll('button, select, input')]"
-        ".every(e => e.labels?.length || e.ariaLabel || e.title"
+        "controls.every(e => e.labels?.length || e.ariaLabel || e.title"
         " || e.textContent.trim())"
     )
 
