@@ -15,9 +15,9 @@ from PIL import Image
 from pydrake.systems.framework import Context
 
 from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.cockpit.mouse_device import MouseDevice
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.device.meshcat_device import MeshcatDevice
-from drake_haptics.cockpit.mouse_device import MouseDevice
 from drake_haptics.device_site import find_device_site
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
