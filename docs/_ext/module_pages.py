@@ -23,6 +23,9 @@ import drake_haptics
 
 _PACKAGE = "drake_haptics."
 _PREFIX = "modules-"
+# What is behind one command alone is no interface, and the command line has a page.
+_PROGRAMS = ["accuracy", "bench", "cli", "cockpit", "paper", "shapes"]
+_LEFT_OUT = ""
 # A module is in the first group that has a pattern for it, without the package.
 _GROUPS = {
     "Scenes": [
@@ -34,17 +37,19 @@ _GROUPS = {
     ],
     "Geometry": ["mesh*", "decomposition*", "*pieces*", "piece_*", "coacd_backend"],
     "Parts of the systems": ["systems", "systems.*"],
-    "Devices": ["device", "device.*", "device_*", "held_handle"],
+    "Devices": [
+        "device",
+        "device.*",
+        "device_*",
+        "held_handle",
+        "cockpit.mouse_device",
+    ],
     "Recorded runs": ["tick_log", "tick_log.*", "recording"],
     "Stability": ["analysis", "analysis.*", "passivity_bounds"],
-    "Accuracy": ["accuracy", "accuracy.*"],
     "The compiled core": ["_core"],
+    _LEFT_OUT: [*_PROGRAMS, *(f"{name}.*" for name in _PROGRAMS)],
     "Building and running": ["*"],
 }
-# The command line has a page of its own. What is behind one command alone is no
-# interface: `bench`, `paper` and the cockpit.
-_PROGRAMS = ["cli", "bench", "paper", "cockpit", "shapes"]
-_LEFT_OUT = [*_PROGRAMS, *(f"{name}.*" for name in _PROGRAMS), "*.__main__"]
 
 
 def list_modules() -> list[str]:
@@ -56,21 +61,20 @@ def list_modules() -> list[str]:
 
 
 def group_modules(modules: Iterable[str]) -> dict[str, list[str]]:
-    """Returns the modules of each group, and of "" those that are left out."""
-    groups: dict[str, list[str]] = {"": [], **{name: [] for name in _GROUPS}}
+    """Returns the modules that are described, by group."""
+    groups: dict[str, list[str]] = {name: [] for name in _GROUPS}
     for module in modules:
         groups[_find_group(module)].append(module)
+    del groups[_LEFT_OUT]
     return groups
 
 
 def _find_group(module: str) -> str:
-    if _matches(module, _LEFT_OUT):
-        return ""
-    return next(name for name, known in _GROUPS.items() if _matches(module, known))
-
-
-def _matches(module: str, patterns: Iterable[str]) -> bool:
-    return any(fnmatch(module, pattern) for pattern in patterns)
+    return next(
+        name
+        for name, patterns in _GROUPS.items()
+        if any(fnmatch(module, pattern) for pattern in patterns)
+    )
 
 
 class ModuleGroups(SphinxDirective):
@@ -78,7 +82,8 @@ class ModuleGroups(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Returns it as a toctree."""
-        pages = [f"{FOLDER}/{_PREFIX}{_name_page(group)}" for group in _GROUPS]
+        groups = [group for group in _GROUPS if group != _LEFT_OUT]
+        pages = [f"{FOLDER}/{_PREFIX}{_name_page(group)}" for group in groups]
         toctree = addnodes.toctree(
             parent=self.env.docname,
             entries=[(None, page) for page in pages],
@@ -101,7 +106,6 @@ def _write(app: Sphinx) -> None:
     pages = {
         _name_page(name): make_heading(name, "=") + "".join(map(_describe, group))
         for name, group in group_modules(modules).items()
-        if name
     }
     write_pages(app.srcdir, _PREFIX, pages)
 

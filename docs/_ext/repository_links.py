@@ -40,7 +40,9 @@ class RepositoryLinks(SphinxTransform):
                 path = path.resolve()
                 if path.is_relative_to(docs):
                     if target and path.is_dir():  # as of the tutorials
-                        link.attributes.update(refdomain="doc", reftarget=_FRONT_PAGE)
+                        link.attributes.update(
+                            refdomain="doc", reftarget=_FRONT_PAGE, reftargetid=None
+                        )
                 elif path.exists():
                     self._mark(link, path.relative_to(docs.parent).as_posix())
 
