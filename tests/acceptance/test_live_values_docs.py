@@ -39,8 +39,8 @@ def test_the_cube_rests_where_its_weight_says(printed):
         found = re.fullmatch(r"(\d+) N/m: ([\d.]+) mm above the floor", line)
         assert float(found[1]) == k
         rest_mm = 1e3 * (Contact().tolerance_m - 0.2 * 9.81 / k)
-        assert float(found[2]) == pytest.approx(rest_mm, abs=2e-3)
-        assert f"{rest_mm:.3f}" in TEXT
+        assert float(found[2]) == pytest.approx(rest_mm, abs=6e-3)
+        assert f"{rest_mm:.2f}" in TEXT
 
 
 def test_the_slope_is_that_of_the_stiffness_written(printed):
