@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cockpit.cockpit import Cockpit
+from drake_haptics.cockpit.coupling_advice import CouplingAdvice
 from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.page_camera import look_from_the_front
 from drake_haptics.cockpit.scene_changes import SceneChanges
@@ -65,9 +66,16 @@ class CockpitRig:
         self.period_s = 1.0 / scene.device.rate_hz
         self.ticks = 0
         self.changes = SceneChanges(scene)
-        self.holding = Holding(scene, meshcat, address)
+        advice = CouplingAdvice(scene)
+        self.holding = Holding(scene, meshcat, address, has_hand=advice.has_hand)
         self.cockpit = Cockpit(
-            self.page, meshcat, self.changes, self.holding, name="test", **options
+            self.page,
+            meshcat,
+            self.changes,
+            self.holding,
+            advice,
+            name="test",
+            **options,
         )
         self._meshcat = meshcat
         self.haptics, self.seen = [], []

@@ -1,6 +1,8 @@
 """A run that is changed while it goes on, against the same made by hand."""
 
+import copy
 import dataclasses
+import json
 import time
 
 import numpy as np
@@ -13,13 +15,17 @@ from fake_device import ScriptedDevice, make_reading
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.carry_on import find_handle
 from drake_haptics.cockpit import holding, segments
+from drake_haptics.cockpit.page_request import read_page_request
+from drake_haptics.cockpit.scene_changes import EFFECTS
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice
+from drake_haptics.live_keys import live_keys
 from drake_haptics.live_scene import write_live_values
-from drake_haptics.scene import Gravity
+from drake_haptics.scene import EnvironmentObject, Gravity, Scene
 from drake_haptics.scene_check import SceneError
 from drake_haptics.simulation import RunError, run
-from drake_haptics.stage import open_meshcat
+from drake_haptics.stage import CAMERAS, open_meshcat
+from drake_haptics.systems.picture_views import PICTURE_VIEWS
 from drake_haptics.tick_clock import TickClock
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
@@ -266,6 +272,43 @@ def test_the_coupling_is_judged_as_it_is_now(make):
     assert rig.page.states[1]["warnings"][0].startswith("coupling.damping_Ns_per_m is")
 
 
+def make_requests(rng, count):
+    """Returns requests of every kind, right and wrong, as pages are allowed to ask."""
+    keys = [*(item.key for item in live_keys(Scene(environment=[EnvironmentObject()]))),
+            "contact.clustering", "contact.cluster_size_m", "x"]  # fmt: skip
+    names = [*EFFECTS, *PICTURE_VIEWS, *CAMERAS, "hand", "mouse", "device", "octree",
+             "shared", "__class__", ""]  # fmt: skip
+    numbers = [0, -1, 1e300, -1e300, 1e-300, 10**200, 2e-3, 5, 1000, 0.5, 1.0]
+    steps = [-1, 1, 0.3, 1e-300]
+
+    def draw(values):
+        return values[rng.integers(len(values))]
+
+    kinds = {
+        "set": lambda: {"key": draw(keys), "to": draw(numbers)},
+        "choose": lambda: {"key": draw(keys), "to": draw(names)},
+        "effect": lambda: {"name": draw(names), "on": bool(rng.integers(2))},
+        "handle": lambda: {"to": draw(names)},
+        "view": lambda: {"name": draw(names), "on": bool(rng.integers(2))},
+        "camera": lambda: {"to": draw(names), "within": draw(numbers)},
+        "move": lambda: {"by": [draw(steps) for _ in range(3)]},
+        "turn": lambda: {"by": [draw(steps) for _ in range(3)]},
+        "home": dict, "take": dict, "reset": dict, "restart": dict,
+    }  # fmt: skip
+    verbs = [draw(list(kinds)) for _ in range(count)]
+    asked = [{"do": verb, **kinds[verb]()} for verb in verbs]
+    assert all(read_page_request(json.dumps(item)) == item for item in asked)
+    return asked
+
+
+def test_whatever_is_asked_in_whatever_order_the_run_goes_on(make):
+    rng = np.random.default_rng(8)
+    rig = make({tick: make_requests(rng, 30) for tick in range(5, 200, 20)})
+    assert rig.run(0.6)["ticks"] == 600
+    json.dumps([rig.page.hellos, rig.page.states], allow_nan=False)
+    assert len(rig.haptics) > 3
+
+
 def fail_once(at_tick):
     """Returns what makes a run fail as a state that is not finite does."""
     ticks = []
@@ -323,7 +366,7 @@ def test_a_device_stays_where_it_was_put(make, device):
     assert len(rig.haptics) == 3
     steps = np.linalg.norm(np.diff(rig.seen, axis=0), axis=1)
     assert steps.max() < 50e-6
-    assert rig.page.hellos[0]["handles"][0] == {
+    assert rig.page.hellos[0]["handles"][-1] == {
         "name": "device",
         "label": "udp://there",
     }
@@ -336,6 +379,21 @@ def test_a_device_is_let_go_and_taken_again(make, device):
     rig.run(0.3)
     assert [opened.closed for opened in device] == [True, False]
     assert rig.last.backend is device[1]
+
+
+def test_a_scene_without_a_simulated_device_has_no_simulated_hand(
+    scene, meshcat, monkeypatch, device
+):
+    """Its hand's path is out of the device's reach."""
+    far = copy.deepcopy(scene)
+    far.hand.path.waypoints[1].position_m = [9.0, 0.0, 0.0]
+    rig = CockpitRig(
+        far, meshcat, monkeypatch, {10: [{"do": "handle", "to": "hand"}]},
+        address="udp://there",
+    )  # fmt: skip
+    assert rig.run(0.2)["ticks"] == 200
+    assert "hand" not in {item["name"] for item in rig.page.hellos[0]["handles"]}
+    assert "nobody called 'hand'" in rig.page.states[-1]["error"]
 
 
 def test_a_device_that_is_gone_leaves_the_handle_where_it_is(make, monkeypatch, device):

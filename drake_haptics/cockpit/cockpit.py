@@ -66,6 +66,7 @@ class Cockpit:
         meshcat: Meshcat,
         changes: SceneChanges,
         holding: Holding,
+        advice: CouplingAdvice,
         *,
         name: str,
         locked: str = "",
@@ -78,6 +79,7 @@ class Cockpit:
             meshcat: In the page.
             changes: The scene.
             holding: Who holds the handle.
+            advice: Of the scene.
             name: Of the scene.
             locked: Why nothing but the picture may be changed; empty if it may.
             views: Of `PICTURE_VIEWS`, what is shown at first.
@@ -89,7 +91,7 @@ class Cockpit:
         self._locked = locked
         self._picture = PagePicture(meshcat, views)
         self._running = changes.scene
-        self._advice = CouplingAdvice(changes.file)
+        self._advice = advice
         self._error = ""
         self._change: Change | None = None
         # When to tell the page how things are, and when to end the segment.

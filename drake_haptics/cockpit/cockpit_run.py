@@ -11,6 +11,7 @@ from pydrake.systems.framework import Context
 
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.cockpit.cockpit import Cockpit
+from drake_haptics.cockpit.coupling_advice import CouplingAdvice
 from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.live_page import LivePage
 from drake_haptics.cockpit.page_camera import look_from_the_front
@@ -20,6 +21,7 @@ from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.device_site import find_device_site
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene import Scene
+from drake_haptics.simulation import RunError
 from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
 from drake_haptics.tick_clock import TickClock
 
@@ -68,7 +70,8 @@ class CockpitRun:
                 meshcat, look_from_the_front(p_WH, distance_m), listener
             )
             stack.enter_context(closing(self._page))
-            self._holding = Holding(scene, meshcat, device)
+            advice = CouplingAdvice(scene)
+            self._holding = Holding(scene, meshcat, device, has_hand=advice.has_hand)
             # Before the page, which tells of the last force.
             stack.enter_context(closing(self._holding))
             self._cockpit = Cockpit(
@@ -76,6 +79,7 @@ class CockpitRun:
                 meshcat,
                 SceneChanges(scene),
                 self._holding,
+                advice,
                 name=name,
                 locked=locked,
                 views=views,
@@ -121,14 +125,19 @@ class CockpitRun:
             RunError: As `simulation.run`.
         """
         segments = Segments(haptic, self._cockpit, self._holding, self._meshcat)
-        return segments.run(
-            duration_s,
-            pace=pace,
-            statistics=statistics,
-            energy=energy,
-            on_begin=on_begin,
-            on_tick=on_tick,
-        )
+        try:
+            return segments.run(
+                duration_s,
+                pace=pace,
+                statistics=statistics,
+                energy=energy,
+                on_begin=on_begin,
+                on_tick=on_tick,
+            )
+        except RunError as error:
+            self._holding.close()
+            self._page.close(f"The run {error}.")
+            raise
 
     def close(self) -> None:
         """Lets go of the handle at zero force, and ends the page."""

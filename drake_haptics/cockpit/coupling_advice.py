@@ -22,10 +22,15 @@ class CouplingAdvice:
         try:
             device = make_simulated_device(scene, make_hand_path(scene.hand.path))
         except SceneError:
-            # Nothing is known of a device without a model.
+            # Of a device without a model, or out of whose reach the path is.
             self._held = None
         else:
             self._held = calc_scene_handle(scene, device)
+
+    @property
+    def has_hand(self) -> bool:
+        """Whether the scene's device can be simulated, in its hand."""
+        return self._held is not None
 
     def check(self, scene: Scene) -> list[str]:
         """Returns a sentence for each bound that a scene's coupling breaks."""

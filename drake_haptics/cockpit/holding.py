@@ -26,13 +26,16 @@ class Holding:
         backend: What is held; None in the scene's own simulated hand.
     """
 
-    def __init__(self, scene: Scene, meshcat: Meshcat, address: str | None):
+    def __init__(
+        self, scene: Scene, meshcat: Meshcat, address: str | None, *, has_hand: bool
+    ):
         """Takes what an address names, or the scene's simulated device.
 
         Args:
             scene: Says where its device stands.
             meshcat: Has a page.
             address: As `open_device`; None for the simulated one.
+            has_hand: Whether there is a simulated one.
 
         Raises:
             DeviceError, SceneError, TickLogError, OSError: As `open_device`.
@@ -41,6 +44,11 @@ class Holding:
         self._meshcat = meshcat
         self._address = address
         self._site = find_device_site(scene)
+        self._names = dict(_LABELS)
+        if not has_hand:
+            del self._names[HAND]
+        if address is not None and address not in _OF_PAGE:
+            self._names[DEVICE] = address
         self.name = HAND
         self.backend: DeviceBackend | None = None
         if address is not None:
@@ -49,9 +57,7 @@ class Holding:
     @property
     def names(self) -> dict[str, str]:
         """Who can hold it, and what people read of them."""
-        if self._address is None or self._address in _OF_PAGE:
-            return _LABELS
-        return {DEVICE: self._address, **_LABELS}
+        return self._names
 
     @property
     def pointer(self) -> PageHandle | None:

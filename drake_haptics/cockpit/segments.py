@@ -111,10 +111,10 @@ class Segments:
         backend = holding.backend
         goes_on = last is not None and not change.restarts
         X_WH = find_handle(old, last) if goes_on else None
-        # What can be put anywhere is put where the scene starts.
-        moves_to_start = change.restarts and backend is not None and backend.is_placed
+        # What says itself where it is begins there anew.
+        is_anew = change.restarts and backend is not None and backend.is_placed
         try:
-            if change.handle != holding.name or moves_to_start:
+            if change.handle != holding.name or is_anew:
                 holding.take(change.handle, X_WH)
             new = self._build(old, X_WH)
         except UserError as error:

@@ -23,6 +23,8 @@ export function setHandle(name, offered) {
   const names = offered.map(handle => handle.name);
   const others = names.filter(other => other !== "mouse");
   giveBackTo = others.includes("hand") ? "hand" : others[0] ?? "";
+  // Meshcat's sliders have keys of their own, which its page hears.
+  if (name === "sliders" && holder !== name) find("view").focus();
   holder = name;
   find("pointer").hidden = find("home").hidden = name !== "mouse";
   find("take-handle").hidden = name === "mouse" || !names.includes("mouse");
