@@ -20,8 +20,10 @@ tutorials: $(STAMP)
 
 test: lint unit
 
+# Tests of one file stay together, so that they share what they have set up, until a
+# worker has nothing left of its own.
 unit: $(STAMP)-test
-	$(BIN)/python -m pytest -n 2 tests
+	$(BIN)/python -m pytest -n 2 --dist worksteal tests
 
 lint: $(STAMP)-test
 	$(BIN)/ruff check .
@@ -60,14 +62,16 @@ $(VENV)/bin/python:
 	  echo "Or name one: CXX=clang++ make demo"; exit 1; fi
 	$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); exit 1; }
 
+# Without --no-compile, pip compiles eleven thousand files of Python one after the other,
+# of which most are never imported; what is imported is compiled then.
 $(STAMP): pyproject.toml $(CORE) | $(VENV)/bin/python
 	@echo "Setting up $(VENV): Drake and the C++ core, a few minutes the first time."
-	$(BIN)/pip install --quiet --disable-pip-version-check -e .
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile -e .
 	@touch $@
 
 $(STAMP)-test: pyproject.toml $(CORE) | $(VENV)/bin/python
 	@echo "Setting up $(VENV): Drake, the C++ core and the test tools, a few minutes the first time."
-	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[test]"
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile -e ".[test]"
 	@touch $@ $(STAMP)
 
 # Fuzzes the core until a fault is found or the time is over; see docs/testing.md.
