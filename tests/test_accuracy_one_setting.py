@@ -65,11 +65,12 @@ def test_a_key_that_is_there_twice():
 @pytest.mark.parametrize(
     ("word", "complaint"),
     [
-        ("contact.tolerance=1", "no such key: .*tolerance"),
+        ("contact.tolerance=1", "tolerance is no key .* 'contact.tolerance_m'"),
         ("contact={}", "contact: .* cannot be given as a whole"),
         ('effects.gravity={"g": 9.8}', "effects.gravity: .*'g'"),
         ("tool.mass_kg=heavy", "tool.mass_kg: expected a finite number"),
         ("tool.mass_kg=-1", "tool.mass_kg must be positive, is -1"),
+        ("environment.0.x=1", "environment.0.x is no key of a scene"),
         ("effects.friction=null", "friction_coefficient means nothing without"),
         ("environment.scale=[1]", r"environment\[0\].scale: expected a finite number"),
     ],
@@ -85,3 +86,11 @@ def test_a_setting_is_applied_to_a_copy(scene):
     assert [item.scale for item in changed.environment] == [2]
     assert changed.contact.tolerance_m == 0
     assert scene.contact.tolerance_m == 1e-3 and scene.environment[0].scale == 1.0
+
+
+def test_an_effect_that_the_scene_leaves_out_is_to_be_given_whole():
+    bare = load_scene(find_scene("sphere_pen"))
+    with pytest.raises(UserError, match=r"has no effects\.friction; .*as a whole"):
+        apply_checked(parse_setting(["effects.friction.coefficient=0.3"]), bare)
+    whole = parse_setting(['effects.friction={"coefficient": 0.3}'])
+    assert apply_checked(whole, bare).effects.friction.coefficient == 0.3

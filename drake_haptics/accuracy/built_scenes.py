@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 from drake_haptics.analysis.held_scene import build_quietly
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.scene import Scene
@@ -17,7 +19,7 @@ def build_once(scene: Scene) -> HapticDiagram:
     All that a run changes is in its context, so that runs know nothing of each other.
     A mesh file that changes meanwhile is not seen.
     """
-    key = repr(scene)
+    key = repr(asdict(scene))  # all of it: a scene's own repr is a line
     if key not in _BUILT:
         _BUILT[key] = build_quietly(scene)
     return _BUILT[key]

@@ -8,6 +8,9 @@ from typing import Any
 
 from drake_haptics.accuracy.setting import Setting
 
+# Why a stiffness is not known that nobody asked for.
+NOT_SOUGHT = "not sought"
+
 
 @dataclass(frozen=True)
 class TickTimes:

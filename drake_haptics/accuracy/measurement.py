@@ -13,7 +13,7 @@ from drake_haptics.accuracy.closed_loop import (
     find_stable_stiffness,
     measure_created_energy,
 )
-from drake_haptics.accuracy.figures import Errors
+from drake_haptics.accuracy.figures import NOT_SOUGHT, Errors
 from drake_haptics.accuracy.instruction_count import count_native
 from drake_haptics.accuracy.native_cost import make_native_part, time_native
 from drake_haptics.accuracy.open_loop import measure_open_loop
@@ -69,7 +69,7 @@ class Measurement:
 
     def _measure_errors(self, scene: Scene) -> dict[str, Any]:
         haptic = build_once(scene)
-        stiffness = StableStiffness(None, "not sought")
+        stiffness = StableStiffness(None, NOT_SOUGHT)
         if self.place is not None:
             stiffness = find_stable_stiffness(scene, self.place)
         errors = Errors(

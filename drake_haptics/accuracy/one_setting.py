@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import json
 import shlex
 from collections.abc import Iterable, Sequence
@@ -10,8 +11,9 @@ from typing import Any
 
 from drake_haptics.accuracy.setting import Setting
 from drake_haptics.errors import UserError
-from drake_haptics.scene import Scene
+from drake_haptics.scene import EnvironmentObject, Scene
 from drake_haptics.scene_check import check_values
+from drake_haptics.scene_keys import list_keys
 from drake_haptics.yaml_keys import check_keys
 
 # Stands for no change at all.
@@ -62,13 +64,24 @@ def apply_checked(setting: Setting, scene: Scene) -> Scene:
     Raises:
         UserError: A key is none of the scene's, or a value cannot be.
     """
+    known = [*list_keys(Scene), *list_keys(EnvironmentObject, "environment.")]
+    for key in setting.changes:
+        if not any(name == key or name.startswith(f"{key}.") for name in known):
+            near = difflib.get_close_matches(key, known, n=1)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            raise UserError(f"--only: {key} is no key of a scene{hint}")
     try:
         changed = setting.apply(scene)
-    except AttributeError as error:
-        raise UserError(f"--only: the scene has no such key: {error}") from error
+    except AttributeError as error:  # Of a part that the scene leaves out.
+        keys = [key for key in setting.changes if key.startswith("effects.")]
+        names = ", ".join(dict.fromkeys(key.rpartition(".")[0] for key in keys))
+        raise UserError(
+            f"--only: the scene has no {names or 'such part'}; give the part as a"
+            " whole, like effects.friction='{\"coefficient\": 0.3}'"
+        ) from error
     except TypeError as error:
-        keys = " and ".join(setting.changes)
-        raise UserError(f"--only: {keys}: {error}") from error
+        names = " and ".join(setting.changes)
+        raise UserError(f"--only: {names}: {error}") from error
     check_keys(Scene, _without_none(dataclasses.asdict(changed)))
     check_values(changed)
     return changed

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from drake_haptics.accuracy.closed_loop import find_pressed_place
@@ -27,7 +27,7 @@ from drake_haptics.accuracy.study_rows import (
 )
 from drake_haptics.accuracy.truth import find_truth
 from drake_haptics.analysis.study import run_study
-from drake_haptics.analysis.study_chunk import one_blas_thread
+from drake_haptics.analysis.blas_threads import one_blas_thread
 from drake_haptics.analysis.study_pool import SerialExecutor
 from drake_haptics.bench.machine import describe_machine
 from drake_haptics.bench.valgrind import require_valgrind
@@ -155,7 +155,8 @@ def _find_measured(scene: Scene, settings: Sequence[Setting]) -> list[Setting]:
     """Returns for each setting the first that makes the same scene of a scene."""
     first: dict[str, Setting] = {}
     return [
-        first.setdefault(repr(setting.apply(scene)), setting) for setting in settings
+        first.setdefault(repr(asdict(setting.apply(scene))), setting)
+        for setting in settings
     ]
 
 

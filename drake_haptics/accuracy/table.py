@@ -6,7 +6,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from drake_haptics.accuracy.figures import AccuracyStudy, Errors, Row, TickTimes
+from drake_haptics.accuracy.figures import (
+    NOT_SOUGHT,
+    AccuracyStudy,
+    Errors,
+    Row,
+    TickTimes,
+)
 from drake_haptics.accuracy.model_changes import find_model_change
 
 # Before a label: the scene's own setting; a difference of model.
@@ -56,19 +62,25 @@ INSTRUCTIONS = Column(
 def get_columns(study: AccuracyStudy) -> tuple[Column, ...]:
     """Returns the columns that a study has figures for, without knob and setting."""
     counted = any(row.cost and row.cost.instructions for row in study.rows)
-    return (*COLUMNS, INSTRUCTIONS) if counted else COLUMNS
+    sought = not all(
+        row.errors is None or row.errors.stiffness_why_not == NOT_SOUGHT
+        for row in study.rows
+    )
+    columns = COLUMNS if sought else COLUMNS[:-1]
+    return (*columns, INSTRUCTIONS) if counted else columns
 
 
 def make_cells(row: Row, columns: tuple[Column, ...]) -> tuple[str, ...]:
     """Returns the figures of a row; a dash each where there are none."""
     if row.cost is None or row.errors is None:
         return ("–",) * len(columns)
-    cells = (
+    cells: tuple[str, ...] = (
         format_times(row.cost.tick),
         format_us(row.cost.native.median_us),
         *make_error_cells(row.errors),
-        _format_stiffness(row.errors.stable_stiffness_N_per_m),
     )
+    if COLUMNS[-1] in columns:
+        cells += (_format_stiffness(row.errors.stable_stiffness_N_per_m),)
     if INSTRUCTIONS not in columns:
         return cells
     counted = row.cost.instructions

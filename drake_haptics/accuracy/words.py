@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from drake_haptics.accuracy.figures import AccuracyStudy, Row
+from drake_haptics.accuracy.figures import NOT_SOUGHT, AccuracyStudy, Row
 from drake_haptics.accuracy.model_changes import find_model_change
 from drake_haptics.accuracy.pareto import (
     ERROR_FLOOR_N,
@@ -19,8 +19,6 @@ from drake_haptics.accuracy.table import format_N, format_us
 _NOISE = 0.1
 # A ratio this near to a simple one is told as that.
 _ROUND = 0.05
-# Of a stiffness that nobody asked for.
-_NOT_SOUGHT = "not sought"
 
 
 def find_scene_row(study: AccuracyStudy) -> Row | None:
@@ -121,7 +119,7 @@ def describe_missing(study: AccuracyStudy) -> list[str]:
     reasons: dict[str, dict[str, None]] = {}
     for row in study.rows:
         reason = "" if row.errors is None else row.errors.stiffness_why_not
-        if reason not in ("", _NOT_SOUGHT):
+        if reason not in ("", NOT_SOUGHT):
             reasons.setdefault(reason, {})[name_setting(row)] = None
     peers = [
         f"{peer.library}, {peer.method}: {peer.why_not}"

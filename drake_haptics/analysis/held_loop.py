@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import Context
 
 from drake_haptics.analysis.aimed_hand import build_aimed
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.equilibrium import find_equilibrium
 from drake_haptics.analysis.held_scene import HeldScene, hold_scene
 from drake_haptics.analysis.sampled_linearization import (
@@ -47,6 +48,7 @@ class HeldLoop:
         """By how much the fastest growing motion is multiplied in a tick."""
         return calc_growth(self.linearization.eigenvalues())
 
+    @on_one_blas_thread
     def measure_growth(self) -> float:
         """Returns the same, as two simulations that start side by side show it.
 
@@ -76,6 +78,7 @@ class HeldLoop:
         return simulator
 
 
+@on_one_blas_thread
 def analyse_held_scene(held: HeldScene, coupling: Coupling | None = None) -> HeldLoop:
     """Linearizes the loop of a held scene where its tool is pressed as it was held.
 
@@ -132,7 +135,7 @@ _HELD: dict[str, HeldScene] = {}
 
 
 def _hold_once(scene: Scene, time_s: float) -> HeldScene:
-    key = repr((scene, time_s))
+    key = repr((asdict(scene), time_s))
     if key not in _HELD:
         _HELD.clear()
         _HELD[key] = hold_scene(scene, time_s)

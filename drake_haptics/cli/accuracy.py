@@ -23,6 +23,7 @@ from drake_haptics.accuracy.scene_file import write_scene
 from drake_haptics.accuracy.setting import Setting
 from drake_haptics.accuracy.study import run_accuracy_study
 from drake_haptics.accuracy.study_json import to_json_data
+from drake_haptics.accuracy.words import name_setting
 from drake_haptics.analysis.study_error import StudyError
 from drake_haptics.cli import lessons
 from drake_haptics.cli.accuracy_output import print_choice, print_study
@@ -129,6 +130,12 @@ def accuracy(
             study = measure(show, settings)
             if not (quick or no_peers or words):
                 study = add_peers(study, chosen, progress=show)
+            if settings is not None:
+                _require_measured(study, settings)
+            else:
+                show("drawing the page", 1.0)
+                typed = ["accuracy", scene, *(["--quick"] if quick else [])]
+                write_accuracy_page(study, page, shlex.join(["drake-haptics", *typed]))
         else:
             choice = choose_setting(
                 chosen,
@@ -139,9 +146,7 @@ def accuracy(
                 runs=1 if quick else RUNS,
             )
     if budget_us is None:
-        typed = ["drake-haptics", "accuracy", scene, *(["--quick"] if quick else [])]
-        command = shlex.join(typed)
-        _show_study(study, command, None if words else page, json_file)
+        _show_study(study, None if words else page, json_file)
     else:
         file = write or Path(f"{name}-{budget_us:g}-us.yaml")
         _show_choice(choice, chosen, name, file, json_file)
@@ -165,12 +170,15 @@ def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None
     return [setting]
 
 
-def _show_study(
-    study: AccuracyStudy, command: str, page: Path | None, json_file: str | None
-) -> None:
-    """Prints and writes the price list."""
-    if page is not None:
-        write_accuracy_page(study, page, command)
+def _require_measured(study: AccuracyStudy, settings: list[Setting]) -> None:
+    """Raises UserError where the one setting that was asked for cannot be had."""
+    for row in study.rows:
+        if row.setting in settings and row.why_not:
+            raise UserError(f"--only: {name_setting(row)}: {row.why_not}")
+
+
+def _show_study(study: AccuracyStudy, page: Path | None, json_file: str | None) -> None:
+    """Prints the price list."""
     if json_file is not None:
         write_json(to_json_data(study), json_file)
     if json_file == "-":

@@ -60,9 +60,10 @@ def complete_setting(
 ) -> list[CompletionItem]:
     """Completes KEY=VALUE of a scene: keys, and devices after `device.preset=`."""
     if "=" not in incomplete:
-        from drake_haptics.scene_keys import list_scene_keys
+        from drake_haptics.scene import Scene
+        from drake_haptics.scene_keys import list_keys
 
-        return _complete([f"{key}=" for key in list_scene_keys()], incomplete)
+        return _complete([f"{key}=" for key in list_keys(Scene)], incomplete)
     if not incomplete.startswith("device.preset="):
         return []
     from drake_haptics.device_preset import list_device_presets

@@ -195,7 +195,10 @@ def test_an_impossible_budget_is_told_with_status_3(invoke, sample, fresh_runs):
         (["--out", "page.png"], "must not be called page.png"),
         (["--out", "nowhere/page.html"], "--out: there is no folder nowhere"),
         (["--only", "contact.depth"], "'contact.depth' is not KEY=VALUE"),
-        (["--only", "contact.deep=1"], "the scene has no such key"),
+        (
+            ["--only", "contact.deep=1"],
+            "is no key of a scene; did you mean 'contact.depth'",
+        ),
         (["--only", "contact.tolerance_m=-1"], "contact.tolerance_m must not be neg"),
     ],
 )
@@ -239,3 +242,10 @@ def test_what_goes_wrong_is_told_in_a_line(invoke, monkeypatch, error, code, wor
     assert result.exit_code == code
     (line,) = result.stderr.splitlines()
     assert line.startswith(words)
+
+
+def test_one_setting_that_cannot_be_had_is_an_error(invoke):
+    result = invoke("sphere_pen", "--quick", "--only", "tool.mesh=nope.obj")
+    assert result.exit_code == 1 and result.stdout == ""
+    assert "Error: --only: tool.mesh nope.obj: " in result.stderr
+    assert "no such file" in result.stderr
