@@ -136,6 +136,8 @@ class Decomposition:
         (m,) piece of each triangle; -1 where pieces were not made from triangles.
         """
 
+    def __repr__(self) -> str: ...
+
 def decompose_surface(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], progress: Callable[[float], bool] | None = None) -> Decomposition:
     """
     Convex surface decomposition (paper, section 5.3.1). A solid that differs from its hull by noise alone is one piece; pieces leave the solid by no more than 1e-6 of the mesh's size.
@@ -812,6 +814,8 @@ class ClusterSet:
 
     def __len__(self) -> int: ...
 
+    def __repr__(self) -> str: ...
+
     @property
     def distance(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
         """(k,) smallest distance of the members (Eq. 5), m."""
@@ -898,6 +902,8 @@ def share_stiffness(contacts: AutoDiffContactSet, tolerance: float) -> AutoDiffC
 class PenaltyWrench:
     """The wrenches of all clusters. Immutable; copies are the object itself."""
 
+    def __repr__(self) -> str: ...
+
     @property
     def wrench_model(self) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
         """
@@ -964,6 +970,8 @@ class CouplingGains:
 
     @property
     def rotational_damping_Nms_per_rad(self) -> float: ...
+
+    def __repr__(self) -> str: ...
 
 @overload
 def coupling_wrench(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], gains: CouplingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:

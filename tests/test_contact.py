@@ -150,7 +150,7 @@ def test_a_contact_says_what_it_is() -> None:
     contacts = SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], 0.1).query(
         pose([0, 0, 1.0625])
     )
-    assert repr(contacts) == "ContactSet(1 contacts, least distance 0.0625 m)"
+    assert repr(contacts) == "ContactSet(1 contact, least distance 0.0625 m)"
     nothing = SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], 0.1).query(pose([0, 0, 9]))
     assert repr(nothing) == "ContactSet(no contacts)"
     assert nothing.feature_A.shape == (0, 2) and nothing.p_WCa.shape == (0, 3)

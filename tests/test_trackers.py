@@ -115,4 +115,4 @@ def test_trackers_say_what_they_are() -> None:
     scene = SceneTracker(CUBE, [CUBE, PRISM], 0.002)
     assert repr(scene) == "SceneTracker(2 objects, tolerance=0.002 m)"
     trajectory = scene.query_trajectory(np.eye(4)[None])
-    assert repr(trajectory).startswith("ContactTrajectory(1 poses, ")
+    assert repr(trajectory).startswith("ContactTrajectory(1 pose, ")

@@ -1,13 +1,21 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <string>
 
 #include "bind_eigen.h"
 
 /// Each bind_<topic>.cc adds one topic to the Python module `_core`.
 namespace drake_haptics {
+
+/// "1 piece", "2 pieces".
+inline std::string Counted(std::size_t number, const char* noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+}
 
 void BindAdvance(nanobind::module_& m);
 void BindAutoDiff(nanobind::module_& m);

@@ -149,8 +149,8 @@ void BindContactSet(nb::module_& m) {
                   "Of the nearest contact, m; infinite if there is none.");
   const auto text = [least_distance](const ContactSet& s) -> nb::object {
     if (s.contacts.empty()) return nb::str("ContactSet(no contacts)");
-    return nb::str("ContactSet({} contacts, least distance {:.6g} m)")
-        .format(s.contacts.size(), least_distance(s));
+    return nb::str("ContactSet({}, least distance {:.6g} m)")
+        .format(Counted(s.contacts.size(), "contact"), least_distance(s));
   };
   set.def("__repr__", text, nb::sig("def __repr__(self) -> str"));
   set.def_ro("query_seconds", &ContactSet::query_seconds,

@@ -156,7 +156,12 @@ void BindDecomposition(nb::module_& m) {
                 self.piece_of_triangle, [](int piece, int) { return piece; });
           },
           "(m,) piece of each triangle; -1 where pieces were not made from "
-          "triangles.");
+          "triangles.")
+      .def("__repr__", [](const Decomposition& self) {
+        return nb::str("Decomposition({} triangles, {})")
+            .format(self.triangles.size(),
+                    Counted(self.pieces.size(), "piece"));
+      });
 
   m.def("decompose_surface", &Decompose, nb::arg("vertices"),
         nb::arg("triangles"), nb::arg("solid"),

@@ -34,6 +34,11 @@ void BindClustering(nb::module_& m) {
       "Representative contacts of one tick, as read-only columns over k "
       "clusters. Immutable; copies are the object itself.");
   set.def("__len__", [](const ClusterSet& s) { return s.clusters.size(); });
+  set.def("__repr__", [](const ClusterSet& s) {
+    return nb::str("ClusterSet({} of {})")
+        .format(Counted(s.clusters.size(), "cluster"),
+                Counted(s.label.size(), "contact"));
+  });
   constexpr auto kItems = &ClusterSet::clusters;
   DefColumn<kItems, &Cluster::distance>(
       &set, "distance", "(k,) smallest distance of the members (Eq. 5), m.");
@@ -108,6 +113,10 @@ void BindPenaltyForce(nb::module_& m) {
   nb::class_<PenaltyWrench> wrench(
       m, "PenaltyWrench",
       "The wrenches of all clusters. Immutable; copies are the object itself.");
+  wrench.def("__repr__", [](const PenaltyWrench& w) {
+    return nb::str("PenaltyWrench({:.4g} N and {:.4g} N·m on the tool)")
+        .format(w.tool.F.tail<3>().norm(), w.tool.F.head<3>().norm());
+  });
   wrench.def_prop_ro(
       "wrench_model", [](const PenaltyWrench& w) { return ToVector(w.tool); },
       "(78,) wrench on the tool at To in W with its linear model: [F (6); K "

@@ -113,7 +113,8 @@ void BindPairTrajectory(nb::module_& m) {
       },
       nb::arg("k"));
   trajectory.def("__repr__", [](const PairTrajectory& t) {
-    return nb::str("PairTrajectory({} poses)").format(t.contacts.size());
+    return nb::str("PairTrajectory({})")
+        .format(Counted(t.contacts.size(), "pose"));
   });
   DefContactColumns<&PairTrajectory::contacts>(&trajectory);
   DefNumbers<&PairTrajectory::seconds>(

@@ -60,7 +60,14 @@ void BindCoupling(nb::module_& m) {
       .def_ro("rotational_stiffness_Nm_per_rad",
               &CouplingGains::rotational_stiffness)
       .def_ro("rotational_damping_Nms_per_rad",
-              &CouplingGains::rotational_damping);
+              &CouplingGains::rotational_damping)
+      .def("__repr__", [](const CouplingGains& self) {
+        return nb::str(
+                   "CouplingGains({:g} N/m, {:g} N·s/m, {:g} N·m/rad, {:g} "
+                   "N·m·s/rad)")
+            .format(self.stiffness, self.damping, self.rotational_stiffness,
+                    self.rotational_damping);
+      });
   m.def(
       "coupling_wrench",
       [](const PoseVector& q_WH, const Vec6& V_WH, const PoseVector& q_HT,

@@ -230,8 +230,9 @@ void BindContactTrajectory(nb::module_& m) {
       },
       nb::arg("k"), "The contacts at pose k.");
   trajectory.def("__repr__", [](const ContactTrajectory& t) {
-    return nb::str("ContactTrajectory({} poses, {} contacts)")
-        .format(t.seconds.size(), t.contacts.size());
+    return nb::str("ContactTrajectory({}, {})")
+        .format(Counted(t.seconds.size(), "pose"),
+                Counted(t.contacts.size(), "contact"));
   });
   constexpr auto kItems = &ContactTrajectory::contacts;
   DefContactColumns<kItems>(&trajectory);
@@ -379,8 +380,9 @@ void BindSceneTracker(nb::module_& m) {
            "Raises:\n    ValueError: a pose is not finite or not rigid; "
            "nothing was asked then.")
       .def("__repr__", [](const SceneTracker& self) {
-        return nb::str("SceneTracker({} objects, tolerance={} m)")
-            .format(self.constants().num_objects(), self.Tolerance());
+        return nb::str("SceneTracker({}, tolerance={} m)")
+            .format(Counted(self.constants().num_objects(), "object"),
+                    self.Tolerance());
       });
   DefTracker(&tracker);
 }
