@@ -3,8 +3,8 @@
 import dataclasses
 import re
 import typing
+from pathlib import Path
 
-import docs_extensions
 import pytest
 import yaml
 from config_keys import list_parts
@@ -13,7 +13,7 @@ from config_rules import find_rules
 
 from drake_haptics import BuildHapticDiagram, UserError, load_scene, run
 
-DOCS = docs_extensions.DOCS
+DOCS = Path(__file__).parents[1] / "docs"
 
 
 def list_keys(schema: typing.Any) -> set[str]:

@@ -1,17 +1,13 @@
 """The pictures of loops show what Drake says of loops that are built now."""
 
 import re
-import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from make_diagram_pictures import PICTURES, make_graph
 
 DOCS = Path(__file__).parents[1] / "docs"
-sys.path.insert(0, str(DOCS))
-
-from make_diagram_pictures import PICTURES, make_graph  # noqa: E402
-
 SVG = "{http://www.w3.org/2000/svg}"
 
 

@@ -3,8 +3,8 @@
 import inspect
 import pkgutil
 from collections.abc import Iterator
+from pathlib import Path
 
-import docs_extensions
 import numpy as np
 import pytest
 from fake_device import ScriptedDevice
@@ -25,7 +25,8 @@ from drake_haptics.systems.haptic_status_receiver import HapticStatusReceiver
 from drake_haptics.systems.haptic_status_sender import HapticStatusSender
 from drake_haptics.systems.replayed_handle import ReplayedHandle
 
-EVERY_KEY = docs_extensions.DOCS / "reference" / "every-key.yaml"
+DOCS = Path(__file__).parents[1] / "docs"
+EVERY_KEY = DOCS / "reference" / "every-key.yaml"
 PERIOD_S = 1e-3
 
 
@@ -111,7 +112,7 @@ def test_the_ports_are_those_of_the_docstring(kind, systems):
 
 
 def test_every_system_is_on_the_page_of_all_systems():
-    listed = list_system_modules(docs_extensions.DOCS)
+    listed = list_system_modules(DOCS)
     assert len(listed) == len(set(listed))
     assert set(listed) == {
         path

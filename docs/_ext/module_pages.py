@@ -25,7 +25,7 @@ _PACKAGE = "drake_haptics."
 _PREFIX = "modules-"
 # What is behind one command alone is no interface, and the command line has a page.
 _PROGRAMS = ["accuracy", "bench", "cli", "cockpit", "paper", "shapes"]
-_LEFT_OUT = ""
+LEFT_OUT = ""
 # A module is in the first group that has a pattern for it, without the package.
 _GROUPS = {
     "Scenes": [
@@ -47,7 +47,7 @@ _GROUPS = {
     "Recorded runs": ["tick_log", "tick_log.*", "recording"],
     "Stability": ["analysis", "analysis.*", "passivity_bounds"],
     "The compiled core": ["_core"],
-    _LEFT_OUT: [*_PROGRAMS, *(f"{name}.*" for name in _PROGRAMS)],
+    LEFT_OUT: [*_PROGRAMS, *(f"{name}.*" for name in _PROGRAMS)],
     "Building and running": ["*"],
 }
 
@@ -61,11 +61,10 @@ def list_modules() -> list[str]:
 
 
 def group_modules(modules: Iterable[str]) -> dict[str, list[str]]:
-    """Returns the modules that are described, by group."""
+    """Returns modules by group; those of the group LEFT_OUT are not described."""
     groups: dict[str, list[str]] = {name: [] for name in _GROUPS}
     for module in modules:
         groups[_find_group(module)].append(module)
-    del groups[_LEFT_OUT]
     return groups
 
 
@@ -82,7 +81,7 @@ class ModuleGroups(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Returns it as a toctree."""
-        groups = [group for group in _GROUPS if group != _LEFT_OUT]
+        groups = [group for group in _GROUPS if group != LEFT_OUT]
         pages = [f"{FOLDER}/{_PREFIX}{_name_page(group)}" for group in groups]
         toctree = addnodes.toctree(
             parent=self.env.docname,
@@ -106,6 +105,7 @@ def _write(app: Sphinx) -> None:
     pages = {
         _name_page(name): make_heading(name, "=") + "".join(map(_describe, group))
         for name, group in group_modules(modules).items()
+        if name != LEFT_OUT
     }
     write_pages(app.srcdir, _PREFIX, pages)
 
