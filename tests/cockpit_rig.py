@@ -7,9 +7,11 @@ from drake_haptics.cockpit.cockpit import Cockpit
 from drake_haptics.cockpit.coupling_advice import CouplingAdvice
 from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.page_camera import look_from_the_front
+from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import SceneChanges
 from drake_haptics.cockpit.segments import Segments
 from drake_haptics.run_statistics import RunStatistics
+from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
 from drake_haptics.tick_clock import TickClock
 
 
@@ -70,9 +72,9 @@ class CockpitRig:
         self.holding = Holding(scene, meshcat, address, has_hand=advice.has_hand)
         self.cockpit = Cockpit(
             self.page,
-            meshcat,
             self.changes,
             self.holding,
+            PagePicture(meshcat, SHOWN_AT_FIRST),
             advice,
             name="test",
             **options,

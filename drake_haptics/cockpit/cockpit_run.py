@@ -15,6 +15,7 @@ from drake_haptics.cockpit.coupling_advice import CouplingAdvice
 from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.live_page import LivePage
 from drake_haptics.cockpit.page_camera import look_from_the_front
+from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import SceneChanges
 from drake_haptics.cockpit.segments import Segments
 from drake_haptics.device.backend import DeviceBackend
@@ -76,13 +77,12 @@ class CockpitRun:
             stack.enter_context(closing(self._holding))
             self._cockpit = Cockpit(
                 self._page,
-                meshcat,
                 SceneChanges(scene),
                 self._holding,
+                PagePicture(meshcat, views),
                 advice,
                 name=name,
                 locked=locked,
-                views=views,
             )
             self._closing = stack.pop_all()
 

@@ -11,8 +11,9 @@ from pydrake.systems.framework import Context
 
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.carry_on import carry_on, find_handle
-from drake_haptics.cockpit.cockpit import Change, Cockpit
+from drake_haptics.cockpit.cockpit import Cockpit
 from drake_haptics.cockpit.holding import Holding
+from drake_haptics.cockpit.steering import Change
 from drake_haptics.errors import UserError
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene_check import SceneWarning
@@ -40,6 +41,7 @@ class Segments:
         """
         self._haptic = haptic
         self._cockpit = cockpit
+        self._steering = cockpit.steering
         self._holding = holding
         self._meshcat = meshcat
 
@@ -81,9 +83,9 @@ class Segments:
                     statistics=statistics,
                 )
                 if last is not None:
-                    change = self._cockpit.take_change()
+                    change = self._steering.take_change()
             except RunError as error:
-                if not self._cockpit.fall_back(str(error)):
+                if not self._steering.fall_back(str(error)):
                     raise
                 change = Change(self._holding.name, restarts=True)
             if change is None:
@@ -120,7 +122,7 @@ class Segments:
         except UserError as error:
             if holding.backend is not backend:
                 raise
-            self._cockpit.refuse(str(error))
+            self._steering.refuse(str(error))
             return old, last
         return new, carry_on(old, last, new) if goes_on else None
 
@@ -135,7 +137,7 @@ class Segments:
             # The page tells it.
             warnings.simplefilter("ignore", SceneWarning)
             return BuildHapticDiagram(
-                self._cockpit.changes.scene,
+                self._steering.changes.scene,
                 device=self._holding.backend,
                 meshcat=self._meshcat if old.visualizer is not None else None,
                 reuse=old,

@@ -37,7 +37,6 @@ export function toggleColumn(side) {
 
 function setColumn(side, folded) {
   document.body.classList.toggle("fold-" + side, folded);
-  find("fold-" + side).setAttribute("aria-pressed", folded);
   find("fold-" + side).setAttribute("aria-expanded", !folded);
   keep(side, folded ? "folded" : "open");
   dispatchEvent(new Event("resize"));

@@ -1,0 +1,216 @@
+"""Does what a page asks for: at once in a Context, or by the end of a segment."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import Context
+
+from drake_haptics.builder import HapticDiagram
+from drake_haptics.cockpit.holding import DEVICE, HAND, Holding
+from drake_haptics.cockpit.page_picture import PagePicture
+from drake_haptics.cockpit.page_request import REFUSED
+from drake_haptics.cockpit.scene_changes import (
+    SCENE_VERBS,
+    ChangeError,
+    SceneChanges,
+)
+from drake_haptics.errors import UserError
+from drake_haptics.live_scene import is_live_change, write_live_values
+
+# A slider that needs another diagram builds it when it has rested for so long.
+_REST_S = 0.25
+_AT_ONCE = -math.inf
+
+
+@dataclass(frozen=True)
+class Change:
+    """What a segment of a run ended for.
+
+    Attributes:
+        handle: Who is to hold the handle from now on.
+        restarts: Whether the scene begins anew.
+    """
+
+    handle: str
+    restarts: bool
+
+
+class Steering:
+    """What becomes of a run on its page.
+
+    A run is a sequence of segments, each of one diagram. What can be written into a
+    Context is, between two ticks; what cannot ends the segment. What cannot be at all
+    is answered with a sentence.
+
+    Attributes:
+        changes: The scene as people have changed it.
+        end_s: When the segment is to end, s; infinite where it is not.
+    """
+
+    def __init__(
+        self,
+        changes: SceneChanges,
+        holding: Holding,
+        picture: PagePicture,
+        locked: str = "",
+    ):
+        """Begins without a diagram.
+
+        Args:
+            changes: The scene.
+            holding: Who holds the handle.
+            picture: What is shown.
+            locked: Why nothing but the picture may be changed; empty if it may.
+        """
+        self.changes = changes
+        self.end_s = math.inf
+        self._error, self._is_error_told = "", True
+        self._holding = holding
+        self._picture = picture
+        self._locked = locked
+        self._running = changes.scene
+        self._change: Change | None = None
+
+    def begin(self, haptic: HapticDiagram) -> None:
+        """Begins a segment, of a diagram of the scene as it is now."""
+        self._haptic = haptic
+        self._running = self.changes.scene
+        self._change, self.end_s = None, math.inf
+        self._picture.begin(haptic)
+
+    def take_change(self) -> Change | None:
+        """Returns what the segment ended for; None if it was for something else."""
+        change, self._change = self._change, None
+        return change
+
+    def refuse(self, why: str) -> None:
+        """Takes back what could not be built."""
+        self.changes.restore(self._running)
+        self._fail(why)
+
+    def fall_back(self, why: str) -> bool:
+        """Takes all changes back, with which a run has failed.
+
+        Args:
+            why: It has.
+
+        Returns:
+            Whether there were any, of a run that nobody feels: else it is over.
+        """
+        changes = self.changes
+        if changes.scene is changes.file or self._holding.name == DEVICE:
+            return False
+        changes.restore(changes.file)
+        self._fail(f"It was too much: {why}. The scene begins anew, as in its file.")
+        return True
+
+    def tell_error(self) -> str:
+        """Returns why the last request could not be done; empty if it could.
+
+        What has not been told is not forgotten for a request that could be.
+        """
+        self._is_error_told = True
+        return self._error
+
+    def obey(
+        self,
+        asked: Sequence[dict[str, Any]],
+        root: Context,
+        X_WC: RigidTransform,
+        now_s: float,
+    ) -> bool:
+        """Does what pages have asked for.
+
+        Args:
+            asked: What `LivePage.act` returned.
+            root: Context of the diagram; its parameters may be changed.
+            X_WC: Pose of the page's camera.
+            now_s: The time, s.
+
+        Returns:
+            Whether there is anything new to tell.
+        """
+        before, is_new = self.changes.scene, False
+        for request in asked:
+            if self._point(request, X_WC):
+                continue
+            try:
+                if not (self._picture.obey(request) or self._steer(request)):
+                    continue
+                if self._is_error_told:
+                    self._error = ""
+            except (UserError, ValueError) as error:
+                self._fail(str(error))
+            is_new = True
+        if self.changes.scene is not before:
+            self._apply(root, now_s)
+        return is_new
+
+    def _point(self, request: dict[str, Any], X_WC: RigidTransform) -> bool:
+        """Moves the handle, if that is what is asked; returns whether it is."""
+        pointer = self._holding.pointer
+        if pointer is None:
+            return False
+        if REFUSED in request:
+            pointer.note_refused()
+        return pointer.obey(request, X_WC)
+
+    def _steer(self, request: dict[str, Any]) -> bool:
+        """Changes the run, if that is what is asked; returns whether it is.
+
+        Raises:
+            ChangeError: It cannot be.
+        """
+        verb = request.get("do")
+        if verb not in ("handle", "restart", *SCENE_VERBS):
+            return False
+        if self._locked:
+            raise ChangeError(self._locked)
+        if verb in SCENE_VERBS:
+            self.changes.obey(request)
+            return True
+        handle = request.get("to")
+        if handle is not None and handle not in self._holding.names:
+            raise ChangeError(f"There is nobody called {handle!r} to hold the handle.")
+        # A real hand takes the tool with it; the simulated one begins its path.
+        self._end(_AT_ONCE, handle, verb == "restart" or handle in (HAND, DEVICE))
+        return True
+
+    def _fail(self, why: str) -> None:
+        """Keeps what the page is to be told."""
+        self._error, self._is_error_told = why, False
+
+    def _apply(self, root: Context, now_s: float) -> None:
+        """Makes the loop run the scene as it is now."""
+        scene = self.changes.scene
+        if not is_live_change(self._haptic.scene, scene):
+            self._end(now_s + _REST_S)
+            return
+        try:
+            write_live_values(self._haptic, root, scene)
+        except ValueError as error:
+            self.refuse(str(error))
+        else:
+            self._running = scene
+
+    def _end(
+        self, end_s: float, handle: str | None = None, restarts: bool = False
+    ) -> None:
+        """Ends the segment at a time, for this and for what it is to end for already.
+
+        Args:
+            end_s: When, if it is not to end at once.
+            handle: Who is to hold the handle, if somebody else is.
+            restarts: Whether the scene is to begin anew.
+        """
+        if self._change is not None:
+            handle = handle or self._change.handle
+            restarts = restarts or self._change.restarts
+        self._change = Change(handle or self._holding.name, restarts)
+        if self.end_s != _AT_ONCE:
+            self.end_s = end_s
