@@ -25,7 +25,7 @@ from drake_haptics.scene_check import SceneWarning
 PAGE = Path(__file__).parents[2] / "docs" / "troubleshooting.md"
 BEGIN = "<!-- {}: written by tests/characterization/symptom_table.py -->\n"
 END = "<!-- end of {} -->\n"
-HEAD = ["scene", "with", "is measured", "gives", "cured by", "gives"]
+HEAD = ["shown by", "cured by", "is measured", "shown", "cured"]
 
 
 def describe(changes: Mapping[str, Any], motion: str = "") -> str:
@@ -57,14 +57,16 @@ def make_row(case: Case) -> list[str]:
         # What the builder warns of is what is asked for here.
         warnings.simplefilter("ignore", SceneWarning)
         before, after = (case.measure(cured=cured) for cured in (False, True))
+    return [*describe_case(case), _round(before), _round(after)]
+
+
+def describe_case(case: Case) -> list[str]:
+    """Returns what is changed, what cures it, and what is measured."""
     changes = {**case.provoked, **case.given}
     return [
-        f"`{case.scene}`",
-        describe(changes, case.motion),
-        case.figure,
-        _round(before),
+        f"{case.scene}: {describe(changes, case.motion)}",
         describe(case.cure),
-        _round(after),
+        case.figure,
     ]
 
 
