@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypedDict
 
 import numpy as np
 
@@ -17,6 +18,41 @@ _MAX_RECORDS = 1 << 20
 _FIRST_RECORDS = 1 << 13
 # A tick only notes its numbers; what they amount to is found for many at once.
 _BLOCK = 1 << 8
+
+
+class Times(TypedDict):
+    """A distribution of times, µs."""
+
+    median: float
+    p99: float
+    p99_9: float
+    max: float
+
+
+class Counts(TypedDict):
+    """A distribution of numbers."""
+
+    median: float
+    max: int
+
+
+class RunFigures(TypedDict):
+    """What `RunStatistics.to_dict` returns, and says more of."""
+
+    ticks: int
+    duration_s: float
+    tick_us: Times
+    contact_query_us: Times
+    contacts: Counts
+    clusters: Counts
+    max_force_N: float
+    max_torque_Nm: float
+    max_penetration_m: float
+    limit_hits: int
+    non_finite_events: int
+    energy_J: dict[str, dict[str, float]]
+    shed_ticks: dict[str, int]
+    lateness_us: dict[str, float]
 
 
 class RunStatistics:
@@ -119,7 +155,7 @@ class RunStatistics:
         self._limit_hits += int(np.count_nonzero(status == LIMITED))
         self._non_finite_events += int(np.count_nonzero(status == NOT_FINITE))
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> RunFigures:
         """Returns the figures for a report, ready for JSON.
 
         Keys: `ticks`, `duration_s` (simulated), `tick_us` and `contact_query_us`
@@ -160,7 +196,7 @@ def _describe_lateness(pace: TickClock) -> dict[str, float]:
     return {"p50": p50, "p99": p99, "p99_9": p99_9, "skipped": pace.skipped}
 
 
-def _describe_times(seconds: np.ndarray) -> dict[str, float]:
+def _describe_times(seconds: np.ndarray) -> Times:
     if not len(seconds):
         return {"median": 0.0, "p99": 0.0, "p99_9": 0.0, "max": 0.0}
     median, p99, p99_9, largest = 1e6 * np.percentile(seconds, [50, 99, 99.9, 100])
@@ -172,7 +208,7 @@ def _describe_times(seconds: np.ndarray) -> dict[str, float]:
     }
 
 
-def _describe_counts(counts: np.ndarray) -> dict[str, float]:
+def _describe_counts(counts: np.ndarray) -> Counts:
     if not len(counts):
         return {"median": 0.0, "max": 0}
     return {"median": float(np.median(counts)), "max": int(counts.max())}
