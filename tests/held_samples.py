@@ -31,12 +31,6 @@ def hold_with_grip(held: HeldScene, grip: str) -> HeldScene:
     return replace(held, scene=replace(scene, hand=replace(scene.hand, grip=grip)))
 
 
-def make_tool_immovable(held: HeldScene) -> HeldScene:
-    """Returns a held scene whose tool is a rigid wall for the coupling."""
-    scene = held.scene
-    return replace(held, scene=replace(scene, tool=replace(scene.tool, mass_kg=1e15)))
-
-
 def make_limits(eigenvalue: float, against: str = "a rigid wall") -> StiffnessLimits:
     """Returns limits of the translation with one figure of one's choice."""
     return StiffnessLimits(

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from held_samples import load_held, make_tool_immovable
+from held_samples import load_held
 from pydrake.math import RotationMatrix
 
 from drake_haptics.analysis.felt_impedance import calc_felt_impedance
@@ -120,7 +120,7 @@ def test_the_stiffness_is_that_of_the_loops_own_steps(name):
 
 @pytest.mark.parametrize("name", ["sphere_pen", "cup_spoon"])
 def test_against_a_rigid_tool_half_a_period_of_stiffness_and_damping_are_needed(name):
-    held = make_tool_immovable(load_held(name))
+    held = load_held(name).against_rigid_wall()
     coupling = replace(held.scene.coupling, rotational_stiffness_Nm_per_rad=20.0)
     loop = analyse_held_scene(held, coupling)
     felt = calc_felt_impedance(loop)

@@ -6,7 +6,7 @@ from multiprocessing import get_context
 
 import numpy as np
 import pytest
-from held_samples import load_held, make_tool_immovable
+from held_samples import load_held
 
 from drake_haptics.analysis.held_loop import (
     CouplingGrowth,
@@ -38,7 +38,7 @@ def test_motions_grow_as_fast_in_simulation(name, gains):
 
 
 def test_a_loop_that_is_unstable_grows_in_simulation():
-    held = make_tool_immovable(load_held("hammer_block"))
+    held = load_held("hammer_block").against_rigid_wall()
     loop = analyse_held_scene(held, replace_gains(held.scene.coupling, 3e4, 2.0))
     assert loop.growth > 1.001
     assert loop.measure_growth() == pytest.approx(loop.growth, abs=1e-4)

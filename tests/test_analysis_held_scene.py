@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from drake_haptics.analysis.aimed_hand import build_aimed
+from drake_haptics.analysis.held_loop import analyse_held_scene
 from drake_haptics.analysis.held_scene import (
     build_quietly,
     find_firmest_contact,
@@ -13,7 +14,7 @@ from drake_haptics.analysis.held_scene import (
     stop_hand,
 )
 from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import Coupling, load_scene
+from drake_haptics.scene import Coupling, Gravity, load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.simulated_device import make_hand_path, place_base
 
@@ -106,3 +107,16 @@ def test_a_firmer_contact_that_does_not_rest_is_passed_over_and_named():
     held = hold_scene(load_scene(find_scene("cup_spoon")))
     assert held.restless_s
     assert held.time_s not in held.restless_s
+
+
+def test_against_a_rigid_wall_the_tool_stays_whatever_moves(held):
+    effects = replace(held.scene.effects, gravity=Gravity())
+    heavy = replace(held, scene=replace(held.scene, effects=effects))
+    wall = heavy.against_rigid_wall()
+    assert wall.X_WT.IsExactlyEqualTo(held.X_WT)
+    linear = analyse_held_scene(wall).linearization
+    of_tool = [i for i, name in enumerate(linear.state_names) if "haptic_tool" in name]
+    velocity = of_tool[-6:]
+    expected = np.zeros((6, len(linear.A)))
+    expected[:, velocity] = np.eye(6)
+    np.testing.assert_allclose(linear.A[velocity], expected, atol=1e-9)

@@ -12,7 +12,7 @@ from held_samples import analyse_sample, make_limits
 from PIL import Image
 
 from drake_haptics.analysis.modes import Mode, ModeKind
-from drake_haptics.analysis.motion_words import describe_motion, shorten_paths
+from drake_haptics.analysis.motion_words import describe_motion
 from drake_haptics.analysis.stability_page import (
     describe_delay,
     describe_situation,
@@ -129,7 +129,7 @@ def test_the_page_has_the_figures(sample, tmp_path):
         for name in ("stiffness", "eigenvalue", "simulated", "one_axis", "formula"):
             figures.append(f"<td>{limit[name]:.7g}</td>")
         figures += [f"{limit['gain_margin']:.3g} times", limit["limited_by"]]
-    figures += [shorten_paths(mode.describe()) for mode in sample.modes[:12]]
+    figures += [mode.describe() for mode in sample.modes[:12]]
     assert [figure for figure in figures if figure not in page] == []
     assert 'class="verdict good"' in page
 

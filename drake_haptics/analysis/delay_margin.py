@@ -6,9 +6,9 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.held_loop import HeldLoop
 from drake_haptics.analysis.stability_limit import calc_growth
-from drake_haptics.analysis.study_chunk import one_blas_thread
 
 # Delays are tried so far apart, in periods or as a share, before the edge is
 # closed in on.
@@ -18,6 +18,7 @@ LONGEST_DELAY = 50.0
 _TOLERANCE = 1e-4
 
 
+@on_one_blas_thread
 def calc_delay_margin(loop: HeldLoop) -> float:
     """Returns the further delay of the device's force at which motions grow, s.
 
@@ -31,17 +32,15 @@ def calc_delay_margin(loop: HeldLoop) -> float:
     def excess(delay: float) -> float:
         return calc_growth(np.linalg.eigvals(make_delayed_map(loop, delay))) - 1.0
 
-    # These matrices are too small to share between threads, which then only wait.
-    with one_blas_thread():
-        low = high = 0.0
-        if excess(high) >= 0.0:
-            return 0.0
-        while excess(high) < 0.0:
-            if high >= LONGEST_DELAY:
-                return np.inf
-            step = max(_STEP, _STEP_SHARE * high)
-            low, high = high, min(high + step, LONGEST_DELAY)
-        return loop.linearization.period_s * brentq(excess, low, high, xtol=_TOLERANCE)
+    low = high = 0.0
+    if excess(high) >= 0.0:
+        return 0.0
+    while excess(high) < 0.0:
+        if high >= LONGEST_DELAY:
+            return np.inf
+        step = max(_STEP, _STEP_SHARE * high)
+        low, high = high, min(high + step, LONGEST_DELAY)
+    return loop.linearization.period_s * brentq(excess, low, high, xtol=_TOLERANCE)
 
 
 def make_delayed_map(loop: HeldLoop, delay: float) -> np.ndarray:

@@ -9,6 +9,7 @@ import numpy as np
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, System
 
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.derivative_check import calc_sizes
 from drake_haptics.analysis.diagram_systems import Timing, find_timings
 from drake_haptics.analysis.drake_errors import explain_drake_errors
@@ -50,6 +51,7 @@ class Equilibrium:
 
 
 @explain_drake_errors("finding an equilibrium")
+@on_one_blas_thread
 def find_equilibrium(
     diagram: System,
     context: Context,

@@ -9,6 +9,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable
 from pydrake.systems.framework import Context
 
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.delay_margin import find_shown_wrench
 from drake_haptics.analysis.held_loop import HeldLoop
 from drake_haptics.device_preset import load_device_preset
@@ -53,6 +54,7 @@ class FeltImpedance:
     __repr__ = one_line
 
 
+@on_one_blas_thread
 def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
     """Opens a loop at the handle.
 

@@ -11,6 +11,7 @@ import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.framework import Context
 
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.equilibrium import find_equilibrium
 from drake_haptics.analysis.sampled_preconditions import check_conversion
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
@@ -30,6 +31,8 @@ _APART_S = 0.05
 _MOST_SOFTENINGS = 8
 # A tool that moves no faster, m/s and rad/s, has settled.
 _SETTLED_SPEED = 5e-3
+# A tool of this mass, kg, is held still by whatever it touches.
+_IMMOVABLE_KG = 1e15
 
 
 @dataclass(frozen=True)
@@ -55,7 +58,23 @@ class HeldScene:
 
     __repr__ = one_line
 
+    def against_rigid_wall(self) -> HeldScene:
+        """Returns the same with a tool that nothing moves.
 
+        A wall that does not give way is the worst that a device can feel. The coupling
+        still draws the handle to where the tool is; the tool is too heavy to follow,
+        and its weight, if the scene has one, is not felt. `analyse_held_scene` gives
+        the loop.
+        """
+        scene = replace(
+            self.scene,
+            tool=replace(self.scene.tool, mass_kg=_IMMOVABLE_KG),
+            effects=replace(self.scene.effects, gravity=None),
+        )
+        return replace(self, scene=scene)
+
+
+@on_one_blas_thread
 def find_firmest_contact(scene: Scene) -> float:
     """Returns the time at which the tool is pressed most along the hand's path, s.
 
@@ -68,6 +87,7 @@ def find_firmest_contact(scene: Scene) -> float:
     return _find_firm_places(scene)[0]
 
 
+@on_one_blas_thread
 def hold_scene(
     scene: Scene,
     time_s: float | None = None,

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from scipy.linalg import block_diag, eig
 
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
+from drake_haptics.analysis.motion_words import shorten_path
 from drake_haptics.analysis.period_map import PeriodMap
 from drake_haptics.one_line import one_line
 
@@ -91,7 +93,11 @@ class Mode:
         return self.period_s * math.log(_DIED_OUT) / math.log(magnitude)
 
     def describe(self) -> str:
-        """Returns it in a line, as "27.3 Hz, damped 4 % of critical, ..."."""
+        """Returns it in a line, as "27.3 Hz, damped 4 % of critical, ...".
+
+        States of a haptic loop have short names there, "elbow_joint_q" for
+        "device/simulated_arm/arm/elbow_joint_q"; `participation` has the whole ones.
+        """
         mostly = " and ".join(self._list_largest())
         if self.kind is ModeKind.QUATERNION_LENGTH:
             return f"no motion: the length of the quaternion {mostly}"
@@ -130,12 +136,13 @@ class Mode:
     def _list_largest(self) -> list[str]:
         largest = self.participation[0][1]
         return [
-            name
+            shorten_path(name)
             for name, share in self.participation[:_MOST_NAMED]
             if share >= _NAMED * largest
         ]
 
 
+@on_one_blas_thread
 def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
     """Returns the modes of a linear map over a period.
 

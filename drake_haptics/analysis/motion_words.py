@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from drake_haptics.analysis.modes import Mode
+import re
+from typing import TYPE_CHECKING
 
-# Parts of the paths of states which each loop has, and which tell nothing.
-_KNOWN_PATHS = ("device/simulated_arm/arm/", "device/", "/step", "/sample")
+if TYPE_CHECKING:
+    from drake_haptics.analysis.modes import Mode
+
+# Parts of the paths of states which each haptic loop has, and which tell nothing.
+_KNOWN_PARTS = re.compile(r"(?<![^/])(device/simulated_arm/arm|device|step|sample)/")
 
 
 def describe_motion(mode: Mode) -> str:
@@ -16,15 +20,13 @@ def describe_motion(mode: Mode) -> str:
     swings = mode.frequency_hz > 0.0
     rate = f"{mode.frequency_hz:.3g} Hz" if swings else "without swing"
     mostly = mode.describe().rpartition("; mostly ")[2]
-    return f"{rate}; mostly {shorten_paths(mostly)}"
+    return f"{rate}; mostly {mostly}"
 
 
-def shorten_paths(words: str) -> str:
-    """Returns words about a haptic loop with the paths of its states shortened.
+def shorten_path(name: str) -> str:
+    """Returns the name of a state without the parts of its path that tell nothing.
 
     "device/simulated_arm/arm/elbow_joint_w" becomes "elbow_joint_w", and
     "haptic_tool/step/x" becomes "haptic_tool/x".
     """
-    for path in _KNOWN_PATHS:
-        words = words.replace(path, "")
-    return words
+    return _KNOWN_PARTS.sub("", name)

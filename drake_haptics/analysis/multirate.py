@@ -16,6 +16,7 @@ from pydrake.systems.analysis import (
 from pydrake.systems.framework import Context, System
 
 from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.derivative_check import (
     calc_sizes,
     check_derivatives,
@@ -53,6 +54,7 @@ class Monodromy(PeriodMap):
 
 
 @explain_drake_errors("simulating one hyperperiod with derivatives")
+@on_one_blas_thread
 def monodromy(
     diagram: System,
     context: Context,

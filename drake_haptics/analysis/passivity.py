@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.transfer_function import TransferFunction, as_transfer
 from drake_haptics.one_line import one_line
 
@@ -123,6 +124,7 @@ class Passivity:
         }
 
 
+@on_one_blas_thread
 def calc_passivity(
     H: TransferFunction,
     period_s: float,

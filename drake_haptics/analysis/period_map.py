@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.one_line import one_line
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ class PeriodMap:
 
     __repr__ = one_line
 
+    @on_one_blas_thread
     def eigenvalues(self) -> np.ndarray:
         """Returns the eigenvalues of A (n,), complex, largest magnitude first."""
         values = np.linalg.eigvals(self.A).astype(complex)

@@ -21,6 +21,7 @@ from pydrake.systems.framework import (
 from pydrake.systems.primitives import LinearSystem
 from scipy.linalg import expm
 
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.derivative_check import (
     calc_sizes,
     check_derivatives,
@@ -74,6 +75,7 @@ class SampledLinearization(PeriodMap):
 
 
 @explain_drake_errors("linearizing over one period")
+@on_one_blas_thread
 def linearize_sampled(
     diagram: System,
     context: Context,

@@ -29,7 +29,6 @@ from drake_haptics.analysis.stiffness_limits import (
     find_stiffness_limits,
     none_unless_finite,
 )
-from drake_haptics.analysis.study_chunk import one_blas_thread
 from drake_haptics.analysis.z_width_map import ZWidth, z_width
 from drake_haptics.coupling_check import HeldHandle
 from drake_haptics.held_handle import calc_scene_handle, check_scene_coupling
@@ -167,14 +166,12 @@ def analyse_scene(
     if map_size < 0 or map_size == 1:
         raise ValueError(f"map_size must be 0 or at least 2, is {map_size}")
     report = progress or (lambda what, share: None)
-    # The matrices are too small to share between threads, which then only wait.
-    with one_blas_thread():
-        held = hold_scene(scene, time_s, progress=progress)
-        loop = analyse_held_scene(held)
-        felt = calc_felt_impedance(loop)
-        passivity = calc_passivity(felt, felt.period_s)
-        limits = _find_limits(held, report)
-        delay_margin_s = calc_delay_margin(loop)
+    held = hold_scene(scene, time_s, progress=progress)
+    loop = analyse_held_scene(held)
+    felt = calc_felt_impedance(loop)
+    passivity = calc_passivity(felt, felt.period_s)
+    limits = _find_limits(held, report)
+    delay_margin_s = calc_delay_margin(loop)
     map_ = None
     if map_size > 0:
         map_ = z_width(

@@ -11,7 +11,7 @@ from pathlib import Path
 from string import Template
 
 from drake_haptics.analysis.delay_margin import LONGEST_DELAY
-from drake_haptics.analysis.motion_words import describe_motion, shorten_paths
+from drake_haptics.analysis.motion_words import describe_motion
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
 from drake_haptics.page_path import check_page_path
@@ -216,7 +216,7 @@ def _make_gains(stability: SceneStability) -> str:
 
 def _make_modes(stability: SceneStability) -> str:
     rows = [
-        [f"{abs(mode.eigenvalue):.6f}", shorten_paths(mode.describe())]
+        [f"{abs(mode.eigenvalue):.6f}", mode.describe()]
         for mode in stability.modes[:_SLOWEST_SHOWN]
     ]
     return _make_table(["|z|", f"the slowest {len(rows)} to die out"], rows)

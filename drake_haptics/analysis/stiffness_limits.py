@@ -10,6 +10,7 @@ from typing import Any, Literal
 from scipy.optimize import brentq
 
 from drake_haptics.analysis.aimed_hand import build_aimed
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.held_loop import HeldLoop, analyse_held_scene
 from drake_haptics.analysis.held_scene import HeldScene
 from drake_haptics.analysis.modes import find_modes
@@ -29,8 +30,6 @@ _GAINS = {
     "translation": ("stiffness_N_per_m", "damping_Ns_per_m"),
     "rotation": ("rotational_stiffness_Nm_per_rad", "rotational_damping_Nms_per_rad"),
 }
-# A tool of this mass, kg, is held still by whatever it touches.
-_IMMOVABLE_KG = 1e15
 # Stiffnesses are tried within this factor of the scene's.
 _RANGE = 1e4
 # Simulations are compared with eigenvalues within this share of the limit.
@@ -46,7 +45,8 @@ class StiffnessLimits:
     Attributes:
         kind: Of which stiffness.
         against: What the tool touches: the contact in which it is held, which gives
-            way; or a wall that holds it still, the worst that a device can feel.
+            way; or a wall that holds it still, the worst that a device can feel
+            (`HeldScene.against_rigid_wall`).
         stiffness: The scene's.
         damping: The scene's, N·s/m or N·m·s/rad.
         eigenvalue: Where an eigenvalue of one tick reaches magnitude 1; infinite
@@ -90,6 +90,7 @@ class StiffnessLimits:
         }
 
 
+@on_one_blas_thread
 def find_stiffness_limits(
     held: HeldScene,
     kind: Kind,
@@ -114,7 +115,7 @@ def find_stiffness_limits(
     if not stiffness > 0.0:
         raise ValueError(f"coupling.{stiffness_name} must be above 0, is {stiffness}")
     if against == "a rigid wall":
-        held = _hold_still(held)
+        held = held.against_rigid_wall()
     done = 0
 
     def analyse(value: float) -> HeldLoop:
@@ -161,17 +162,6 @@ def find_stiffness_limits(
         ),
         limited_by=words,
     )
-
-
-def _hold_still(held: HeldScene) -> HeldScene:
-    """Returns a held scene whose tool nothing moves."""
-    scene = held.scene
-    still = replace(
-        scene,
-        tool=replace(scene.tool, mass_kg=_IMMOVABLE_KG),
-        effects=replace(scene.effects, gravity=None),
-    )
-    return replace(held, scene=still)
 
 
 def _find_simulated(growth: Callable[[float], float], near: float) -> float:

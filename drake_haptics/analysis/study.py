@@ -11,12 +11,12 @@ from itertools import islice
 from queue import SimpleQueue
 from typing import Any
 
+from drake_haptics.analysis.blas_threads import one_blas_thread
 from drake_haptics.analysis.exact_json import from_exact_json, to_exact_json
 from drake_haptics.analysis.study_chunk import (
     Outcome,
     StudyChunk,
     is_in_task,
-    one_blas_thread,
 )
 from drake_haptics.analysis.study_error import StudyError, TaskFailure
 from drake_haptics.analysis.study_function import StudyFunction

@@ -8,8 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from threadpoolctl import threadpool_limits
-
+from drake_haptics.analysis.blas_threads import one_blas_thread
 from drake_haptics.analysis.exact_json import from_exact_json, to_exact_json
 
 _state = threading.local()
@@ -74,15 +73,6 @@ class StudyChunk:
             return to_exact_json(result)
         except ValueError as error:
             raise ValueError(f"the result cannot be kept: {error}") from error
-
-
-def one_blas_thread() -> threadpool_limits:
-    """Returns a context in which the BLAS of this process uses one thread.
-
-    A BLAS cuts a product by the number of its threads and sums the parts so: from some
-    hundred rows on, the last bits would depend on the cores of a machine.
-    """
-    return threadpool_limits(limits=1, user_api="blas")
 
 
 def is_in_task() -> bool:

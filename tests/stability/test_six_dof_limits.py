@@ -4,7 +4,6 @@ import pytest
 from held_samples import load_held
 
 from drake_haptics.analysis.stiffness_limits import find_stiffness_limits
-from drake_haptics.analysis.study_chunk import one_blas_thread
 
 CASES = [
     ("sphere_pen", "translation", "this contact"),
@@ -17,8 +16,7 @@ CASES = [
 @pytest.mark.parametrize("case", CASES, ids=" ".join)
 def test_eigenvalue_and_simulation_agree(case):
     name, kind, against = case
-    with one_blas_thread():
-        limits = find_stiffness_limits(load_held(name), kind, against)
+    limits = find_stiffness_limits(load_held(name), kind, against)
     assert limits.simulated == pytest.approx(limits.eigenvalue, rel=5e-3)
     if against == "a rigid wall":
         # One axis with the least inertia and damping is the worst direction.
