@@ -96,8 +96,9 @@ def _split_host(parts: SplitResult, default_port: int | None) -> tuple[str, int]
         raise DeviceError(f"device {parts.geturl()!r}: {error}") from error
     if not parts.hostname or port is None:
         raise DeviceError(
-            f"device {parts.geturl()!r}: give host and port,"
-            f" like {parts.scheme}://127.0.0.1:{default_port or 7400}"
+            f"device {parts.geturl()!r}: give"
+            f" {'host and port' if default_port is None else 'the host'}, like"
+            f" {parts.scheme}://127.0.0.1{':7400' if default_port is None else ''}"
         )
     return parts.hostname, port
 

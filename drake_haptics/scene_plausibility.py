@@ -36,6 +36,7 @@ def question_scene(haptic: HapticDiagram) -> list[str]:
     return [
         *_question_sizes(haptic),
         *_question_reach(haptic),
+        *_question_device(haptic),
         *_question_start(haptic),
     ]
 
@@ -139,6 +140,36 @@ def _calc_gap(p_WT: np.ndarray, X_WO: RigidTransform, part: Decomposition) -> fl
 
 def _find_box(vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return vertices.min(axis=0), vertices.max(axis=0)
+
+
+def _question_device(haptic: HapticDiagram) -> list[str]:
+    """Asks whether the scene's preset is that of the device."""
+    device, backend = haptic.scene.device, haptic.backend
+    preset = load_device_preset(device.preset)
+    sentences = []
+    for key, unit in [("max_force_N", "N"), ("max_torque_Nm", "N·m")]:
+        asked, rated = getattr(device, key), getattr(preset, key)
+        if asked is not None and asked > rated:
+            sentences.append(
+                f"device.{key} is {asked:g}: more than the {rated:g} {unit} that"
+                f" '{device.preset}' is rated for"
+            )
+    reading = None if backend is None else backend.read()
+    if backend is None or reading is None:
+        return sentences
+    if haptic.scene.device.base is None and not backend.is_placed:
+        return sentences
+    away_m = float(
+        np.linalg.norm(reading.X_BH[4:] - np.array(preset.workspace_center_m))
+    )
+    if away_m > preset.workspace_radius_m:
+        sentences.append(
+            f"the handle is {length(away_m)} from the middle of the workspace of"
+            f" '{device.preset}', whose radius is {length(preset.workspace_radius_m)}:"
+            " is that the device? device.preset names it, device.base says where it"
+            " stands"
+        )
+    return sentences
 
 
 def _question_start(haptic: HapticDiagram) -> list[str]:

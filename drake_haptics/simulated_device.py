@@ -70,9 +70,15 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
             twin,
         )
     except UnreachableError as error:
-        raise SceneError(f"hand.path.waypoints[0]: {error}") from error
+        raise SceneError(
+            f"hand.path.waypoints[0]: {error}; or the preset '{device.preset}' has a"
+            " workspace (workspace_center_m, workspace_radius_m) that the arm does not"
+        ) from error
     except (ValueError, RuntimeError) as error:  # Drake's parser raises the latter.
-        raise SceneError(f"{model}: {error}") from error
+        raise SceneError(
+            f"device.preset '{device.preset}', with handle_link"
+            f" '{preset.handle_link}' of the model {model}: {error}"
+        ) from error
     arm.set_name("simulated_arm")
     force, torque = device.max_force_N, device.max_torque_Nm
     return HapticDevice(

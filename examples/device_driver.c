@@ -1,8 +1,7 @@
 /* A whole driver of a haptic device, to start one of your own from.
  *
- *   cc -O2 -o device_driver device_driver.c -lm \
- *      -I$(python -c "import drake_haptics;
- * print(drake_haptics.get_include())")
+ *   cc -O2 -o device_driver device_driver.c -lm -I$(python -c \
+ *     "import drake_haptics as d; print(d.get_include())")
  *   ./device_driver [PORT [LONGEST_TIME_TO_LIVE_S]]
  *
  * It serves a handle of 0.2 kg that a hand holds by a spring, in three axes, at
@@ -197,13 +196,27 @@ static void serve(int fd, handle* device, dh_gate* gate) {
   send_state(fd, gate, &host, &state);
 }
 
+/* Reads the port, the first argument; a wrong one must not become another. */
+static int read_port(const char* text, uint16_t* port) {
+  char* end;
+  const long value = strtol(text, &end, 10);
+  if (*text == '\0' || *end != '\0' || value < 0 || value > 65535) return 0;
+  *port = (uint16_t)value;
+  return 1;
+}
+
 int main(int argc, char** argv) {
   /* The device's own: 3.3 N, and no torque. */
   dh_gate_limits limits = dh_gate_default_limits(3.3, 0);
   const char* problem;
   dh_gate gate;
   handle device;
+  uint16_t port = 7400;
   int fd;
+  if (argc > 3 || (argc > 1 && !read_port(argv[1], &port))) {
+    fprintf(stderr, "use: device_driver [PORT [LONGEST_TIME_TO_LIVE_S]]\n");
+    return 2;
+  }
   if (argc > 2) limits.max_ttl_s = atof(argv[2]);
   problem = dh_gate_init(&gate, &limits);
   if (problem) {
@@ -211,7 +224,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   catch_signals();
-  fd = open_socket((uint16_t)(argc > 1 ? atoi(argv[1]) : 7400));
+  fd = open_socket(port);
   if (fd < 0) return 1;
   if (!open_handle(&device)) {
     fprintf(stderr, "device_driver: the device cannot be opened\n");

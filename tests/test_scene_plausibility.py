@@ -9,6 +9,7 @@ from box_scenes import over_a_plate, write
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.device.backend import DeviceBackend, DeviceReading
+from drake_haptics.device_preset import load_device_preset
 from drake_haptics.scene import EnvironmentObject, Pose, load_scene
 from drake_haptics.scene_library import list_scenes
 from drake_haptics.scene_plausibility import question_scene
@@ -82,10 +83,11 @@ class Still(DeviceBackend):
     """A device whose handle rests."""
 
     is_placed = True
+    p_BH = (0.0, 0.0, 0.0)
 
     def read(self):
         """Tells that it rests."""
-        X_BH = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+        X_BH = np.array([1.0, 0.0, 0.0, 0.0, *self.p_BH])
         return DeviceReading(0, 0.0, X_BH, np.zeros(6), np.zeros(6))
 
     def write(self, command):
@@ -97,8 +99,29 @@ class Still(DeviceBackend):
 
 def test_objects_beyond_the_workspace_of_a_device_are_asked_for(tmp_path):
     scene = over_a_plate(tmp_path, PRESS)
-    assert ask(scene, device=Still()) == []
+    device = Still()
+    device.p_BH = load_device_preset(scene.device.preset).workspace_center_m
+    assert ask(scene, device=device) == []
     far = replace(scene.environment[0], pose=Pose([0.0, 0.0, -1.0]))
     scene.environment = [far]
-    (question,) = ask(scene, device=Still())
+    (question,) = ask(scene, device=device)
     assert "the device's workspace" in question
+
+
+def test_a_handle_outside_the_presets_workspace_is_asked_for(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    other = Still()
+    center = load_device_preset(scene.device.preset).workspace_center_m
+    other.p_BH = (center[0] + 0.35, *center[1:])
+    (question,) = ask(scene, device=other)
+    assert "the handle is 350 mm from the middle" in question
+    assert "radius is 120 mm" in question and "phantom_premium" in question
+
+
+def test_more_force_than_the_device_is_rated_for_is_asked_for(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    scene.device.max_force_N = 50.0
+    (question,) = ask(scene)
+    assert "device.max_force_N is 50: more than the 8.5 N" in question
+    scene.device.max_force_N = 8.5
+    assert ask(scene) == []

@@ -37,4 +37,6 @@ def csv(file: Path, out: str) -> None:
         raise  # the reader of our output has gone
     except OSError as error:  # name the file that the caller knows
         raise OSError(error.errno, error.strerror, error.filename or out) from error
+    if out != "-":
+        click.echo(f"Wrote {out}.")
     warn_of_gaps(file, [gap.describe(reader.header.period_s) for gap in reader.gaps])

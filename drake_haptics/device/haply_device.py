@@ -133,12 +133,14 @@ class HaplyDevice(DeviceBackend):
             for name, value in parse_qsl(options, keep_blank_values=True):
                 if name not in _OPTIONS:
                     raise ValueError(f"{name} is none of {', '.join(_OPTIONS)}")
-                arguments[name] = _OPTIONS[name](value)
+                arguments[name] = _read_option(name, value)
             return HaplyDevice(uri, **arguments)
         except DeviceError:
             raise
         except ValueError as error:
-            raise DeviceError(f"{uri}?{options}: {error}") from error
+            raise DeviceError(
+                f"options of the Haply device, {options}: {error}"
+            ) from error
 
     @property
     def has_grip(self) -> bool:
@@ -218,3 +220,11 @@ class HaplyDevice(DeviceBackend):
             else:
                 self._has_reading.set()
                 self._clock.wait()
+
+
+def _read_option(name: str, text: str) -> Any:
+    """Returns the value of an option as a person wrote it."""
+    try:
+        return _OPTIONS[name](text)
+    except ValueError as error:
+        raise ValueError(f"{name} must be a number, is {text!r}") from error

@@ -185,6 +185,13 @@ def test_an_interrupt_ends_it_at_zero_force(driver, host, number):
     assert "zero force" in process.stdout.read()
 
 
+@pytest.mark.parametrize("port", ["abc", "99999", "-1", "", "--help"])
+def test_a_wrong_port_does_not_become_another(program, port):
+    said = subprocess.run([program, port], capture_output=True, text=True, timeout=10)
+    assert said.returncode == 2 and said.stdout == ""
+    assert said.stderr.startswith("use: device_driver [PORT")
+
+
 def test_a_wrong_limit_is_refused_in_a_sentence(program):
     said = subprocess.run([program, "0", "9"], capture_output=True, text=True)
     assert said.returncode == 2
