@@ -27,7 +27,7 @@ from drake_haptics.cockpit.page_request import read_page_request
         {"do": "reset"},
         {"do": "restart"},
     ],
-    ids=lambda asked: "-".join(asked.keys() | {asked["do"]}),
+    ids=lambda asked: "-".join(sorted(asked.keys() | {asked["do"]})),
 )
 def test_it_may_say_this(asked):
     assert read_page_request(json.dumps(asked)) == asked
