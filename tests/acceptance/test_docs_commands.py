@@ -28,13 +28,15 @@ def find_commands(text):
 
 def find_command(words):
     """Returns the command that words of a command line name, and the rest of them."""
-    command, context = main, click.Context(main)
-    while words and isinstance(command, click.Group):
-        named = command.get_command(context, words[0])
-        assert named is not None, f"no command {words[0]!r}"
-        command, words = named, words[1:]
-        context = click.Context(command)
-    return command, words
+    command, rest = main, list(words)
+    while isinstance(command, click.Group) and rest and rest[0] != "COMMAND":
+        if rest[0].startswith("-"):
+            assert rest.pop(0) in list_options(command)
+            continue
+        named = command.get_command(click.Context(command), rest.pop(0))
+        assert named is not None, f"no such command in {words}"
+        command = named
+    return command, rest
 
 
 def list_options(command):
@@ -80,7 +82,7 @@ def test_what_is_none_is_found_out():
         "drake-haptics run X --nope"
     ]
     assert find_commands("    drake-haptics a  # why") == ["drake-haptics a"]
-    with pytest.raises(AssertionError, match="no command 'nope'"):
+    with pytest.raises(AssertionError, match="no such command"):
         find_command(["nope"])
     command, rest = find_command(["log", "replay", "f"])
     assert rest == ["f"] and "--set" in list_options(command)
