@@ -2,7 +2,6 @@
 
 import copy
 import dataclasses
-import json
 import time
 
 import numpy as np
@@ -15,17 +14,12 @@ from fake_device import ScriptedDevice, make_reading
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.carry_on import find_handle
 from drake_haptics.cockpit import holding, segments
-from drake_haptics.cockpit.page_request import read_page_request
-from drake_haptics.cockpit.scene_changes import EFFECTS
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice
-from drake_haptics.live_keys import live_keys
-from drake_haptics.live_scene import write_live_values
-from drake_haptics.scene import EnvironmentObject, Gravity, Scene
+from drake_haptics.scene import Gravity
 from drake_haptics.scene_check import SceneError
 from drake_haptics.simulation import RunError, run
-from drake_haptics.stage import CAMERAS, open_meshcat
-from drake_haptics.systems.picture_views import PICTURE_VIEWS
+from drake_haptics.stage import open_meshcat
 from drake_haptics.tick_clock import TickClock
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
@@ -78,29 +72,15 @@ def test_nothing_asked_is_a_plain_run(make, scene):
     np.testing.assert_allclose(rig.page.times, 1e-3 * np.arange(1, 401), atol=1e-12)
 
 
-def test_a_value_acts_from_the_next_tick_on(make, scene):
-    rig = make({300: [STIFFER]}, watch=find_tool)
-    rig.run(0.4)
-    poses = []
-    haptic = BuildHapticDiagram(scene)
-    coupling = dataclasses.replace(scene.coupling, stiffness_N_per_m=1200.0)
-    stiffer = dataclasses.replace(scene, coupling=coupling)
-
-    def end_tick(root):
-        poses.append(find_tool(haptic, root))
-        if len(poses) == 300:
-            write_live_values(haptic, root, stiffer)
-
-    run(haptic, 0.4, on_tick=end_tick)
-    np.testing.assert_array_equal(rig.seen, poses)
-    assert len(rig.haptics) == 1
-    state = rig.page.states[-1]
-    assert state["values"]["coupling.stiffness_N_per_m"] == 1200.0
-    assert state["changes"] == {"coupling": {"stiffness_N_per_m": 1200.0}}
-
-
-def test_an_effect_goes_on_in_another_diagram(make):
+def test_an_effect_goes_on_in_another_diagram(make, monkeypatch):
     rig = make({250: [FRICTION]}, watch=find_tool)
+    build = segments.BuildHapticDiagram
+
+    def build_slowly(scene, **options):
+        rig.ticks += 80
+        return build(scene, **options)
+
+    monkeypatch.setattr(segments, "BuildHapticDiagram", build_slowly)
     figures = rig.run(0.9)
     first, second = rig.haptics
     assert first.loop.effects.friction is None
@@ -112,17 +92,10 @@ def test_an_effect_goes_on_in_another_diagram(make):
     steps = np.linalg.norm(np.diff(np.array(rig.seen)[:, 4:], axis=0), axis=1)
     assert steps.max() < 0.5e-3
     assert rig.page.states[-1]["effects"]["friction"] is True
+    # To build is no stall of the loop.
     assert figures["lateness_us"]["skipped"] == 0
     # A new page's legend, and so on.
     assert len(rig.page.hellos) == 2
-
-
-def test_effects_switched_together_build_one_diagram(make):
-    rig = make({100: [FRICTION], 150: [{**FRICTION, "name": "gravity"}]})
-    rig.run(0.6)
-    assert len(rig.haptics) == 2
-    effects = rig.haptics[-1].loop.effects
-    assert effects.friction is not None and effects.gravity is not None
 
 
 def test_the_mouse_takes_the_handle_where_it_is(make):
@@ -168,68 +141,6 @@ def test_what_is_asked_at_once_is_all_done(make):
     np.testing.assert_allclose(rig.page.times[100:], 1e-3 * np.arange(1, 201))
 
 
-def test_the_reserve_of_passivity_waits_until_a_slider_rests(make):
-    script = {100: [{"do": "effect", "name": "passivity", "on": True}]}
-    for tick in range(500, 700, 10):
-        script[tick] = [{**STIFFER, "to": 1000 + tick}]
-    rig = make(script)
-    rig.run(1.2)
-    assert len(rig.haptics) == 3
-    assert rig.last.scene.coupling.stiffness_N_per_m == 1690.0
-
-
-@pytest.mark.parametrize(
-    ("asked", "message"),
-    [
-        ({**STIFFER, "to": 1e300}, "from 50 to 5000"),
-        ({**STIFFER, "key": "no.key"}, "no value 'no.key'"),
-        ({"do": "choose", "key": "contact.clustering", "to": "x"}, "no choice 'x'"),
-        ({"do": "effect", "name": "x", "on": True}, "no effect 'x'"),
-        ({"do": "handle", "to": "x"}, "nobody called 'x'"),
-        ({"do": "handle", "to": "device"}, "nobody called 'device'"),
-        ({"do": "view", "name": "x", "on": True}, "view"),
-        ({"do": "camera", "to": "x"}, "view"),
-        ({"do": "camera", "to": "fit", "within": 0.0}, "within"),
-    ],
-)
-def test_what_cannot_be_is_refused_and_the_run_goes_on(make, asked, message):
-    rig = make({10: [asked], 200: [{"do": "take"}]})
-    figures = rig.run(0.25)
-    assert figures["ticks"] == 250
-    assert message in rig.page.states[-1]["error"]
-    assert len(rig.haptics) == 1
-
-
-def test_an_error_is_told_until_something_else_is_asked(make):
-    rig = make({10: [{**STIFFER, "to": -1}], 150: [STIFFER]})
-    rig.run(0.2)
-    assert [bool(state["error"]) for state in rig.page.states] == [False, True, False]
-
-
-def test_requests_of_no_concern_are_ignored(make):
-    nothing = [{"refused": 1}, {"do": "home"}, {"do": "take"}, {}, {"do": "fly"}]
-    rig = make({10: nothing})
-    rig.run(0.1)
-    assert len(rig.page.states) == 1
-
-
-@pytest.mark.parametrize(
-    "asked",
-    [STIFFER, FRICTION, MOUSE, {"do": "reset"}, {"do": "restart"},
-     {"do": "choose", "key": "contact.clustering", "to": "octree"}],
-)  # fmt: skip
-def test_a_locked_run_is_only_looked_at(make, asked):
-    rig = make({10: [asked], 20: [{"do": "view", "name": "pieces", "on": True}]},
-               locked="It is logged.")  # fmt: skip
-    figures = rig.run(0.3, energy=True)
-    assert figures["energy_J"]["tool"]["stored"] > 0.0
-    assert len(rig.haptics) == 1
-    assert rig.changes.scene is rig.changes.file
-    assert "It is logged." in [state["error"] for state in rig.page.states]
-    assert rig.page.states[-1]["views"]["pieces"] is True
-    assert rig.page.hellos[0]["locked"] == "It is logged."
-
-
 def test_what_cannot_be_built_is_taken_back(make, monkeypatch):
     rig = make({100: [FRICTION], 500: [STIFFER]})
 
@@ -261,52 +172,6 @@ def test_ctrl_c_ends_it_though_something_else_was_asked(make):
 
     rig = make({100: [FRICTION]}, watch=interrupt)
     assert rig.run(None)["ticks"] == 200
-
-
-def test_the_coupling_is_judged_as_it_is_now(make):
-    damped = {"do": "set", "key": "coupling.damping_Ns_per_m", "to": 20}
-    rig = make({10: [damped], 150: [{"do": "reset"}]})
-    rig.run(0.3)
-    warned = [bool(state["warnings"]) for state in rig.page.states]
-    assert warned == [False, True, False]
-    assert rig.page.states[1]["warnings"][0].startswith("coupling.damping_Ns_per_m is")
-
-
-def make_requests(rng, count):
-    """Returns requests of every kind, right and wrong, as pages are allowed to ask."""
-    keys = [*(item.key for item in live_keys(Scene(environment=[EnvironmentObject()]))),
-            "contact.clustering", "contact.cluster_size_m", "x"]  # fmt: skip
-    names = [*EFFECTS, *PICTURE_VIEWS, *CAMERAS, "hand", "mouse", "device", "octree",
-             "shared", "__class__", ""]  # fmt: skip
-    numbers = [0, -1, 1e300, -1e300, 1e-300, 10**200, 2e-3, 5, 1000, 0.5, 1.0]
-    steps = [-1, 1, 0.3, 1e-300]
-
-    def draw(values):
-        return values[rng.integers(len(values))]
-
-    kinds = {
-        "set": lambda: {"key": draw(keys), "to": draw(numbers)},
-        "choose": lambda: {"key": draw(keys), "to": draw(names)},
-        "effect": lambda: {"name": draw(names), "on": bool(rng.integers(2))},
-        "handle": lambda: {"to": draw(names)},
-        "view": lambda: {"name": draw(names), "on": bool(rng.integers(2))},
-        "camera": lambda: {"to": draw(names), "within": draw(numbers)},
-        "move": lambda: {"by": [draw(steps) for _ in range(3)]},
-        "turn": lambda: {"by": [draw(steps) for _ in range(3)]},
-        "home": dict, "take": dict, "reset": dict, "restart": dict,
-    }  # fmt: skip
-    verbs = [draw(list(kinds)) for _ in range(count)]
-    asked = [{"do": verb, **kinds[verb]()} for verb in verbs]
-    assert all(read_page_request(json.dumps(item)) == item for item in asked)
-    return asked
-
-
-def test_whatever_is_asked_in_whatever_order_the_run_goes_on(make):
-    rng = np.random.default_rng(8)
-    rig = make({tick: make_requests(rng, 30) for tick in range(5, 200, 20)})
-    assert rig.run(0.6)["ticks"] == 600
-    json.dumps([rig.page.hellos, rig.page.states], allow_nan=False)
-    assert len(rig.haptics) > 3
 
 
 def fail_once(at_tick):

@@ -87,7 +87,7 @@ class PageProcess:
     async def _forward(self, asked: dict[str, Any]) -> None:
         """Passes on what a page asks for; waits while the loop does not listen."""
         loop = asyncio.get_running_loop()
-        with suppress(ConnectionError):
+        with suppress(OSError):
             await loop.sock_sendall(self._link, json.dumps(asked).encode())
 
 

@@ -22,7 +22,7 @@ SIMULATED = GATES.index("simulated")
 _HEAD = struct.Struct("=cBBxId12d3d")
 # Time, s; then `RunStatistics.latest`; then how late the tick was, s.
 _TICK = struct.Struct("=14d")
-_MOST_TICKS = 256
+_MOST_TICKS = 512
 _LARGEST_PACKET = _HEAD.size + _MOST_TICKS * _TICK.size
 # The largest of both, packets and JSON text.
 LARGEST_DATAGRAM = 1 << 16

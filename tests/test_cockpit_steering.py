@@ -1,0 +1,223 @@
+"""What a page asks of a run is done between two ticks, or answered."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+from cockpit_rig import CockpitRig
+
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.cockpit.page_request import read_page_request
+from drake_haptics.cockpit.scene_changes import EFFECTS
+from drake_haptics.device_site import find_device_site
+from drake_haptics.live_keys import live_keys
+from drake_haptics.live_scene import write_live_values
+from drake_haptics.scene import EnvironmentObject, Scene
+from drake_haptics.simulation import run
+from drake_haptics.stage import CAMERAS, open_meshcat
+from drake_haptics.systems.picture_views import PICTURE_VIEWS
+
+ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
+PRESSING = (0.2, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.01)
+FRICTION = {"do": "effect", "name": "friction", "on": True}
+STIFFER = {"do": "set", "key": "coupling.stiffness_N_per_m", "to": 1200}
+MOUSE = {"do": "handle", "to": "mouse"}
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    return over_a_plate(tmp_path_factory.mktemp("scene"), [ABOVE, PRESSING])
+
+
+@pytest.fixture(scope="module")
+def meshcat():
+    return open_meshcat()
+
+
+@pytest.fixture
+def make(scene, meshcat, monkeypatch):
+    rigs = []
+
+    def make(script, **options):
+        rigs.append(CockpitRig(scene, meshcat, monkeypatch, script, **options))
+        return rigs[-1]
+
+    yield make
+    for rig in rigs:
+        rig.holding.close()
+
+
+def find_tool(haptic, root):
+    """The tool's pose (7,)."""
+    tool = haptic.loop.haptic_tool
+    return tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root)).copy()
+
+
+def test_a_page_is_told_what_there_is_to_see_and_to_change(make, scene):
+    rig = make({})
+    rig.run(0.01)
+    [hello] = rig.page.hellos
+    assert (hello["scene"], hello["locked"]) == ("test", "")
+    assert hello["meshcat"] == rig.page.meshcat_url
+    assert hello["period_s"] == 1e-3
+    site = find_device_site(scene)
+    assert hello["limits"] == {
+        "force_N": site.max_force_N,
+        "torque_Nm": site.max_torque_Nm,
+    }
+    keys = {item["key"]: item for item in hello["keys"]}
+    assert list(keys) == [item.key for item in live_keys(scene)]
+    stiffness = keys["contact.stiffness_N_per_m"]
+    assert stiffness["file"] == scene.contact.stiffness_N_per_m
+    assert (stiffness["unit"], stiffness["group"]) == ("N/m", "contact")
+    assert stiffness["low"] < stiffness["file"] < stiffness["high"]
+    assert stiffness["help"].startswith("Force per metre")
+    assert [item["name"] for item in hello["effects"]] == list(EFFECTS)
+    assert all(item["help"] and item["file"] is False for item in hello["effects"])
+    [choice] = hello["choices"]
+    assert (choice["key"], choice["file"]) == ("contact.clustering", "shared")
+    names = {key: [item["name"] for item in hello[key]] for key in ("handles", "views")}
+    assert names == {
+        "handles": ["hand", "mouse", "sliders"],
+        "views": list(PICTURE_VIEWS),
+    }
+    assert hello["cameras"] == list(CAMERAS)
+
+
+def test_a_value_acts_from_the_next_tick_on(make, scene):
+    rig = make({300: [STIFFER]}, watch=find_tool)
+    rig.run(0.4)
+    poses = []
+    haptic = BuildHapticDiagram(scene)
+    coupling = dataclasses.replace(scene.coupling, stiffness_N_per_m=1200.0)
+    stiffer = dataclasses.replace(scene, coupling=coupling)
+
+    def end_tick(root):
+        poses.append(find_tool(haptic, root))
+        if len(poses) == 300:
+            write_live_values(haptic, root, stiffer)
+
+    run(haptic, 0.4, on_tick=end_tick)
+    np.testing.assert_array_equal(rig.seen, poses)
+    assert len(rig.haptics) == 1
+    state = rig.page.states[-1]
+    assert state["values"]["coupling.stiffness_N_per_m"] == 1200.0
+    assert state["changes"] == {"coupling": {"stiffness_N_per_m": 1200.0}}
+
+
+def test_effects_switched_together_build_one_diagram(make):
+    rig = make({100: [FRICTION], 150: [{**FRICTION, "name": "gravity"}]})
+    rig.run(0.6)
+    assert len(rig.haptics) == 2
+    effects = rig.haptics[-1].loop.effects
+    assert effects.friction is not None and effects.gravity is not None
+
+
+def test_the_reserve_of_passivity_waits_until_a_slider_rests(make):
+    script = {100: [{"do": "effect", "name": "passivity", "on": True}]}
+    for tick in range(500, 700, 10):
+        script[tick] = [{**STIFFER, "to": 1000 + tick}]
+    rig = make(script)
+    rig.run(1.2)
+    assert len(rig.haptics) == 3
+    assert rig.last.scene.coupling.stiffness_N_per_m == 1690.0
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({**STIFFER, "to": 1e300}, "from 50 to 5000"),
+        ({**STIFFER, "key": "no.key"}, "no value 'no.key'"),
+        ({"do": "choose", "key": "contact.clustering", "to": "x"}, "no choice 'x'"),
+        ({"do": "effect", "name": "x", "on": True}, "no effect 'x'"),
+        ({"do": "handle", "to": "x"}, "nobody called 'x'"),
+        ({"do": "handle", "to": "device"}, "nobody called 'device'"),
+        ({"do": "view", "name": "x", "on": True}, "view"),
+        ({"do": "camera", "to": "x"}, "view"),
+        ({"do": "camera", "to": "fit", "within": 0.0}, "within"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_the_run_goes_on(make, asked, message):
+    rig = make({10: [asked], 200: [{"do": "take"}]})
+    figures = rig.run(0.25)
+    assert figures["ticks"] == 250
+    assert message in rig.page.states[-1]["error"]
+    assert len(rig.haptics) == 1
+
+
+def test_an_error_is_told_until_something_else_is_asked(make):
+    rig = make({10: [{**STIFFER, "to": -1}], 150: [STIFFER]})
+    rig.run(0.2)
+    assert [bool(state["error"]) for state in rig.page.states] == [False, True, False]
+
+
+def test_requests_of_no_concern_are_ignored(make):
+    nothing = [{"refused": 1}, {"do": "home"}, {"do": "take"}, {}, {"do": "fly"}]
+    rig = make({10: nothing})
+    rig.run(0.1)
+    assert len(rig.page.states) == 1
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [STIFFER, FRICTION, MOUSE, {"do": "reset"}, {"do": "restart"},
+     {"do": "choose", "key": "contact.clustering", "to": "octree"}],
+)  # fmt: skip
+def test_a_locked_run_is_only_looked_at(make, asked):
+    rig = make({10: [asked], 20: [{"do": "view", "name": "pieces", "on": True}]},
+               locked="It is logged.")  # fmt: skip
+    figures = rig.run(0.3, energy=True)
+    assert figures["energy_J"]["tool"]["stored"] > 0.0
+    assert len(rig.haptics) == 1
+    assert rig.changes.scene is rig.changes.file
+    assert "It is logged." in [state["error"] for state in rig.page.states]
+    assert rig.page.states[-1]["views"]["pieces"] is True
+    assert rig.page.hellos[0]["locked"] == "It is logged."
+
+
+def test_the_coupling_is_judged_as_it_is_now(make):
+    damped = {"do": "set", "key": "coupling.damping_Ns_per_m", "to": 20}
+    rig = make({10: [damped], 150: [{"do": "reset"}]})
+    rig.run(0.3)
+    warned = [bool(state["warnings"]) for state in rig.page.states]
+    assert warned == [False, True, False]
+    assert rig.page.states[1]["warnings"][0].startswith("coupling.damping_Ns_per_m is")
+
+
+def make_requests(rng, count):
+    """Returns requests of every kind, right and wrong, as pages are allowed to ask."""
+    keys = [*(item.key for item in live_keys(Scene(environment=[EnvironmentObject()]))),
+            "contact.clustering", "contact.cluster_size_m", "x"]  # fmt: skip
+    names = [*EFFECTS, *PICTURE_VIEWS, *CAMERAS, "hand", "mouse", "device", "octree",
+             "shared", "__class__", ""]  # fmt: skip
+    numbers = [0, -1, 1e300, -1e300, 1e-300, 10**200, 2e-3, 5, 1000, 0.5, 1.0]
+    steps = [-1, 1, 0.3, 1e-300]
+
+    def draw(values):
+        return values[rng.integers(len(values))]
+
+    kinds = {
+        "set": lambda: {"key": draw(keys), "to": draw(numbers)},
+        "choose": lambda: {"key": draw(keys), "to": draw(names)},
+        "effect": lambda: {"name": draw(names), "on": bool(rng.integers(2))},
+        "handle": lambda: {"to": draw(names)},
+        "view": lambda: {"name": draw(names), "on": bool(rng.integers(2))},
+        "camera": lambda: {"to": draw(names), "within": draw(numbers)},
+        "move": lambda: {"by": [draw(steps) for _ in range(3)]},
+        "turn": lambda: {"by": [draw(steps) for _ in range(3)]},
+        "home": dict, "take": dict, "reset": dict, "restart": dict,
+    }  # fmt: skip
+    verbs = [draw(list(kinds)) for _ in range(count)]
+    asked = [{"do": verb, **kinds[verb]()} for verb in verbs]
+    assert all(read_page_request(json.dumps(item)) == item for item in asked)
+    return asked
+
+
+def test_whatever_is_asked_in_whatever_order_the_run_goes_on(make):
+    rng = np.random.default_rng(8)
+    rig = make({tick: make_requests(rng, 30) for tick in range(5, 200, 20)})
+    assert rig.run(0.6)["ticks"] == 600
+    json.dumps([rig.page.hellos, rig.page.states], allow_nan=False)
+    assert len(rig.haptics) > 3
