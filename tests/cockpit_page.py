@@ -126,13 +126,18 @@ class Page:
             for kind in ("mousePressed", "mouseReleased"):
                 self.mouse(kind, x, y, button="left", clickCount=press)
 
-    def drag(self, begin, end):
-        """Drags from one pixel to another."""
+    def drag(self, begin, end, steps=10):
+        """Drags from one pixel to another, a step at each picture of the page."""
         self.mouse("mouseMoved", *begin)
         self.mouse("mousePressed", *begin, button="left", buttons=1, clickCount=1)
-        for share in np.linspace(0.1, 1.0, 10):
+        for share in np.linspace(0.0, 1.0, steps + 1)[1:]:
             x, y = (1 - share) * np.array(begin) + share * np.array(end)
             self.mouse("mouseMoved", x, y, button="left", buttons=1)
+            self.browser.call(
+                "Runtime.evaluate",
+                expression="new Promise(done => requestAnimationFrame(done))",
+                awaitPromise=True,
+            )
         self.mouse("mouseReleased", *end, button="left", clickCount=1)
 
     def press(self, key, code=""):

