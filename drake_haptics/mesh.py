@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drake_haptics.errors import MeshError
 from drake_haptics.mesh_arrays import checked_arrays
@@ -76,10 +77,10 @@ class Mesh:
         report: what was found and done.
     """
 
-    vertices: np.ndarray
-    triangles: np.ndarray
-    component_of_triangle: np.ndarray
-    solid: np.ndarray
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    component_of_triangle: NDArray[np.int32]
+    solid: NDArray[np.uint8]
     components: tuple[Component, ...]
     report: MeshReport
 
@@ -121,7 +122,8 @@ def load_mesh(
     """Reads a mesh file; the parts of a scene are merged where they are placed.
 
     Args:
-        path: any format that trimesh reads, or .npz with V (n, 3) and F (m, 3).
+        path: any format that trimesh reads, or .npz with V (n, 3) and F (m, 3);
+            `package://...` names a file of this package or of Drake.
         unit: length unit of the file ("m", "mm", "cm", "in", ...).
         scale: metres per unit of the file, instead of `unit`. Without either,
             the file is in metres.

@@ -9,11 +9,15 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drake_haptics.errors import UserError
 from drake_haptics.one_line import one_line
+
+_Backend = TypeVar("_Backend", bound="DeviceBackend")
 
 
 class GateState(IntEnum):
@@ -61,9 +65,9 @@ class DeviceReading:
 
     sequence: int
     time_s: float
-    X_BH: np.ndarray
-    V_BH: np.ndarray
-    F_BH: np.ndarray
+    X_BH: NDArray[np.float64]
+    V_BH: NDArray[np.float64]
+    F_BH: NDArray[np.float64]
     buttons: int = 0
     gate: GateState = GateState.ACTIVE
     fault: Fault = Fault.NONE
@@ -94,11 +98,11 @@ class DeviceCommand:
         B_B: (6, 6) damping, N·m·s/rad, ..., N·s/m; None where not known.
     """
 
-    F_BH: np.ndarray
-    X_BH: np.ndarray
-    V_BH: np.ndarray
-    K_B: np.ndarray | None = None
-    B_B: np.ndarray | None = None
+    F_BH: NDArray[np.float64]
+    X_BH: NDArray[np.float64]
+    V_BH: NDArray[np.float64]
+    K_B: NDArray[np.float64] | None = None
+    B_B: NDArray[np.float64] | None = None
 
     __repr__ = one_line
 
@@ -167,7 +171,7 @@ class DeviceBackend(ABC):
         """Returns how the way to the device does."""
         return LinkStatus()
 
-    def __enter__(self) -> DeviceBackend:
+    def __enter__(self: _Backend) -> _Backend:
         """Returns the backend."""
         return self
 
