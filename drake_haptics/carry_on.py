@@ -52,6 +52,9 @@ def carry_on(old: HapticDiagram, old_context: Context, new: HapticDiagram) -> Co
     _copy_states(*copied)
     new.diagram.ExecuteInitializationEvents(context)
     _copy_states(*copied)
+    if new.loop.effects.passivity is not None and old.loop.effects.passivity is None:
+        control = new.loop.effects.passivity
+        control.begin(control.GetMyMutableContextFromRoot(context))
     if is_reached:
         query, known = new.loop.contact_query, old.loop.contact_query
         query.learn(

@@ -9,7 +9,6 @@ from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
     DiscreteValues,
-    EventStatus,
     InputPort,
     OutputPort,
 )
@@ -65,8 +64,8 @@ class PassivityControl(Diagram):
       samples it.
     * `energy_J` (1) is the balance, J.
 
-    The state is one discrete group (8), [balance; X_WH at the last tick], which takes
-    X_WH at initialization and is updated every period from 0 s on.
+    The state is one discrete group (8), [balance; X_WH at the last tick], updated
+    every period from 0 s on.
 
     Derivatives are those of the branch taken: nothing is damped, a share, or with all
     of the damping; the balance is below the reserve or kept at it.
@@ -102,6 +101,7 @@ class PassivityControl(Diagram):
         )
         builder = DiagramBuilder()
         port = builder.AddNamedSystem("port", _ObservedPort(bounds, period_s))
+        self._port = port
         for i in range(port.num_input_ports()):
             builder.ExportInput(
                 port.get_input_port(i), port.get_input_port(i).get_name()
@@ -111,6 +111,17 @@ class PassivityControl(Diagram):
         builder.ExportOutput(parts.get_output_port(0), "F_display")
         builder.ExportOutput(parts.get_output_port(1), "energy_J")
         builder.BuildInto(self)
+
+    def begin(self, context: Context) -> None:
+        """Begins with a balance of zero where the handle is.
+
+        A wrench may be held there already: for a control that is added to a loop that
+        runs.
+
+        Args:
+            context: Of this system.
+        """
+        self._port.begin(self.GetMutableSubsystemContext(self._port, context))
 
     def get_asked_wrench_input_port(self) -> InputPort:
         """Returns the input `F_asked`."""
@@ -147,10 +158,8 @@ class _ObservedPort(DifferentiableSystem):
         self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
         self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
+        # At the first tick no wrench has been held: any pose does.
         self.DeclareDiscreteState(np.array([0.0, *_AT_ORIGIN]))
-        # Where a wrench is held already, as where the control is added to a loop that
-        # runs, what it does counts from here on.
-        self.DeclareInitializationDiscreteUpdateEvent(self._begin)
         # What is shown, and the state after it.
         self._shown_and_state = self.DeclareVectorOutputPort(
             "shown_and_state",
@@ -172,9 +181,9 @@ class _ObservedPort(DifferentiableSystem):
             )
         )
 
-    def _begin(self, context: Context, next_state: DiscreteValues) -> EventStatus:
-        next_state.set_value(np.array([0.0, *self._X_WH.Eval(context)]))
-        return EventStatus.Succeeded()
+    def begin(self, context: Context) -> None:
+        """Begins with a balance of zero where the handle is."""
+        context.SetDiscreteState(np.array([0.0, *self._X_WH.Eval(context)]))
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         next_state.set_value(self._shown_and_state.Eval(context)[6:])

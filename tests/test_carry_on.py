@@ -8,7 +8,7 @@ import trimesh
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate, write
 
 from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.carry_on import carry_on
+from drake_haptics.carry_on import carry_on, find_handle
 from drake_haptics.scene import (
     Braking,
     Coupling,
@@ -155,6 +155,23 @@ def test_forces_are_the_same_on_both_sides(scene, plain):
             read_wrench(haptic, root, "coupling"),
             read_wrench(plain, context, "coupling"),
         )
+
+
+def test_what_is_new_reads_at_its_beginning_what_is_there(scene, plain):
+    """Contacts sampled at every fourth tick, and encoders of a handle."""
+    other = replace(
+        scene,
+        contact=replace(scene.contact, query_rate_hz=250.0),
+        device=replace(scene.device, twin=Twin(encoder=Encoder())),
+    )
+    other = BuildHapticDiagram(other, reuse=plain)
+    context, _ = run_until(plain, 0.201)
+    there = carry_on(plain, context, other)
+    F = read_wrench(plain, context)
+    np.testing.assert_allclose(read_wrench(other, there), F, atol=1e-6)
+    handles = [find_handle(plain, context), find_handle(other, there)]
+    assert handles[0].IsNearlyEqualTo(handles[1], 5e-4)
+    assert not handles[0].IsExactlyEqualTo(handles[1])
 
 
 def test_bristles_stay_bent_where_both_have_friction(scene, plain):
