@@ -232,7 +232,8 @@ def test_the_mouse_takes_the_handle_and_drags_it_over_what_is_rough(page):
     f_W = drag_aside(page)
     # It was dragged to the right: what it sticks to holds it back.
     assert f_W[0] < -0.05
-    assert np.hypot(*f_W[:2]) < 0.31 * f_W[2]
+    # At most the static coefficient, which is 1.2 times 0.3.
+    assert np.hypot(*f_W[:2]) < 0.36 * f_W[2] + TOLERANCE_N
 
 
 def drag_aside(page):
