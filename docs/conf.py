@@ -60,7 +60,9 @@ myst_heading_anchors = 4  # the anchors that a code host gives to headings
 
 html_theme = "furo"
 html_static_path = ["_static"]
+html_favicon = "_static/favicon.svg"
 html_css_files = ["reference.css"]
 html_domain_indices = False  # the page of modules is made by hand
+html_show_copyright = False
 html_show_sphinx = False
 html_copy_source = False

@@ -114,8 +114,8 @@ def _read_type(hint: Any) -> tuple[Any, str, bool]:
         return (*_read_type(arguments[0])[:2], True)
     if typing.get_origin(hint) is list:
         kind, words, _ = _read_type(arguments[0])
-        words = "list" if kind else f"list of {words.replace('number', 'numbers', 1)}"
-        return kind, words.replace("list of list", "list of lists"), False
+        plural = {"number": "numbers", "list of numbers": "lists of numbers"}
+        return kind, "list" if kind else f"list of {plural[words]}", False
     if dataclasses.is_dataclass(hint):
         return hint, "", False
     if hint not in _TYPES:
@@ -125,14 +125,19 @@ def _read_type(hint: Any) -> tuple[Any, str, bool]:
 
 def _write_default(field: dataclasses.Field[Any]) -> str:
     """Returns a default as a file would have it."""
-    value = field.default
     if field.default_factory is not dataclasses.MISSING:
-        value = field.default_factory()
-    if value is None or value == "":
-        return ""
+        return _write_value(field.default_factory())
+    return _write_value(field.default)
+
+
+def _write_value(value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_write_value, value))}]"
+    if isinstance(value, bool):
+        return str(value).lower()
     if isinstance(value, float):
         return f"{value:g}"
-    return str(value).lower() if isinstance(value, bool) else str(value)
+    return "" if value is None else str(value)
 
 
 def _find_unit(name: str) -> str:

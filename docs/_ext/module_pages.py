@@ -35,7 +35,13 @@ _GROUPS = {
         "device_preset",
         "coupling_check",
     ],
-    "Geometry": ["mesh*", "decomposition*", "*pieces*", "piece_*", "coacd_backend"],
+    "Geometry": [
+        "mesh*",
+        "decomposition*",
+        "merged_pieces",
+        "piece_*",
+        "coacd_backend",
+    ],
     "Parts of the systems": ["systems", "systems.*"],
     "Devices": [
         "device",

@@ -43,6 +43,7 @@ def find_systems(module_name: str) -> dict[str, type[System]]:
         name: value
         for name, value in vars(module).items()
         if not name.startswith("_")
+        and "𝓣" not in name  # an instance of a template has a plain name too
         and inspect.isclass(value)
         and issubclass(value, System)
         and value.__module__ == module.__name__
@@ -112,6 +113,7 @@ def _make_page(module_name: str) -> str:
         (name, "autofunction" if inspect.isfunction(value) else "autoclass")
         for name, value in vars(module).items()
         if not name.startswith("_")
+        and "𝓣" not in name
         and name not in systems
         and (inspect.isfunction(value) or inspect.isclass(value))
         and value.__module__ == module.__name__

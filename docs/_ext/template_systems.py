@@ -11,6 +11,8 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
+_NOT_OURS = "converter"  # the argument that Drake gives
+
 
 def _is_instance(what: str, thing: Any) -> bool:
     return what == "class" and "_construct" in vars(thing)
@@ -30,16 +32,22 @@ def _sign(
     if not _is_instance(what, thing):
         return None
     parameters = list(inspect.signature(thing._construct).parameters.values())
-    shown = [p for p in parameters if p.name not in ("self", "converter")]
-    return str(inspect.Signature(shown)), ""
+    shown = [p for p in parameters if p.name not in ("self", _NOT_OURS)]
+    return str(inspect.Signature(shown)).replace("'", ""), ""
 
 
 def _document(
     app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]
 ) -> None:
-    """Adds the docstring of `_construct` to theirs."""
-    if _is_instance(what, thing):
-        lines += ["", *inspect.getdoc(thing._construct).split("\n")]
+    """Adds the docstring of `_construct`; that of Drake's constructor is left out."""
+    if not _is_instance(what, thing):
+        return
+    docstring = inspect.getdoc(thing)
+    if lines[0] != docstring.split("\n")[0]:
+        lines.clear()
+        return
+    lines += ["", *inspect.getdoc(thing._construct).split("\n")]
+    lines[:] = [line for line in lines if not line.strip().startswith(_NOT_OURS)]
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
