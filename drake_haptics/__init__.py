@@ -27,11 +27,8 @@ if TYPE_CHECKING:
         SceneTracker,
     )
     from drake_haptics.applied_force_port import AddAppliedSpatialForce
-    from drake_haptics.builder import (
-        AddHapticLoop,
-        BuildHapticDiagram,
-        HapticDiagram,
-    )
+    from drake_haptics.builder import AddHapticLoop, BuildHapticDiagram, HapticDiagram
+    from drake_haptics.callback_timer import CallbackTimer
     from drake_haptics.decomposition import Decomposition, decompose
     from drake_haptics.device.backend import (
         DeviceBackend,
@@ -41,14 +38,21 @@ if TYPE_CHECKING:
     )
     from drake_haptics.device_address import open_device
     from drake_haptics.energy_ledger import EnergyLedger
-    from drake_haptics.errors import UserError
+    from drake_haptics.errors import MeshError, SceneError, UserError
+    from drake_haptics.explain import explain_tick
     from drake_haptics.haptic_loop import ConnectMovingObject, HapticLoop
     from drake_haptics.haptic_rendering import HapticRendering
     from drake_haptics.headers import get_include
+    from drake_haptics.live_scene import write_live_values
     from drake_haptics.mesh import Mesh, load_mesh
     from drake_haptics.rendering_builder import AddHapticRendering
     from drake_haptics.scene import Scene, load_scene
-    from drake_haptics.scene_library import find_scene, list_scenes
+    from drake_haptics.scene_library import (
+        find_mesh,
+        find_scene,
+        list_meshes,
+        list_scenes,
+    )
     from drake_haptics.simulation import RunError, make_simulator, run
     from drake_haptics.tick_clock import TickClock
     from drake_haptics.tick_log.loop_log import make_log_header
@@ -61,6 +65,7 @@ __all__ = [
     "AddHapticLoop",
     "AddHapticRendering",
     "BuildHapticDiagram",
+    "CallbackTimer",
     "ConnectMovingObject",
     "Contact",
     "ContactSet",
@@ -81,16 +86,21 @@ __all__ = [
     "HapticLoop",
     "HapticRendering",
     "Mesh",
+    "MeshError",
     "PairTrajectory",
     "RunError",
     "Scene",
+    "SceneError",
     "SceneTracker",
     "TickClock",
     "TickRecorder",
     "UserError",
     "decompose",
+    "explain_tick",
+    "find_mesh",
     "find_scene",
     "get_include",
+    "list_meshes",
     "list_scenes",
     "load_mesh",
     "load_scene",
@@ -100,6 +110,7 @@ __all__ = [
     "read_tick_log",
     "replay",
     "run",
+    "write_live_values",
 ]
 
 _MODULE_OF = {
@@ -107,6 +118,7 @@ _MODULE_OF = {
     "AddHapticLoop": "builder",
     "AddHapticRendering": "rendering_builder",
     "BuildHapticDiagram": "builder",
+    "CallbackTimer": "callback_timer",
     "ConnectMovingObject": "haptic_loop",
     "Contact": "_core",
     "ContactSet": "_core",
@@ -127,16 +139,21 @@ _MODULE_OF = {
     "HapticLoop": "haptic_loop",
     "HapticRendering": "haptic_rendering",
     "Mesh": "mesh",
+    "MeshError": "errors",
     "PairTrajectory": "_core",
     "RunError": "simulation",
     "Scene": "scene",
+    "SceneError": "errors",
     "SceneTracker": "_core",
     "TickClock": "tick_clock",
     "TickRecorder": "tick_log.tick_recorder",
     "UserError": "errors",
     "decompose": "decomposition",
+    "explain_tick": "explain",
+    "find_mesh": "scene_library",
     "find_scene": "scene_library",
     "get_include": "headers",
+    "list_meshes": "scene_library",
     "list_scenes": "scene_library",
     "load_mesh": "mesh",
     "load_scene": "scene",
@@ -146,6 +163,7 @@ _MODULE_OF = {
     "read_tick_log": "tick_log.tick_log",
     "replay": "tick_log.replay",
     "run": "simulation",
+    "write_live_values": "live_scene",
 }
 
 

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from pydrake.systems.framework import Context, LeafSystem, System
 
+from drake_haptics.one_line import count
+
 # The ways in which a system hands its callbacks to Drake.
 _DECLARATIONS = (
     "DeclareVectorOutputPort",
@@ -47,6 +49,10 @@ class CallbackTimer:
         self._ticks: deque[tuple[float, ...]] = deque(maxlen=_MOST_TICKS)
         self._start_s = 0.0
         self._originals: dict[str, Any] = {}
+
+    def __repr__(self) -> str:
+        systems = count(len(self._systems), "system")
+        return f"CallbackTimer({systems}, {count(len(self._ticks), 'tick')})"
 
     def __enter__(self) -> CallbackTimer:
         """Begins to time the systems that are constructed."""

@@ -13,6 +13,7 @@ import numpy as np
 
 from drake_haptics.errors import MeshError
 from drake_haptics.missing_file import describe_missing
+from drake_haptics.package_url import resolve_package_url
 from drake_haptics.units import unit_of_name
 
 
@@ -38,12 +39,13 @@ def read_mesh_file(path: str | os.PathLike[str]) -> RawMesh:
 
     Args:
         path: any format that trimesh reads (obj, stl, ply, off, glb, gltf, ...),
-            or .npz with arrays V (n, 3) and F (m, 3).
+            or .npz with arrays V (n, 3) and F (m, 3); `package://...` names one of
+            this package or of Drake.
 
     Raises:
         MeshError: if the file is absent, unreadable or has no triangles.
     """
-    path = Path(path)
+    path = Path(resolve_package_url(path))
     if not path.exists():
         raise MeshError(describe_missing(path))
     if path.is_dir():

@@ -14,6 +14,7 @@ from pydrake.systems.framework import DiagramBuilder
 from drake_haptics.errors import MeshError
 from drake_haptics.mesh import Mesh
 from drake_haptics.missing_file import describe_missing
+from drake_haptics.package_url import resolve_package_url
 from drake_haptics.plant_shapes import decompose_body, find_body_geometries
 
 DEFAULT_CHORD_ERROR_M = 1e-4
@@ -39,6 +40,7 @@ def load_model_mesh(
 
     Args:
         path: SDF, URDF or MJCF, or model directives (.dmd.yaml); as a whole rigid.
+            `package://...` names one of this package or of Drake.
         scale: Factor on all lengths.
         chord_error_m: Largest distance of a polytope from its round shape, m, before
             scaling.
@@ -50,7 +52,7 @@ def load_model_mesh(
         MeshError: The file cannot be parsed or has no collision shape, or one of them
             cannot be used.
     """
-    path = Path(path)
+    path = Path(resolve_package_url(path))
     if not path.is_file():
         raise MeshError(describe_missing(path))
     builder = DiagramBuilder()

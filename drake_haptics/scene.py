@@ -10,12 +10,11 @@ from pathlib import Path
 import numpy as np
 from pydrake.common.yaml import yaml_load_typed
 from pydrake.math import RigidTransform, RollPitchYaw
-from pydrake.multibody.parsing import PackageMap
 
-import drake_haptics
 from drake_haptics.device_preset import is_preset_file
-from drake_haptics.errors import SceneError
+from drake_haptics.errors import MeshError, SceneError
 from drake_haptics.missing_file import describe_missing
+from drake_haptics.package_url import resolve_package_url
 from drake_haptics.scene_check import check_values
 from drake_haptics.scene_effects import (
     Braking,
@@ -327,7 +326,10 @@ class Scene:
         from drake_haptics.automatic_scene import make_scene_for_meshes
 
         return make_scene_for_meshes(
-            Path(tool_path), Path(environment_path), tool_scale, environment_scale
+            Path(resolve_package_url(tool_path)),
+            Path(resolve_package_url(environment_path)),
+            tool_scale,
+            environment_scale,
         )
 
 
@@ -356,26 +358,20 @@ def load_scene(path: str | Path) -> Scene:
     parts: dict[str, Tool | EnvironmentObject] = {"tool": scene.tool}
     parts |= {f"environment[{i}]": item for i, item in enumerate(scene.environment)}
     for key, part in parts.items():
-        file = _absolute(part.mesh, path.parent)
-        if not Path(file).exists():
-            raise SceneError(f"{path}: {key}.mesh: {describe_missing(file)}")
-        part.mesh = file
+        part.mesh = _absolute(f"{path}: {key}.mesh", part.mesh, path.parent)
+        if not Path(part.mesh).exists():
+            raise SceneError(f"{path}: {key}.mesh: {describe_missing(part.mesh)}")
     if is_preset_file(scene.device.preset):
-        scene.device.preset = _absolute(scene.device.preset, path.parent)
+        scene.device.preset = _absolute(
+            f"{path}: device.preset", scene.device.preset, path.parent
+        )
     return scene
 
 
-def _absolute(file: str, folder: Path) -> str:
+def _absolute(where: str, file: str, folder: Path) -> str:
     """Returns the path of a mesh or a preset that holds from any folder."""
-    if not file.startswith("package://"):
-        return str((folder / file).resolve())
-    packages = PackageMap()
-    packages.Add("drake_haptics", str(Path(drake_haptics.__file__).parent))
-    name, _, rest = file.removeprefix("package://").partition("/")
-    if not packages.Contains(name):
-        known = ", ".join(packages.GetPackageNames())
-        raise SceneError(f"{file}: there is no package {name!r}; known: {known}")
     try:
-        return str(Path(packages.GetPath(name)) / rest)
-    except RuntimeError as error:  # A package that Drake would have to download.
-        raise SceneError(f"{file}: {error}") from error
+        resolved = resolve_package_url(file)
+    except MeshError as error:
+        raise SceneError(f"{where}: {error}") from error
+    return resolved if resolved != file else str((folder / file).resolve())

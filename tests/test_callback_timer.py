@@ -70,6 +70,7 @@ def test_time_is_the_callbacks_own_and_the_rest_is_the_ticks(clock):
     assert own_s[source] == pytest.approx(5e-3)
     assert own_s[sink] == pytest.approx(3e-3)
     assert tick_s == pytest.approx(10e-3)
+    assert repr(timer) == "CallbackTimer(2 systems, 10 ticks)"
 
 
 def test_only_the_middle_half_of_the_ticks_counts(clock):
@@ -81,6 +82,7 @@ def test_only_the_middle_half_of_the_ticks_counts(clock):
         tick(timer, clock, sink, root, 1.0 + i, outside_s)
     own_s, tick_s = timer.calc_means()
     assert tick_s == pytest.approx(10e-3)
+    assert repr(timer) == "CallbackTimer(2 systems, 10 ticks)"
     assert own_s[source] == pytest.approx(5e-3)
 
 

@@ -78,6 +78,7 @@ def make_loop(folder: Path) -> list[object]:
         haptic.loop,
         drake_haptics.run(haptic, 0.01),
         drake_haptics.TickClock(1e-3),
+        drake_haptics.CallbackTimer(),
         drake_haptics.EnergyLedger(haptic.loop, simulator.get_context()),
         recorder,
         TickLog(HEADER, make_rows(2), (), 0),

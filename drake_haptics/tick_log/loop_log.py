@@ -8,6 +8,7 @@ from pydrake.common.yaml import yaml_dump_typed
 from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics.haptic_loop import HapticLoop
+from drake_haptics.package_url import resolve_package_url
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.scene import EnvironmentObject, Scene, Tool
 from drake_haptics.simulated_device import make_hand_path, place_base
@@ -26,11 +27,12 @@ def make_log_header(scene: Scene) -> TickLogHeader:
     """
     X_WB = place_base(scene, make_hand_path(scene.hand.path))
     parts: list[Tool | EnvironmentObject] = [scene.tool, *scene.environment]
+    files = [resolve_package_url(part.mesh) for part in parts]
     return TickLogHeader(
         program_version=version("drake_haptics"),
         period_s=1.0 / scene.device.rate_hz,
         scene=yaml_dump_typed(scene),
-        mesh_sha256={part.mesh: hash_file(part.mesh) for part in parts},
+        mesh_sha256={file: hash_file(file) for file in files},
         X_WB=pose_to_vector(X_WB).tolist(),
     )
 
