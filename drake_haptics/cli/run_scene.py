@@ -1,0 +1,164 @@
+"""A scene from its name to the figures of its run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from pydrake.geometry import Meshcat
+from rich.console import Console
+
+from drake_haptics.builder import HapticDiagram
+from drake_haptics.cli.console import make_console
+from drake_haptics.cli.exit_codes import ExitCode
+from drake_haptics.cli.mesh_options import write_json
+from drake_haptics.cli.page_words import describe_page
+from drake_haptics.cli.parts_table import make_parts_table
+from drake_haptics.cli.run_session import PageOptions, run_session
+from drake_haptics.cli.status_line import make_summary
+from drake_haptics.cockpit.page_port import open_page_port
+from drake_haptics.errors import UserError
+from drake_haptics.recording import write_recording
+from drake_haptics.scene import Scene, load_scene
+from drake_haptics.scene_library import find_scene
+from drake_haptics.stage import open_meshcat, set_stage
+from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
+
+
+def choose_scene(
+    scene: str | None,
+    tool: str | None,
+    environment: str | None,
+    tool_scale: float | None,
+    environment_scale: float | None,
+) -> tuple[Scene, str]:
+    """Returns the scene that the arguments of `run` name, and a name for it."""
+    if scene is not None:
+        return load_scene(find_scene(scene)), Path(scene).stem
+    assert tool is not None and environment is not None
+    made = Scene.for_meshes(
+        tool,
+        environment,
+        tool_scale=tool_scale or 1.0,
+        environment_scale=environment_scale or 1.0,
+    )
+    return made, f"{Path(tool).stem} on {Path(environment).stem}"
+
+
+def run_scene(
+    scene: Scene,
+    name: str,
+    *,
+    device: str | None,
+    duration_s: float | None,
+    headless: bool,
+    explain: bool,
+    record: Path | None,
+    log: Path | None,
+    json_file: str | None,
+    pieces: bool,
+    port: int | None,
+) -> None:
+    """Runs a scene as the options of `run` say, and prints what came of it.
+
+    Raises:
+        UserError: Two files are one.
+        click.ClickException: The simulation became unstable.
+    """
+    files = [Path(file).absolute() for file in (record, log, json_file) if file]
+    if len(set(files)) < len(files):
+        raise UserError("--record, --log and --json: each needs a file of its own")
+    if log is not None and device == f"replay:{log}":
+        raise UserError(f"--log: {log} is the log that is replayed; give another file")
+    console = make_console(stderr=json_file == "-")
+    page = None
+    if not headless:
+        locked = _explain_lock({"--record": record, "--log": log, "--json": json_file})
+        views = SHOWN_AT_FIRST | {"pieces"} if pieces else SHOWN_AT_FIRST
+        page = PageOptions(open_page_port(port), name, locked, views)
+    meshcat = None if headless and record is None else open_meshcat()
+    session = run_session(
+        console,
+        scene,
+        device=device,
+        meshcat=meshcat,
+        page=page,
+        prepare=lambda haptic, url: _prepare(
+            console, haptic, meshcat, url, pieces, record
+        ),
+        duration_s=duration_s,
+        energy=json_file is not None,
+        explained=explain,
+        log=log,
+    )
+    console.print(make_summary(session.figures))
+    if explain:
+        session.figures["parts"] = [part.to_dict() for part in session.parts]
+        console.print()
+        console.print(make_parts_table(session.parts))
+    if record is not None:
+        _write_recording(session.haptic, meshcat, record)
+        console.print(f"Wrote {record}.", soft_wrap=True, markup=False)
+    if log is not None:
+        console.print(f"Wrote {log}.", soft_wrap=True, markup=False)
+    if json_file is not None:
+        write_json(session.figures, json_file)
+    if session.error is not None:
+        raise _UnstableError(str(session.error)) from session.error
+
+
+def _explain_lock(files: dict[str, object]) -> str:
+    """Returns why nothing may be changed on the page of a run; empty if it may.
+
+    Args:
+        files: What is written of the run as one, by option.
+    """
+    options = " and ".join(option for option, file in files.items() if file)
+    if not options:
+        return ""
+    return f"A run with {options} keeps to its scene. Start one without to change it."
+
+
+def _prepare(
+    console: Console,
+    haptic: HapticDiagram,
+    meshcat: Meshcat | None,
+    url: str | None,
+    pieces: bool,
+    record: Path | None,
+) -> None:
+    """Sets the stage and says where it is to be seen."""
+    if meshcat is not None:
+        set_stage(meshcat, haptic)
+    visualizer = haptic.visualizer
+    if visualizer is not None and pieces:
+        visualizer.Show("pieces", True)
+    if visualizer is not None and record is not None:
+        visualizer.StartRecording()
+    if url is not None:
+        picture = [] if meshcat is None else [meshcat.web_url()]
+        for line in describe_page(url, picture):
+            console.print(line, soft_wrap=True, markup=False)
+        console.print("Ctrl-C ends the run.", style="dim")
+
+
+def _write_recording(
+    haptic: HapticDiagram, meshcat: Meshcat | None, file: Path
+) -> None:
+    """Writes what was to be seen."""
+    if meshcat is None or haptic.visualizer is None:
+        return
+    haptic.visualizer.StopRecording()
+    haptic.visualizer.PublishRecording()
+    write_recording(
+        meshcat,
+        file,
+        haptic.scene.description,
+        has_friction=haptic.scene.effects.friction is not None,
+    )
+
+
+class _UnstableError(click.ClickException):
+    """A run that diverged: a status of its own, so that scripts can tell."""
+
+    exit_code = ExitCode.NO
