@@ -32,7 +32,12 @@ from drake_haptics.cli.console import make_console
 from drake_haptics.cli.exit_codes import ExitCode
 from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
+from drake_haptics.cli.mesh_options import (
+    json_option,
+    require_folder,
+    require_writable,
+    write_json,
+)
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
 from drake_haptics.page_path import check_page_path
@@ -109,6 +114,11 @@ def accuracy(
         raise click.UsageError("--only writes no page: leave --out away")
     chosen, name = load_scene(find_scene(scene)), Path(scene).stem
     page = out or Path(f"{name}-accuracy.html")
+    file = write or Path(f"{name}-{budget_us:g}-us.yaml" if budget_us else "")
+    if budget_us is not None:
+        require_writable(file, "--write")
+    elif not words:
+        require_writable(page, "--out")
     settings = _find_settings(chosen, words)
 
     def measure(
@@ -148,7 +158,6 @@ def accuracy(
     if budget_us is None:
         _show_study(study, None if words else page, json_file)
     else:
-        file = write or Path(f"{name}-{budget_us:g}-us.yaml")
         _show_choice(choice, chosen, name, file, json_file)
 
 

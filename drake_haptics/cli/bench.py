@@ -61,4 +61,7 @@ def _print(figures: BenchFigures) -> None:
         console.print()
     console.print(machine_line(figures))
     for line in missing_lines(figures):
-        console.print(line)
+        console.print(line, markup=False)
+    if any("No module named" in why for why in figures.missing.values()):
+        how = 'pip install "drake_haptics[peers]"'
+        console.print(f"Other libraries: {how}", markup=False)

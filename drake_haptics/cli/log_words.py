@@ -11,6 +11,9 @@ from rich.table import Table
 from drake_haptics.cli.console import make_console
 from drake_haptics.tick_log.log_diff import LogDiff
 
+# Of two scenes that differ, more are told by --json.
+_MOST_SETTINGS = 6
+
 
 def warn_of_gaps(file: Path, sentences: Iterable[str]) -> None:
     """Writes to stderr what is missing in a log."""
@@ -25,7 +28,11 @@ def print_diff(diff: LogDiff, period_s: float) -> None:
         if ticks:
             console.print(f"{ticks} ticks are only in the {name} log", style="yellow")
     if not diff.same_scene:
-        console.print("The scenes differ.", style="dim")
+        console.print("The scenes differ:", style="dim")
+    for setting in diff.settings[:_MOST_SETTINGS]:
+        console.print(f"  {setting}", style="dim", markup=False)
+    if (further := len(diff.settings) - _MOST_SETTINGS) > 0:
+        console.print(f"  and {further} more; --json has all", style="dim")
     if not diff.same_meshes:
         console.print("The meshes differ.", style="dim")
     if diff.is_bit_equal:

@@ -86,20 +86,30 @@ def require_folder(
     """Returns the file of an option, so that no result is computed for nowhere.
 
     Raises:
+        UserError: As `require_writable`.
+    """
+    if file is not None and str(file) != "-":
+        require_writable(Path(file), option.opts[0])
+    return file
+
+
+def require_writable(path: Path, option: str) -> None:
+    """Checks that a file can be written.
+
+    Args:
+        path: Of the file.
+        option: That names it.
+
+    Raises:
         UserError: There is no such folder, or nothing can be written there.
     """
-    if file is None or str(file) == "-":
-        return file
-    path = Path(file)
     folder = path.absolute().parent
     if not folder.is_dir():
-        raise UserError(f"{option.opts[0]}: there is no folder {path.parent}")
+        raise UserError(f"{option}: there is no folder {path.parent}")
     if not os.access(path if path.exists() else folder, os.W_OK):
         raise UserError(
-            f"{option.opts[0]}: {path} cannot be written; name a file in a folder of"
-            " yours"
+            f"{option}: {path} cannot be written; name a file in a folder of yours"
         )
-    return file
 
 
 def write_json(data: dict[str, Any], file: str) -> None:

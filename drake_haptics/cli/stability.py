@@ -21,7 +21,12 @@ from drake_haptics.cli.complete import complete_scene
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
+from drake_haptics.cli.mesh_options import (
+    json_option,
+    require_folder,
+    require_writable,
+    write_json,
+)
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
 from drake_haptics.page_path import check_page_path
@@ -84,6 +89,7 @@ def stability(
         raise click.BadParameter("0 for no map, else at least 2", param_hint="--map")
     chosen = load_scene(find_scene(scene))
     path = out or Path(f"{Path(scene).stem}-stability.html")
+    require_writable(path, "--out")
     try:
         check_page_path(path)
         with progress_bar() as show:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from drake_haptics.tick_log.scene_difference import find_changes
 from drake_haptics.tick_log.tick_log import TickLog
 from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_rows import (
@@ -55,6 +56,7 @@ class LogDiff:
         only_b: How many only the second has.
         same_scene: Whether the same scene was recorded.
         same_meshes: Whether it was on the same meshes.
+        settings: What differs between the scenes, key and both values each.
         quantities: All that was compared: not the clocks, which differ in every run,
             nor what a device tells besides its handle, which a replay has not.
     """
@@ -64,6 +66,7 @@ class LogDiff:
     only_b: int
     same_scene: bool
     same_meshes: bool
+    settings: tuple[str, ...]
     quantities: tuple[QuantityDiff, ...]
 
     @property
@@ -105,6 +108,7 @@ def compare_logs(a: TickLog, b: TickLog) -> LogDiff:
         only_b=len(b.rows) - len(rows_b),
         same_scene=a.header.scene == b.header.scene,
         same_meshes=a.header.mesh_sha256 == b.header.mesh_sha256,
+        settings=tuple(find_changes(a.header.scene, b.header.scene)),
         quantities=tuple(
             _describe(rows_a.ticks, *difference)
             for difference in iterate_differences(rows_a, rows_b)

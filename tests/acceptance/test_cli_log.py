@@ -74,7 +74,10 @@ def test_a_replay_with_another_stiffness_is_compared_and_drawn(log, tmp_path):
     stiffness = "contact.stiffness_N_per_m=500"
     answer = invoke("log", "replay", log, "--set", stiffness, "--log", again)
     assert answer.exit_code == 0
-    assert "The scenes differ." in answer.output
+    assert (
+        "The scenes differ:\n  contact.stiffness_N_per_m: 2000.0, 500.0\n"
+        in answer.output
+    )
     assert "X_WTool position" in answer.output
     answer = invoke("log", "diff", log, again, "--plot", picture, "--json", "-")
     assert answer.exit_code == 3
