@@ -107,6 +107,14 @@ def test_an_arm_of_ones_own_is_felt_like_the_shipped_one(tmp_path):
     assert 1.0 < run(haptic, 0.9).to_dict()["max_force_N"] < 4.0
 
 
+def test_a_preset_that_was_edited_is_read_again(tmp_path):
+    path = write_preset(tmp_path)
+    load_device_preset(str(path)).motors.encoder_step_rad[0] = 7.0
+    assert load_device_preset(str(path)).motors.encoder_step_rad[0] == 1e-4
+    path.write_text(PRESET.replace("max_force_N: 5.0", "max_force_N: 6.25"))
+    assert load_device_preset(str(path)).max_force_N == 6.25
+
+
 def test_a_coupling_is_suggested_for_an_arm_of_ones_own(tmp_path):
     design = suggest_coupling(str(write_preset(tmp_path)), 1000.0)
     assert design.coupling.stiffness_N_per_m > 0.0
