@@ -34,6 +34,9 @@ from drake_haptics.systems.differentiable_system import (
 
 DepthSearch = Literal["tracked", "global"]
 
+# What is known before the first query. (A Value of Drake 1.58 cannot hold None.)
+_NOTHING = "nothing"
+
 
 @dataclass(frozen=True)
 class ContactObject:
@@ -132,7 +135,7 @@ class ContactQuery(DifferentiableSystem):
             if item.X_WO is None
         }
         self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
-        self._hint = self.DeclareAbstractParameter(Value[object](None))
+        self._hint = self.DeclareAbstractParameter(Value[object](_NOTHING))
         self._tolerance = self.DeclareAbstractParameter(Value[object](tolerance_m))
         from_tolerance = self.abstract_parameter_ticket(
             AbstractParameterIndex(self._tolerance)
@@ -142,7 +145,7 @@ class ContactQuery(DifferentiableSystem):
         self._tracker = self.DeclareCacheEntry(
             description="tracker",
             value_producer=ValueProducer(
-                allocate=lambda: Value[object](None), calc=self._prepare_tracker
+                allocate=lambda: Value[object](_NOTHING), calc=self._prepare_tracker
             ),
             prerequisites_of_calc={from_tolerance},
         )
@@ -249,10 +252,11 @@ class ContactQuery(DifferentiableSystem):
             X_WO,
         )
 
-    def _make_tracker(
-        self, hint: SceneTracker | None, tolerance_m: float
-    ) -> SceneTracker:
-        if hint is None:
+    def _make_tracker(self, hint: object, tolerance_m: float) -> SceneTracker:
+        if isinstance(hint, SceneTracker):
+            tracker = copy.deepcopy(hint)
+            tracker.tolerance = tolerance_m
+        else:
             tracker = SceneTracker(
                 self._tool,
                 [item.decomposition for item in self._objects],
@@ -260,9 +264,6 @@ class ContactQuery(DifferentiableSystem):
                 self._depth,
                 self._max_walk_steps,
             )
-        else:
-            tracker = copy.deepcopy(hint)
-            tracker.tolerance = tolerance_m
         for i, item in enumerate(self._objects):
             if item.X_WO is not None:
                 tracker.set_object_pose(i, item.X_WO)
@@ -271,12 +272,12 @@ class ContactQuery(DifferentiableSystem):
     def _prepare_tracker(self, context: Context, value: AbstractValue) -> None:
         """Makes the tracker of a Context, or tells it of another tolerance."""
         tolerance_m = self.get_tolerance(context)
-        tracker: SceneTracker | None = value.get_value()
-        if tracker is None:
+        tracker = value.get_value()
+        if isinstance(tracker, SceneTracker):
+            tracker.tolerance = tolerance_m
+        else:
             hint = context.get_abstract_parameter(self._hint).get_value()
             value.set_value(self._make_tracker(hint, tolerance_m))
-        else:
-            tracker.tolerance = tolerance_m
 
     def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
         tracker: SceneTracker = self._tracker.Eval(context)
