@@ -2,7 +2,7 @@
 The compiled core of drake_haptics: geometry, contact query, clustering and wrenches. What of it is for programs of your own has its name in drake_haptics; the rest is the engine behind it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 import enum
 from typing import Annotated, Literal, overload
 
@@ -356,6 +356,8 @@ class ContactSet:
 
     def __getitem__(self, i: int) -> Contact: ...
 
+    def __iter__(self) -> Iterator[Contact]: ...
+
     @property
     def least_distance(self) -> float:
         """Of the nearest contact, m; infinite if there is none."""
@@ -434,6 +436,8 @@ class PairTrajectory:
     def __len__(self) -> int: ...
 
     def __getitem__(self, k: int) -> Contact: ...
+
+    def __iter__(self) -> Iterator[Contact]: ...
 
     def __repr__(self) -> str: ...
 
@@ -554,6 +558,8 @@ class ContactTrajectory:
 
     def __getitem__(self, k: int) -> ContactSet:
         """The contacts at pose k."""
+
+    def __iter__(self) -> Iterator[ContactSet]: ...
 
     def __repr__(self) -> str: ...
 

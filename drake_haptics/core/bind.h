@@ -17,6 +17,11 @@ inline std::string Counted(std::size_t number, const char* noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
+/// Iterates by `__getitem__`, said to type checkers, who do not guess it.
+inline nanobind::object Iterate(nanobind::handle sequence) {
+  return nanobind::steal(PySeqIter_New(sequence.ptr()));
+}
+
 void BindAdvance(nanobind::module_& m);
 void BindAutoDiff(nanobind::module_& m);
 void BindPolytope(nanobind::module_& m);

@@ -138,6 +138,8 @@ void BindContactSet(nb::module_& m) {
         return s.contacts[PlaceOf(i, s.contacts.size())];
       },
       nb::arg("i"));
+  set.def("__iter__", &Iterate,
+          nb::sig("def __iter__(self) -> collections.abc.Iterator[Contact]"));
   const auto least_distance = [](const ContactSet& s) {
     double least = std::numeric_limits<double>::infinity();
     for (const Contact& contact : s.contacts) {

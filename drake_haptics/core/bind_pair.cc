@@ -112,6 +112,9 @@ void BindPairTrajectory(nb::module_& m) {
         return t.contacts[PlaceOf(k, t.contacts.size())];
       },
       nb::arg("k"));
+  trajectory.def(
+      "__iter__", &Iterate,
+      nb::sig("def __iter__(self) -> collections.abc.Iterator[Contact]"));
   trajectory.def("__repr__", [](const PairTrajectory& t) {
     return nb::str("PairTrajectory({})")
         .format(Counted(t.contacts.size(), "pose"));

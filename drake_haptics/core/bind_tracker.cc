@@ -229,6 +229,9 @@ void BindContactTrajectory(nb::module_& m) {
         return t.At(PlaceOf(k, t.seconds.size()));
       },
       nb::arg("k"), "The contacts at pose k.");
+  trajectory.def(
+      "__iter__", &Iterate,
+      nb::sig("def __iter__(self) -> collections.abc.Iterator[ContactSet]"));
   trajectory.def("__repr__", [](const ContactTrajectory& t) {
     return nb::str("ContactTrajectory({}, {})")
         .format(Counted(t.seconds.size(), "pose"),
