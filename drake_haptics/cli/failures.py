@@ -59,8 +59,12 @@ def failures_in_words(debug: bool) -> Iterator[None]:
             yield
         except (click.exceptions.Exit, click.Abort, BrokenPipeError):
             raise  # no failure, or the reader of our output has gone
-        except click.UsageError:
-            raise  # the call itself: there is nothing to trace
+        except click.UsageError as error:  # the call itself: there is nothing to trace
+            if isinstance(error, click.NoSuchOption) and error.option_name == "--debug":
+                error.message += (
+                    " It goes before the command: drake-haptics --debug ..."
+                )
+            raise
         except (Exception, KeyboardInterrupt) as error:
             if debug:
                 traceback.print_exc()
