@@ -23,7 +23,7 @@ RUN = Lesson(
     " unstable.",
     further="On a computer without a browser: `ssh -N -L 7100:localhost:7100 -L"
     " 7000:localhost:7000 HOST` brings the page to yours, or use --record."
-    " `drake-haptics stability SCENE` says how stiff a scene may be.",
+    " `stability SCENE` says how stiff a scene may be.",
 )
 
 DEVICE = Lesson(
