@@ -1,0 +1,157 @@
+"""A program that uses every public name, as the README and the pages do.
+
+It is not run: mypy reads it as a consumer's, and lets no `Any` pass.
+"""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.geometry import SceneGraph
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import DiagramBuilder
+from typing_extensions import assert_type
+
+from drake_haptics import (
+    AddAppliedSpatialForce,
+    AddHapticLoop,
+    AddHapticRendering,
+    BuildHapticDiagram,
+    CallbackTimer,
+    ConnectMovingObject,
+    Contact,
+    ContactSet,
+    ContactStatus,
+    ContactTracker,
+    ContactTrajectory,
+    ConvexPair,
+    ConvexPolytope,
+    Decomposition,
+    DeviceBackend,
+    DeviceCommand,
+    DeviceError,
+    DeviceReading,
+    EnergyLedger,
+    Feature,
+    FeatureKind,
+    HapticDiagram,
+    HapticLoop,
+    HapticRendering,
+    Mesh,
+    MeshError,
+    PairTrajectory,
+    RunError,
+    Scene,
+    SceneError,
+    SceneTracker,
+    TickClock,
+    TickRecorder,
+    UserError,
+    __version__,
+    decompose,
+    explain_tick,
+    find_mesh,
+    find_scene,
+    get_include,
+    list_meshes,
+    list_scenes,
+    load_mesh,
+    load_scene,
+    make_log_header,
+    make_simulator,
+    open_device,
+    read_tick_log,
+    replay,
+    run,
+    write_live_values,
+)
+from drake_haptics.run_statistics import RunStatistics
+
+
+class Still(DeviceBackend):
+    """A device of one's own."""
+
+    def read(self) -> DeviceReading | None:
+        """Returns where it is."""
+        zero = np.zeros(6)
+        return DeviceReading(1, 0.0, np.zeros(7), zero, zero)
+
+    def write(self, command: DeviceCommand) -> None:
+        """Takes no notice."""
+        assert_type(command.F_BH, NDArray[np.float64])
+
+    def close(self) -> None:
+        """Has nothing to end."""
+
+
+def use_geometry(path: Path) -> float:
+    """Contacts without Drake."""
+    assert_type(list_meshes(), dict[str, Path])
+    try:
+        mesh: Mesh = load_mesh(find_mesh(str(path)), unit="mm")
+    except MeshError as error:
+        raise SystemExit(str(error)) from error
+    cup: Decomposition = decompose(mesh, "merged", error_m=1e-4, progress=print)
+    assert_type(cup.pieces, list[ConvexPolytope])
+    assert_type(cup.report.pieces, int)
+    assert_type(mesh.report.extent, tuple[float, float, float])
+    pair = ConvexPair(cup.pieces[0], ConvexPolytope([[0.0, 0.0, 0.0]]), "global")
+    contact: Contact = pair.query(np.eye(4), [1.0, 0, 0, 0, 0, 0, 0])
+    feature: Feature = contact.feature_A
+    assert_type(feature.kind, FeatureKind)
+    assert_type(contact.status, ContactStatus)
+    motion: PairTrajectory = pair.query_trajectory(np.eye(4)[None], np.eye(4))
+    tracker = ContactTracker(cup, cup, tolerance=1e-3)
+    way: ContactTrajectory = tracker.query_trajectory(np.eye(4)[None], np.eye(4))
+    scene = SceneTracker(cup, [cup], tolerance=1e-3, depth="global")
+    scene.set_object_pose(0, np.eye(4))
+    contacts: ContactSet = scene.query(np.eye(4))
+    assert_type(contacts.least_distance, float)
+    depths = [-one.distance for one in contacts if one.status != ContactStatus.NEAR]
+    assert_type(depths, list[float])
+    return max(depths) + len(motion) + len(way[0])
+
+
+def use_a_scene(name: str) -> float:
+    """A scene, its run, its log."""
+    assert_type(list_scenes(), dict[str, Path])
+    scene: Scene = load_scene(find_scene(name))
+    scene.contact.stiffness_N_per_m = 4000.0
+    try:
+        backend = open_device("udp://127.0.0.1:7400", scene)
+    except (DeviceError, SceneError) as error:
+        raise UserError(str(error)) from error
+    with backend:
+        with CallbackTimer() as timer:
+            haptic: HapticDiagram = BuildHapticDiagram(scene, device=backend)
+        assert_type([part.why for part in explain_tick(haptic, timer)], list[str])
+        loop: HapticLoop = haptic.loop
+        root = make_simulator(haptic).get_context()
+        write_live_values(haptic, root, scene)
+        ledger = EnergyLedger(loop, root)
+        assert_type(ledger.to_dict(), dict[str, dict[str, float]])
+        with TickRecorder("run.ticks", make_log_header(scene)):
+            pass
+        try:
+            figures = run(haptic, 2.0, pace=TickClock(haptic.period_s))
+        except RunError as error:
+            print(error)
+    log = replay(read_tick_log("run.ticks"))
+    assert_type(figures, RunStatistics)
+    assert_type(figures.to_dict()["tick_us"]["median"], float)
+    return figures.to_dict()["max_force_N"] + log.count_ticks_from_start()
+
+
+def use_in_a_plant(
+    builder: DiagramBuilder, plant: MultibodyPlant, scene_graph: SceneGraph
+) -> HapticRendering:
+    """A body of a plant that touches others by their true shapes."""
+    rendering = AddHapticRendering(builder, plant, scene_graph, "die")
+    AddAppliedSpatialForce(builder, plant, rendering.get_applied_force_output_port())
+    assert_type(rendering.tool.name, str)
+    return rendering
+
+
+print(__version__.split("."), get_include().upper(), Still().url)
+print(AddHapticLoop.__doc__, ConnectMovingObject.__doc__, use_in_a_plant.__doc__)
+print(use_geometry(Path("cup.obj")), use_a_scene("cup_spoon"))
