@@ -19,7 +19,7 @@ BACKGROUND_TOP: Color = (0.97, 0.97, 0.98, 1.0)
 BACKGROUND_BOTTOM: Color = (0.86, 0.88, 0.91, 1.0)
 
 # What is drawn as lines and letters on white: the force's and the torque's.
-FORCE_INK: Color = (0.69, 0.443, 0.0, 1.0)
+FORCE_INK: Color = (0.62, 0.40, 0.0, 1.0)
 TORQUE_INK: Color = (0.478, 0.259, 0.659, 1.0)
 
 _LEGEND = (

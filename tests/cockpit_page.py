@@ -154,13 +154,14 @@ class Page:
             self.browser.call("Input.dispatchKeyEvent", type=kind, **options)
 
     def trace(self):
-        """Pixels of the force's trace that are of the force's colour."""
+        """Columns of pixels in which the force's line is, below the words above it."""
         return self.evaluate("""(() => {
           const canvas = document.getElementById('force-trace');
           const [w, h] = [canvas.width, canvas.height];
           const {data} = canvas.getContext('2d').getImageData(0, 0, w, h);
-          let found = 0;
-          for (let i = 0; i < data.length; i += 4)
-            if (data[i] > 150 && data[i + 2] < 60 && data[i + 3] > 120) found += 1;
-          return found;
+          const columns = new Set();
+          for (let i = 4 * w * Math.ceil(h / 6); i < data.length; i += 4)
+            if (data[i] > 130 && data[i + 2] < 60 && data[i + 3] > 120)
+              columns.add((i / 4) % w);
+          return columns.size;
         })()""")

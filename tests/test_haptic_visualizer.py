@@ -16,7 +16,6 @@ from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems import haptic_visualizer
 from drake_haptics.systems.arrow_pool import ArrowPool
 from drake_haptics.systems.contact_query import ContactObject
-from drake_haptics.systems.drawn_pieces import DrawnPieces
 from drake_haptics.systems.haptic_visualizer import HapticVisualizer
 
 
@@ -368,20 +367,6 @@ def test_views_are_sent_once_and_then_only_shown_and_hidden(monkeypatch):
     assert see("forces", True) == dict.fromkeys(("force", "clusters", "friction"), True)
     assert see("forces", True) == {}
     assert not meshcat.objects
-
-
-def test_pieces_are_sent_in_steps_that_no_tick_notices():
-    meshcat = FakeMeshcat()
-    mesh = make_mesh()
-    drawn = DrawnPieces(meshcat, "/a", mesh.pieces * 200, 1.0)
-    sizes = []
-    for _ in drawn.send():
-        sizes.append(len(meshcat.objects))
-    assert max(np.diff([0, *sizes])) == 1
-    assert {p for p in meshcat.objects if "virtual" in p} == {
-        f"/a/virtual/{i}" for i in range(2)
-    }
-    assert len(meshcat.objects) == 2 + 5
 
 
 def test_a_view_that_there_is_not_is_refused():
