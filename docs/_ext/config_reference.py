@@ -12,7 +12,7 @@ of each key. All of it is read from the program.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +23,12 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from drake_haptics.device_preset import DevicePreset, load_device_preset
-from drake_haptics.live_keys import LiveKey, live_keys
+from drake_haptics.live_keys import live_keys
+from drake_haptics.live_scene import is_live_change
 from drake_haptics.scene import Scene, load_scene
 
 _EVERY_KEY = "reference/every-key.yaml"
+_LIVE = "[Live](../live-values.md):"
 _PRESET = "reference/every-key-of-a-device.yaml"
 
 
@@ -38,20 +40,33 @@ class ConfigFile:
         schema: The dataclass that it is loaded into.
         load: Loads one, or raises UserError.
         example: One with every key, from the folder of the pages.
-        find_live: Returns what can be changed while a loaded one runs.
+        find_live: Returns the keys of a loaded one that can be changed while it runs.
         is_indexed: Whether its keys are in the index; two kinds have some in common.
     """
 
     schema: type
     load: Callable[[Path], Any]
     example: str
-    find_live: Callable[[Any], tuple[LiveKey, ...]] = field(default=lambda _: ())
+    find_live: Callable[[Any], set[str]]
     is_indexed: bool = False
 
 
+def _find_live_keys(scene: Scene) -> set[str]:
+    """Returns the live keys of a scene with clusters, with what makes the clusters."""
+    other = replace(scene.contact, clustering="shared", cluster_size_m=None)
+    keys = {key.key for key in live_keys(scene)}
+    if is_live_change(scene, replace(scene, contact=other)):
+        keys.add("contact.clustering")
+    return keys
+
+
+def _load_device(path: Path) -> DevicePreset:
+    return load_device_preset(str(path))
+
+
 FILES = {
-    "scene": ConfigFile(Scene, load_scene, _EVERY_KEY, live_keys, is_indexed=True),
-    "device": ConfigFile(DevicePreset, lambda p: load_device_preset(str(p)), _PRESET),
+    "scene": ConfigFile(Scene, load_scene, _EVERY_KEY, _find_live_keys, True),
+    "device": ConfigFile(DevicePreset, _load_device, _PRESET, lambda _: set()),
 }
 
 
@@ -76,7 +91,7 @@ class ConfigKeys(SphinxDirective):
         self.env.note_dependency(str(example))
         facts = _Facts(
             find_rules(kind.load, example),
-            {key.key for key in kind.find_live(kind.load(example))},
+            kind.find_live(kind.load(example)),
             kind.is_indexed,
         )
         parts = list_parts(kind.schema)
@@ -110,7 +125,7 @@ def _write_key(key: Key, path: str, facts: _Facts) -> Iterator[str]:
         yield f":default: {key.default}"
     words = [key.text, _write_rule(facts.rules.get(path, ""))]
     if path in facts.live:
-        words.append("Live: it can be changed while the scene runs.")
+        words.append(f"{_LIVE} it can be changed while the scene runs.")
     yield f"\n{' '.join(filter(None, words))}"
     yield "```\n"
 
