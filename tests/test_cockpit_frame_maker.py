@@ -53,7 +53,7 @@ def test_vectors_are_those_of_the_picture():
 
 @pytest.mark.parametrize("depth_m", [-1.0, 0.0, math.inf, math.nan])
 def test_what_is_not_before_the_camera_has_no_place(depth_m):
-    p_WH = tuple(X_WC.translation() + X_WC.rotation().matrix()[:, 2] * depth_m)
+    p_WH = (X_WC.translation() + X_WC.rotation().matrix()[:, 2] * depth_m).tolist()
     assert FrameMaker().make(packet([], p_WH=p_WH))["handle"] is None
 
 
