@@ -24,14 +24,19 @@ _LOOKS = (
 )
 _NODE = re.compile(r"^(s\d+) \[shape=none.*?<BR/>\nname=(\w+)(.*?)^>\];", re.M | re.S)
 _PORT = re.compile(r'PORT="([uy]\d+)"[^>]*>([^<]+)</TD>')
+_OUTPUTS = re.compile(r"^subgraph cluster\w+out \{.*?^\}\n", re.M | re.S)
+_TO_OUTPUTS = re.compile(r"^s\d+:\w+:e -> \w+out:.*\n", re.M)
 _EDGE = re.compile(r"^(s\d+):(y\d+):e -> (s\d+):(u\d+):w$", re.M)
 
 
 def make_graph(scene: str) -> str:
-    """Returns what Drake tells of the loop of a scene, in Graphviz's language."""
+    """Returns what Drake tells of the loop of a scene, in Graphviz's language.
+
+    The diagram's own outputs, one for all that there is to see, are left out.
+    """
     diagram = BuildHapticDiagram(load_scene(find_scene(scene))).diagram
     graph: str = diagram.GetGraphvizString(max_depth=1)
-    return graph
+    return _TO_OUTPUTS.sub("", _OUTPUTS.sub("", graph))
 
 
 def set_looks(graph: str) -> str:

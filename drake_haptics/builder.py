@@ -30,7 +30,7 @@ from drake_haptics.device_site import (
 )
 from drake_haptics.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.held_handle import check_scene_coupling
-from drake_haptics.mass_properties import calc_mass_properties
+from drake_haptics.mass_properties import make_tool_dynamics
 from drake_haptics.one_line import count
 from drake_haptics.scene import (
     Contact,
@@ -68,7 +68,8 @@ class HapticDiagram:
     """A scene as a diagram, ready for a Simulator.
 
     Attributes:
-        diagram: Owns all systems.
+        diagram: Owns all systems, and has the outputs that `HapticLoop.outputs` lists:
+            `diagram.GetOutputPort("F_applied").Eval(context)`, in its own context.
         scene: What it was built from.
         period_s: The tick, s.
         loop: The systems of the loop.
@@ -124,7 +125,8 @@ def AddHapticLoop(
         builder: Gets the systems, the device among them.
         device: Not yet in a builder.
         tool: Pieces of the tool, in its frame T.
-        tool_dynamics: Mass and inertia of the tool.
+        tool_dynamics: Mass and inertia of the tool, as of
+            `drake_haptics.mass_properties.make_tool_dynamics`.
         objects: What the tool meets.
         contact: Tolerance, clustering and gains.
         coupling: Gains between handle and tool.
@@ -322,7 +324,8 @@ def BuildHapticDiagram(
             scene's hand starts if not given.
 
     Returns:
-        The diagram and its parts. All systems have snake_case names.
+        The diagram and its parts. All systems have snake_case names; what there is to
+        see has output ports, those of `HapticLoop.outputs`.
 
     Warns:
         SceneWarning: The coupling breaks a bound of stability or passivity.
@@ -343,7 +346,6 @@ def BuildHapticDiagram(
         ContactObject(item.name, part.core, item.pose.to_rigid_transform())
         for item, part in zip(scene.environment, environment, strict=True)
     ]
-    p_TTcm, I_TTcm_T = calc_mass_properties(tool.mesh, scene.tool.mass_kg)
     X_WB = None
     if isinstance(device, DeviceBackend):
         # Only now: while meshes are cut, a hand moves on.
@@ -360,7 +362,7 @@ def BuildHapticDiagram(
         load_shedding=_make_load_shedding(meter, scene, tool),
         device=port,
         tool=tool.core,
-        tool_dynamics=_core.RigidToolDynamics(scene.tool.mass_kg, p_TTcm, I_TTcm_T),
+        tool_dynamics=make_tool_dynamics(tool.mesh, scene.tool.mass_kg),
         objects=objects,
         contact=scene.contact,
         coupling=scene.coupling,
@@ -380,6 +382,8 @@ def BuildHapticDiagram(
     if meter is not None:
         # The last to publish: what a tick takes includes its drawing.
         builder.AddNamedSystem("tick_end", TickEnd(meter, period_s))
+    for name, port in loop.outputs.items():
+        builder.ExportOutput(port, name)
     return HapticDiagram(
         diagram=builder.Build(),
         scene=scene,

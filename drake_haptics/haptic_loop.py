@@ -89,6 +89,48 @@ class HapticLoop(BaseSystems):
             return self.effects.passivity.get_display_wrench_output_port()
         return self.virtual_coupling.get_display_wrench_output_port()
 
+    @property
+    def outputs(self) -> dict[str, OutputPort]:
+        """What there is to see of the loop, by name.
+
+        `BuildHapticDiagram` exports each by this name. In a diagram of one's own each
+        can be read, logged, connected or exported like any port.
+
+        * `X_WTool` (7) and `V_WTool` (6) are those of `HapticTool`: pose
+          [qw qx qy qz x y z], m, and spatial velocity [ω; v], rad/s and m/s, of the
+          tool in the world.
+        * `X_WH` (7), `V_WH` (6), `F_applied` (6) and `status` are those of
+          `HapticDevice`: handle, wrench that it shows, state of its gate.
+        * `F_display` (6) is the wrench [τ; f] that the device is asked to show on the
+          handle at its origin in the world, N·m and N.
+        * `contacts` is a `drake_haptics.ContactSet`, shaded if the effects say so,
+          `clusters` a `drake_haptics._core.ClusterSet`.
+        * `contact_wrench` and `F_Tool_W` (6) are those of `PenaltyForce`: contact
+          alone, on the tool.
+        * `friction_force` (with friction) is that of `StickSlipFriction`, `energy_J`
+          (with passivity control) that of `PassivityControl`.
+        """
+        device, tool, force = self.device, self.haptic_tool, self.penalty_force
+        outputs = {
+            "X_WTool": tool.get_pose_output_port(),
+            "V_WTool": tool.get_velocity_output_port(),
+            "X_WH": device.get_handle_pose_output_port(),
+            "V_WH": device.get_handle_velocity_output_port(),
+            "F_display": self.display_wrench,
+            "F_applied": device.get_applied_wrench_output_port(),
+            "status": device.get_status_output_port(),
+            "contacts": self.contacts,
+            "clusters": self.contact_clustering.get_clusters_output_port(),
+            "contact_wrench": force.get_contact_wrench_output_port(),
+            "F_Tool_W": force.get_tool_wrench_output_port(),
+        }
+        if self.effects.friction is not None:
+            port = self.effects.friction.get_friction_force_output_port()
+            outputs["friction_force"] = port
+        if self.effects.passivity is not None:
+            outputs["energy_J"] = self.effects.passivity.get_energy_output_port()
+        return outputs
+
 
 def ConnectMovingObject(
     builder: DiagramBuilder,

@@ -1,10 +1,24 @@
-"""Centre of mass and inertia of a mesh of one density."""
+"""Centre of mass and inertia of a mesh of one density, and the tool that it makes."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from drake_haptics._core import RigidToolDynamics
 from drake_haptics.mesh import Mesh
+
+
+def make_tool_dynamics(mesh: Mesh, mass_kg: float) -> RigidToolDynamics:
+    """Returns how a tool moves, for `AddHapticLoop`: as one of its mesh's shape does.
+
+    Args:
+        mesh: Of one density, as `calc_mass_properties` takes it.
+        mass_kg: Its mass, kg.
+
+    Raises:
+        ValueError: The mass is not above 0, or the mesh cannot be turned.
+    """
+    return RigidToolDynamics(mass_kg, *calc_mass_properties(mesh, mass_kg))
 
 
 def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.ndarray]:

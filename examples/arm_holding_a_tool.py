@@ -8,7 +8,6 @@ where the arm comes to rest, free and against the ring, to tell what contact cha
 """
 
 import sys
-from pathlib import Path
 
 import numpy as np
 from pydrake.geometry import Meshcat
@@ -19,17 +18,16 @@ from pydrake.systems.controllers import JointStiffnessController
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.visualization import AddDefaultVisualization
 
-from drake_haptics import AddHapticRendering
+from drake_haptics import AddHapticRendering, find_mesh
 from drake_haptics.analysis import find_equilibrium, find_modes, linearize_sampled
 from drake_haptics.scene import Contact
 
 # A ring that is fixed, and an arm whose two links turn about z; it moves a pen along z.
-MESHES = Path(__file__).parents[1] / "models" / "meshes"
 MODEL = f"""
 <mujoco model="arm_and_ring">
   <asset>
-    <mesh name="pen" file="{MESHES}/pen.obj"/>
-    <mesh name="torus" file="{MESHES}/torus.obj"/>
+    <mesh name="pen" file="{find_mesh("pen")}"/>
+    <mesh name="torus" file="{find_mesh("torus")}"/>
   </asset>
   <worldbody>
     <geom type="mesh" mesh="torus"/>

@@ -7,16 +7,12 @@ pose. The hole of the ring is felt: the pen touches on the way in, is free in th
 middle, and touches again on the way out, where its radius and those of the ring say.
 """
 
-from pathlib import Path
-
 import numpy as np
 
-import drake_haptics
-from drake_haptics import ContactTracker, decompose, load_mesh
+from drake_haptics import ContactTracker, decompose, find_mesh, load_mesh
 
-meshes = Path(drake_haptics.__file__).parent / "models" / "meshes"
-pen = decompose(load_mesh(meshes / "pen.obj"))
-ring = decompose(load_mesh(meshes / "torus.obj"))
+pen = decompose(load_mesh(find_mesh("pen")))
+ring = decompose(load_mesh(find_mesh("torus")))
 tracker = ContactTracker(pen, ring, tolerance=0.002)
 
 # The pen stands upright and moves along x, through the middle of the ring.

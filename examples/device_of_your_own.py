@@ -18,11 +18,10 @@ from drake_haptics import (
     DeviceCommand,
     DeviceReading,
     decompose,
-    find_scene,
+    find_mesh,
     load_mesh,
-    load_scene,
 )
-from drake_haptics._core import RigidToolDynamics
+from drake_haptics.mass_properties import make_tool_dynamics
 from drake_haptics.scene import Contact, Coupling
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.device_io import DeviceIo
@@ -69,8 +68,8 @@ class WoodOnASpring(DeviceBackend):
         self._F_BH = np.zeros(6)
 
 
-peg = decompose(load_mesh(load_scene(find_scene("torus_peg")).tool.mesh)).core
-block = decompose(load_mesh(load_scene(find_scene("hammer_block")).environment[0].mesh))
+peg = decompose(load_mesh(find_mesh("peg")))
+block = decompose(load_mesh(find_mesh("block")))
 top_m = float(block.mesh.vertices[:, 2].max())
 builder = DiagramBuilder()
 with WoodOnASpring(start_m=top_m + 0.01, goal_m=top_m - 0.01) as wood:
@@ -84,8 +83,8 @@ with WoodOnASpring(start_m=top_m + 0.01, goal_m=top_m - 0.01) as wood:
     AddHapticLoop(
         builder,
         device=device,
-        tool=peg,
-        tool_dynamics=RigidToolDynamics(0.05, np.array([0, 0, 0.06]), 1e-4 * np.eye(3)),
+        tool=peg.core,
+        tool_dynamics=make_tool_dynamics(peg.mesh, 0.05),
         objects=[ContactObject("block", block.core, RigidTransform())],
         contact=Contact(),
         coupling=Coupling(),

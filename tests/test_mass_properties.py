@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.mass_properties import calc_mass_properties
+from drake_haptics.mass_properties import calc_mass_properties, make_tool_dynamics
 from drake_haptics.mesh import Mesh
 
 MASS = 0.3
@@ -57,3 +57,16 @@ def test_mass_scales_inertia():
     box = intake(trimesh.creation.box([0.1, 0.1, 0.1]))
     one, two = (calc_mass_properties(box, m)[1] for m in (MASS, 2 * MASS))
     assert two[0, 0] == pytest.approx(2 * one[0, 0])
+
+
+def test_a_tool_turns_as_its_shape_does():
+    a, b, c = 0.1, 0.2, 0.3
+    tool = make_tool_dynamics(intake(trimesh.creation.box([a, b, c])), MASS)
+    assert tool.mass_kg == MASS
+    np.testing.assert_allclose(tool.p_TTcm, 0.0, atol=1e-12)
+    # A torque about each axis for a millisecond, from rest.
+    principal = MASS / 12 * np.array([b * b + c * c, a * a + c * c, a * a + b * b])
+    state, wrench_model = np.zeros(13), np.zeros(78)
+    state[0], wrench_model[:3] = 1.0, 1e-3
+    turned = tool.step(state, wrench_model, 1e-3)
+    np.testing.assert_allclose(turned[7:10], 1e-6 / principal, rtol=1e-6)
