@@ -77,6 +77,7 @@ def make_loop(folder: Path) -> list[object]:
         haptic,
         haptic.loop,
         drake_haptics.run(haptic, 0.01),
+        drake_haptics.CallbackTimer(),
         drake_haptics.TickClock(1e-3),
         drake_haptics.CallbackTimer(),
         drake_haptics.EnergyLedger(haptic.loop, simulator.get_context()),
