@@ -12,6 +12,7 @@ from config_reference import FILES
 from config_rules import find_rules
 
 from drake_haptics import BuildHapticDiagram, UserError, load_scene, run
+from drake_haptics.systems.hand_grip import HAND_GRIPS
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -60,6 +61,18 @@ def test_the_small_example_can_be_built(tmp_path):
     file = tmp_path / "scene.yaml"
     file.write_text(re.sub(r"\w+\.obj", lambda mesh: str(meshes / mesh[0]), text))
     BuildHapticDiagram(load_scene(file))
+
+
+def test_the_words_are_those_that_are_known():
+    page = (DOCS / "reference" / "scene-file.md").read_text()
+    (table,) = re.findall(r"\| key \| word .*?\n\n", page, re.DOTALL)
+    cells = [line.split("|")[2] for line in table.splitlines() if line]
+    words = re.findall(r"`(\w+)`", " ".join(cells))
+    rules = find_rules(FILES["scene"].load, DOCS / FILES["scene"].example)
+    known = [rules[k] for k in ("tool.decomposition", "contact.clustering")]
+    known += [rules["contact.depth"], f"known: {', '.join(HAND_GRIPS)}"]
+    expected = ", ".join(text.removeprefix("known: ") for text in known)
+    assert words == expected.split(", ")
 
 
 def test_rules_are_what_the_program_says(tmp_path):
