@@ -258,7 +258,9 @@ class Hand:
     """The simulated hand on a simulated device.
 
     Attributes:
-        grip: Name of a grip: none, light, nominal or firm.
+        grip: Name of a grip: none, light, nominal or firm. Their masses, stiffnesses
+            and dampings are those of `drake_haptics.systems.hand_grip.HAND_GRIPS`:
+            springs of 50, 300 and 1000 N/m.
         path: Where the hand wants the tool to go.
     """
 
