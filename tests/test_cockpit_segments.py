@@ -12,7 +12,7 @@ from driver_process import device_command, running
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.carry_on import find_handle
+from drake_haptics.carried_context import find_handle
 from drake_haptics.cockpit import holding, segments
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice
@@ -155,13 +155,22 @@ def test_what_cannot_be_built_is_taken_back(make, monkeypatch):
     assert rig.page.states[-1]["changes"] == {"coupling": {"stiffness_N_per_m": 1200.0}}
 
 
-def test_ctrl_c_ends_it_also_while_a_diagram_is_built(make, monkeypatch):
+@pytest.mark.parametrize("place", ["build", "begin"])
+def test_ctrl_c_ends_it_also_between_two_segments(make, monkeypatch, place):
     rig = make({100: [FRICTION]})
+    begin = rig.cockpit.begin
 
-    def interrupt(scene, **_):
+    def interrupt(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(segments, "BuildHapticDiagram", interrupt)
+    def begin_once(*arguments):
+        monkeypatch.setattr(rig.cockpit, "begin", interrupt)
+        begin(*arguments)
+
+    if place == "build":
+        monkeypatch.setattr(segments, "BuildHapticDiagram", interrupt)
+    else:
+        monkeypatch.setattr(rig.cockpit, "begin", begin_once)
     assert rig.run(None)["ticks"] == 350
 
 

@@ -10,7 +10,7 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context
 
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
-from drake_haptics.carry_on import carry_on, find_handle
+from drake_haptics.carried_context import carry_on, find_handle
 from drake_haptics.cockpit.cockpit import Cockpit
 from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.steering import Change
@@ -56,41 +56,22 @@ class Segments:
         on_tick: Callable[[Context], None],
     ) -> HapticDiagram:
         """Runs until the time is over, or Ctrl-C; see `CockpitRun.run`."""
-        context: Context | None = None
-        left_s = duration_s
+        left_s, context = duration_s, None
         # Less than a tick is left of what round-off makes of whole ticks.
         while left_s is None or left_s > 0.5 * self._haptic.period_s:
-            last: Context | None = None
-
-            def end_tick(root: Context) -> bool:
-                nonlocal last
-                on_tick(root)
-                if self._cockpit.end_tick(root):
-                    last = root.Clone()
-                return last is not None
-
-            self._cockpit.begin(self._haptic, statistics, pace)
-            on_begin(self._haptic)
-            change: Change | None = None
             try:
-                run(
-                    self._haptic,
+                self._cockpit.begin(self._haptic, statistics, pace)
+                on_begin(self._haptic)
+                change, last = self._run_one(
                     left_s,
+                    context,
                     pace=pace,
-                    energy=energy,
-                    on_tick=end_tick,
-                    context=context,
                     statistics=statistics,
+                    energy=energy,
+                    on_tick=on_tick,
                 )
-                if last is not None:
-                    change = self._steering.take_change()
-            except RunError as error:
-                if not self._steering.fall_back(str(error)):
-                    raise
-                change = Change(self._holding.name, restarts=True)
-            if change is None:
-                break
-            try:
+                if change is None:
+                    break
                 self._haptic, context = self._change(change, last)
             except KeyboardInterrupt:
                 break
@@ -99,6 +80,47 @@ class Segments:
             if duration_s is not None:
                 left_s = duration_s - statistics.ticks * self._haptic.period_s
         return self._haptic
+
+    def _run_one(
+        self,
+        left_s: float | None,
+        context: Context | None,
+        *,
+        pace: TickClock,
+        statistics: RunStatistics,
+        energy: bool,
+        on_tick: Callable[[Context], None],
+    ) -> tuple[Change | None, Context | None]:
+        """Runs a segment.
+
+        Returns:
+            What it ended for, None if the run is over; and where it ended, None where
+            it failed.
+        """
+        last: Context | None = None
+
+        def end_tick(root: Context) -> bool:
+            nonlocal last
+            on_tick(root)
+            if self._cockpit.end_tick(root):
+                last = root.Clone()
+            return last is not None
+
+        try:
+            run(
+                self._haptic,
+                left_s,
+                pace=pace,
+                energy=energy,
+                on_tick=end_tick,
+                context=context,
+                statistics=statistics,
+            )
+        except RunError as error:
+            if not self._steering.fall_back(str(error)):
+                raise
+            return Change(self._holding.name, restarts=True), None
+        return (None if last is None else self._steering.take_change()), last
 
     def _change(
         self, change: Change, last: Context | None
