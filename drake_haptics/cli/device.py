@@ -7,9 +7,15 @@ import shlex
 import click
 
 from drake_haptics.cli import lessons
+from drake_haptics.cli.change_log import ChangeLog
 from drake_haptics.cli.complete import complete_scene
 from drake_haptics.cli.console import make_console
-from drake_haptics.cli.driver_status import DriverStatusLine, make_driver_summary
+from drake_haptics.cli.device_words import describe_gate
+from drake_haptics.cli.driver_status import (
+    DRIVER_REMEDY,
+    DriverStatusLine,
+    make_driver_summary,
+)
 from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
@@ -90,8 +96,19 @@ def device(
         soft_wrap=True,
     )
     console.print("Ctrl-C ends it.", style="dim")
-    with stop_on_signals(driver.stop), DriverStatusLine(console, driver) as status:
-        driver.run(duration, on_tick=status.update)
+    with (
+        stop_on_signals(driver.stop),
+        DriverStatusLine(console, driver) as status,
+        ChangeLog(
+            console, lambda: describe_gate(driver.reading, DRIVER_REMEDY)
+        ) as changes,
+    ):
+
+        def on_tick() -> None:
+            status.update()
+            changes.update()
+
+        driver.run(duration, on_tick=on_tick)
     figures = driver.to_dict()
     console.print(make_driver_summary(figures))
     if json_file is not None:

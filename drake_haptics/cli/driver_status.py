@@ -14,6 +14,8 @@ from drake_haptics.cli.device_words import describe_gate, describe_lateness
 from drake_haptics.cli.live_line import LiveLine
 from drake_haptics.device.driver import DeviceDriver
 
+# What ends a fault of a driver.
+DRIVER_REMEDY = "until the host disables it"
 # Lateness in the line is that of so many latest ticks.
 _LATEST = 1000
 
@@ -46,7 +48,7 @@ class DriverStatusLine(LiveLine):
         taken = packets.pop("accepted", 0)
         return " · ".join(
             [
-                describe_gate(reading, "until the host disables it"),
+                describe_gate(reading, DRIVER_REMEDY),
                 f"[bold]{math.hypot(*reading.F_BH[3:]):4.1f} N[/]"
                 f" {1e3 * math.hypot(*reading.F_BH[:3]):4.0f} mN·m",
                 f"{math.hypot(*reading.V_BH[3:]):.2f} m/s",
