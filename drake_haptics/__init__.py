@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from drake_haptics.applied_force_port import AddAppliedSpatialForce
     from drake_haptics.builder import AddHapticLoop, BuildHapticDiagram, HapticDiagram
     from drake_haptics.callback_timer import CallbackTimer
+    from drake_haptics.carried_context import carry_on
     from drake_haptics.decomposition import Decomposition, decompose
     from drake_haptics.device.backend import (
         DeviceBackend,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from drake_haptics.haptic_loop import ConnectMovingObject, HapticLoop
     from drake_haptics.haptic_rendering import HapticRendering
     from drake_haptics.headers import get_include
+    from drake_haptics.live_key import live_keys
     from drake_haptics.live_scene import write_live_values
     from drake_haptics.mesh import Mesh, load_mesh
     from drake_haptics.rendering_builder import AddHapticRendering
@@ -95,6 +97,7 @@ __all__ = [
     "TickClock",
     "TickRecorder",
     "UserError",
+    "carry_on",
     "decompose",
     "explain_tick",
     "find_mesh",
@@ -102,6 +105,7 @@ __all__ = [
     "get_include",
     "list_meshes",
     "list_scenes",
+    "live_keys",
     "load_mesh",
     "load_scene",
     "make_log_header",
@@ -148,6 +152,7 @@ _MODULE_OF = {
     "TickClock": "tick_clock",
     "TickRecorder": "tick_log.tick_recorder",
     "UserError": "errors",
+    "carry_on": "carried_context",
     "decompose": "decomposition",
     "explain_tick": "explain",
     "find_mesh": "scene_library",
@@ -155,6 +160,7 @@ _MODULE_OF = {
     "get_include": "headers",
     "list_meshes": "scene_library",
     "list_scenes": "scene_library",
+    "live_keys": "live_key",
     "load_mesh": "mesh",
     "load_scene": "scene",
     "make_log_header": "tick_log.loop_log",

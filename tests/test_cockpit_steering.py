@@ -12,7 +12,7 @@ from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cockpit.page_request import read_page_request
 from drake_haptics.cockpit.scene_changes import EFFECTS
 from drake_haptics.device_site import find_device_site
-from drake_haptics.live_keys import live_keys
+from drake_haptics.live_key import live_keys
 from drake_haptics.live_scene import write_live_values
 from drake_haptics.scene import EnvironmentObject, Scene
 from drake_haptics.simulation import run

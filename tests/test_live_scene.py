@@ -7,9 +7,9 @@ import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
 from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.carry_on import carry_on
+from drake_haptics.carried_context import carry_on
 from drake_haptics.energy_ledger import EnergyLedger
-from drake_haptics.live_keys import live_keys
+from drake_haptics.live_key import live_keys
 from drake_haptics.live_scene import is_live_change, write_live_values
 from drake_haptics.scene import Braking, Friction, Material, Passivity
 from drake_haptics.simulation import make_simulator

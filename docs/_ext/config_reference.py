@@ -23,7 +23,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from drake_haptics.device_preset import DevicePreset, load_device_preset
-from drake_haptics.live_keys import live_keys
+from drake_haptics.live_key import live_keys
 from drake_haptics.live_scene import is_live_change
 from drake_haptics.scene import Scene, load_scene
 

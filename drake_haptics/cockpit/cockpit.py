@@ -16,7 +16,7 @@ from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import SceneChanges
 from drake_haptics.cockpit.steering import Steering
 from drake_haptics.cockpit.telemetry import SIMULATED
-from drake_haptics.live_keys import LiveKey
+from drake_haptics.live_key import LiveKey
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.tick_clock import TickClock
 

@@ -6,7 +6,7 @@ import dataclasses
 from typing import Any
 
 from drake_haptics.errors import UserError
-from drake_haptics.live_keys import LiveKey, live_keys
+from drake_haptics.live_key import LiveKey, live_keys
 from drake_haptics.scene import (
     Braking,
     Effects,

@@ -9,7 +9,7 @@ from fake_device import ScriptedDevice, make_reading
 from pydrake.math import RigidTransform, RollPitchYaw
 
 from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.carry_on import carry_on, find_handle
+from drake_haptics.carried_context import carry_on, find_handle
 from drake_haptics.scene import Effects, Friction, Pose
 from drake_haptics.simulation import run
 

@@ -8,7 +8,7 @@ import trimesh
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate, write
 
 from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.carry_on import carry_on, find_handle
+from drake_haptics.carried_context import carry_on, find_handle
 from drake_haptics.scene import (
     Braking,
     Coupling,

@@ -2,7 +2,7 @@
 
 from dataclasses import fields, replace
 
-from drake_haptics.live_keys import live_keys
+from drake_haptics.live_key import live_keys
 from drake_haptics.scene import (
     Contact,
     Coupling,
