@@ -74,7 +74,8 @@ def list_parts(
     """Yields a file's parts from the top down, each followed by those in it."""
     summary, texts = _read_docstring(schema)
     types = typing.get_type_hints(schema)
-    keys, inner = [], []
+    keys: list[Key] = []
+    inner: list[tuple[Any, str, str, bool]] = []
     for field in dataclasses.fields(schema):
         kind, words, can_be_absent = _read_type(types[field.name])
         if dataclasses.is_dataclass(kind):

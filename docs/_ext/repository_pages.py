@@ -9,6 +9,7 @@ from typing import Any
 
 from repository_links import METADATA, page_of
 from sphinx.application import Sphinx
+from sphinx.builders.html import StandaloneHTMLBuilder
 
 _LANGUAGES = {
     ".c": "c",
@@ -58,6 +59,7 @@ def _make_folder_page(app: Sphinx, folder: str, files: list[str]) -> _Page:
 def _make_file_page(app: Sphinx, name: str, path: Path) -> _Page:
     text = path.read_text(encoding="utf-8")
     language = _LANGUAGES.get(path.suffix, "text")
+    assert isinstance(app.builder, StandaloneHTMLBuilder)
     highlighted = app.builder.highlighter.highlight_block(text, language)
     body = f"<h1>{escape(name)}</h1>{highlighted}"
     return page_of(name), {"title": name, "body": body}, "page.html"

@@ -61,7 +61,9 @@ class SystemList(SphinxDirective):
         rows: list[nodes.Node] = []
         for module in modules:
             for name, system in find_systems(module).items():
-                summary, _ = self.parse_inline(inspect.getdoc(system).split("\n")[0])
+                summary, _ = self.parse_inline(
+                    (inspect.getdoc(system) or "").split("\n")[0]
+                )
                 rows += [
                     nodes.term("", "", _make_link(self.env.docname, module, name)),
                     nodes.definition("", nodes.paragraph("", "", *summary)),

@@ -42,11 +42,11 @@ def _document(
     """Adds the docstring of `_construct`; that of Drake's constructor is left out."""
     if not _is_instance(what, thing):
         return
-    docstring = inspect.getdoc(thing)
+    docstring = inspect.getdoc(thing) or ""
     if lines[0] != docstring.split("\n")[0]:
         lines.clear()
         return
-    lines += ["", *inspect.getdoc(thing._construct).split("\n")]
+    lines += ["", *(inspect.getdoc(thing._construct) or "").split("\n")]
     lines[:] = [line for line in lines if not line.strip().startswith(_NOT_OURS)]
 
 
