@@ -61,10 +61,8 @@ def failures_in_words(debug: bool) -> Iterator[None]:
             raise  # no failure, or the reader of our output has gone
         except click.UsageError as error:  # the call itself: there is nothing to trace
             if isinstance(error, click.NoSuchOption) and error.option_name == "--debug":
-                where = "it goes before the command: drake-haptics --debug ..."
-                raise click.UsageError(
-                    f"{error.message}; {where}", error.ctx
-                ) from error
+                words = "--debug goes before the command: drake-haptics --debug ..."
+                raise click.UsageError(words, error.ctx) from error
             raise
         except (Exception, KeyboardInterrupt) as error:
             if debug:

@@ -71,7 +71,7 @@ def test_debug_shows_where_it_came_from(end_with, monkeypatch, error, how):
 def test_debug_behind_the_command_is_told_where_it_goes():
     result = CliRunner().invoke(main, ["check", "cup.obj", "--debug"])
     assert result.exit_code == 2
-    assert "it goes before the command: drake-haptics --debug" in result.stderr
+    assert "goes before the command: drake-haptics --debug" in result.stderr
 
 
 def test_a_defect_is_ours_and_says_what_to_report(end_with):

@@ -35,7 +35,9 @@ def in_terminal(*arguments, interrupt_after=None, **variables):
     Returns:
         What the terminal got, and the exit code.
     """
-    environment = {k: v for k, v in os.environ.items() if k != "NO_COLOR"}
+    # Readline, which pytest imports, leaves a size in the environment.
+    left_out = {"NO_COLOR", "COLUMNS", "LINES"}
+    environment = {k: v for k, v in os.environ.items() if k not in left_out}
     pid, terminal = pty.fork()
     if pid == 0:  # pragma: no cover
         environment |= {"TERM": "xterm-256color", **variables}
