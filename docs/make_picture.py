@@ -22,10 +22,9 @@ _FOLDER = Path(__file__).parent
 _SIZE = (1440, 900)
 # Ten seconds fill the traces.
 _FULL_S = 12.0
-_PRESSED = (
-    "parseFloat(document.getElementById('force').textContent) > 2"
-    " && document.getElementById('depth-name').textContent == 'Depth'"
-)
+# Towards -x, so that the arrows are seen from the side.
+_PRESSED = """(text => text.startsWith('−') && parseFloat(text.slice(1)) > 1.4)(
+  document.querySelector('#components tbody td').textContent)"""
 
 
 def main() -> None:

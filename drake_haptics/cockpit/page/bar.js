@@ -3,11 +3,9 @@
 import {find, write} from "./find.js";
 import {micros, millimetres, seconds} from "./format.js";
 
-const GATES = {active: "active", idle: "idle", fault: "fault", simulated: "simulated"};
-
 export function showGate(gate) {
   find("gate").className = "chip " + gate;
-  write(find("gate"), GATES[gate] || gate);
+  write(find("gate"), gate);
 }
 
 export function showFigures(frame, period_s) {

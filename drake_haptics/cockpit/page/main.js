@@ -31,7 +31,7 @@ let isFramed = false;
 const on = {
   hello(hello) {
     settings = hello;
-    document.body.classList.remove("connecting", "over");
+    document.body.classList.remove("over");
     for (const matter of ["link", "over"]) notify(matter, "");
     if (find("view").src !== hello.meshcat) find("view").src = hello.meshcat;
     write(find("scene"), hello.scene);
@@ -47,7 +47,6 @@ const on = {
   },
 
   frame(frame) {
-    document.body.classList.toggle("watching", !frame.drives);
     notify("watching", frame.drives ? "" : "Another page drives. This one watches.",
            {button: {label: "Drive from here", act: () => say({do: "take"})}});
     notify("fault", frame.gate === "fault" ? FAULT : "", {kind: "fault"});
@@ -91,7 +90,6 @@ const on = {
 
   lost() {
     end();
-    document.body.classList.add("connecting");
     if (!find("notice-over")) notify("link", "No way to the run: it has ended, or is yet to come. Trying again.");
   },
 };
