@@ -11,6 +11,7 @@ import pytest
 import websocket
 
 from drake_haptics.cockpit.page_link import PageLink
+from drake_haptics.cockpit.page_port import open_page_port
 from drake_haptics.cockpit.telemetry import TickBuffer
 
 BOUND_S = 20.0
@@ -156,8 +157,7 @@ def test_its_end_leaves_no_process_and_a_free_port():
     link.close()
     link.close()
     assert not is_running(pid)
-    with PageLink(MESHCAT) as again:
-        assert again.url == link.url
+    open_page_port(int(link.url.rstrip("/").rpartition(":")[2])).close()
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])

@@ -4,17 +4,22 @@ import socket
 
 import pytest
 
+from drake_haptics.cockpit import page_port
 from drake_haptics.cockpit.page_port import FIRST_PORT, open_page_port
 from drake_haptics.errors import UserError
 
 
-def test_the_first_free_one_is_taken():
-    first = open_page_port()
-    with first:
-        port = first.getsockname()[1]
-        assert port >= FIRST_PORT
-        with open_page_port() as second:
-            assert second.getsockname()[1] > port
+def test_the_first_free_one_is_taken(monkeypatch):
+    # Where no other program takes any meanwhile.
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        monkeypatch.setattr(page_port, "FIRST_PORT", taken.getsockname()[1])
+        with open_page_port() as found:
+            assert found.getsockname()[1] > taken.getsockname()[1]
+
+
+def test_it_is_one_of_those_that_are_said():
+    with open_page_port() as found:
+        assert 7100 == FIRST_PORT <= found.getsockname()[1] < 7200
 
 
 def test_a_port_in_use_is_refused_with_what_to_do():
