@@ -38,6 +38,7 @@ if TYPE_CHECKING:
         DeviceReading,
     )
     from drake_haptics.device_address import open_device
+    from drake_haptics.device_site import make_device_port
     from drake_haptics.energy_ledger import EnergyLedger
     from drake_haptics.errors import MeshError, SceneError, UserError
     from drake_haptics.explain import explain_tick
@@ -108,6 +109,7 @@ __all__ = [
     "live_keys",
     "load_mesh",
     "load_scene",
+    "make_device_port",
     "make_log_header",
     "make_simulator",
     "open_device",
@@ -163,6 +165,7 @@ _MODULE_OF = {
     "live_keys": "live_key",
     "load_mesh": "mesh",
     "load_scene": "scene",
+    "make_device_port": "device_site",
     "make_log_header": "tick_log.loop_log",
     "make_simulator": "simulation",
     "open_device": "device_address",

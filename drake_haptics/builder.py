@@ -123,8 +123,8 @@ def AddHapticLoop(
 
     Args:
         builder: Gets the systems, the device among them.
-        device: Not yet in a builder.
-        tool: Pieces of the tool, in its frame T.
+        device: Not yet in a builder, as of `make_device_port`.
+        tool: Pieces of the tool, in its frame T: `decompose(mesh).core`.
         tool_dynamics: Mass and inertia of the tool, as of
             `drake_haptics.mass_properties.make_tool_dynamics`.
         objects: What the tool meets.

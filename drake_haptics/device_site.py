@@ -149,14 +149,48 @@ def make_haptic_device(
         DeviceError: The backend says nothing.
     """
     site = find_device_site(scene)
-    period_s = 1.0 / scene.device.rate_hz
+    return make_device_port(
+        backend,
+        X_WB,
+        period_s=1.0 / scene.device.rate_hz,
+        max_force_N=site.max_force_N,
+        max_torque_Nm=site.max_torque_Nm,
+    )
+
+
+def make_device_port(
+    backend: DeviceBackend,
+    X_WB: RigidTransform | None = None,
+    *,
+    period_s: float,
+    max_force_N: float,
+    max_torque_Nm: float,
+) -> tuple[HapticDevice, RigidTransform]:
+    """Returns a device port before a backend, and X_WH, where its handle is now.
+
+    For the `device` of `AddHapticLoop` or `AddHapticRendering`. The first reading is
+    waited for.
+
+    Args:
+        backend: Open; remains the caller's to close.
+        X_WB: Where its base stands; the world's frame where not given.
+        period_s: The tick, s; also that of what the port is given to.
+        max_force_N: Largest force shown, N.
+        max_torque_Nm: Largest torque shown, N·m.
+
+    Raises:
+        DeviceError: The backend says nothing.
+        ValueError: The period or a limit is out of range, or the backend's reading is
+            no pose and velocity.
+    """
+    X_WB = X_WB or RigidTransform()
     reading = wait_for_reading(backend)
     io = DeviceIo(backend, X_WB, period_s, reading)
     io.set_name("device_io")
     device = HapticDevice(
         io,
         period_s=period_s,
-        max_force_N=site.max_force_N,
-        max_torque_Nm=site.max_torque_Nm,
+        max_force_N=max_force_N,
+        max_torque_Nm=max_torque_Nm,
     )
     return device, X_WB @ vector_to_pose(reading.X_BH)

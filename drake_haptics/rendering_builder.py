@@ -81,7 +81,7 @@ def AddHapticRendering(
         effects: What is felt besides contact. Gravity is the plant's own; passivity
             control is of a device.
         coupling: Gains between a handle and the tool; None for no handle.
-        device: The handle's, not yet in a builder.
+        device: The handle's, not yet in a builder, as of `make_device_port`.
         X_HT: Pose of the tool in the handle at rest; the identity where not given.
         period_s: The tick of effects with a memory, and the device's, s; where not
             given, the plant's time step, or 1 ms for a continuous plant.

@@ -20,12 +20,11 @@ from drake_haptics import (
     decompose,
     find_mesh,
     load_mesh,
+    make_device_port,
 )
 from drake_haptics.mass_properties import make_tool_dynamics
 from drake_haptics.scene import Contact, Coupling
 from drake_haptics.systems.contact_query import ContactObject
-from drake_haptics.systems.device_io import DeviceIo
-from drake_haptics.systems.haptic_device import HapticDevice
 
 PERIOD_S = 1e-3
 MASS_KG, SPRING_N_PER_M, DAMPER_NS_PER_M = 0.2, 300.0, 15.0
@@ -73,12 +72,8 @@ block = decompose(load_mesh(find_mesh("block")))
 top_m = float(block.mesh.vertices[:, 2].max())
 builder = DiagramBuilder()
 with WoodOnASpring(start_m=top_m + 0.01, goal_m=top_m - 0.01) as wood:
-    first = wood.read()
-    device = HapticDevice(
-        DeviceIo(wood, RigidTransform(), PERIOD_S, first),
-        period_s=PERIOD_S,
-        max_force_N=5.0,
-        max_torque_Nm=0.2,
+    device, X_WH = make_device_port(
+        wood, period_s=PERIOD_S, max_force_N=5.0, max_torque_Nm=0.2
     )
     AddHapticLoop(
         builder,
@@ -89,7 +84,7 @@ with WoodOnASpring(start_m=top_m + 0.01, goal_m=top_m - 0.01) as wood:
         contact=Contact(),
         coupling=Coupling(),
         X_HT=RigidTransform(),
-        X_WT=RigidTransform([0.0, 0.0, first.X_BH[6]]),
+        X_WT=X_WH,
         period_s=PERIOD_S,
     )
     # Of a real device also: simulator.set_target_realtime_rate(1.0)

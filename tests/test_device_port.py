@@ -1,0 +1,79 @@
+"""A device of one's own in a plant of one's own."""
+
+import numpy as np
+import pytest
+from fake_device import ScriptedDevice, make_reading
+from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+
+from drake_haptics import AddHapticRendering, make_device_port
+from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.scene import Contact, Coupling
+
+LIMITS = {"period_s": 1e-3, "max_force_N": 5.0, "max_torque_Nm": 0.2}
+# The base stands turned in the world.
+X_WB = RigidTransform(RollPitchYaw(0.3, -0.5, 1.0), [0.1, 0.2, 0.3])
+# A cube of 20 mm and 0.1 kg over a floor at z = 0.
+WORLD = """
+<sdf version="1.7"><world name="default">
+<model name="floor"><static>true</static><link name="floor"><collision name="shape">
+  <pose>0 0 -0.01 0 0 0</pose><geometry><box><size>0.2 0.2 0.02</size></box></geometry>
+</collision></link></model>
+<model name="cube"><link name="cube">
+  <inertial><mass>0.1</mass>
+    <inertia><ixx>1e-5</ixx><iyy>1e-5</iyy><izz>1e-5</izz></inertia></inertial>
+  <collision name="shape"><geometry><box><size>0.02 0.02 0.02</size></box></geometry>
+  </collision></link></model></world></sdf>"""
+
+
+def hold_at(z):
+    """Returns a device that holds its handle still, upright at a height z, m."""
+    q_BH = pose_to_vector(X_WB.inverse() @ RigidTransform([0.0, 0.0, z]))
+    return ScriptedDevice(
+        lambda call: make_reading(call, position=q_BH[4:], wxyz=q_BH[:4])
+    )
+
+
+def test_the_handle_is_where_the_device_says():
+    _, X_WH = make_device_port(hold_at(0.05), X_WB, **LIMITS)
+    assert X_WH.IsNearlyEqualTo(RigidTransform([0.0, 0.0, 0.05]), 1e-12)
+    q_BH = hold_at(0.05).read().X_BH
+    _, X_BH = make_device_port(hold_at(0.05), **LIMITS)
+    np.testing.assert_allclose(X_BH.translation(), q_BH[4:], atol=1e-15)
+
+
+def test_a_device_presses_a_body_of_a_plant():
+    backend = hold_at(0.008)
+    device, X_WH = make_device_port(backend, X_WB, **LIMITS)
+    builder = DiagramBuilder()
+    plant, scene_graph = AddMultibodyPlantSceneGraph(builder, 1e-3)
+    Parser(plant).AddModelsFromString(WORLD, "sdf")
+    plant.Finalize()
+    plant.SetDefaultFloatingBaseBodyPose(plant.GetBodyByName("cube"), X_WH)
+    AddHapticRendering(
+        builder,
+        plant,
+        scene_graph,
+        "cube",
+        contact=Contact(stiffness_N_per_m=2e3, damping_Ns_per_m=10.0),
+        coupling=Coupling(stiffness_N_per_m=400.0, damping_Ns_per_m=1.0),
+        device=device,
+    )
+    Simulator(builder.Build()).AdvanceTo(1.0)
+    # The coupling pulls to 8 mm, contact begins at half of the cube and the tolerance,
+    # 12 mm; the cube rests where both carry its weight.
+    z = (2000 * 0.012 + 400 * 0.008 - 0.1 * 9.81) / (2000 + 400)
+    expected_N = 400 * (z - 0.008)
+    F_BH = backend.commands[-1].F_BH
+    force_W = X_WB.rotation() @ F_BH[3:]
+    np.testing.assert_allclose(force_W, [0.0, 0.0, expected_N], atol=1e-3)
+
+
+def test_a_limit_that_cannot_be_is_refused():
+    with pytest.raises(ValueError, match="max_force_N"):
+        make_device_port(hold_at(0.05), **LIMITS | {"max_force_N": -1.0})
+    with pytest.raises(ValueError, match="period_s"):
+        make_device_port(hold_at(0.05), **LIMITS | {"period_s": 0.0})
