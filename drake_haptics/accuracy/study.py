@@ -26,8 +26,8 @@ from drake_haptics.accuracy.study_rows import (
     make_task,
 )
 from drake_haptics.accuracy.truth import find_truth
-from drake_haptics.analysis.study import run_study
 from drake_haptics.analysis.blas_threads import one_blas_thread
+from drake_haptics.analysis.study import run_study
 from drake_haptics.analysis.study_pool import SerialExecutor
 from drake_haptics.bench.machine import describe_machine
 from drake_haptics.bench.valgrind import require_valgrind

@@ -139,20 +139,14 @@ def hold_scene(
 def _find_firm_places(scene: Scene) -> list[float]:
     """Returns times at which the tool is pressed, the firmest first."""
     haptic = build_quietly(scene)
-    force = haptic.loop.penalty_force
-    query = haptic.loop.contact_query
+    F_Tool_W = haptic.diagram.GetOutputPort("F_Tool_W")
+    contacts = haptic.diagram.GetOutputPort("contacts")
     pressed: list[tuple[float, float]] = []
 
     def note(root: Context) -> None:
-        wrench = force.get_tool_wrench_output_port().Eval(
-            force.GetMyContextFromRoot(root)
-        )
-        firmness = float(np.linalg.norm(wrench[3:]))
+        firmness = float(np.linalg.norm(F_Tool_W.Eval(root)[3:]))
         if firmness == 0.0:
-            contacts = query.get_contacts_output_port().Eval(
-                query.GetMyContextFromRoot(root)
-            )
-            firmness = -min(contacts.distance.tolist(), default=math.inf)
+            firmness = -contacts.Eval(root).least_distance
         pressed.append((firmness, root.get_time()))
 
     duration_s = make_hand_path(scene.hand.path).duration_s
@@ -217,9 +211,9 @@ def _settle(
         simulator.AdvanceTo(until_s)
     except FloatingPointError:
         return None
-    tool, coupling = haptic.loop.haptic_tool, haptic.loop.virtual_coupling
+    coupling = haptic.loop.virtual_coupling
     context = simulator.get_context()
-    velocity = tool.get_velocity_output_port().Eval(tool.GetMyContextFromRoot(context))
+    velocity = haptic.diagram.GetOutputPort("V_WTool").Eval(context)
     # NaN is not below either.
     if not np.abs(velocity).max() < _SETTLED_SPEED:
         return None
@@ -227,7 +221,7 @@ def _settle(
         context = find_equilibrium(haptic.diagram, context).context
     except ValueError:
         return None
-    pose = tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(context))
+    pose = haptic.diagram.GetOutputPort("X_WTool").Eval(context)
     model = coupling.get_wrench_model_output_port().Eval(
         coupling.GetMyContextFromRoot(context)
     )

@@ -241,11 +241,11 @@ def _choose_grid(
 def _read_contact(loop: HeldLoop) -> tuple[int, float]:
     """Returns how many contacts push and the force (N) on the tool."""
     parts, root = loop.haptic.loop, loop.context
-    query, force = parts.contact_query, parts.penalty_force
-    contacts = query.get_contacts_output_port().Eval(query.GetMyContextFromRoot(root))
+    diagram = loop.haptic.diagram
+    contacts = diagram.GetOutputPort("contacts").Eval(root)
     # The force begins at the tolerance.
     clustering = parts.contact_clustering
     rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
     pushing = contacts.distance < rule.tolerance_m
-    wrench = force.get_tool_wrench_output_port().Eval(force.GetMyContextFromRoot(root))
+    wrench = diagram.GetOutputPort("F_Tool_W").Eval(root)
     return int(pushing.sum()), float(np.linalg.norm(wrench[3:]))
