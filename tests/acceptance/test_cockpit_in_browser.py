@@ -233,6 +233,9 @@ def test_the_mouse_takes_the_handle_and_drags_it_over_what_is_rough(page):
         " && !document.querySelector('.switch.waiting')"
     )
     page.wait_for("document.getElementById('legend').textContent.includes('friction')")
+    assert page.evaluate(
+        "document.querySelector('.switch.changed .name').textContent"
+    ) == ("Friction")
     f_W = drag_aside(page)
     # It was dragged to the right: what it sticks to holds it back.
     assert f_W[0] < -0.05

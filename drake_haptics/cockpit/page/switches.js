@@ -10,14 +10,14 @@ const handles = new Map();
 export function makeChoices(list) {
   find("contact").querySelectorAll(".choice").forEach(row => row.remove());
   choices.clear();
-  for (const {key, label, options, help} of list) {
+  for (const {key, label, options, help, file} of list) {
     const row = copy("choice-row"), select = row.querySelector("select");
     [select.id, row.title] = [key, help];
     row.querySelector("label").htmlFor = key;
     row.querySelector("label").textContent = label;
     select.append(...options.map(option => new Option(option, option)));
     select.addEventListener("change", () => say({do: "choose", key, to: select.value}));
-    choices.set(key, select);
+    choices.set(key, {select, file});
     find("contact").prepend(row);
   }
 }
@@ -27,7 +27,7 @@ export function makeSwitches(kind, list) {
   const folder = find(kind + "s"), made = switches[kind];
   folder.querySelectorAll(".switch").forEach(row => row.remove());
   made.clear();
-  for (const {name, label, help} of list) {
+  for (const {name, label, help, file} of list) {
     const row = copy("switch-row"), input = row.querySelector("input");
     input.id = kind + "-" + name;
     row.querySelector(".name").textContent = label;
@@ -36,7 +36,7 @@ export function makeSwitches(kind, list) {
       row.classList.add("waiting");
       say({do: kind, name, on: input.checked});
     });
-    made.set(name, input);
+    made.set(name, {input, file});
     folder.append(row);
   }
 }
@@ -56,12 +56,17 @@ export function makeHandles(list) {
 
 export function showSwitches(state) {
   for (const [key, option] of Object.entries(state.choices ?? {})) {
-    if (choices.has(key)) choices.get(key).value = option;
+    const choice = choices.get(key);
+    if (!choice) continue;
+    choice.select.value = option;
+    choice.select.parentElement.classList.toggle("changed", option !== choice.file);
   }
   for (const [kind, values] of [["effect", state.effects ?? {}], ["view", state.views ?? {}]]) {
-    for (const [name, input] of switches[kind]) {
+    for (const [name, {input, file}] of switches[kind]) {
       input.checked = Boolean(values[name]);
       input.parentElement.classList.remove("waiting");
+      // Views are no matter of a scene file.
+      input.parentElement.classList.toggle("changed", file !== undefined && input.checked !== file);
     }
   }
   for (const [name, input] of handles) input.checked = name === state.handle;
