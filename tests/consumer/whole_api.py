@@ -48,6 +48,7 @@ from drake_haptics import (
     TickRecorder,
     UserError,
     __version__,
+    carry_on,
     decompose,
     explain_tick,
     find_mesh,
@@ -55,8 +56,10 @@ from drake_haptics import (
     get_include,
     list_meshes,
     list_scenes,
+    live_keys,
     load_mesh,
     load_scene,
+    make_device_port,
     make_log_header,
     make_simulator,
     open_device,
@@ -66,6 +69,7 @@ from drake_haptics import (
     write_live_values,
 )
 from drake_haptics.run_statistics import RunStatistics
+from drake_haptics.systems.haptic_device import HapticDevice
 
 
 class Still(DeviceBackend):
@@ -128,6 +132,8 @@ def use_a_scene(name: str) -> float:
         loop: HapticLoop = haptic.loop
         root = make_simulator(haptic).get_context()
         write_live_values(haptic, root, scene)
+        assert_type([key.high for key in live_keys(scene)], list[float])
+        root = carry_on(haptic, root, BuildHapticDiagram(scene))
         ledger = EnergyLedger(loop, root)
         assert_type(ledger.to_dict(), dict[str, dict[str, float]])
         with TickRecorder("run.ticks", make_log_header(scene)):
@@ -154,4 +160,6 @@ def use_in_a_plant(
 
 print(__version__.split("."), get_include().upper(), Still().url)
 print(AddHapticLoop.__doc__, ConnectMovingObject.__doc__, use_in_a_plant.__doc__)
+port, _ = make_device_port(Still(), period_s=1e-3, max_force_N=1.0, max_torque_Nm=0.1)
+assert_type(port, HapticDevice)
 print(use_geometry(Path("cup.obj")), use_a_scene("cup_spoon"))
