@@ -113,7 +113,7 @@ def run(
         )
         if ledger is not None:
             ledger.add()
-        simulator.set_monitor(_make_monitor(measure, on_tick, pace))
+        simulator.set_monitor(_make_monitor(haptic, measure, on_tick, pace))
         simulator.AdvanceTo(end_s)
     except KeyboardInterrupt:
         pass
@@ -133,6 +133,7 @@ def _find_end(start_s: float, duration_s: float, haptic: HapticDiagram) -> float
 
 
 def _make_monitor(
+    haptic: HapticDiagram,
     measure: Callable[[Context, float], None],
     on_tick: Callable[[Context], bool | None] | None,
     pace: TickClock | None,
@@ -146,7 +147,9 @@ def _make_monitor(
         measure(context, now_s - start_s)
         start_s = now_s
         if on_tick is not None and on_tick(context):
-            return EventStatus.ReachedTermination(None, "on_tick ends the run")
+            return EventStatus.ReachedTermination(
+                haptic.diagram, "on_tick ends the run"
+            )
         if pace is not None:
             now_s = time.perf_counter()
             pace.wait()
