@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from lcm_rig import (
+    HANDLERS_MAY_CRASH,
     MAX_FORCE_N,
     PERIOD_S,
     add_device,
@@ -29,6 +30,8 @@ from drake_haptics.device.lcm.lcm_device import LcmDevice
 from drake_haptics.device_address import open_device
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
+
+pytestmark = HANDLERS_MAY_CRASH
 
 STIFFNESS_N_PER_M = 200.0
 REST = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
