@@ -6,18 +6,26 @@ from held_samples import load_held
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from drake_haptics.analysis import (
+    SampledWall,
     analyse_held_scene,
+    calc_delay_bounds,
     calc_delay_margin,
     calc_felt_impedance,
+    calc_gain_margin,
+    calc_largest_delay,
+    calc_largest_stiffness,
     calc_passivity,
     find_modes,
     find_stiffness_limits,
     hold_scene,
     modes,
+    suggest_coupling,
 )
 from drake_haptics.analysis.blas_threads import on_one_blas_thread
 
-SPIED = ("eig", "eigvals", "eigvalsh", "inv", "lstsq", "svd")
+SPIED = ("eig", "eigvals", "eigvalsh", "inv", "lstsq", "solve", "svd")
+# Not in any other test: some answers are remembered.
+WALL = SampledWall(0.1, 0.5, 1.01e-3, stiffness=123.0)
 
 
 def count_threads():
@@ -31,12 +39,13 @@ def count_threads():
 
 @pytest.fixture
 def threads(monkeypatch):
-    """The threads at each call of linear algebra, in a process that allows two."""
+    """The threads at the first calls of linear algebra, where two are allowed."""
     seen = []
 
     def spy(function):
         def call(*args, **kwargs):
-            seen.append(count_threads())
+            if len(seen) < 20:  # counting takes longer than what is counted
+                seen.append(count_threads())
             return function(*args, **kwargs)
 
         return call
@@ -73,6 +82,25 @@ def loop(held):
 )
 def test_what_is_asked_of_a_loop_takes_one_thread(analyse, loop, threads):
     analyse(loop)
+    assert set(threads) == {1}
+
+
+@pytest.mark.parametrize(
+    "analyse",
+    [
+        calc_largest_stiffness,
+        calc_largest_delay,
+        calc_gain_margin,
+        calc_delay_bounds,
+    ],
+)
+def test_what_is_asked_of_a_wall_takes_one_thread(analyse, threads):
+    analyse(WALL)
+    assert set(threads) == {1}
+
+
+def test_a_coupling_is_designed_on_one_thread(threads):
+    suggest_coupling("phantom_premium_1_5_6dof", 1010.0)
     assert set(threads) == {1}
 
 

@@ -10,7 +10,6 @@ tests/acceptance/test_tutorials.py runs them anew and compares.
 from __future__ import annotations
 
 import hashlib
-import os
 import sys
 import tempfile
 from pathlib import Path
@@ -49,8 +48,7 @@ def execute(notebook: nbformat.NotebookNode) -> None:
         manager = client.create_kernel_manager()
         manager.transport = "ipc"
         manager.connection_file = str(Path(folder) / "kernel.json")
-        # The matrices are too small to share between threads, which then only wait.
-        client.execute(env=os.environ | {"OPENBLAS_NUM_THREADS": "1"})
+        client.execute()
     for cell in notebook.cells:
         if cell.cell_type == "code":
             cell.outputs = [shown for shown in cell.outputs if not _is_of_fonts(shown)]

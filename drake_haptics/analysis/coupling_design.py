@@ -14,6 +14,7 @@ from drake_haptics.analysis.axis_design import (
     AxisHand,
     design_axis,
 )
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.coupling_plot import plot_axis_design
 from drake_haptics.coupling_check import HeldHandle
 from drake_haptics.device_preset import DevicePreset, load_device_preset
@@ -115,6 +116,7 @@ class CouplingDesign:
         }
 
 
+@on_one_blas_thread
 def suggest_coupling(
     device: str | DevicePreset | HeldHandle,
     rate_hz: float,

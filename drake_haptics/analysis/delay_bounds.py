@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.sampled_wall import (
     SampledWall,
     calc_largest_delay,
@@ -75,6 +76,7 @@ class DelayBounds:
         }
 
 
+@on_one_blas_thread
 def calc_delay_bounds(
     wall: SampledWall, delays_s: Sequence[float] | np.ndarray | None = None
 ) -> DelayBounds:

@@ -66,6 +66,7 @@ class Passivity:
 
     __repr__ = one_line
 
+    @on_one_blas_thread
     def calc_usage(self, damping: np.ndarray) -> np.ndarray:
         """Returns how much of a damping is needed, (n,), without unit.
 

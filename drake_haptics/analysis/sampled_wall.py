@@ -17,6 +17,8 @@ from functools import lru_cache
 import numpy as np
 from scipy.linalg import expm
 
+from drake_haptics.analysis.blas_threads import on_one_blas_thread
+
 # Stiffnesses are tried this factor apart before the edge is bisected.
 _STEP = 2.0 ** (1.0 / 8.0)
 # The softest that is tried, as K T²/m: softer ones are not told from the free handle.
@@ -142,6 +144,7 @@ def _calc_flow(
     return flow[:2, :2], flow[:2, 2]
 
 
+@on_one_blas_thread
 def calc_largest_stiffness(wall: SampledWall) -> float:
     """Returns the stiffness K up to which every softer wall is stable too.
 
@@ -162,6 +165,7 @@ def calc_largest_stiffness(wall: SampledWall) -> float:
     )
 
 
+@on_one_blas_thread
 def calc_gain_margin(wall: SampledWall) -> float:
     """Returns the factor on both K and B up to which the wall is stable.
 
@@ -182,6 +186,7 @@ def calc_gain_margin(wall: SampledWall) -> float:
     )
 
 
+@on_one_blas_thread
 def calc_largest_delay(wall: SampledWall) -> float:
     """Returns the delay t_d up to which every shorter one is stable too, s.
 
