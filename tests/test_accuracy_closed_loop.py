@@ -38,8 +38,8 @@ def test_a_loop_that_is_not_stable_makes_energy(tmp_path):
 
 
 def test_a_loop_that_diverges_makes_infinitely_much(tmp_path, monkeypatch):
-    def make_broken_simulator(haptic):
-        simulator = make_simulator(haptic)
+    def make_broken_simulator(haptic, context):
+        simulator = make_simulator(haptic, context)
         tool = haptic.loop.haptic_tool
         context = tool.GetMyMutableContextFromRoot(simulator.get_mutable_context())
         context.get_mutable_discrete_state_vector().SetAtIndex(9, np.nan)
