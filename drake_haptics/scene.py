@@ -11,9 +11,7 @@ import numpy as np
 from pydrake.common.yaml import yaml_load_typed
 from pydrake.math import RigidTransform, RollPitchYaw
 
-from drake_haptics.device_preset import is_preset_file
-from drake_haptics.errors import MeshError, SceneError
-from drake_haptics.missing_file import describe_missing
+from drake_haptics.errors import SceneError
 from drake_haptics.package_url import resolve_package_url
 from drake_haptics.scene_check import check_values
 from drake_haptics.scene_effects import (
@@ -25,6 +23,7 @@ from drake_haptics.scene_effects import (
     Passivity,
     Shading,
 )
+from drake_haptics.scene_paths import place_files
 from drake_haptics.scene_twin import (
     Encoder,
     ForceDelay,
@@ -355,25 +354,7 @@ def load_scene(path: str | Path) -> Scene:
         check_keys(Scene, data)
         scene: Scene = yaml_load_typed(schema=Scene, filename=str(path))
         check_values(scene)
+        place_files(scene, path.parent)
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error
-    parts: dict[str, Tool | EnvironmentObject] = {"tool": scene.tool}
-    parts |= {f"environment[{i}]": item for i, item in enumerate(scene.environment)}
-    for key, part in parts.items():
-        part.mesh = _absolute(f"{path}: {key}.mesh", part.mesh, path.parent)
-        if not Path(part.mesh).exists():
-            raise SceneError(f"{path}: {key}.mesh: {describe_missing(part.mesh)}")
-    if is_preset_file(scene.device.preset):
-        scene.device.preset = _absolute(
-            f"{path}: device.preset", scene.device.preset, path.parent
-        )
     return scene
-
-
-def _absolute(where: str, file: str, folder: Path) -> str:
-    """Returns the path of a mesh or a preset that holds from any folder."""
-    try:
-        resolved = resolve_package_url(file)
-    except MeshError as error:
-        raise SceneError(f"{where}: {error}") from error
-    return resolved if resolved != file else str((folder / file).resolve())

@@ -7,10 +7,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from drake_haptics.accuracy.scene_file import write_scene
 from drake_haptics.accuracy.tick_cost import time_ticks
 from drake_haptics.errors import UserError
 from drake_haptics.scene import Scene, load_scene
+from drake_haptics.scene_file import write_scene
 from drake_haptics.simulated_device import make_hand_path
 from drake_haptics.simulation import RunError
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -19,7 +18,6 @@ from drake_haptics.accuracy.fresh_run import measure_p99
 from drake_haptics.accuracy.knobs import list_settings
 from drake_haptics.accuracy.one_setting import apply_checked, parse_setting
 from drake_haptics.accuracy.page import write_accuracy_page
-from drake_haptics.accuracy.scene_file import write_scene
 from drake_haptics.accuracy.setting import Setting
 from drake_haptics.accuracy.study import run_accuracy_study
 from drake_haptics.accuracy.study_json import to_json_data
@@ -27,7 +25,7 @@ from drake_haptics.accuracy.words import name_setting
 from drake_haptics.analysis.study_error import StudyError
 from drake_haptics.cli import lessons
 from drake_haptics.cli.accuracy_output import print_choice, print_study
-from drake_haptics.cli.complete import complete_scene, complete_setting
+from drake_haptics.cli.complete import complete_knob, complete_scene
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.exit_codes import ExitCode
 from drake_haptics.cli.finite_range import FiniteRange
@@ -39,10 +37,15 @@ from drake_haptics.cli.mesh_options import (
     write_json,
 )
 from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.cli.scene_options import (
+    load_set_scene,
+    set_option,
+    write_call,
+)
 from drake_haptics.errors import UserError
 from drake_haptics.page_path import check_page_path
-from drake_haptics.scene import Scene, load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.scene import Scene
+from drake_haptics.scene_file import write_scene
 from drake_haptics.simulation import RunError
 
 _FILE: dict[str, Any] = {
@@ -64,7 +67,7 @@ _FILE: dict[str, Any] = {
     "words",
     multiple=True,
     metavar="KEY=VALUE",
-    shell_complete=complete_setting,
+    shell_complete=complete_knob,
     help="Measure this setting alone, such as contact.tolerance_m=0.0005; once more for"
     " each further key of it. `scene` is the scene as it is. Writes no page.",
 )
@@ -77,6 +80,7 @@ _FILE: dict[str, Any] = {
     **_FILE,
     help="The page; its picture is written beside it.  [default: SCENE-accuracy.html]",
 )
+@set_option
 @click.option("--store", **_FILE, help="Keep results here, and go on from them.")
 @click.option(
     "--budget-us",
@@ -94,6 +98,7 @@ def accuracy(
     instructions: bool,
     no_peers: bool,
     out: Path | None,
+    settings: tuple[str, ...],
     store: Path | None,
     budget_us: float | None,
     write: Path | None,
@@ -112,22 +117,22 @@ def accuracy(
         raise click.UsageError("--budget-us goes with neither --out nor --only")
     if words and out is not None:
         raise click.UsageError("--only writes no page: leave --out away")
-    chosen, name = load_scene(find_scene(scene)), Path(scene).stem
+    chosen, name = load_set_scene(scene, settings), Path(scene).stem
     page = out or Path(f"{name}-accuracy.html")
     file = write or Path(f"{name}-{budget_us:g}-us.yaml" if budget_us else "")
     if budget_us is not None:
         require_writable(file, "--write")
     elif not words:
         require_writable(page, "--out")
-    settings = _find_settings(chosen, words)
+    asked = _find_settings(chosen, words)
 
     def measure(
-        show: Callable[[str, float], None], settings: list[Setting] | None
+        show: Callable[[str, float], None], asked: list[Setting] | None
     ) -> AccuracyStudy:
         return run_accuracy_study(
             chosen,
             name,
-            settings=settings,
+            settings=asked,
             store=store,
             progress=show,
             quick=quick,
@@ -137,15 +142,15 @@ def accuracy(
     with _errors_in_a_line(), progress_bar() as show:
         if budget_us is None:
             check_page_path(page)
-            study = measure(show, settings)
+            study = measure(show, asked)
             if not (quick or no_peers or words):
                 study = add_peers(study, chosen, progress=show)
-            if settings is not None:
-                _require_measured(study, settings)
+            if asked is not None:
+                _require_measured(study, asked)
             else:
                 show("drawing the page", 1.0)
-                typed = ["accuracy", scene, *(["--quick"] if quick else [])]
-                write_accuracy_page(study, page, shlex.join(["drake-haptics", *typed]))
+                call = write_call("accuracy", scene, settings)
+                write_accuracy_page(study, page, f"{call} --quick" if quick else call)
         else:
             choice = choose_setting(
                 chosen,

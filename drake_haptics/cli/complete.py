@@ -58,12 +58,27 @@ def complete_unit(
 def complete_setting(
     _: click.Context, __: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
-    """Completes KEY=VALUE of a scene: keys, and devices after `device.preset=`."""
-    if "=" not in incomplete:
-        from drake_haptics.scene import Scene
-        from drake_haptics.scene_keys import list_keys
+    """Completes KEY=VALUE of a scene: keys, and what some of them may be."""
+    from drake_haptics.scene_settings import list_setting_keys
 
-        return _complete([f"{key}=" for key in list_keys(Scene)], incomplete)
+    return _complete_value(list_setting_keys(), incomplete)
+
+
+def complete_knob(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes KEY=VALUE where one key is that of all objects."""
+    from drake_haptics.scene import EnvironmentObject, Scene
+    from drake_haptics.scene_keys import list_keys
+
+    each = list_keys(EnvironmentObject, "environment.")
+    return _complete_value([*list_keys(Scene), *each], incomplete)
+
+
+def _complete_value(keys: Iterable[str], incomplete: str) -> list[CompletionItem]:
+    """Completes a key, and devices after `device.preset=`."""
+    if "=" not in incomplete:
+        return _complete([f"{key}=" for key in keys], incomplete)
     if not incomplete.startswith("device.preset="):
         return []
     from drake_haptics.device_preset import list_device_presets

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
-
 import click
 
 from drake_haptics.cli import lessons
@@ -19,10 +17,13 @@ from drake_haptics.cli.driver_status import (
 from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.cli.scene_options import (
+    load_set_scene,
+    set_option,
+    write_call,
+)
 from drake_haptics.device.simulated_driver import make_simulated_driver
 from drake_haptics.device.stop_signals import stop_on_signals
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.DEVICE)
@@ -63,6 +64,7 @@ from drake_haptics.scene_library import find_scene
     metavar="S",
     help="Stop after so many seconds.  [default: at Ctrl-C]",
 )
+@set_option
 @json_option
 def device(
     scene: str,
@@ -71,6 +73,7 @@ def device(
     rate: float | None,
     ttl_ms: float,
     duration: float | None,
+    settings: tuple[str, ...],
     json_file: str | None,
 ) -> None:
     """Serve a simulated device to `drake-haptics run` in another terminal.
@@ -84,7 +87,7 @@ def device(
     """
     console = make_console(stderr=json_file == "-")
     driver = make_simulated_driver(
-        load_scene(find_scene(scene)),
+        load_set_scene(scene, settings),
         rate_hz=rate,
         max_ttl_s=1e-3 * ttl_ms,
         bind=bind,
@@ -92,8 +95,10 @@ def device(
     )
     console.print("The device waits. In another terminal:")
     console.print(
-        f"  [bold]drake-haptics run {shlex.quote(scene)} --device {driver.url}[/]",
+        f"  {write_call('run', scene, settings)} --device {driver.url}",
+        style="bold",
         soft_wrap=True,
+        markup=False,
     )
     console.print("Ctrl-C ends it.", style="dim")
     with (

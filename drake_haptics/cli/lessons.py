@@ -15,6 +15,10 @@ RUN = Lesson(
             "drake-haptics run --tool pen.obj --environment cup.obj --tool-scale 1e-3",
         ),
         (
+            "With another value, and kept as a scene file at the end",
+            "drake-haptics run can_box --set hand.grip=firm --write-scene my.yaml",
+        ),
+        (
             "Five seconds into a page to keep, with no browser",
             "drake-haptics run cup_spoon --headless --duration 5 --record cup.html",
         ),
@@ -96,7 +100,7 @@ STABILITY = Lesson(
     ],
     exits=f"0: done. {_UNUSABLE}. 130: Ctrl-C; with --store the map goes"
     " on from there.",
-    further="A scene's `coupling` holds the stiffness to change. docs/stability.md"
+    further="--set coupling.stiffness_N_per_m=1200 tries another stiffness. docs/stability.md"
     " explains the page.",
 )
 

@@ -8,11 +8,12 @@ from pathlib import Path
 import click
 
 from drake_haptics.cli import lessons
-from drake_haptics.cli.complete import complete_scene, complete_setting
+from drake_haptics.cli.complete import complete_scene
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.log_words import print_diff, warn_of_gaps
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.cli.scene_options import set_option, set_values
 from drake_haptics.errors import UserError
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
@@ -20,22 +21,13 @@ from drake_haptics.tick_log.log_diff import compare_logs
 from drake_haptics.tick_log.mesh_digest import find_changed_meshes
 from drake_haptics.tick_log.replay import load_log_scene
 from drake_haptics.tick_log.replay import replay as replay_log
-from drake_haptics.tick_log.scene_settings import change_scene
 from drake_haptics.tick_log.tick_log import read_tick_log
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.LOG_REPLAY)
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("scene", required=False, shell_complete=complete_scene)
-@click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    metavar="KEY=VALUE",
-    shell_complete=complete_setting,
-    help="Change a value of the scene, like contact.stiffness_N_per_m=4000; may be"
-    " given again.",
-)
+@set_option
 @click.option(
     "--log",
     "out",
@@ -68,8 +60,7 @@ def replay(
                 f"Warning: {mesh} is not what it was recorded on", fg="yellow", err=True
             )
     chosen = load_log_scene(log) if scene is None else load_scene(find_scene(scene))
-    if settings:
-        chosen = change_scene(chosen, settings)
+    chosen = set_values(chosen, settings)
     with progress_bar() as show:
         again = replay_log(log, chosen, out=out, progress=show)
     difference = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import click
@@ -11,6 +12,8 @@ from drake_haptics.cli.complete import complete_address, complete_file, complete
 from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import require_folder
+from drake_haptics.cli.scene_options import set_option
+from drake_haptics.errors import UserError
 
 _EXPLAINED_S = 2.0
 
@@ -41,6 +44,7 @@ _EXPLAINED_S = 2.0
     metavar="METRES",
     help="Metres per unit of the environment's file.  [default: 1]",
 )
+@set_option
 @click.option(
     "--device",
     metavar="ADDRESS",
@@ -82,6 +86,14 @@ _EXPLAINED_S = 2.0
     help="Note every tick in a file, for the command `log`.",
 )
 @click.option(
+    "--write-scene",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE",
+    callback=require_folder,
+    help="At the end write the scene, with what --set and the page have changed, as"
+    " a scene file to go on from.",
+)
+@click.option(
     "--json",
     "json_file",
     type=click.Path(dir_okay=False, allow_dash=True),
@@ -102,12 +114,14 @@ def run(
     environment: str | None,
     tool_scale: float | None,
     environment_scale: float | None,
+    settings: tuple[str, ...],
     device: str | None,
     duration: float | None,
     headless: bool,
     explain: bool,
     record: Path | None,
     log: Path | None,
+    write_scene: Path | None,
     json_file: str | None,
     pieces: bool,
     port: int | None,
@@ -128,20 +142,38 @@ def run(
         for given in (tool, environment, tool_scale, environment_scale)
     ):
         raise click.UsageError("give either SCENE or --tool and --environment")
+    if write_scene is not None and _is_same(scene, write_scene):
+        # Its comments would be gone.
+        raise UserError(
+            f"--write-scene: {write_scene} is the scene that runs; give another file"
+        )
     if explain:
         headless, duration = True, duration or _EXPLAINED_S
     # Only now what takes a second to load: help and Tab do without.
     from drake_haptics.cli.run_scene import choose_scene, run_scene
 
     run_scene(
-        *choose_scene(scene, tool, environment, tool_scale, environment_scale),
+        *choose_scene(
+            scene, tool, environment, tool_scale, environment_scale, settings
+        ),
         device=device,
         duration_s=duration,
         headless=headless,
         explain=explain,
         record=record,
         log=log,
+        scene_file=write_scene,
         json_file=json_file,
         pieces=pieces,
         port=port,
+    )
+
+
+def _is_same(scene: str | None, file: Path) -> bool:
+    """Returns whether a scene is a file of one's own, and this one."""
+    return (
+        scene is not None
+        and file.exists()
+        and os.path.exists(scene)
+        and file.samefile(scene)
     )

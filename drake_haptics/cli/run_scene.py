@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -15,14 +17,22 @@ from drake_haptics.cli.mesh_options import write_json
 from drake_haptics.cli.page_words import describe_page
 from drake_haptics.cli.parts_table import make_parts_table
 from drake_haptics.cli.run_session import PageOptions, run_session
+from drake_haptics.cli.scene_options import load_set_scene, set_values
 from drake_haptics.cli.status_line import make_summary
 from drake_haptics.cockpit.page_port import open_page_port
 from drake_haptics.errors import UserError
 from drake_haptics.recording import write_recording
-from drake_haptics.scene import Scene, load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.scene import Scene
+from drake_haptics.scene_file import write_scene
 from drake_haptics.stage import open_meshcat, set_stage
 from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
+
+_MESH_OPTIONS = {
+    "tool.mesh": "--tool",
+    "tool.scale": "--tool-scale",
+    "environment[0].mesh": "--environment",
+    "environment[0].scale": "--environment-scale",
+}
 
 
 def choose_scene(
@@ -31,10 +41,16 @@ def choose_scene(
     environment: str | None,
     tool_scale: float | None,
     environment_scale: float | None,
+    settings: Sequence[str],
 ) -> tuple[Scene, str]:
-    """Returns the scene that the arguments of `run` name, and a name for it."""
+    """Returns the scene that the arguments of `run` name, and a name for it.
+
+    Raises:
+        UserError: There is no such scene, or --set cannot change it so.
+    """
     if scene is not None:
-        return load_scene(find_scene(scene)), Path(scene).stem
+        return load_set_scene(scene, settings), Path(scene).stem
+    _refuse_settings_of_meshes(settings)
     assert tool is not None and environment is not None
     made = Scene.for_meshes(
         tool,
@@ -42,7 +58,17 @@ def choose_scene(
         tool_scale=tool_scale or 1.0,
         environment_scale=environment_scale or 1.0,
     )
-    return made, f"{Path(tool).stem} on {Path(environment).stem}"
+    return set_values(made, settings), f"{Path(tool).stem} on {Path(environment).stem}"
+
+
+def _refuse_settings_of_meshes(settings: Sequence[str]) -> None:
+    """Refuses to change the meshes for which the path of the hand is made."""
+    for setting in settings:
+        key = setting.partition("=")[0]
+        if option := _MESH_OPTIONS.get(key):
+            raise UserError(
+                f"--set {key}: give {option} instead; the hand's path is made for it"
+            )
 
 
 def run_scene(
@@ -55,6 +81,7 @@ def run_scene(
     explain: bool,
     record: Path | None,
     log: Path | None,
+    scene_file: Path | None,
     json_file: str | None,
     pieces: bool,
     port: int | None,
@@ -65,9 +92,12 @@ def run_scene(
         UserError: Two files are one.
         click.ClickException: The simulation became unstable.
     """
-    files = [Path(file).absolute() for file in (record, log, json_file) if file]
+    written = (record, log, scene_file, json_file)
+    files = [Path(file).absolute() for file in written if file]
     if len(set(files)) < len(files):
-        raise UserError("--record, --log and --json: each needs a file of its own")
+        raise UserError(
+            "--record, --log, --write-scene and --json: each needs a file of its own"
+        )
     if log is not None and device == f"replay:{log}":
         raise UserError(f"--log: {log} is the log that is replayed; give another file")
     console = make_console(stderr=json_file == "-")
@@ -101,6 +131,11 @@ def run_scene(
         console.print(f"Wrote {record}.", soft_wrap=True, markup=False)
     if log is not None:
         console.print(f"Wrote {log}.", soft_wrap=True, markup=False)
+    if scene_file is not None:
+        head = f"Of {name}, with all its keys: written by drake-haptics run."
+        write_scene(session.scene, scene_file, [head])
+        again = shlex.join(["drake-haptics", "run", str(scene_file)])
+        console.print(f"Wrote {scene_file}: {again}", soft_wrap=True, markup=False)
     if json_file is not None:
         write_json(session.figures, json_file)
     if session.error is not None:

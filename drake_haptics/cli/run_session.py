@@ -39,6 +39,7 @@ class Session:
 
     Attributes:
         haptic: What ran last.
+        scene: As it is at the end, with what the page has changed.
         figures: As `RunStatistics.to_dict` has them, and of a device under `device`
             those of `DeviceWatch.to_dict`.
         parts: Of a tick, if they were to be explained.
@@ -46,6 +47,7 @@ class Session:
     """
 
     haptic: HapticDiagram
+    scene: Scene
     figures: dict[str, Any]
     parts: list[Part]
     error: RunError | None
@@ -151,9 +153,10 @@ def run_session(
                 )
         except RunError as stopped:
             error = stopped
+        last = scene if cockpit is None else cockpit.scene
         figures = statistics.to_dict() | onlookers.describe_device()
     parts = explain_tick(haptic, timer) if timer is not None else []
-    return Session(haptic, figures, parts, error)
+    return Session(haptic, last, figures, parts, error)
 
 
 class _Onlookers:

@@ -28,10 +28,9 @@ from drake_haptics.cli.mesh_options import (
     write_json,
 )
 from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.cli.scene_options import load_set_scene, set_option
 from drake_haptics.errors import UserError
 from drake_haptics.page_path import check_page_path
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import RunError
 
 
@@ -68,6 +67,7 @@ from drake_haptics.simulation import RunError
     callback=require_folder,
     help="Keep the map's results here, and go on from them.",
 )
+@set_option
 @json_option
 def stability(
     scene: str,
@@ -75,6 +75,7 @@ def stability(
     map_size: int,
     out: Path | None,
     store: Path | None,
+    settings: tuple[str, ...],
     json_file: str | None,
 ) -> None:
     """Say how stable a scene is, and how stiff its coupling could be.
@@ -87,7 +88,7 @@ def stability(
     """
     if map_size == 1:
         raise click.BadParameter("0 for no map, else at least 2", param_hint="--map")
-    chosen = load_scene(find_scene(scene))
+    chosen = load_set_scene(scene, settings)
     path = out or Path(f"{Path(scene).stem}-stability.html")
     require_writable(path, "--out")
     try:

@@ -66,6 +66,7 @@ class CockpitRun:
         p_WH = (site.X_WB @ site.X_BH).translation()
         distance_m = _FIRST_DISTANCE * site.workspace_radius_m
         self._meshcat = meshcat
+        self._changes = SceneChanges(scene)
         with ExitStack() as stack:
             self._page = LivePage(
                 meshcat, look_from_the_front(p_WH, distance_m), listener
@@ -77,7 +78,7 @@ class CockpitRun:
             stack.enter_context(closing(self._holding))
             self._cockpit = Cockpit(
                 self._page,
-                SceneChanges(scene),
+                self._changes,
                 self._holding,
                 PagePicture(meshcat, views),
                 advice,
@@ -90,6 +91,11 @@ class CockpitRun:
     def url(self) -> str:
         """Address of the page."""
         return self._page.url
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it is now, with what the page has changed."""
+        return self._changes.scene
 
     @property
     def backend(self) -> DeviceBackend | None:

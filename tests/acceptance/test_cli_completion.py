@@ -54,13 +54,20 @@ def test_units_and_mesh_files():
         assert complete(line) == [("file", "cu")]
 
 
-@pytest.mark.parametrize("line", ["accuracy --only ", "log replay a.tick --set "])
+@pytest.mark.parametrize(
+    "line",
+    ["accuracy --only ", "log replay a.tick --set ", "run can_box --set ",
+     "stability can_box --set ", "accuracy --set ", "device --set "],
+)  # fmt: skip
 def test_keys_of_a_scene_and_devices_for_it(line):
     assert values(f"{line}contact.tol") == ["contact.tolerance_m="]
     assert "effects.friction.coefficient=" in values(f"{line}effects.")
     presets = [f"device.preset={name}" for name in list_device_presets()]
     assert values(f"{line}device.preset=") == presets
     assert values(f"{line}contact.tolerance_m=") == []
+    # A setting of one object, or of all as `accuracy` turns them.
+    first = "environment." if "--only" in line else "environment[0]."
+    assert values(f"{line}{first}sc") == [f"{first}scale="]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

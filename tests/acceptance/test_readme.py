@@ -71,7 +71,7 @@ def test_commands_run(commands, tmp_path, monkeypatch):
         arguments = shorten(command)
         result = CliRunner().invoke(main, arguments)
         assert result.exit_code == 0, result.output
-        for option in ("--record", "--json", "--log", "--write"):
+        for option in ("--record", "--json", "--log", "--write", "--write-scene"):
             # A budget that holds as it is leaves nothing to write.
             if option in arguments and "--budget-us" not in arguments:
                 file = Path(arguments[arguments.index(option) + 1])

@@ -12,6 +12,9 @@ import time
 import numpy as np
 import websocket
 
+from drake_haptics import find_scene, load_scene
+from drake_haptics.scene import Gravity
+
 BOUND_S = 60.0
 PROGRAM = "from drake_haptics.cli import main; main()"
 
@@ -87,8 +90,14 @@ def press_down(run):
     raise TimeoutError("nothing was felt")
 
 
-def test_a_run_is_changed_while_it_goes_on():
-    with RunningCommand("cup_spoon", "--duration", "4") as run:
+def test_a_run_is_changed_while_it_goes_on(tmp_path):
+    mine, begun = tmp_path / "mine.yaml", "contact.stiffness_N_per_m=3000"
+    with RunningCommand(
+        "cup_spoon", "--duration", "4", "--set", begun, "--write-scene", str(mine)
+    ) as run:
+        # What was begun with is what the page goes back to.
+        stiffness = {key["key"]: key["file"] for key in run.hello["keys"]}
+        assert stiffness["contact.stiffness_N_per_m"] == 3000.0
         assert run.hello["scene"] == "cup_spoon"
         run.say(do="effect", name="gravity", on=True)
         run.say(do="set", key="coupling.stiffness_N_per_m", to=400)
@@ -105,6 +114,13 @@ def test_a_run_is_changed_while_it_goes_on():
         assert run.process.returncode == 0
     # All that ran, in whatever hands.
     assert re.search(r"ran\s+4.00 s, 4000 ticks", output)
+    scene = load_scene(find_scene("cup_spoon"))
+    scene.contact.stiffness_N_per_m = 3000.0
+    scene.coupling.stiffness_N_per_m = 400.0
+    scene.effects.gravity = Gravity()
+    kept = load_scene(mine)
+    for part in ("contact", "coupling", "device", "hand", "effects"):
+        assert getattr(kept, part) == getattr(scene, part)
 
 
 def test_a_run_that_is_written_is_only_looked_at(tmp_path):

@@ -18,9 +18,9 @@ from typing import Any
 from symptom_cases import CASES
 from symptom_run import Case
 
-from drake_haptics.accuracy.scene_file import write_scene
 from drake_haptics.scene import Encoder
 from drake_haptics.scene_check import SceneWarning
+from drake_haptics.scene_file import write_scene
 
 PAGE = Path(__file__).parents[2] / "docs" / "troubleshooting.md"
 BEGIN = "<!-- {}: written by tests/characterization/symptom_table.py -->\n"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from drake_haptics.accuracy.scene_file import write_scene
 from drake_haptics.scene import load_scene
+from drake_haptics.scene_file import write_scene
 from drake_haptics.scene_library import find_scene, list_scenes
 
 

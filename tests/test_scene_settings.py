@@ -1,10 +1,12 @@
 """Single values of a scene, set by their keys."""
 
+import shutil
+
 import pytest
 from box_scenes import over_a_plate
 
 from drake_haptics.scene_check import SceneError
-from drake_haptics.tick_log.scene_settings import change_scene
+from drake_haptics.scene_settings import change_scene
 
 
 @pytest.fixture
@@ -38,17 +40,35 @@ def test_an_effect_that_is_not_there_is_made(scene):
     assert change_scene(changed, ["effects.friction="]) == scene
 
 
+def test_settings_that_need_each_other_count_together(scene):
+    size, kind = "contact.cluster_size_m=1e-3", "contact.clustering=octree"
+    assert change_scene(scene, [size, kind]) == change_scene(scene, [kind, size])
+
+
+def test_files_are_found_from_the_current_folder(scene, tmp_path, monkeypatch):
+    (tmp_path / "deep").mkdir()
+    other = shutil.copy(scene.tool.mesh, tmp_path / "deep" / "other.obj")
+    monkeypatch.chdir(tmp_path / "deep")
+    assert change_scene(scene, ["tool.mesh=other.obj"]).tool.mesh == str(other)
+    preset = change_scene(scene, ["device.preset=../arm.yaml"]).device.preset
+    assert preset == str(tmp_path / "arm.yaml")
+
+
 @pytest.mark.parametrize(
     ("setting", "words"),
     [
         ("contact.stiffness_N_per_m", "KEY=VALUE"),
         ("contact.stifness_N_per_m=1", "did you mean 'stiffness_N_per_m'"),
+        ("break_away_m=1", "did you mean 'effects.friction.break_away_m'"),
+        ("cantact.depth=global", "did you mean 'contact.depth'"),
+        ("xyzzy=1", "every-key.yaml"),
+        ("tool.mesh=nowhere.obj", "tool.mesh: .*nowhere.obj: no such file"),
         ("contact.stiffness_N_per_m=much", "expected a finite number"),
         ("contact.stiffness_N_per_m=-1", "contact.stiffness_N_per_m"),
         ("contact.stiffness_N_per_m=[", "cannot be read as YAML"),
         ("environment[3].scale=2", r"environment\[3\].scale: there is nothing at 3"),
         ("contact[0]=2", "nothing at 0"),
-        ("environment.scale=2", "nothing at 'scale'"),
+        ("environment.scale=2", r"a list of 1, the first of which is environment\[0\]"),
         ("contact.tolerance_m.deep=2", "nothing at 'deep'"),
         ("effects.braking=", "nothing at 'braking'"),
         ("=3", "no key"),
