@@ -35,6 +35,14 @@ def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> Non
             "scene differs from what was built in more than its live keys: build its"
             " diagram and carry on there (drake_haptics.carry_on)"
         )
+    put_live_values(haptic, root, scene)
+
+
+def put_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
+    """Writes live values into a context whatever else its diagram was built with.
+
+    As `write_live_values`, for values that are on their way to those of the diagram.
+    """
     contact, loop = scene.contact, haptic.loop
     gains = CouplingGains(**asdict(scene.coupling))
     rule = ClusteringRule(

@@ -102,7 +102,7 @@ class Cockpit:
             self._tell_s = max(now_s, self._told_s + _TELL_PERIOD_S)
         if now_s >= self._tell_s:
             self._tell()
-        return now_s >= self.steering.end_s
+        return self.steering.end_tick(context, now_s)
 
     def _tell(self) -> None:
         """Tells the page how things are, and if that is new what can be changed."""

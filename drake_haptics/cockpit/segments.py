@@ -12,7 +12,7 @@ from pydrake.systems.framework import Context
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.carried_context import carry_on, find_handle
 from drake_haptics.cockpit.cockpit import Cockpit
-from drake_haptics.cockpit.holding import Holding
+from drake_haptics.cockpit.holding import DEVICE, Holding
 from drake_haptics.cockpit.steering import Change
 from drake_haptics.errors import UserError
 from drake_haptics.run_statistics import RunStatistics
@@ -124,7 +124,7 @@ class Segments:
 
     def _change(
         self, change: Change, last: Context | None
-    ) -> tuple[HapticDiagram, Context | None]:
+    ) -> tuple[HapticDiagram, Context]:
         """Returns what runs next, and from where.
 
         Args:
@@ -133,10 +133,12 @@ class Segments:
         """
         old, holding = self._haptic, self._holding
         backend = holding.backend
-        goes_on = last is not None and not change.restarts
-        X_WH = find_handle(old, last) if goes_on else None
         # What says itself where it is begins there anew.
         is_anew = change.restarts and backend is not None and backend.is_placed
+        # A hand on a device may press: a tool put into its handle would kick.
+        is_felt = change.handle == holding.name == DEVICE and not is_anew
+        goes_on = last is not None and (is_felt or not change.restarts)
+        X_WH = find_handle(old, last) if goes_on else None
         try:
             if change.handle != holding.name or is_anew:
                 holding.take(change.handle, X_WH)
@@ -146,7 +148,15 @@ class Segments:
                 raise
             self._steering.refuse(str(error))
             return old, last
-        return new, carry_on(old, last, new) if goes_on else None
+        if goes_on:
+            context = carry_on(old, last, new)
+            if change.restarts:
+                context.SetTime(0.0)
+        else:
+            context = new.diagram.CreateDefaultContext()
+            new.diagram.ExecuteInitializationEvents(context)
+        self._steering.carry_values(new, context)
+        return new, context
 
     def _build(self, old: HapticDiagram, X_WH: RigidTransform | None) -> HapticDiagram:
         """Returns the diagram of the scene as it is now, held as it is now.

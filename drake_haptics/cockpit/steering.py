@@ -20,7 +20,8 @@ from drake_haptics.cockpit.scene_changes import (
     SceneChanges,
 )
 from drake_haptics.errors import UserError
-from drake_haptics.live_scene import is_live_change, write_live_values
+from drake_haptics.live_glide import LiveGlide
+from drake_haptics.live_scene import is_live_change, put_live_values
 
 # A slider that needs another diagram builds it when it has rested for so long.
 _REST_S = 0.25
@@ -47,9 +48,10 @@ class Steering:
     Context is, between two ticks; what cannot ends the segment. What cannot be at all
     is answered with a sentence.
 
+    Values glide to what is asked for: what a hand feels does not step.
+
     Attributes:
         changes: The scene as people have changed it.
-        end_s: When the segment is to end, s; infinite where it is not.
     """
 
     def __init__(
@@ -68,20 +70,43 @@ class Steering:
             locked: Why nothing but the picture may be changed; empty if it may.
         """
         self.changes = changes
-        self.end_s = math.inf
+        self._end_s = math.inf
         self._error, self._is_error_told = "", True
         self._holding = holding
         self._picture = picture
         self._locked = locked
         self._running = changes.scene
         self._change: Change | None = None
+        self._glide = self._make_glide()
 
     def begin(self, haptic: HapticDiagram) -> None:
         """Begins a segment, of a diagram of the scene as it is now."""
         self._haptic = haptic
         self._running = self.changes.scene
-        self._change, self.end_s = None, math.inf
+        self._change, self._end_s = None, math.inf
+        self._glide.aim(self._running)
         self._picture.begin(haptic)
+
+    def carry_values(self, haptic: HapticDiagram, root: Context) -> None:
+        """Writes values that are on their way into the context of a new diagram."""
+        self._running = haptic.scene
+        self._glide.aim(haptic.scene)
+        self._write(haptic, root)
+
+    def end_tick(self, root: Context, now_s: float) -> bool:
+        """Moves values on; to be called after each tick.
+
+        Args:
+            root: Context of the diagram; its parameters may be changed.
+            now_s: The time, s.
+
+        Returns:
+            Whether the segment is to end: `take_change` says for what.
+        """
+        if self._glide.is_moving:
+            self._glide.advance()
+            self._write(self._haptic, root)
+        return now_s >= self._end_s
 
     def take_change(self) -> Change | None:
         """Returns what the segment ended for; None if it was for something else."""
@@ -106,6 +131,7 @@ class Steering:
         if changes.scene is changes.file or self._holding.name == DEVICE:
             return False
         changes.restore(changes.file)
+        self._glide = self._make_glide()
         self._fail(f"It was too much: {why}. The scene begins anew, as in its file.")
         return True
 
@@ -188,15 +214,21 @@ class Steering:
     def _apply(self, root: Context, now_s: float) -> None:
         """Makes the loop run the scene as it is now."""
         scene = self.changes.scene
-        if not is_live_change(self._haptic.scene, scene):
-            self._end(now_s + _REST_S)
-            return
-        try:
-            write_live_values(self._haptic, root, scene)
-        except ValueError as error:
-            self.refuse(str(error))
-        else:
+        if is_live_change(self._haptic.scene, scene):
             self._running = scene
+            self._glide.aim(scene)
+            # The clustering is another one at once.
+            self._write(self._haptic, root)
+        else:
+            self._end(now_s + _REST_S)
+
+    def _write(self, haptic: HapticDiagram, root: Context) -> None:
+        """Writes the values as they are now."""
+        put_live_values(haptic, root, self._glide.apply(self._running))
+
+    def _make_glide(self) -> LiveGlide:
+        """Returns values that are where they are to be."""
+        return LiveGlide(1.0 / self.changes.file.device.rate_hz)
 
     def _end(
         self, end_s: float, handle: str | None = None, restarts: bool = False
@@ -212,5 +244,5 @@ class Steering:
             handle = handle or self._change.handle
             restarts = restarts or self._change.restarts
         self._change = Change(handle or self._holding.name, restarts)
-        if self.end_s != _AT_ONCE:
-            self.end_s = end_s
+        if self._end_s != _AT_ONCE:
+            self._end_s = end_s
