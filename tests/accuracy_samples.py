@@ -102,7 +102,7 @@ def make_usual_rows() -> tuple[Row, ...]:
         make_row("decomposition", "single hull", 124.0, 2.1, 2.4,
                  stiffness=math.inf, tool__decomposition="hull",
                  environment__decomposition="hull"),
-        make_row("tool.max_triangles", "200", 145.0, 20.0, 0.05,
+        make_row("tool.max_triangles", "200", 145.0, 8.0, 0.05,
                  tool__max_triangles=200),
         make_row("effects.gravity", "off", 139.0, 24.0, 0.49,
                  stiffness=None, effects__gravity=None),

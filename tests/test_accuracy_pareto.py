@@ -107,9 +107,9 @@ def test_the_front_of_a_study_has_its_rows():
     study = make_study()
     front = find_front(study, get_native_us)
     assert [row.setting.label for row in front.rows] == [
-        "single hull", "0.2 mm", "0.5 mm", "as it is", "global",
+        "single hull", "200", "as it is",
     ]  # fmt: skip
-    assert "0.5 mm" in [row.setting.label for row in front.knees]
+    assert [row.setting.label for row in front.knees] == ["200"]
     ticks = find_front(study, get_tick_us)
     assert ticks.rows[0].setting.label == "single hull"
 
@@ -128,8 +128,12 @@ def test_what_was_not_measured_is_not_on_the_front():
         get_native_us(missing)
 
 
-@pytest.mark.parametrize("key", ["effects__friction", "device__rate_hz"])
-def test_what_does_something_else_is_not_on_the_front(key):
-    row = make_row("contact.depth", "tracked", 9.0, 9.0, 1.0)
+@pytest.mark.parametrize(
+    "key",
+    ["effects__friction", "device__rate_hz", "device__tick_budget_us",
+     "contact__tolerance_m", "contact__depth", "contact__clustering"],
+)  # fmt: skip
+def test_what_is_no_error_is_not_on_the_front(key):
+    row = make_row("tool.max_triangles", "9", 9.0, 9.0, 1.0, tool__max_triangles=9)
     other = make_row("a", "b", 1.0, 1.0, 0.0, **{key: None})
     assert find_front(make_study(row, other)).rows == (row,)

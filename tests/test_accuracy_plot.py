@@ -75,8 +75,8 @@ def test_no_words_are_cut_off_or_meet(figure):
 
 def test_knees_are_named_by_the_words_of_their_settings(figure):
     (note,) = figure.axes[0].texts
-    assert note.get_text() == "knee: contact.tolerance_m\n0.5 mm: 0.020 N"
-    assert note.xy == (13.0, 0.02)
+    assert note.get_text() == "knee: tool.max_triangles\n200: 0.050 N"
+    assert note.xy == (8.0, 0.05)
 
 
 POINTS = {

@@ -61,12 +61,12 @@ def test_a_scene_without_figures_has_no_verdict():
 
 def test_a_knee_is_compared_with_the_scene_and_its_neighbours():
     (words,) = describe_knees(STUDY, make_front(STUDY))
-    # 2.1 µs and 2.4 N on one side: 10.9 µs for 2.08 decades; 31 µs and the floor of
-    # 1 mN on the other: 18 µs for 1.30.
+    # 2.1 µs and 2.4 N on one side: 5.9 µs for 1.68 decades; 24 µs and 4 mN on the
+    # other: 16 µs for 1.10.
     assert words == (
-        "contact.tolerance_m 0.5 mm: 13.0 µs in the core, a tick of 138, for 0.020 N"
-        " rms, 0.54 times the scene's time there. Up to it a tenth of the error costs"
-        " 5.24 µs, beyond it 13.8."
+        "tool.max_triangles 200: 8.00 µs in the core, a tick of 145, for 0.050 N rms,"
+        " a third of the scene's time there. Up to it a tenth of the error costs"
+        " 3.51 µs, beyond it 14.6."
     )
 
 

@@ -14,6 +14,7 @@ _MODELS = {
     "device.rate_hz": "how often the loop ticks, and so what a second of it costs",
 }
 _EFFECTS = "effects."
+# What a device does and how long a tick may take: the loop, and not its contacts.
 _LOOP = "device."
 
 
@@ -34,12 +35,13 @@ def find_model_change(setting: Setting) -> str:
 
 
 def is_comparable(setting: Setting) -> bool:
-    """Whether a setting's tick does the same as the scene's, only otherwise.
+    """Whether a setting's figure is an error, which another one may beat.
 
-    One with other effects does something else, and at another rate a tick is another
-    share of a second.
+    One of another model is exact in what it does, see `find_model_change`; in another
+    loop a tick is another share of a second, or leaves out what it has no time for.
     """
-    return not any(key.startswith((_EFFECTS, _LOOP)) for key in setting.changes)
+    of_loop = any(key.startswith(_LOOP) for key in setting.changes)
+    return not of_loop and not find_model_change(setting)
 
 
 def is_effect(setting: Setting) -> bool:

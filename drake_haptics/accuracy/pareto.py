@@ -59,8 +59,8 @@ def find_front(
     """Finds the front of the rows that were measured.
 
     Args:
-        study: Rows that were not measured are left out, and those whose tick does
-            something else, see `is_comparable`.
+        study: Rows that were not measured are left out, and those whose figure is
+            no error, see `is_comparable`.
         get_time_us: What is paid, µs.
     """
     rows = [

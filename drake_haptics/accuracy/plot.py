@@ -54,8 +54,8 @@ def draw_study(study: AccuracyStudy) -> Figure:
         figure,
         left,
         [_name_peer(peer) for peer in study.peers],
-        f"Error against {study.reference.label}, at the same {study.ticks} poses. Pale:"
-        f" effects and rates, which make it another loop. {describe_machine(study)}",
+        f"Error against {study.reference.label}, at the same {study.ticks} poses. Pale, and"
+        f" left out of the front: no error, but another model or loop. {describe_machine(study)}",
     )
     figure.draw_without_rendering()  # settles where everything is
     for axes, get_time_us in ((left, get_native_us), (right, get_tick_us)):
@@ -91,7 +91,7 @@ def _draw_rows(
                 *zip(*sorted(points), strict=True),
                 _MARKERS[i % len(_MARKERS)] + ":",
                 color=f"C{i % 10}",
-                # What a tick does not do is no accuracy: paler.
+                # What is no error is paler.
                 alpha=1.0 if all(map(_is_on_a_par, rows)) else 0.35,
                 linewidth=0.8,
                 markersize=7,

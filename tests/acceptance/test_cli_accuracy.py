@@ -113,7 +113,7 @@ def test_the_terminal_shows_the_price_list(invoke, sample):
     assert ["*", "1", "mm", "150/300", "24.0", "0.004/0.016", "4.0", "0", "0.004",
             "30000"] in lines  # fmt: skip
     text = " ".join(result.stdout.split())
-    assert "Knee: contact.tolerance_m 0.5 mm: 13.0 µs in the core" in text
+    assert "Knee: tool.max_triangles 200: 8.00 µs in the core" in text
     assert "Errors are against every contact by itself" in text
     assert "~ differences of model, not errors: contact.depth:" in text
     assert "not measured: decomposition CoACD: coacd is not installed" in text
