@@ -48,4 +48,19 @@ def test_the_page_is_readable(tmp_path, width, is_phone):
         ).startswith("77.4%")
         colours = browser.screenshot().reshape(-1, 3)
         assert len(np.unique(colours, axis=0)) > 50
+        # A shadow at the side says that there is more, and goes where there is not.
+        assert (measure_right_edge(browser, 0) < 200.0) == is_phone
+        assert measure_right_edge(browser, 9999) > 235.0
         assert browser.errors == []
+
+
+def measure_right_edge(browser, scrolled):
+    """Returns how bright, of 255, the corner of a picture is that scrolls sideways."""
+    x, y = browser.evaluate(
+        "(picture => {"
+        f"  picture.scrollLeft = {scrolled};"
+        "  const box = picture.getBoundingClientRect();"
+        "  return [box.right, box.top].map(Math.floor);"
+        "})(document.querySelector('.wide'))"
+    )
+    return browser.screenshot(x - 3, y + 1, 2, 2).mean()
