@@ -8,6 +8,9 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+# Rich stops the clock of a bar that was full once. Each part of the work fills it.
+_ALMOST_FULL = 1.0 - 1e-6
+
 
 @contextmanager
 def progress_bar() -> Iterator[Callable[[str, float], None]]:
@@ -24,7 +27,7 @@ def progress_bar() -> Iterator[Callable[[str, float], None]]:
         task = bar.add_task("", total=1.0)
 
         def show(what: str, share: float) -> None:
-            bar.update(task, description=what, completed=share)
+            bar.update(task, description=what, completed=min(share, _ALMOST_FULL))
             bar.refresh()
 
         yield show
