@@ -54,5 +54,7 @@ def diff(
         write_json(difference.to_dict(), json_file)
     if json_file != "-":
         print_diff(difference, logs[0].header.period_s)
+        if plot is not None:
+            click.echo(f"Wrote {plot}.")
     if not difference.is_bit_equal:
         ctx.exit(ExitCode.NO)

@@ -76,3 +76,5 @@ def replay(
         click.echo("The rates differ, so there is nothing to compare tick by tick.")
     else:
         print_diff(difference, log.header.period_s)
+    if out is not None:
+        click.echo(f"Wrote {out}.")

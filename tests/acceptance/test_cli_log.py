@@ -64,6 +64,7 @@ def test_a_replay_in_another_process_is_equal_to_the_last_bit(log, tmp_path):
     answer = invoke("log", "replay", log, "--log", tmp_path / "again.tick")
     assert answer.exit_code == 0
     assert "All 1500 ticks are equal to the last bit." in answer.output
+    assert answer.output.endswith(f"\nWrote {tmp_path / 'again.tick'}.\n")
     answer = invoke("log", "diff", log, tmp_path / "again.tick")
     assert answer.exit_code == 0
     assert "equal to the last bit" in answer.output
@@ -79,6 +80,8 @@ def test_a_replay_with_another_stiffness_is_compared_and_drawn(log, tmp_path):
         in answer.output
     )
     assert "X_WTool position" in answer.output
+    answer = invoke("log", "diff", log, again, "--plot", picture)
+    assert answer.output.endswith(f"\nWrote {picture}.\n")
     answer = invoke("log", "diff", log, again, "--plot", picture, "--json", "-")
     assert answer.exit_code == 3
     data = json.loads(answer.output)
