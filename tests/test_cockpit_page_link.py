@@ -10,6 +10,7 @@ import time
 import pytest
 import websocket
 
+from drake_haptics.cockpit import page_link
 from drake_haptics.cockpit.page_link import PageLink
 from drake_haptics.cockpit.page_port import open_page_port
 from drake_haptics.cockpit.telemetry import TickBuffer
@@ -143,12 +144,43 @@ def test_a_flood_is_taken_in_small_parts(link):
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
-def test_the_loop_goes_on_where_the_process_has_gone(link, number):
-    os.kill(link._process.pid, number)
+def test_where_the_process_has_gone_another_one_serves_the_page(
+    link, number, monkeypatch, caplog
+):
+    monkeypatch.setattr(page_link, "_SHORT_LIFE_S", 0.0)
+    link.tell({"hello": {"scene": "cup"}})
+    link.tell({"state": {"handle": "mouse"}})
+    page = connect(link.url)
+    read_until(page, "state")
+    fds = len(os.listdir("/proc/self/fd"))
+    pid = link._process.pid
+    os.kill(pid, number)
     wait_for(lambda: not link.send(b"#"))
-    link.tell({"state": {}})
     assert link.hear() == []
+    wait_for(lambda: link.flush() or link._process.pid != pid)
+    page = connect(link.url)
+    assert read_until(page, "hello") == {"scene": "cup"}
+    assert read_until(page, "state")["handle"] == "mouse"
+    page.send('{"do": "home"}')
+    assert wait_for(link.hear) == [{"do": "home"}]
+    [record] = caplog.records
+    assert f"code -{number:d}" in record.message and link.url in record.message
+    assert len(os.listdir("/proc/self/fd")) == fds + 1  # This page's, too.
+    pids = [pid, link._process.pid]
     link.close()
+    assert not any(map(is_running, pids))
+
+
+def test_a_process_that_ends_at_once_is_not_started_for_ever(link, caplog):
+    os.kill(link._process.pid, signal.SIGKILL)
+    wait_for(lambda: link.flush() or caplog.records)
+    for number in range(100):
+        link.tell({"state": {"number": number}})
+        assert link.hear() == []
+    [record] = caplog.records
+    assert "goes on without its page" in record.message
+    link.close()
+    assert len(caplog.records) == 1
 
 
 def test_its_end_leaves_no_process_and_a_free_port():

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import socket
 import subprocess
 import sys
-from collections import deque
+from time import monotonic
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -19,6 +20,10 @@ _SOCKET_BYTES = 1 << 18
 # Of messages of pages, at once: a flood takes no more of a tick than these.
 _MOST_HEARD = 8
 _END_S = 3.0
+# A process that ends sooner would do so again.
+_SHORT_LIFE_S = 2.0
+
+_logger = logging.getLogger(__name__)
 
 
 class PageLink:
@@ -32,28 +37,31 @@ class PageLink:
 
         Args:
             meshcat_url: Address of the Meshcat in the page.
-            listener: Of `open_page_port`, if it was to be had before; it is the
-                process's from now on.
+            listener: Of `open_page_port`, if it was to be had before; it is closed
+                with the link.
 
         Raises:
             UserError: No port can be had.
         """
-        listener = listener or open_page_port()
-        self._url = f"http://localhost:{listener.getsockname()[1]}/"
+        self._listener = listener or open_page_port()
+        self._url = f"http://localhost:{self._listener.getsockname()[1]}/"
+        parts = urlsplit(meshcat_url)
+        self._origin = f"{parts.scheme}://{parts.netloc}"
+        # What a process that takes the place of another is to be told, by its name.
+        self._lasting: dict[str, bytes] = {}
+        self._start()
+
+    def _start(self) -> None:
+        """Starts the process, with all that was told so far."""
         self._socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
-        with listener, other:
+        with other:
             for end in (self._socket, other):
                 end.setblocking(False)
                 end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SOCKET_BYTES)
                 end.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _SOCKET_BYTES)
-            fds = (listener.fileno(), other.fileno())
-            parts = urlsplit(meshcat_url)
+            fds = (self._listener.fileno(), other.fileno())
             self._process = subprocess.Popen(
-                [
-                    *(sys.executable, "-m", _PROCESS),
-                    *map(str, fds),
-                    f"{parts.scheme}://{parts.netloc}",
-                ],
+                [*(sys.executable, "-m", _PROCESS), *map(str, fds), self._origin],
                 # The process ends with this pipe, whatever ended us.
                 stdin=subprocess.PIPE,
                 pass_fds=fds,
@@ -62,7 +70,8 @@ class PageLink:
                 # A file in the current folder is no module.
                 env={**os.environ, "PYTHONSAFEPATH": "1"},
             )
-        self._untold: deque[bytes] = deque()
+        self._started_s, self._is_lost = monotonic(), False
+        self._untold = dict(self._lasting)
 
     @property
     def url(self) -> str:
@@ -70,14 +79,24 @@ class PageLink:
         return self._url
 
     def tell(self, message: dict[str, Any]) -> None:
-        """Sends a message that must not get lost; now or with a later call."""
-        self._untold.append(json.dumps(message).encode())
+        """Sends a message that must not get lost; now or with a later call.
+
+        Args:
+            message: Of one name; a newer one takes the place of an older one.
+        """
+        [name] = message
+        self._lasting[name] = json.dumps(message).encode()
+        self._untold[name] = self._lasting[name]
         self.flush()
 
     def flush(self) -> None:
-        """Sends what `tell` could not send yet."""
-        while self._untold and self.send(self._untold[0]):
-            self._untold.popleft()
+        """Sends what `tell` could not send yet, to a new process if need be."""
+        if not self._is_lost and self._process.poll() is not None:
+            self._replace_process()
+        for name, packet in list(self._untold.items()):
+            if not self.send(packet):
+                break
+            del self._untold[name]
 
     def send(self, packet: bytes | memoryview) -> bool:
         """Sends a packet if there is room for it; returns whether there was."""
@@ -97,14 +116,33 @@ class PageLink:
             pass
         return heard
 
+    def _replace_process(self) -> None:
+        """Starts another process where one has ended before its time, and says so."""
+        what = f"The page's process has ended with code {self._process.returncode}"
+        self._is_lost = monotonic() - self._started_s < _SHORT_LIFE_S
+        if self._is_lost:
+            _logger.warning("%s: the run goes on without its page.", what)
+            return
+        _logger.warning("%s: another one serves %s.", what, self._url)
+        self._let_go()
+        self._start()
+
+    def _let_go(self) -> None:
+        """Closes what led to a process that has ended."""
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+        self._socket.close()
+
     def close(self, why: str = "The run has ended.") -> None:
         """Ends the page and its process; may be called again.
 
         Args:
             why: Told to the pages.
         """
-        if self._process.stdin is None or self._process.stdin.closed:
+        assert self._process.stdin is not None
+        if self._process.stdin.closed:
             return
+        self._is_lost = True  # It need not come back.
         self.tell({"over": {"why": why}})
         self._process.stdin.close()
         try:
@@ -112,7 +150,8 @@ class PageLink:
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
-        self._socket.close()
+        self._let_go()
+        self._listener.close()
 
     def __enter__(self) -> PageLink:
         """Returns the link."""
