@@ -1,12 +1,14 @@
 /* A whole driver of a haptic device, to start one of your own from.
- *
- *   cc -O2 -o device_driver device_driver.c -lm -I$(python -c \
- *     "import drake_haptics as d; print(d.get_include())")
- *   ./device_driver [PORT [LONGEST_TIME_TO_LIVE_S]]
- *
- * It serves a handle of 0.2 kg that a hand holds by a spring, in three axes, at
+
+cc -O2 -o device_driver device_driver.c -lm \
+  "-I$(python -c 'import drake_haptics as d; print(d.get_include())')"
+./device_driver
+*/
+
+/* It serves a handle of 0.2 kg that a hand holds by a spring, in three axes, at
  * 1 kHz, until it is interrupted. "VENDOR" marks the three places where a real
- * device's SDK is called instead; docs/bridge-a-device.md names the calls. */
+ * device's SDK is called instead; docs/bridge-a-device.md names the calls. The
+ * arguments are PORT and LONGEST_TIME_TO_LIVE_S, where others are wanted. */
 #define _POSIX_C_SOURCE 200809L
 
 #include <arpa/inet.h>

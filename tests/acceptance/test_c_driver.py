@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -77,6 +79,21 @@ def receive_until(host, wanted):
         if state is not None and wanted(state):
             return state
     raise TimeoutError(f"not reached; the last state was {host.state}")
+
+
+def test_its_compile_line_can_be_pasted(tmp_path):
+    """As it stands, in the folder of the file, to the shell."""
+    require_c_compiler()
+    if shutil.which("cc") is None:
+        pytest.skip("the compiler is not called cc")
+    head = SOURCE.read_text(encoding="utf-8").partition("*/")[0]
+    commands = re.search(r"^cc .*?(?=^\./)", head, re.MULTILINE | re.DOTALL)[0]
+    shutil.copy(SOURCE, tmp_path)
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    environment = {**os.environ, "PATH": path}
+    subprocess.run(["sh", "-ec", commands], cwd=tmp_path, env=environment, check=True)
+    with running(tmp_path / "device_driver") as (_, port):
+        assert port > 0
 
 
 def test_it_says_nothing_before_it_is_spoken_to(host):
