@@ -35,8 +35,8 @@ def test_every_number_reads_back(tmp_path):
     reals = np.array([[float(word) for word in line[1:44]] for line in lines])
     np.testing.assert_array_equal(reals, rows.reals)
     assert np.signbit(reals[0, head.index("V_WH_wx_rad_per_s") - 1])
-    counts = np.array([[int(word) for word in line[44:]] for line in lines])
-    np.testing.assert_array_equal(counts, rows.counts)
+    counts = np.array([[int(word) for word in line[44:49]] for line in lines])
+    np.testing.assert_array_equal(counts, rows.counts[:, :5])
 
 
 def test_the_columns_are_named_with_their_units(tmp_path):
@@ -48,6 +48,24 @@ def test_the_columns_are_named_with_their_units(tmp_path):
     assert head[head.index("F_display_fx_N") - 3] == "F_display_taux_Nm"
     assert head[-7:] == "contacts clusters status sequence buttons gate fault".split()
     assert sum(map(len, REALS.values())) == 43
+
+
+def test_gate_and_fault_are_words(tmp_path):
+    rows = make_smooth_rows(6)
+    rows["device_time_s"][:] = [1.0, 1.1, 1.2, 1.3, 1.4, np.nan]
+    rows["gate"][:] = [0, 1, 2, 2, 9, 0]
+    rows["fault"][:] = [0, 0, 1, 3, 77, 0]
+    _, *lines = export(write_log(tmp_path / "log", [rows]))
+    assert [line[-2:] for line in lines] == [
+        ["idle", "none"],
+        ["active", "none"],
+        ["fault", "stale"],
+        ["fault", "overspeed"],
+        # Of a later version.
+        ["9", "77"],
+        # A simulated device has no gate that could be idle.
+        ["simulated", "none"],
+    ]
 
 
 def test_missing_ticks_are_missing_and_progress_ends_at_one(tmp_path):

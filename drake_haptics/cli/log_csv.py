@@ -22,7 +22,8 @@ from drake_haptics.tick_log.tick_log import TickLogReader
 def csv(file: Path, out: str) -> None:
     """Write a log as a table: a line per tick, units in the names of the columns.
 
-    OUT is a file, or - for stdout. The numbers read back as the very same doubles.
+    OUT is a file, or - for stdout. The numbers read back as the very same doubles;
+    gate and fault are words.
     """
     if os.path.exists(out) and os.path.exists(file) and os.path.samefile(out, file):
         raise UserError(f"{out} is the log itself; give another file")

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Callable
 from typing import IO
 
+from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.tick_log.tick_log import TickLogReader
-from drake_haptics.tick_log.tick_rows import iterate_column_names
+from drake_haptics.tick_log.tick_rows import TickRows, iterate_column_names
+
+_GATES = {int(gate): gate.name.lower() for gate in GateState}
+_FAULTS = {int(fault): fault.name.lower() for fault in Fault}
+_SIMULATED = "simulated"
 
 
 def write_csv(
@@ -18,8 +24,9 @@ def write_csv(
     """Writes every sound tick as a line, with units in the names of the columns.
 
     Numbers are written with as many digits as it takes to get the same double back.
-    Ticks that are missing in the log are missing here: the first column is the
-    tick's number.
+    Gate and fault are words, those of `GateState` and `Fault`; the gate of a simulated
+    device, which has none, is `simulated`. Ticks that are missing in the log are
+    missing here: the first column is the tick's number.
 
     Args:
         reader: Of the log; afterwards it knows what is missing.
@@ -30,11 +37,28 @@ def write_csv(
     writer.writerow(["tick", *iterate_column_names()])
     for rows in reader.iterate_blocks(progress):
         writer.writerows(
-            [tick, *reals, *counts]
-            for tick, reals, counts in zip(
+            [tick, *reals, *counts[:-2], gate, fault]
+            for tick, reals, counts, (gate, fault) in zip(
                 rows.ticks.tolist(),
                 rows.reals.tolist(),
                 rows.counts.tolist(),
+                _tell_gates(rows),
                 strict=True,
             )
         )
+
+
+def _tell_gates(rows: TickRows) -> list[tuple[str | int, str | int]]:
+    """Returns gate and fault of each tick; numbers that have no name stay numbers."""
+    return [
+        (
+            _SIMULATED if math.isnan(time_s) and gate == 0 else _GATES.get(gate, gate),
+            _FAULTS.get(fault, fault),
+        )
+        for time_s, gate, fault in zip(
+            rows["device_time_s"].tolist(),
+            rows["gate"].tolist(),
+            rows["fault"].tolist(),
+            strict=True,
+        )
+    ]
