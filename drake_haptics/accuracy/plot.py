@@ -54,8 +54,9 @@ def draw_study(study: AccuracyStudy) -> Figure:
         figure,
         left,
         [_name_peer(peer) for peer in study.peers],
-        f"Error against {study.reference.label}, at the same {study.ticks} poses. Pale, and"
-        f" left out of the front: no error, but another model or loop. {describe_machine(study)}",
+        f"Error against {study.reference.label}, at the same {study.ticks} poses. Pale,"
+        " and left out of the front: no error, but another model or loop."
+        f" {describe_machine(study)}",
     )
     figure.draw_without_rendering()  # settles where everything is
     for axes, get_time_us in ((left, get_native_us), (right, get_tick_us)):

@@ -100,8 +100,8 @@ STABILITY = Lesson(
     ],
     exits=f"0: done. {_UNUSABLE}. 130: Ctrl-C; with --store the map goes"
     " on from there.",
-    further="--set coupling.stiffness_N_per_m=1200 tries another stiffness. docs/stability.md"
-    " explains the page.",
+    further="--set coupling.stiffness_N_per_m=1200 tries another stiffness."
+    " docs/stability.md explains the page.",
 )
 
 ACCURACY = Lesson(
