@@ -2,6 +2,7 @@
 
 import io
 import itertools
+import re
 from dataclasses import replace
 
 import pytest
@@ -10,7 +11,7 @@ from rich.console import Console
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cli.status_line import StatusLine, make_summary
-from drake_haptics.device.backend import GateState
+from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
@@ -41,19 +42,42 @@ def test_a_terminal_sees_time_contacts_and_force(haptic):
     assert "-0.00" not in text
 
 
-@pytest.mark.parametrize("gate", GateState)
-def test_a_force_that_the_device_does_not_show_is_said_to_be_none(gate):
-    device = ScriptedDevice(lambda call: replace(make_reading(call), gate=gate))
+def follow_device(script, duration_s=0.05):
+    """Returns what a terminal sees of a run on a device, 0.1 s of clock per tick."""
     scene = load_scene(find_scene("sphere_pen"))
-    haptic = BuildHapticDiagram(scene, device=device)
+    haptic = BuildHapticDiagram(scene, device=ScriptedDevice(script))
     text = io.StringIO()
     console = Console(file=text, force_terminal=True, width=200, color_system=None)
     clock = itertools.count(0.0, 0.1)
     pace = TickClock(haptic.period_s)
     with StatusLine(console, haptic, pace, clock=lambda: next(clock)) as status:
-        run(haptic, 0.05, pace=pace, on_tick=status.end_tick)
-    assert f"{gate.name}" in text.getvalue()
-    assert ("(not shown)" in text.getvalue()) == (gate != GateState.ACTIVE)
+        run(haptic, duration_s, pace=pace, on_tick=status.end_tick)
+    return text.getvalue()
+
+
+@pytest.mark.parametrize("gate", GateState)
+def test_a_force_that_the_device_does_not_show_is_said_to_be_none(gate):
+    text = follow_device(lambda call: replace(make_reading(call), gate=gate))
+    assert f"{gate.name}" in text
+    assert ("(not shown)" in text) == (gate != GateState.ACTIVE)
+    assert "silent" not in text
+
+
+def test_a_driver_that_has_gone_is_not_said_to_wait_for_enter():
+    fault = replace(make_reading(7), gate=GateState.FAULT, fault=Fault.STALE)
+    text = follow_device(lambda call: make_reading(call) if call < 9 else fault)
+    assert "ACTIVE" in text
+    assert "FAULT (stale): silent for 1 s, is its driver running?" in text
+    assert "Enter" not in text[text.index("silent") :]
+
+
+def test_the_force_of_the_line_is_within_the_limits_of_the_device():
+    # At first the tool is where the handle is, then 40 mm behind it, at 800 N/m.
+    text = follow_device(
+        lambda call: make_reading(call, position=(0, 0, 0.04 if call > 5 else 0))
+    )
+    forces = [float(force) for force in re.findall(r"([\d.]+) N ", text)]
+    assert max(forces) == 8.5
 
 
 def test_what_a_slow_loop_leaves_out_is_said():

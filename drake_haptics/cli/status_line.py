@@ -28,6 +28,8 @@ from drake_haptics.tick_clock import TickClock
 _ROUNDING_J = 1e-9
 # Lateness in the line is that of so many latest ticks.
 _LATEST = 1000
+# A driver that has said nothing for so long is not one that is merely late.
+_SILENT_S = 1.0
 
 
 class StatusLine(LiveLine):
@@ -52,6 +54,9 @@ class StatusLine(LiveLine):
         self._pace = pace
         self._context: Context | None = None
         self._before_s = 0.0
+        # Of the device's newest reading: its number, and for how long it is the same.
+        self._sequence: int | None = None
+        self._silent_s = 0.0
 
     def follow(self, haptic: HapticDiagram) -> None:
         """Tells from now on of another diagram, with which the run goes on."""
@@ -84,7 +89,7 @@ class StatusLine(LiveLine):
             late_s = self._pace.calc_lateness(_LATEST)
             # What a person acts on comes first: a narrow terminal cuts the line.
             parts = [
-                describe_gate(reading),
+                self._describe_device(reading, passed_s),
                 force,
                 f"{ticks / passed_s:.0f} Hz, late p50/p99/p99.9"
                 f" {describe_lateness(late_s)}",
@@ -93,6 +98,17 @@ class StatusLine(LiveLine):
             ]
         parts += self._describe_relief(self._context)
         return " · ".join([f"[bold]{time_s:7.1f} s[/]", *parts])
+
+    def _describe_device(self, reading: DeviceReading | None, passed_s: float) -> str:
+        """Returns whether the device shows force, and whether its driver is there."""
+        sequence = None if reading is None else reading.sequence
+        is_new = sequence != self._sequence
+        self._sequence = sequence
+        self._silent_s = 0.0 if is_new else self._silent_s + passed_s
+        if self._silent_s < _SILENT_S:
+            return describe_gate(reading)
+        silence = f"silent for {self._silent_s:.0f} s, is its driver running?"
+        return describe_gate(reading, silence)
 
     def _describe_relief(self, context: Context) -> list[str]:
         """Returns what is left out because ticks take too long, if anything is."""
@@ -111,14 +127,12 @@ class StatusLine(LiveLine):
         contacts = found.Eval(found.get_system().GetMyContextFromRoot(context))
         clustering = loop.contact_clustering.GetMyContextFromRoot(context)
         clusters = loop.contact_clustering.get_clusters_output_port().Eval(clustering)
-        coupling = loop.virtual_coupling.GetMyContextFromRoot(context)
-        F_display = loop.virtual_coupling.get_display_wrench_output_port().Eval(
-            coupling
-        )
+        device = loop.device.GetMyContextFromRoot(context)
+        F_applied = loop.device.get_applied_wrench_output_port().Eval(device)
         deepest_mm = 1e3 * max(0.0, -contacts.distance.min(initial=0.0))
         return (
-            f"[bold]{np.linalg.norm(F_display[3:]):4.1f} N[/]"
-            f" {1e3 * np.linalg.norm(F_display[:3]):4.0f} mN·m",
+            f"[bold]{np.linalg.norm(F_applied[3:]):4.1f} N[/]"
+            f" {1e3 * np.linalg.norm(F_applied[:3]):4.0f} mN·m",
             f"{len(contacts):3d} contacts in {len(clusters):2d} clusters"
             f" · {deepest_mm:4.2f} mm deep",
         )
