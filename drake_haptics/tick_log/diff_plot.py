@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 
 import numpy as np
 
 from drake_haptics.tick_log.log_diff import find_common_rows
+from drake_haptics.tick_log.scene_difference import find_changes
 from drake_haptics.tick_log.tick_log import TickLog
 
+# More than these are no title.
+_MOST_CHANGES = 3
+# Letters in a line of it.
+_TITLE_WIDTH = 90
 _COLORS = ("#1f77b4", "#d62728")
 
 
@@ -42,11 +48,27 @@ def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> 
     depth.set_ylabel("penetration / mm")
     apart.set_ylabel("between the tools / mm")
     apart.set_xlabel("time / s")
+    force.set_title(make_title(a, b, names), fontsize=10)
     force.legend(frameon=False)
     for axes in (force, depth, apart):
         axes.grid(alpha=0.3)
         axes.margins(x=0.0)
     figure.savefig(path, dpi=110)
+
+
+def make_title(a: TickLog, b: TickLog, names: tuple[str, str]) -> str:
+    """Returns what two runs are called, and by what their scenes differ.
+
+    Args:
+        a: One run.
+        b: Another one.
+        names: Of the runs.
+    """
+    changes = find_changes(a.header.scene, b.header.scene)
+    words = "; ".join(changes) if changes else "the same scene"
+    if len(changes) > _MOST_CHANGES:
+        words = f"scenes that differ in {len(changes)} values"
+    return textwrap.fill(f"{names[0]} and {names[1]}: {words}", _TITLE_WIDTH)
 
 
 def _norm(vectors: np.ndarray) -> np.ndarray:
