@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from drake_haptics.bench.benchmark import BenchFigures
+from drake_haptics.bench.loop import runs
 from drake_haptics.bench.loop.figures import LoopFigures, LoopTimes
 from drake_haptics.bench.loop.names import MUJOCO, NATIVE, OURS, STOCK
 from drake_haptics.bench.loop.problem import Loop, LoopCourse, LoopProblem, make_problem
@@ -40,6 +41,21 @@ def loops(problem: LoopProblem) -> dict[str, Loop]:
 @pytest.fixture(scope="module")
 def courses(loops: dict[str, Loop]) -> dict[str, LoopCourse]:
     return {name: loop.observe() for name, loop in loops.items()}
+
+
+def test_only_a_solver_that_drake_lacks_is_missing(
+    problem: LoopProblem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> Loop:
+        raise RuntimeError("a defect")
+
+    monkeypatch.setattr(runs, "STOCK", {"gone": "gauss"})
+    loops, missing = make_loops(problem)
+    assert "gone" not in loops and "no contact solver 'gauss'" in missing["gone"]
+    monkeypatch.setattr(runs, "STOCK", {"there": "sap"})
+    monkeypatch.setattr(runs, "StockLoop", fail)
+    with pytest.raises(RuntimeError, match="a defect"):
+        make_loops(problem)
 
 
 def test_our_loop_repeats_the_recorded_run(

@@ -9,7 +9,7 @@ import numpy as np
 from drake_haptics.bench.loop.figures import LoopFigures, LoopTimes
 from drake_haptics.bench.loop.names import MUJOCO, NATIVE, OURS, STOCK
 from drake_haptics.bench.loop.problem import Loop, LoopCourse, LoopProblem
-from drake_haptics.bench.loop.stock_drake import StockLoop
+from drake_haptics.bench.loop.stock_drake import StockLoop, has_solver
 from drake_haptics.bench.loop.this_package import NativeLoop, ThisLoop
 from drake_haptics.bench.native_build import NativeBuildError
 from drake_haptics.bench.timing import typical
@@ -20,10 +20,10 @@ def make_loops(problem: LoopProblem) -> tuple[dict[str, Loop], dict[str, str]]:
     loops: dict[str, Loop] = {OURS: ThisLoop(problem), NATIVE: NativeLoop(problem)}
     missing: dict[str, str] = {}
     for name, solver in STOCK.items():
-        try:
+        if has_solver(solver):
             loops[name] = StockLoop(problem, solver)
-        except RuntimeError as error:
-            missing[name] = str(error)
+        else:
+            missing[name] = f"this Drake has no contact solver '{solver}'"
     try:
         from drake_haptics.bench.loop.with_mujoco import MujocoLoop
 

@@ -10,6 +10,7 @@ import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import (
     AddMultibodyPlant,
+    DiscreteContactApproximation,
     MultibodyPlantConfig,
 )
 from pydrake.multibody.tree import (
@@ -34,6 +35,16 @@ _HANDLE_KG = 1e6
 _HANDLE_RADIUS_M = 1.0
 
 
+def has_solver(solver: str) -> bool:
+    """Returns whether this Drake has a contact solver.
+
+    Args:
+        solver: Drake's name of a contact approximation: "tamsi", which newer releases
+            lack, or one of SAP.
+    """
+    return hasattr(DiscreteContactApproximation, f"k{solver.capitalize()}")
+
+
 class StockLoop:
     """A discrete `MultibodyPlant`: a bushing, and point contact.
 
@@ -49,11 +60,7 @@ class StockLoop:
 
         Args:
             problem: What is asked.
-            solver: Drake's name of a contact approximation: "tamsi", which newer
-                releases lack, or one of SAP.
-
-        Raises:
-            RuntimeError: This Drake has no such solver.
+            solver: One that `has_solver`.
         """
         self._problem = problem
         builder = DiagramBuilder()
@@ -62,8 +69,7 @@ class StockLoop:
             contact_model="point",
             discrete_contact_approximation=solver,
         )
-        # Drake warns that TAMSI will go; where it is gone it is not measured. Qhull
-        # tells of flat pieces.
+        # Drake warns that TAMSI will go. Qhull tells of flat pieces.
         with quiet_stderr():
             self._plant, _ = AddMultibodyPlant(config, builder)
             self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
