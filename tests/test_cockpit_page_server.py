@@ -181,6 +181,21 @@ def test_the_page_that_came_last_drives_until_another_takes_over(server):
     first.close()
 
 
+def test_when_the_page_that_drives_goes_the_one_before_it_drives(server):
+    first, second, third = (connect(server) for _ in range(3))
+    wait_until(server, third, True)
+    first.send(json.dumps({"do": "take"}))
+    wait_until(server, first, True)
+    for goes, drives in [(first, third), (third, second)]:
+        wait_until(server, drives, False)
+        goes.close()
+        wait_until(server, drives, True)
+        drives.send(json.dumps(HOME))
+    heard = [server.heard.get(timeout=BOUND_S) for _ in range(3)]
+    assert heard == [{"do": "take"}, HOME, HOME]
+    second.close()
+
+
 def test_a_page_that_was_torn_away_does_not_drive(server):
     first = connect(server)
     wait_until(server, first, True)

@@ -35,8 +35,9 @@ _logger.setLevel(logging.CRITICAL)
 class PageServer:
     """A page that people on this machine open, of which one at a time drives.
 
-    The page that came last drives, until another one asks to. Pages of other origins
-    cannot connect, and what does not drive cannot ask for anything else.
+    The page that came last drives, until another one asks to; when it goes, the one
+    that drove before it. Pages of other origins cannot connect, and what does not
+    drive cannot ask for anything else.
     """
 
     def __init__(
@@ -61,8 +62,8 @@ class PageServer:
             " img-src 'self' data:; frame-ancestors 'none'"
         )
         self._forward = forward
-        self._driver: ServerConnection | None = None
-        self._connections: set[ServerConnection] = set()
+        # The last one drives.
+        self._pages: list[ServerConnection] = []
         # What whoever comes is told first, by its name.
         self._lasting: dict[str, str] = {}
 
@@ -86,15 +87,15 @@ class PageServer:
             message: JSON text.
         """
         self._lasting[name] = message
-        broadcast(self._connections, message)
+        broadcast(self._pages, message)
 
     def show(self, frame: dict[str, Any]) -> None:
         """Shows a frame on every page that keeps up."""
         for drives in (True, False):
             pages = [
                 page
-                for page in self._connections
-                if (page is self._driver) is drives
+                for page in self._pages
+                if (page is self._pages[-1]) is drives
                 and page.transport.get_write_buffer_size() < _MOST_UNREAD_BYTES
             ]
             if pages:
@@ -102,8 +103,7 @@ class PageServer:
 
     async def _talk(self, page: ServerConnection) -> None:
         """Listens to a page until it goes."""
-        self._driver = page
-        self._connections.add(page)
+        self._pages.append(page)
         try:
             for message in self._lasting.values():
                 broadcast([page], message)
@@ -113,16 +113,15 @@ class PageServer:
         except ConnectionClosed:
             pass
         finally:
-            self._connections.discard(page)
-            if self._driver is page:
-                self._driver = None
+            self._pages.remove(page)
 
     async def _hear(self, page: ServerConnection, text: str | bytes) -> None:
         """Passes on what a page may ask for."""
         asked = read_page_request(text)
         if asked is not None and asked["do"] == TAKE:
-            self._driver = page
-        if asked is None or page is not self._driver:
+            self._pages.remove(page)
+            self._pages.append(page)
+        if asked is None or page is not self._pages[-1]:
             asked = {REFUSED: 1}
         await self._forward(asked)
 
