@@ -91,6 +91,17 @@ def test_the_size_of_clusters_can_be_set_where_there_are_some(changes):
     assert changes.scene == changes.file
 
 
+def test_a_size_that_the_file_does_not_have_goes_back_to_what_octree_brought(changes):
+    assert changes.file.contact.cluster_size_m is None
+    changes.choose("contact.clustering", "octree")
+    (size,) = (k for k in changes.list_keys() if k.key == "contact.cluster_size_m")
+    changes.set(size.key, 0.02)
+    assert changes.read_file(size) == 5e-3
+    changes.set(size.key, changes.read_file(size))
+    changes.choose("contact.clustering", "shared")
+    assert changes.scene == changes.file
+
+
 def test_an_effect_comes_back_as_the_file_has_it(changes):
     changes = SceneChanges(load_scene(find_scene("rubbed_sphere")))
     for on in (False, True):

@@ -58,7 +58,7 @@ def make_greeting(
                 "log": item.is_logarithmic,
                 "group": item.group,
                 "help": item.help,
-                "file": item.read(file),
+                "file": changes.read_file(item),
             }
             for item in changes.list_keys()
         ],

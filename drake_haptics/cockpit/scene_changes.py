@@ -59,6 +59,20 @@ class SceneChanges:
         """The scene as its file has it."""
         return self._file
 
+    def read_file(self, item: LiveKey) -> float:
+        """Returns what a value goes back to, in its unit.
+
+        That is the file's, or what a choice brought of which the file says nothing.
+        """
+        if item.key == _CLUSTER_SIZE:
+            return self._cluster_size_m
+        return item.read(self._file)
+
+    @property
+    def _cluster_size_m(self) -> float:
+        """Size of clusters where `octree` is chosen, m."""
+        return self._file.contact.cluster_size_m or _CLUSTER_SIZE_M
+
     def list_keys(self) -> tuple[LiveKey, ...]:
         """Returns the values that can be set now."""
         return tuple(self._keys.values())
@@ -89,9 +103,7 @@ class SceneChanges:
             raise ChangeError(f"There is no choice {to!r} of {key!r}.")
         if to == self.scene.contact.clustering:
             return
-        size_m = None
-        if to == "octree":
-            size_m = self._file.contact.cluster_size_m or _CLUSTER_SIZE_M
+        size_m = self._cluster_size_m if to == "octree" else None
         contact = dataclasses.replace(
             self.scene.contact, clustering=to, cluster_size_m=size_m
         )
