@@ -134,6 +134,27 @@ def test_a_double_click_goes_back_to_the_scene_file(page):
     assert f_W[2] == pytest.approx(calc_pressed_force(K_COUPLING), abs=TOLERANCE_N)
 
 
+def test_what_is_no_number_of_the_range_is_refused_and_changes_nothing(page):
+    refusal = f"{SLIDER}.querySelector('.refusal')"
+    for text, why in [
+        ("0,5", "point"),
+        ("two", "not a number"),
+        ("1e9", "to 5000 N/m"),
+        ("-3", "from 50"),
+    ]:
+        type_value(page, STIFFNESS, text)
+        page.wait_for(f"{refusal}.textContent.includes({json.dumps(why)})")
+        assert not page.evaluate(f"{refusal}.hidden")
+        number = page.evaluate(f"document.getElementById('{STIFFNESS}').value")
+        assert float(number) == K_COUPLING
+    type_value(page, STIFFNESS, str(K_COUPLING + 1))
+    page.wait_for(f"{refusal}.hidden")
+    type_value(page, STIFFNESS, str(K_COUPLING))
+    page.wait_for(f"!{SLIDER}.classList.contains('changed')")
+    f_W = page.wait_for_rest()
+    assert f_W[2] == pytest.approx(calc_pressed_force(K_COUPLING), abs=TOLERANCE_N)
+
+
 def test_a_coupling_that_may_shake_is_warned_of_at_its_slider(page):
     """The hand damps by 15 N·s/m: more than that cannot be passive."""
     type_value(page, DAMPING, "18")
@@ -236,6 +257,7 @@ def test_the_mouse_takes_the_handle_and_drags_it_over_what_is_rough(page):
     assert page.evaluate(
         "document.querySelector('.switch.changed .name').textContent"
     ) == ("Friction")
+    assert page.read("take-words") == "Give it back"
     f_W = drag_aside(page)
     # It was dragged to the right: what it sticks to holds it back.
     assert f_W[0] < -0.05

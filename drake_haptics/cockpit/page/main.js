@@ -82,21 +82,23 @@ const on = {
   },
 
   over({why}) {
-    end();
+    end("ended");
     document.body.classList.add("over");
     notify("link", "");
     notify("over", "The run has ended" + (why ? ": " + why : ".") + " What it left is still to be read.");
   },
 
   lost() {
-    end();
-    if (!find("notice-over")) notify("link", "No way to the run: it has ended, or is yet to come. Trying again.");
+    // A run that has said its last word stays so.
+    if (find("notice-over")) return;
+    end("connecting");
+    notify("link", "No way to the run: it has ended, or is yet to come. Trying again.");
   },
 };
 
 /** Nothing can be changed any more; traces and figures stay. */
-function end() {
-  showGate("ended");
+function end(gate) {
+  showGate(gate);
   enable(false);
   showHandle(null);
   for (const matter of ["watching", "fault", "shed", "error"]) notify(matter, "");

@@ -1,11 +1,12 @@
 // Whether the pointer moves the handle or the camera, and who holds the handle.
 
-import {find} from "./find.js";
+import {find, write} from "./find.js";
 import {say} from "./link.js";
 import {layOut} from "./stage.js";
 
 let holder = "";
 let giveBackTo = "";
+let isOffered = false;
 let drives = false;
 let isCamera = false;
 
@@ -27,7 +28,11 @@ export function setHandle(name, offered) {
   if (name === "sliders" && holder !== name) find("view").focus();
   holder = name;
   find("pointer").hidden = find("home").hidden = name !== "mouse";
-  find("take-handle").hidden = name === "mouse" || !names.includes("mouse");
+  isOffered = names.includes("mouse");
+  const isHeld = name === "mouse";
+  find("take-handle").hidden = !isOffered || (isHeld && !giveBackTo);
+  find("take-handle").classList.toggle("primary", !isHeld);
+  write(find("take-words"), isHeld ? "Give it back" : "Hold it yourself");
   document.body.classList.toggle("sliders", name === "sliders");
   update();
   layOut();
@@ -36,8 +41,8 @@ export function setHandle(name, offered) {
 /** Takes the handle, or gives it back to who held it. */
 function toggleHolder() {
   if (!drives) return;
-  if (!find("take-handle").hidden) say({do: "handle", to: "mouse"});
-  else if (holder === "mouse" && giveBackTo) say({do: "handle", to: giveBackTo});
+  const to = holder === "mouse" ? giveBackTo : isOffered && "mouse";
+  if (to) say({do: "handle", to});
 }
 
 function giveToCamera(is) {

@@ -17,7 +17,7 @@ addEventListener("keydown", event => {
   if (event.ctrlKey || event.metaKey || event.altKey || event.repeat) return;
   if (document.querySelector("dialog[open]")) return;
   // Whoever types a number, or walks through choices, means that.
-  if (event.target.matches?.("input[type=number], select")) {
+  if (event.target.matches?.(".number, select")) {
     if (event.key === "Escape") event.target.blur();
     return;
   }

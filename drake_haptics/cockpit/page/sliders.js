@@ -53,18 +53,19 @@ class Slider {
     const [low, high, file] = [key.low, key.high, key.file].map(value => this._text(value));
     this.element = copy("slider-row");
     const part = selector => this.element.querySelector(selector);
-    [this.number, this.range] = [part("input[type=number]"), part("input[type=range]")];
-    [this.undo, this.note] = [part(".undo"), part(".warning")];
+    [this.number, this.range] = [part(".number"), part("input[type=range]")];
+    [this.undo, this.note, this.refusal] = [part(".undo"), part(".warning"), part(".refusal")];
     const label = part("label");
     [this.number.id, this.note.id] = [key.key, key.key + ".warning"];
     label.htmlFor = key.key;
     label.textContent = key.label;
-    label.title = key.help;
     part(".unit").textContent = unit;
-    [this.number.min, this.number.max] = [low, high];
+    this.bounds = `from ${low} to ${high} ${unit}`;
+    const help = key.help.replace(", " + key.unit, "");
+    label.title = help;
     this.range.setAttribute("aria-label", key.label + ", slider");
     for (const input of [this.number, this.range]) {
-      input.title = `${key.help} From ${low} to ${high} ${unit}; the scene file has ${file}.`;
+      input.title = `${help} It goes ${this.bounds}; the scene file has ${file}.`;
       input.setAttribute("aria-describedby", this.note.id);
     }
     // The thumb's middle goes from 8 px to 8 px before the end.
@@ -72,6 +73,7 @@ class Slider {
     this.isAsked = false;
     this.range.addEventListener("input", () => this._ask(rounded(this._value(this.range.value / STEPS))));
     this.number.addEventListener("change", () => this._take());
+    this.number.addEventListener("input", () => this._refuse(""));
     this.range.addEventListener("dblclick", () => this._reset());
     this.undo.addEventListener("click", () => this._reset());
   }
@@ -95,6 +97,7 @@ class Slider {
 
   /** Sends what was asked for last, once a picture. */
   _ask(value) {
+    this._refuse("");
     this.wanted = Math.min(Math.max(value, this.key.low), this.key.high);
     this._write(this.wanted);
     if (this.isAsked) return;
@@ -105,10 +108,26 @@ class Slider {
     });
   }
 
+  /** Takes the number that was typed. What is none of the range changes nothing: a hand may hold the handle. */
   _take() {
-    const value = this.number.valueAsNumber / this.scale;
-    if (Number.isFinite(value)) this._ask(value);
-    this.number.value = this._text(Number.isFinite(value) ? this.wanted : this.shown);
+    const typed = this.number.value.trim();
+    if (typed === String(this._text(this.shown))) return;
+    const value = typed === "" ? NaN : Number(typed) / this.scale;
+    const [low, high] = [this.key.low, this.key.high].map(bound => this._text(bound));
+    if (!Number.isFinite(value)) {
+      this._refuse(typed && `“${typed}” is not a number` + (typed.includes(",") ? ": write a point for the comma." : "."));
+    } else if (Number(typed) < low || Number(typed) > high) {
+      this._refuse(`${typed} cannot be: it goes ${this.bounds}.`);
+    } else {
+      this._ask(value);
+    }
+    this.number.value = this._text(this.shown);
+  }
+
+  /** Says why a number was not taken; an empty text takes that back. */
+  _refuse(why) {
+    this.refusal.textContent = why;
+    this.refusal.hidden = !why;
   }
 
   _reset() {
