@@ -55,7 +55,7 @@ def test_a_stable_and_passive_scene(sample):
 def test_an_unstable_scene_says_what_grows(sample):
     assert describe_verdict(make_unstable(sample)) == (
         "Unstable: a disturbance grows by 1 % in each tick: 100 Hz; mostly"
-        " elbow_joint_w and haptic_tool/x."
+        " elbow joint and tool along x."
     )
 
 
@@ -178,4 +178,4 @@ def test_json_has_no_number_that_is_none(sample):
 
 def test_a_motion_that_does_not_swing():
     still = Mode(ModeKind.MOTION, 0.9 + 0.0j, 1e-3, (("haptic_tool/step/x", 1.0),))
-    assert describe_motion(still) == "without swing; mostly haptic_tool/x"
+    assert describe_motion(still) == "without swing; mostly tool along x"

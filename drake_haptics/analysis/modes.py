@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import block_diag, eig
 
 from drake_haptics.analysis.blas_threads import on_one_blas_thread
-from drake_haptics.analysis.motion_words import shorten_path
+from drake_haptics.analysis.motion_words import list_parts, shorten_path
 from drake_haptics.analysis.period_map import PeriodMap
 from drake_haptics.one_line import one_line
 
@@ -95,12 +95,15 @@ class Mode:
     def describe(self) -> str:
         """Returns it in a line, as "27.3 Hz, damped 4 % of critical, ...".
 
-        States of a haptic loop have short names there, "elbow_joint_q" for
-        "device/simulated_arm/arm/elbow_joint_q"; `participation` has the whole ones.
+        What moves in a haptic loop is named in words, "elbow joint" for
+        "device/simulated_arm/arm/elbow_joint_q"; `participation` has the names of the
+        states.
         """
-        mostly = " and ".join(self._list_largest())
+        largest = self._list_largest()
         if self.kind is ModeKind.QUATERNION_LENGTH:
-            return f"no motion: the length of the quaternion {mostly}"
+            names = " and ".join(map(shorten_path, largest[:_MOST_NAMED]))
+            return f"no motion: the length of the quaternion {names}"
+        mostly = " and ".join(list_parts(largest)[:_MOST_NAMED])
         if self.kind is ModeKind.NEUTRAL:
             return f"stays where it is put, nothing drives it back; mostly {mostly}"
         if self.kind is ModeKind.MEMORY:
@@ -134,12 +137,9 @@ class Mode:
         return f"{rate}{damped}, dies out in {self.decay_time_s:.2g} s"
 
     def _list_largest(self) -> list[str]:
+        """Returns the names of the states that take the largest part."""
         largest = self.participation[0][1]
-        return [
-            shorten_path(name)
-            for name, share in self.participation[:_MOST_NAMED]
-            if share >= _NAMED * largest
-        ]
+        return [name for name, share in self.participation if share >= _NAMED * largest]
 
 
 @on_one_blas_thread
