@@ -284,8 +284,10 @@ class ContactStatus(enum.IntEnum):
 
 class Contact:
     """
-    One contact of two convex polytopes A and B, in the world frame W, in the words and signs of Drake's `SignedDistancePair`. Immutable.
+    One contact of two convex polytopes A and B, in the world frame W, in the words and signs of Drake's `SignedDistancePair`. Immutable, and made by queries only: tolerance and gains are those of a `drake_haptics.scene.Contact`.
     """
+
+    def __init__(self) -> None: ...
 
     @property
     def distance(self) -> float:
