@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from drake_haptics.mesh import Mesh, load_mesh
 from drake_haptics.mesh_report import length
@@ -36,6 +37,9 @@ _LARGEST_RISE_M = 0.03
 _CIRCLE_POINTS = 16
 _APPROACH_S = 1.5
 _CIRCLE_STEP_S = 0.4
+# What nobody feels is left out of a scene that people read: a nanometre, a microsecond.
+_DECIMALS_M = 9
+_DECIMALS_S = 6
 
 
 def make_scene_for_meshes(
@@ -68,7 +72,7 @@ def make_scene_for_meshes(
         tool=Tool(
             mesh=str(tool_path.resolve()),
             scale=tool_scale,
-            grasp=Pose(position_m=(-grip_point).tolist()),
+            grasp=Pose(position_m=_round_position(-grip_point)),
         ),
         environment=[
             EnvironmentObject(
@@ -77,7 +81,7 @@ def make_scene_for_meshes(
                 scale=environment_scale,
             )
         ],
-        contact=Contact(tolerance_m=tolerance),
+        contact=Contact(tolerance_m=round(tolerance, _DECIMALS_M)),
         hand=Hand(grip="nominal", path=_make_path(tool, environment, tip)),
     )
 
@@ -149,15 +153,23 @@ def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPath:
     above = [*xy[0], touch[0] + _CLEARANCE_M]
     times = _APPROACH_S + _CIRCLE_STEP_S * np.arange(len(xy))
     around = [
-        Waypoint(time_s=float(t), position_m=[*p.tolist(), float(z - press)])
+        Waypoint(round(float(t), _DECIMALS_S), _round_position([*p, z - press]))
         for t, p, z in zip(times, xy, touch, strict=True)
     ]
-    end = float(times[-1]) + _APPROACH_S
+    end = round(float(times[-1]) + _APPROACH_S, _DECIMALS_S)
+    start = _round_position(above)
     return HandPath(
         periodic=True,
         waypoints=[
-            Waypoint(0.0, [float(x) for x in above]),
+            Waypoint(0.0, start),
             *around,
-            Waypoint(end, [float(x) for x in above]),
+            Waypoint(end, start),
         ],
     )
+
+
+def _round_position(position: ArrayLike) -> list[float]:
+    """Returns a position (3,), m, as numbers that are short to read."""
+    # 0 is added so that none is minus nothing.
+    rounded: list[float] = (np.asarray(position).round(_DECIMALS_M) + 0.0).tolist()
+    return rounded

@@ -43,6 +43,20 @@ def test_it_touches_and_presses_gently(tmp_path, environment, median_contacts):
     assert (figures["limit_hits"], figures["non_finite_events"]) == (0, 0)
 
 
+def test_its_numbers_are_short_to_read(tmp_path):
+    third = SHAPES["stick"].copy()
+    third.apply_scale(1.0 / 3.0)
+    stick = write(tmp_path, "stick.stl", third)
+    scene = Scene.for_meshes(stick, write(tmp_path, "ball.ply", SHAPES["ball"]))
+    numbers = [scene.contact.tolerance_m, *scene.tool.grasp.position_m]
+    for waypoint in scene.hand.path.waypoints:
+        numbers += [waypoint.time_s, *waypoint.position_m]
+    assert {type(number) for number in numbers} == {float}
+    # As a person would write them, to the nanometre and microsecond.
+    assert all(number == float(f"{number:.9f}") for number in numbers)
+    assert "-0.0" not in map(repr, numbers)
+
+
 def test_scales_are_metres_per_unit(tmp_path):
     in_mm = SHAPES["block"].copy()
     in_mm.apply_scale(1000.0)
