@@ -18,7 +18,7 @@ _PACKAGE = Path(drake_haptics.__file__).parent
 _SHIPPED = _PACKAGE / "models"
 
 
-def write_scene(scene: Scene, path: Path, comments: Sequence[str] = ()) -> None:
+def write_scene(scene: Scene, path: str | Path, comments: Sequence[str] = ()) -> None:
     """Writes all of a scene, defaults too.
 
     Meshes and presets of this package and of Drake are named `package://...`, those
@@ -32,6 +32,7 @@ def write_scene(scene: Scene, path: Path, comments: Sequence[str] = ()) -> None:
     Raises:
         OSError: The file cannot be written.
     """
+    path = Path(path)
     named = copy.deepcopy(scene)
     parts: list[Tool | EnvironmentObject] = [named.tool, *named.environment]
     for part in parts:

@@ -46,7 +46,7 @@ def test_meshes_beside_the_file_move_with_it(tmp_path):
     folder.mkdir(parents=True)
     for part in (scene.tool, scene.environment[0]):
         part.mesh = shutil.copy(part.mesh, folder)
-    write_scene(scene, tmp_path / "here" / "mine.yaml")
+    write_scene(scene, str(tmp_path / "here" / "mine.yaml"))
     moved = (tmp_path / "here").rename(tmp_path / "there")
     assert load_scene(moved / "mine.yaml").tool.mesh == str(moved / "meshes/spoon.obj")
 
