@@ -81,7 +81,7 @@ def make_scene_for_meshes(
                 scale=environment_scale,
             )
         ],
-        contact=Contact(tolerance_m=round(tolerance, _DECIMALS_M)),
+        contact=Contact(tolerance_m=float(f"{tolerance:.2g}")),
         hand=Hand(grip="nominal", path=_make_path(tool, environment, tip)),
     )
 

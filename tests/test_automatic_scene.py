@@ -55,6 +55,11 @@ def test_its_numbers_are_short_to_read(tmp_path):
     # As a person would write them, to the nanometre and microsecond.
     assert all(number == float(f"{number:.9f}") for number in numbers)
     assert "-0.0" not in map(repr, numbers)
+    # The page shows it, in millimetres.
+    assert float(f"{1e3 * scene.contact.tolerance_m:.2g}") == pytest.approx(
+        1e3 * scene.contact.tolerance_m, rel=1e-12
+    )
+    assert scene.contact.tolerance_m < 2e-3
 
 
 def test_scales_are_metres_per_unit(tmp_path):
