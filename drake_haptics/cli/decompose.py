@@ -136,6 +136,11 @@ def _view(result: Decomposition, show: bool, html: str | None) -> None:
         if show:
             for line in describe_page(viewer.url):
                 click.echo(line, err=True)
+            click.echo(
+                "Left the pieces in their places; right the same moved apart, with"
+                " their virtual facets in grey.",
+                err=True,
+            )
             click.echo("Ctrl-C ends.", err=True)
             with contextlib.suppress(KeyboardInterrupt):
                 signal.pause()

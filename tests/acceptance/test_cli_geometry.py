@@ -142,6 +142,8 @@ def test_decompose_shows_the_pieces_until_interrupted(environment, l_file):
         address = next(word for word in line.split() if word.startswith("http"))
         with urllib.request.urlopen(address, timeout=10) as page:
             assert page.status == 200
+        told = process.stderr.readline()
+        assert told.startswith("Left the pieces in their places; right")
         process.send_signal(signal.SIGINT)
         assert process.wait(timeout=20) == 0
         assert "Traceback" not in process.stderr.read()
