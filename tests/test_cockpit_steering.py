@@ -11,10 +11,11 @@ from cockpit_rig import CockpitRig
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cockpit.page_request import read_page_request
 from drake_haptics.cockpit.scene_changes import EFFECTS
+from drake_haptics.cockpit.telemetry import LARGEST_DATAGRAM
 from drake_haptics.device_site import find_device_site
 from drake_haptics.live_key import live_keys
 from drake_haptics.live_scene import write_live_values
-from drake_haptics.scene import EnvironmentObject, Scene
+from drake_haptics.scene import Effects, EnvironmentObject, Passivity, Scene
 from drake_haptics.simulation import run
 from drake_haptics.stage import CAMERAS, open_meshcat
 from drake_haptics.systems.picture_views import PICTURE_VIEWS
@@ -40,7 +41,7 @@ def meshcat():
 def make(scene, meshcat, monkeypatch):
     rigs = []
 
-    def make(script, **options):
+    def make(script, scene=scene, **options):
         rigs.append(CockpitRig(scene, meshcat, monkeypatch, script, **options))
         return rigs[-1]
 
@@ -215,9 +216,50 @@ def make_requests(rng, count):
     return asked
 
 
-def test_whatever_is_asked_in_whatever_order_the_run_goes_on(make):
+def read_live_values(haptic, root):
+    """What the loop runs with: gains, rule of clustering, contact's stiffness."""
+    loop = haptic.loop
+    coupling, clustering = loop.virtual_coupling, loop.contact_clustering
+    gains = coupling.get_gains(coupling.GetMyContextFromRoot(root))
+    rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
+    force = loop.penalty_force
+    contact = force.get_gains(force.GetMyContextFromRoot(root))
+    return {
+        **{key: getattr(gains, key) for key in vars(Scene().coupling)},
+        "clustering": rule.method,
+        "tolerance_m": rule.tolerance_m,
+        "contact": contact.stiffness_N_per_m[0],
+    }
+
+
+@pytest.mark.parametrize("passivity", [None, Passivity()])
+def test_whatever_is_asked_in_whatever_order_the_run_goes_on(make, scene, passivity):
+    """And runs in the end with what the page says."""
     rng = np.random.default_rng(8)
-    rig = make({tick: make_requests(rng, 30) for tick in range(5, 200, 20)})
-    assert rig.run(0.6)["ticks"] == 600
+    octree = {"do": "choose", "key": "contact.clustering", "to": "octree"}
+    rig = make(
+        {tick: make_requests(rng, 30) for tick in range(5, 200, 20)}
+        | {201: [STIFFER, octree]},
+        watch=read_live_values,
+        scene=dataclasses.replace(scene, effects=Effects(passivity=passivity)),
+    )
+    assert rig.run(0.8)["ticks"] == 800
     json.dumps([rig.page.hellos, rig.page.states], allow_nan=False)
     assert len(rig.haptics) > 3
+    now = rig.changes.scene
+    assert now.coupling.stiffness_N_per_m == 1200.0
+    assert rig.seen[-1] == {
+        **dataclasses.asdict(now.coupling),
+        "clustering": now.contact.clustering,
+        "tolerance_m": now.contact.tolerance_m,
+        "contact": now.contact.stiffness_N_per_m,
+    }
+
+
+def test_a_page_is_told_of_a_long_description_what_it_can_be_told(make, scene):
+    """A hello that is longer than a datagram would never come."""
+    rig = make({}, scene=dataclasses.replace(scene, description="Längs " * 20_000))
+    rig.run(0.01)
+    [hello] = rig.page.hellos
+    assert hello["description"].startswith("Längs Längs")
+    assert len(json.dumps({"hello": hello})) < LARGEST_DATAGRAM

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import textwrap
 from typing import Any
 
 from drake_haptics.cockpit.scene_changes import (
@@ -17,6 +18,7 @@ from drake_haptics.stage import CAMERAS
 from drake_haptics.systems.load_shedding import SHED_STAGES
 from drake_haptics.systems.picture_views import PICTURE_VIEWS
 
+_LONGEST_DESCRIPTION = 2000
 _CLUSTERING_HELP = (
     "How few contacts are made of many: shared, which is continuous, or octree, the"
     " paper's."
@@ -45,7 +47,10 @@ def make_greeting(
     return {
         "meshcat": meshcat_url,
         "scene": name,
-        "description": scene.description,
+        # What is longer than a datagram would never reach the page.
+        "description": textwrap.shorten(
+            scene.description, _LONGEST_DESCRIPTION, placeholder=" …"
+        ),
         "period_s": 1.0 / scene.device.rate_hz,
         "limits": {"force_N": site.max_force_N, "torque_Nm": site.max_torque_Nm},
         "keys": [
