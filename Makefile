@@ -60,18 +60,19 @@ $(VENV)/bin/python:
 	  echo "drake_haptics needs a C++20 compiler and found none (tried '$${CXX:-c++}')."; \
 	  echo "On Debian or Ubuntu: sudo apt-get install g++. On macOS: xcode-select --install."; \
 	  echo "Or name one: CXX=clang++ make demo"; exit 1; fi
-	$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); exit 1; }
+	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); exit 1; }
 
 # Without --no-compile, pip compiles eleven thousand files of Python one after the other,
-# of which most are never imported; what is imported is compiled then.
+# of which most are never imported; what is imported is compiled then. It tells what it
+# does: minutes of silence look like a stop.
 $(STAMP): pyproject.toml $(CORE) | $(VENV)/bin/python
 	@echo "Setting up $(VENV): Drake and the C++ core, a few minutes the first time."
-	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile -e .
+	$(BIN)/pip install --disable-pip-version-check --no-compile -e .
 	@touch $@
 
 $(STAMP)-test: pyproject.toml $(CORE) | $(VENV)/bin/python
 	@echo "Setting up $(VENV): Drake, the C++ core and the test tools, a few minutes the first time."
-	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile -e ".[test]"
+	$(BIN)/pip install --disable-pip-version-check --no-compile -e ".[test]"
 	@touch $@ $(STAMP)
 
 # Fuzzes the core until a fault is found or the time is over; see docs/testing.md.
