@@ -35,7 +35,11 @@ def draw_sheet(stability: SceneStability) -> Figure:
             bounds=HeldBounds(stability.handle.damping_Ns_per_m, stability.period_s),
             gains=(coupling.stiffness_N_per_m, coupling.damping_Ns_per_m),
         )
-        panels["map"].set_title("which couplings are stable in this contact")
+        points = " × ".join(map(str, reversed(stability.map.spectral_radius.shape)))
+        panels["map"].set_title(
+            f"couplings stable in this contact, of {points};"
+            " dashed: against a rigid wall"
+        )
         panels["map"].set_xlabel("stiffness K, N/m")
         panels["map"].set_ylabel("damping B, N·s/m")
         _put_legend_below(panels["map"])
@@ -54,8 +58,8 @@ def _plot_usage(stability: SceneStability, axes: Axes) -> None:
     most = max(1.0, float(stability.damping_usage.max()))
     axes.set_ylim(min(0.0, float(stability.damping_usage.min())), 1.2 * most)
     axes.set_xlabel("frequency, Hz")
-    axes.set_ylabel("damping, of what there is")
-    axes.set_title("passive for every hand where below the line (Colgate, Schenkel)")
+    axes.set_ylabel("damping, as a share of what there is")
+    axes.set_title("passive with every hand: needed below what there is")
     # Above the higher of the two lines there is always room.
     axes.legend(loc="upper left", ncols=2)
 
