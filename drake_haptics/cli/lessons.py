@@ -39,7 +39,7 @@ DEVICE = Lesson(
         ),
     ],
     exits=f"0: at the end, or at Ctrl-C. {_UNUSABLE}.",
-    further="Stop either of the two, or pause it with Ctrl-Z, and see what the other"
+    further="End either of the two, or pause `run` with Ctrl-Z, and see what the other"
     " does. docs/bridge-a-device.md makes a driver for an arm of your own.",
 )
 
@@ -94,7 +94,7 @@ STABILITY = Lesson(
     examples=[
         ("Verdict, limits and a page", "drake-haptics stability cup_spoon"),
         (
-            "Without the map, at once",
+            "Without the map, which takes most of the time",
             "drake-haptics stability cup_spoon --map 0",
         ),
     ],
