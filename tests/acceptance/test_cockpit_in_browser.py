@@ -314,6 +314,21 @@ def test_thousands_of_frames_leave_no_more_behind(page):
     assert heap_later - heap < 200e3
 
 
+def test_another_run_at_the_same_port_brings_its_own_picture(page):
+    """As where a run is started anew while its page is open: Meshcat has moved."""
+    stranger = {"hello": {"meshcat": "http://localhost:1/", "scene": "other"}}
+    stranger["hello"]["limits"] = {"force_N": 1, "torque_Nm": 1}
+    page.evaluate("window.isOld = true")
+    page.evaluate(
+        f"ways.at(-1).onmessage({{data: {json.dumps(json.dumps(stranger))}}})"
+    )
+    page.wait_for("!window.isOld && document.readyState == 'complete'")
+    page.wait_for("document.getElementById('scene').textContent == 'press'")
+    page.wait_for("parseFloat(document.getElementById('time').textContent) > 0")
+    # The stranger is not framed, which the first page said when it was about to go.
+    page.browser.errors[:] = [e for e in page.browser.errors if "localhost:1/" not in e]
+
+
 def test_the_end_is_told_and_what_was_felt_stays(run, page):
     assert page.browser.errors == []
     page.wait_for_rest()
@@ -321,7 +336,8 @@ def test_the_end_is_told_and_what_was_felt_stays(run, page):
     assert felt > 5
     run.interrupt()
     page.wait_for("document.getElementById('notice-over') != null")
-    assert "ended" in page.read("notice-over")
+    said = page.read("notice-over")
+    assert said == "The run has ended. What it left is still to be read."
     assert page.read("gate") == "ended"
     assert page.evaluate("document.getElementById('coupling').disabled")
     assert page.trace() >= felt

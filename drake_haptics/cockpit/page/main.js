@@ -30,6 +30,8 @@ let isFramed = false;
 
 const on = {
   hello(hello) {
+    // Another run at this page's port: this page may frame no other Meshcat than the first one's.
+    if (find("view").src && new URL(find("view").src).origin !== new URL(hello.meshcat).origin) location.reload();
     settings = hello;
     document.body.classList.remove("over");
     for (const matter of ["link", "over"]) notify(matter, "");
@@ -85,7 +87,7 @@ const on = {
     end("ended");
     document.body.classList.add("over");
     notify("link", "");
-    notify("over", "The run has ended" + (why ? ": " + why : ".") + " What it left is still to be read.");
+    notify("over", (why || "The run has ended.") + " What it left is still to be read.");
   },
 
   lost() {
