@@ -60,20 +60,17 @@ def set_stage(meshcat: Meshcat, haptic: HapticDiagram) -> None:
     meshcat.SetProperty("/Background", "bottom_color", list(BACKGROUND_BOTTOM[:3]))
     meshcat.SetProperty("/Grid", "visible", False)
     meshcat.SetProperty("/Axes", "visible", False)
-    aim_camera(meshcat, haptic, "fit")
+    aim_camera(meshcat, find_framed_points(haptic), "fit")
 
 
 def aim_camera(
-    meshcat: Meshcat, haptic: HapticDiagram, view: str, within: float = 1.0
+    meshcat: Meshcat, p_WP: np.ndarray, view: str, within: float = 1.0
 ) -> None:
     """Points the camera at where tool and objects meet.
 
-    Of large surroundings only what is within a tool's size of the hand's path is
-    framed.
-
     Args:
         meshcat: Whose camera.
-        haptic: What is to be seen.
+        p_WP: (n, 3) points to be seen, m, as of `find_framed_points`.
         view: One of `CAMERAS`.
         within: Share of the picture's height, about its middle, that must hold it.
 
@@ -84,12 +81,11 @@ def aim_camera(
         raise ValueError(f"view must be one of {', '.join(CAMERAS)}, is {view!r}")
     if not 0.1 <= within <= 1.0:
         raise ValueError(f"within must be from 0.1 to 1, is {within}")
-    points = _framed_points(haptic)
     backwards = np.array(_VIEWS[view]) / np.linalg.norm(_VIEWS[view])
     right = np.cross([0.0, 0.0, 1.0], backwards)
     right /= np.linalg.norm(right)
     R_CW = np.vstack([right, np.cross(backwards, right), backwards])
-    p_CP = points @ R_CW.T
+    p_CP = p_WP @ R_CW.T
     middle = (p_CP.min(axis=0) + p_CP.max(axis=0)) / 2
     # The least distance at which the cone of the view holds every point.
     across = np.linalg.norm(p_CP[:, :2] - middle[:2], axis=1)
@@ -99,8 +95,12 @@ def aim_camera(
     meshcat.SetCameraPose(target + distance * backwards, target)
 
 
-def _framed_points(haptic: HapticDiagram) -> np.ndarray:
-    """Returns points (n, 3) of the world, m, that are to be in the picture."""
+def find_framed_points(haptic: HapticDiagram) -> np.ndarray:
+    """Returns points (n, 3) of the world, m, that are to be in the picture.
+
+    Of large surroundings only what is within a tool's size of the hand's path is
+    framed.
+    """
     vertices = haptic.tool.mesh.vertices
     tool = np.vstack(
         [

@@ -10,7 +10,13 @@ from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.errors import UserError
 from drake_haptics.scene import Pose, load_scene
 from drake_haptics.scene_library import list_scenes
-from drake_haptics.stage import CAMERAS, aim_camera, open_meshcat, set_stage
+from drake_haptics.stage import (
+    CAMERAS,
+    aim_camera,
+    find_framed_points,
+    open_meshcat,
+    set_stage,
+)
 
 # Half of the vertical angle of Meshcat's camera.
 HALF_VIEW_DEG = 37.5
@@ -56,9 +62,9 @@ def test_every_view_holds_the_scene_in_what_is_free(view):
     for waypoint in haptic.scene.hand.path.waypoints:
         X_WT = Pose(waypoint.position_m, waypoint.rpy_deg).to_rigid_transform()
         points.append(X_WT.multiply(haptic.tool.mesh.vertices.T).T)
-    camera = CameraKeeper()
+    camera, framed = CameraKeeper(), find_framed_points(haptic)
     for within in (1.0, 0.5):
-        aim_camera(camera, haptic, view, within)
+        aim_camera(camera, framed, view, within)
         share = np.tan(np.deg2rad(camera.angles_deg(np.vstack(points)).max()))
         assert 0.6 * within < share / np.tan(np.deg2rad(HALF_VIEW_DEG)) < within
 
@@ -67,7 +73,7 @@ def test_views_look_from_where_they_are_named_for():
     haptic = BuildHapticDiagram(load_scene(list_scenes()["sphere_pen"]))
     camera = CameraKeeper()
     for view, way in [("front", (0, -1, 0)), ("side", (1, 0, 0)), ("top", (0, 0, 1))]:
-        aim_camera(camera, haptic, view)
+        aim_camera(camera, find_framed_points(haptic), view)
         from_target = camera.p_WCamera - camera.p_WTarget
         np.testing.assert_allclose(
             from_target / np.linalg.norm(from_target), way, atol=2e-3
@@ -75,11 +81,11 @@ def test_views_look_from_where_they_are_named_for():
 
 
 def test_bad_views_are_refused():
-    haptic = BuildHapticDiagram(load_scene(list_scenes()["sphere_pen"]))
+    points = np.eye(3)
     with pytest.raises(ValueError, match=r"view must be one of fit.*'back'"):
-        aim_camera(CameraKeeper(), haptic, "back")
+        aim_camera(CameraKeeper(), points, "back")
     with pytest.raises(ValueError, match=r"within must be from 0.1 to 1, is nan"):
-        aim_camera(CameraKeeper(), haptic, "fit", float("nan"))
+        aim_camera(CameraKeeper(), points, "fit", float("nan"))
 
 
 def test_of_large_surroundings_only_what_is_near_is_framed():

@@ -127,6 +127,7 @@ class Cockpit:
             name=self._name,
             meshcat_url=self._page.meshcat_url,
             handles=self._holding.names,
+            site=self._holding.site,
             locked=self._locked,
         )
         self._page.tell("hello", greeting)

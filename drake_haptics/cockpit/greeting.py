@@ -13,7 +13,7 @@ from drake_haptics.cockpit.scene_changes import (
     SceneChanges,
 )
 from drake_haptics.colors import make_legend
-from drake_haptics.device_site import find_device_site
+from drake_haptics.device_site import DeviceSite
 from drake_haptics.stage import CAMERAS
 from drake_haptics.systems.load_shedding import SHED_STAGES
 from drake_haptics.systems.picture_views import PICTURE_VIEWS
@@ -31,6 +31,7 @@ def make_greeting(
     name: str,
     meshcat_url: str,
     handles: dict[str, str],
+    site: DeviceSite,
     locked: str,
 ) -> dict[str, Any]:
     """Returns the message `hello`, ready for JSON.
@@ -40,10 +41,10 @@ def make_greeting(
         name: Of the scene.
         meshcat_url: Address of what the page shows.
         handles: Who can hold the handle, and what people read of them.
+        site: Of the scene's device, with its limits.
         locked: Why nothing may be changed; empty if it may.
     """
     scene, file = changes.scene, changes.file
-    site = find_device_site(file)
     return {
         "meshcat": meshcat_url,
         "scene": name,

@@ -24,6 +24,7 @@ class Holding:
     Attributes:
         name: `HAND`, `MOUSE`, `SLIDERS` or `DEVICE`.
         backend: What is held; None in the scene's own simulated hand.
+        site: Where the scene has its device.
     """
 
     def __init__(
@@ -43,7 +44,7 @@ class Holding:
         self._scene = scene
         self._meshcat = meshcat
         self._address = address
-        self._site = find_device_site(scene)
+        self.site = find_device_site(scene)
         self._names = dict(_LABELS)
         if not has_hand:
             del self._names[HAND]
@@ -92,7 +93,7 @@ class Holding:
 
     def _open(self, name: str, X_WH: RigidTransform | None) -> DeviceBackend | None:
         """Returns what is to be held."""
-        site = self._site
+        site = self.site
         X_BH = site.X_BH if X_WH is None else site.X_WB.InvertAndCompose(X_WH)
         if name == MOUSE:
             return PageHandle(

@@ -7,7 +7,7 @@ from typing import Any
 from pydrake.geometry import Meshcat
 
 from drake_haptics.builder import HapticDiagram
-from drake_haptics.stage import aim_camera
+from drake_haptics.stage import aim_camera, find_framed_points
 from drake_haptics.systems.picture_views import PICTURE_VIEWS, check_view
 
 
@@ -26,15 +26,16 @@ class PagePicture:
             views: What is shown at first.
         """
         self._meshcat = meshcat
-        self._haptic: HapticDiagram | None = None
         self.views = {view: view in views for view in PICTURE_VIEWS}
 
     def begin(self, haptic: HapticDiagram) -> None:
         """Shows of a diagram what was shown of the one before."""
-        self._haptic = haptic
-        if haptic.visualizer is not None:
+        self._visualizer = haptic.visualizer
+        # Of many objects it would be long for a tick.
+        self._p_WP = find_framed_points(haptic)
+        if self._visualizer is not None:
             for view, visible in self.views.items():
-                haptic.visualizer.Show(view, visible)
+                self._visualizer.Show(view, visible)
 
     def obey(self, request: dict[str, Any]) -> bool:
         """Does what a page asks for, if that is a matter of the picture.
@@ -53,8 +54,7 @@ class PagePicture:
                 self._show(request["name"], request["on"])
             case "camera":
                 within = request.get("within", 1.0)
-                if self._haptic is not None:
-                    aim_camera(self._meshcat, self._haptic, request["to"], within)
+                aim_camera(self._meshcat, self._p_WP, request["to"], within)
             case _:
                 return False
         return True
@@ -63,5 +63,5 @@ class PagePicture:
         """Shows or hides a view."""
         check_view(view)
         self.views[view] = visible
-        if self._haptic is not None and self._haptic.visualizer is not None:
-            self._haptic.visualizer.Show(view, visible)
+        if self._visualizer is not None:
+            self._visualizer.Show(view, visible)
