@@ -71,7 +71,9 @@ def test_the_figures_are_plain_data():
 
 def test_a_chart_marks_the_intervals():
     run = make_run()
-    above, below = draw_profile(run.profile, run.figures).axes
+    figure = draw_profile(run.profile, run.figures)
+    above, below = figure.axes
+    assert "(D: disjoint, P: penetrating)" in figure.get_suptitle()
     assert [text.get_text() for text in above.texts] == ["D", "P"]
     (query,) = [line for line in above.lines if line.get_label() == "contact query"]
     assert query.get_ydata().max() == 1e6 * run.profile.query_s.max()

@@ -59,8 +59,10 @@ def draw_profile(profile: Profile, figures: ProfileFigures) -> Figure:
             loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=9
         )
     _write_letters(above, figures.intervals, time_s)
-    title = f"{profile.name}: {profile.pieces[0]:,} and {profile.pieces[1]:,} pieces"
-    figure.suptitle(title, fontsize=11)
+    pieces = f"{profile.pieces[0]:,} and {profile.pieces[1]:,} pieces"
+    figure.suptitle(
+        f"{profile.name}: {pieces} (D: disjoint, P: penetrating)", fontsize=11
+    )
     return figure
 
 
