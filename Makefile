@@ -66,12 +66,12 @@ $(VENV)/bin/python:
 # of which most are never imported; what is imported is compiled then. It tells what it
 # does: minutes of silence look like a stop.
 $(STAMP): pyproject.toml $(CORE) | $(VENV)/bin/python
-	@echo "Setting up $(VENV): Drake and the C++ core. A few minutes the first time, in silence."
+	@echo "Setting up $(VENV): Drake and the C++ core, a few minutes the first time."
 	$(BIN)/pip install --disable-pip-version-check --no-compile -e .
 	@touch $@
 
 $(STAMP)-test: pyproject.toml $(CORE) | $(VENV)/bin/python
-	@echo "Setting up $(VENV): Drake, the C++ core and the test tools. A few minutes the first time, in silence."
+	@echo "Setting up $(VENV): Drake, the C++ core and the test tools, a few minutes the first time."
 	$(BIN)/pip install --disable-pip-version-check --no-compile -e ".[test]"
 	@touch $@ $(STAMP)
 
