@@ -121,9 +121,10 @@ def _print_report(result: Decomposition) -> None:
             console.print(f"  Question: {finding.message}: {finding.action}")
     unclean = len(result.mesh.report.unclean)
     if unclean:
+        defects = "1 defect" if unclean == 1 else f"{unclean} defects"
         console.print(
-            f"  {unclean} defect(s) of the mesh were repaired or left; "
-            f"drake-haptics check names them."
+            f"  The mesh has {defects}, repaired or left; drake-haptics check names"
+            f" {'it' if unclean == 1 else 'them'}."
         )
 
 
