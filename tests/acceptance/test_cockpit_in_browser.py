@@ -56,6 +56,7 @@ def page(run):
 def test_it_tells_of_the_scene_and_of_the_loop(page):
     assert page.read("scene") == "press"
     assert page.read("description") == "A ball is pressed onto a block."
+    assert "simulated" in page.evaluate("document.getElementById('gate').title")
     page.wait_for("parseFloat(document.getElementById('time').textContent) > 1")
     page.wait_for("document.getElementById('contacts').textContent == '1 → 1'")
     assert " of 1 ms" in page.read("tick") and "×" in page.read("rate")

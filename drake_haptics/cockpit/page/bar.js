@@ -3,8 +3,16 @@
 import {find, write} from "./find.js";
 import {micros, millimetres, seconds} from "./format.js";
 
+const GATES = {
+  simulated: "Hand and arm are simulated: there is no device.",
+  active: "What holds the handle is shown force.",
+  idle: "What holds the handle is shown no force.",
+  fault: "The device is at fault and shows no force.",
+};
+
 export function showGate(gate) {
   find("gate").className = "chip " + gate;
+  find("gate").title = GATES[gate] ?? "";
   write(find("gate"), gate);
 }
 
