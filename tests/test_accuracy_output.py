@@ -31,3 +31,7 @@ def test_the_price_list_fits(width):
     assert line.split()[-7:] == [
         "1234/2468", "123", "2.500/10.000", "2500.0", "25.0", "2.500", "511000",
     ]  # fmt: skip
+    # What a head of two words cannot say is said below.
+    words = " ".join(text.split())
+    assert "force, N: Difference of the force" in words
+    assert "root mean square / largest" in words

@@ -46,6 +46,8 @@ def print_study(console: Console, study: AccuracyStudy) -> None:
         console.print(f"Knee: {sentence}")
     for sentence in describe_peers(study):
         console.print(f"Beside it: {sentence}")
+    for column in get_columns(study):
+        console.print(f"{column.head}, {column.unit}: {column.meaning}", style="dim")
     console.print(f"{SCENE_MARK} the scene as it is", style="dim")
     if models := describe_models(study):
         console.print(
