@@ -18,6 +18,7 @@ from drake_haptics.bench.pair_ratios import (
     ratios_to_fastest,
 )
 from drake_haptics.bench.pair_runs import PairFigures
+from drake_haptics.bench.pair_tables import time_table
 from drake_haptics.bench.python_figures import PythonFigures
 from drake_haptics.bench.report import machine_line, make_tables, missing_lines
 from drake_haptics.bench.scene_runs import SceneFigures
@@ -65,6 +66,14 @@ EVERYTHING = BenchFigures(
         scene("coal, dynamic AABB tree", Times(5, 20.0, 30.0)),
     ],
 )
+
+
+def test_a_library_that_is_alone_is_named_once_in_the_heads() -> None:
+    several, alone = time_table(FIGURES), time_table([FIGURES[0], FIGURES[2]])
+    assert several.header[2] == "apart: fastest"
+    assert [row[2] for row in several.rows] == ["1.00 / 2.00 fast", "5.00 / 10.00 slow"]
+    assert alone.header[2] == "apart: slow"
+    assert alone.rows[0][2] == "4.00 / 8.00"
 
 
 def test_a_ratio_is_to_the_fastest_other_library_of_each_pair() -> None:

@@ -93,6 +93,9 @@ def time_table(figures: Sequence[PairFigures]) -> Table:
     """Returns times of each pair, this package's and the fastest other library's."""
     ours = [f for f in _libraries(figures) if any(g.ours for g in _of(figures, f))]
     pairs = list(dict.fromkeys((f.kind, f.size) for f in figures))
+    others = {f.library for f in figures if not f.ours}
+    # One that is alone is named once, in the heads.
+    alone = next(iter(others)) if len(others) == 1 else None
 
     def cells(kind: str, size: int, median: Column, p99: Column) -> list[str]:
         here = [f for f in figures if (f.kind, f.size) == (kind, size)]
@@ -103,15 +106,16 @@ def time_table(figures: Sequence[PairFigures]) -> Table:
         if not peers:
             return [*texts, "–"]
         fastest = min(peers, key=median)
-        return [
-            *texts,
-            f"{median(fastest):.2f} / {p99(fastest):.2f} {fastest.library}",
-        ]
+        times = f"{median(fastest):.2f} / {p99(fastest):.2f}"
+        return [*texts, times if alone else f"{times} {fastest.library}"]
 
-    headings = [*(name.removeprefix("drake_haptics, ") for name in ours), "fastest"]
+    headings = [name.removeprefix("drake_haptics, ") for name in ours]
+    headings.append(alone or "fastest")
     return Table(
         title="Convex pairs: times in µs, median / p99",
-        note="Fastest: the other library with the smallest median.",
+        note="Beside the one other library that is installed."
+        if alone
+        else "Fastest: the other library with the smallest median.",
         header=(
             "pair, vertices",
             *(f"apart: {heading}" for heading in headings),
