@@ -8,7 +8,14 @@ import json
 import numpy as np
 import pytest
 import websocket
-from cockpit_page import K_COUPLING, PRESS, CockpitRun, Page, calc_pressed_force
+from cockpit_page import (
+    K_COUPLING,
+    PRESS,
+    TOLERANCE_M,
+    CockpitRun,
+    Page,
+    calc_pressed_force,
+)
 from headless_browser import HeadlessBrowser, find_browser
 
 # The table has hundredths of a newton; the hand's spring is turned by the arm's rods.
@@ -313,6 +320,20 @@ def test_thousands_of_frames_leave_no_more_behind(page):
     (nodes, heap), (nodes_later, heap_later) = weigh(), weigh()
     assert nodes_later == nodes
     assert heap_later - heap < 200e3
+
+
+def test_a_tool_that_is_deep_in_a_wall_is_told_of(page):
+    """The next frame of the run takes it back."""
+    frame = {
+        "time_s": 1e6, "trace": {"dt_s": 0.004, "force_N": [], "torque_Nm": []},
+        "gate": "simulated", "shed": [], "handle": None, "drives": True,
+    }  # fmt: skip
+    for depth_m, told in [(1.9 * TOLERANCE_M, False), (2.1 * TOLERANCE_M, True)]:
+        data = json.dumps(json.dumps({"frame": {**frame, "depth_m": depth_m}}))
+        assert told == page.evaluate(
+            f"(ways.at(-1).onmessage({{data: {data}}}),"
+            " document.getElementById('notice-deep') != null)"
+        )
 
 
 def test_another_run_at_the_same_port_brings_its_own_picture(page):

@@ -20,12 +20,16 @@ import {setYaml} from "./yaml.js";
 // has no scene to be changed.
 const FAULT = "The device is at fault: it shows no force. Hold it, mend what is wrong"
   + " (the terminal says what), and press Enter there to take it up again.";
+const DEEP = "The tool is deep in an object, and may get through: a stiffer contact holds it.";
+// Contacts push from the tolerance on: one that is soft on purpose gives way by about as much again.
+const DEEP_TOLERANCES = 2;
 const MAKERS = {
   keys: makeSliders, choices: makeChoices, handles: makeHandles, cameras: makeCameras, legend: makeLegend,
   effects: list => makeSwitches("effect", list), views: list => makeSwitches("view", list),
 };
 const made = {};
 let settings = {limits: {force_N: 0, torque_Nm: 0}, period_s: 1e-3};
+let tolerance_m = Infinity;
 let isFramed = false;
 
 const on = {
@@ -53,6 +57,7 @@ const on = {
            {button: {label: "Drive from here", act: () => say({do: "take"})}});
     notify("fault", frame.gate === "fault" ? FAULT : "", {kind: "fault"});
     notify("shed", frame.shed.length ? "Ticks take too long. Left out: " + frame.shed.join(", ") + "." : "", {kind: "warn"});
+    notify("deep", frame.depth_m > DEEP_TOLERANCES * tolerance_m ? DEEP : "", {kind: "warn"});
     showGate(frame.gate);
     enable(frame.drives);
     // A loop that stands still has no new tick to tell of.
@@ -70,6 +75,7 @@ const on = {
 
   state(state) {
     showValues(state.values ?? {});
+    tolerance_m = state.values?.["contact.tolerance_m"] ?? Infinity;
     showSwitches(state);
     const rest = placeWarnings(state.warnings ?? []);
     find("warnings").replaceChildren(...rest.map(text => {
@@ -103,7 +109,7 @@ function end(gate) {
   showGate(gate);
   enable(false);
   showHandle(null);
-  for (const matter of ["watching", "fault", "shed", "error"]) notify(matter, "");
+  for (const matter of ["watching", "fault", "shed", "deep", "error"]) notify(matter, "");
 }
 
 function enable(drives) {
