@@ -106,10 +106,16 @@ def _question_reach(haptic: HapticDiagram) -> list[str]:
 def _sample_tool_box(haptic: HapticDiagram) -> np.ndarray:
     """Returns corners of the tool's box along the hand's path, (n, 8, 3), m."""
     path = make_hand_path(haptic.scene.hand.path)
-    low, high = _find_box(haptic.tool.mesh.vertices)
-    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1)
     times = np.linspace(0.0, path.duration_s, _PLACES)
-    return np.array([(vector_to_pose(path.calc(t)[0]) @ corners).T for t in times])
+    poses = [vector_to_pose(path.calc(t)[0]) for t in times]
+    return np.array([_find_corners(haptic.tool, X_WT) for X_WT in poses])
+
+
+def _find_corners(tool: Decomposition, X_WT: RigidTransform) -> np.ndarray:
+    """Returns corners of the tool's box, (8, 3), m in the world."""
+    box = zip(*_find_box(tool.mesh.vertices), strict=True)
+    corners = np.array(np.meshgrid(*box)).reshape(3, -1)
+    return (X_WT @ corners).T
 
 
 def _find_workspace(haptic: HapticDiagram) -> tuple[np.ndarray, float]:
@@ -173,13 +179,24 @@ def _question_device(haptic: HapticDiagram) -> list[str]:
 
 
 def _question_start(haptic: HapticDiagram) -> list[str]:
-    """Asks whether the hand's tool is meant to start inside an object."""
+    """Asks whether the tool is meant to start inside an object."""
     scene = haptic.scene
-    if haptic.backend is not None:
-        return []
-    X_WT = make_hand_path(scene.hand.path).start
-    limit_N = find_device_site(scene).max_force_N
-    p_WT = _sample_tool_box(haptic)[:1]
+    if haptic.backend is None:
+        X_WT = make_hand_path(scene.hand.path).start
+        # A scene's own hand may begin pressed, but not against all of its device.
+        allowed_m = (
+            find_device_site(scene).max_force_N / scene.contact.stiffness_N_per_m
+        )
+        remedy = "move hand.path.waypoints[0] to a place beside it"
+    else:
+        reading = haptic.backend.read()
+        if reading is None:
+            return []
+        X_WH = haptic.X_WB @ vector_to_pose(reading.X_BH)
+        X_WT = X_WH @ scene.tool.grasp.to_rigid_transform()
+        allowed_m = scene.contact.tolerance_m
+        remedy = "lead the device's handle to a place beside it and start again"
+    p_WT = _find_corners(haptic.tool, X_WT)[np.newaxis]
     sentences = []
     for item, part in zip(scene.environment, haptic.environment, strict=True):
         X_WO = item.pose.to_rigid_transform()
@@ -187,16 +204,13 @@ def _question_start(haptic: HapticDiagram) -> list[str]:
             continue
         X_OT = X_WO.inverse() @ X_WT
         depth_m = _calc_depth(haptic.tool, part, X_OT, scene.contact.tolerance_m)
-        force_N = depth_m * scene.contact.stiffness_N_per_m
-        if _is_inside(haptic.tool, part, X_OT) and force_N < limit_N:
-            how = f"inside '{item.name}', out of which nothing leads it"
-        elif force_N >= limit_N:
+        if depth_m > allowed_m:
             how = f"{length(depth_m)} deep in '{item.name}'"
+        elif _is_inside(haptic.tool, part, X_OT):
+            how = f"inside '{item.name}', out of which nothing leads it"
         else:
             continue
-        sentences.append(
-            f"the tool starts {how}: move hand.path.waypoints[0] to a place beside it"
-        )
+        sentences.append(f"the tool starts {how}: {remedy}")
     return sentences
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
-from box_scenes import over_a_plate, write
+from box_scenes import PLATE_TOP, over_a_plate, write
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.device.backend import DeviceBackend, DeviceReading
@@ -125,3 +125,19 @@ def test_more_force_than_the_device_is_rated_for_is_asked_for(tmp_path):
     assert "device.max_force_N is 50: more than the 8.5 N" in question
     scene.device.max_force_N = 8.5
     assert ask(scene) == []
+
+
+@pytest.mark.parametrize(
+    ("height_m", "words"), [(0.005, "starts 5 mm deep in 'plate'"), (0.0085, "")]
+)
+def test_a_device_whose_handle_is_in_an_object_is_asked_for(tmp_path, height_m, words):
+    # From half of the cube's height on it is in the plate; 2 mm are the tolerance.
+    scene = over_a_plate(tmp_path, PRESS)
+    device = Still()
+    device.p_BH = load_device_preset(scene.device.preset).workspace_center_m
+    X_BW = BuildHapticDiagram(scene, device=device).X_WB.inverse()
+    device.p_BH = X_BW @ [0.0, 0.0, PLATE_TOP + height_m]
+    questions = ask(scene, device=device)
+    assert len(questions) == bool(words)
+    for question in questions:
+        assert words in question and "lead the device's handle" in question
