@@ -84,10 +84,13 @@ def run(
         What was measured. Ctrl-C ends a run early and is not an error.
 
     Raises:
-        ValueError: `energy` is asked for, but the device is not simulated, or the run
-            goes on with the statistics of others.
+        ValueError: `duration_s` is negative, `energy` is asked for, but the device is
+            not simulated, or the run goes on with the statistics of others.
         RunError: The tool or the arm has a pose or velocity that is not finite.
     """
+    # Drake ends the whole program for a time before now.
+    if duration_s is not None and not duration_s >= 0.0:
+        raise ValueError(f"duration_s must not be negative, is {duration_s}")
     if energy and haptic.backend is not None:
         raise ValueError("energy can be booked for a simulated device only")
     if energy and statistics is not None and statistics.ticks:

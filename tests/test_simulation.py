@@ -95,6 +95,12 @@ def test_energy_is_not_booked_of_a_part(haptic):
         run(haptic, 0.01, energy=True, statistics=run(haptic, 0.01))
 
 
+@pytest.mark.parametrize("duration_s", [-1.0, float("nan")])
+def test_a_time_before_now_is_refused_and_does_not_end_python(haptic, duration_s):
+    with pytest.raises(ValueError, match=r"^duration_s must not be negative, is"):
+        run(haptic, duration_s)
+
+
 def test_garbage_is_thawed_after_a_run(haptic):
     before = gc.get_freeze_count()
     run(haptic, 0.01)
