@@ -41,7 +41,7 @@ from drake_haptics.scene import (
     Scene,
     Tool,
 )
-from drake_haptics.scene_check import SceneError, SceneWarning
+from drake_haptics.scene_check import SceneError, SceneWarning, check_values
 from drake_haptics.scene_pieces import cut_scene
 from drake_haptics.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.systems.contact_query import ContactObject
@@ -331,11 +331,13 @@ def BuildHapticDiagram(
         SceneWarning: The coupling breaks a bound of stability or passivity.
 
     Raises:
-        SceneError: A value is impossible or the hand's path cannot be reached.
+        SceneError: A value is impossible, also in a scene that was made or changed
+            in Python, or the hand's path cannot be reached.
         MeshError: A mesh cannot be treated.
         DeviceError: The device says nothing.
     """
     # First what is quick to fail.
+    check_values(scene)
     period_s = 1.0 / scene.device.rate_hz
     path = make_hand_path(scene.hand.path)
     X_HT = scene.tool.grasp.to_rigid_transform()

@@ -23,6 +23,7 @@ from drake_haptics.scene_effects import (
     Passivity,
     Shading,
 )
+from drake_haptics.scene_library import list_scenes
 from drake_haptics.scene_paths import place_files
 from drake_haptics.scene_twin import (
     Encoder,
@@ -61,7 +62,7 @@ __all__ = [
 ]
 
 
-@dataclass
+@dataclass(slots=True)
 class Pose:
     """A pose X_AB of a frame B in a frame A.
 
@@ -79,7 +80,7 @@ class Pose:
         return RigidTransform(RollPitchYaw(np.deg2rad(self.rpy_deg)), self.position_m)
 
 
-@dataclass
+@dataclass(slots=True)
 class Tool:
     """The tool in the hand: a mesh with a mass.
 
@@ -112,7 +113,7 @@ class Tool:
     grasp: Pose = field(default_factory=Pose)
 
 
-@dataclass
+@dataclass(slots=True)
 class EnvironmentObject:
     """An object that stands still in the world.
 
@@ -139,7 +140,7 @@ class EnvironmentObject:
     material: Material = field(default_factory=Material)
 
 
-@dataclass
+@dataclass(slots=True)
 class Contact:
     """How contact is found and answered.
 
@@ -173,7 +174,7 @@ class Contact:
     query_rate_hz: float | None = None
 
 
-@dataclass
+@dataclass(slots=True)
 class Coupling:
     """The spring and damper between the handle and the tool.
 
@@ -194,7 +195,7 @@ class Coupling:
     rotational_damping_Nms_per_rad: float = 0.004
 
 
-@dataclass
+@dataclass(slots=True)
 class Device:
     """The device that is held.
 
@@ -222,7 +223,7 @@ class Device:
     twin: Twin = field(default_factory=Twin)
 
 
-@dataclass
+@dataclass(slots=True)
 class Waypoint:
     """Where the hand wants the tool to be at a time.
 
@@ -237,7 +238,7 @@ class Waypoint:
     rpy_deg: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
 
 
-@dataclass
+@dataclass(slots=True)
 class HandPath:
     """Where the hand wants the tool to go; its spring decides how firmly.
 
@@ -252,7 +253,7 @@ class HandPath:
     waypoints: list[Waypoint] = field(default_factory=list)
 
 
-@dataclass
+@dataclass(slots=True)
 class Hand:
     """The simulated hand on a simulated device.
 
@@ -267,7 +268,7 @@ class Hand:
     path: HandPath = field(default_factory=HandPath)
 
 
-@dataclass
+@dataclass(slots=True)
 class Scene:
     """A whole scene.
 
@@ -349,6 +350,11 @@ def load_scene(path: str | Path) -> Scene:
             physically impossible. The message names the file and the key.
     """
     path = Path(path)
+    if str(path) in list_scenes() and not path.exists():
+        raise SceneError(
+            f"{path}: no such file; the scene of that name that comes along is"
+            f" load_scene(find_scene('{path}'))"
+        )
     data = load_yaml(path)
     try:
         check_keys(Scene, data)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 
-@dataclass
+@dataclass(slots=True)
 class Material:
     """What an object is made of; what is not given is the scene's.
 
@@ -21,7 +21,7 @@ class Material:
     shading: bool | None = None
 
 
-@dataclass
+@dataclass(slots=True)
 class Shading:
     """Force shading: facets feel smooth, edges stay sharp.
 
@@ -33,7 +33,7 @@ class Shading:
     crease_angle_deg: float = 30.0
 
 
-@dataclass
+@dataclass(slots=True)
 class Friction:
     """Stick-slip friction.
 
@@ -47,7 +47,7 @@ class Friction:
     break_away_m: float = 1e-4
 
 
-@dataclass
+@dataclass(slots=True)
 class Braking:
     """Viscous braking before contact.
 
@@ -61,7 +61,7 @@ class Braking:
     distance_m: float = 4e-3
 
 
-@dataclass
+@dataclass(slots=True)
 class Gravity:
     """The tool's weight.
 
@@ -74,7 +74,7 @@ class Gravity:
     )
 
 
-@dataclass
+@dataclass(slots=True)
 class Passivity:
     """Energy-based passivity control between the coupling and the device.
 
@@ -90,7 +90,7 @@ class Passivity:
     reserve_J: float | None = None
 
 
-@dataclass
+@dataclass(slots=True)
 class Effects:
     """The effects of a scene. One that is None is not in the diagram.
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 
-@dataclass
+@dataclass(slots=True)
 class Encoder:
     """Encoders on the motors: the loop sees counted angles, not the true ones.
 
@@ -18,7 +18,7 @@ class Encoder:
     velocity_window: int = 4
 
 
-@dataclass
+@dataclass(slots=True)
 class JointFriction:
     """Dry and viscous friction of the motors, beyond the damping of the model.
 
@@ -33,7 +33,7 @@ class JointFriction:
     viscous_Nms_per_rad: list[float] = field(default_factory=lambda: [0.0] * 6)
 
 
-@dataclass
+@dataclass(slots=True)
 class ForceDelay:
     """A way to the motors that takes whole ticks, on top of the hold.
 
@@ -44,7 +44,7 @@ class ForceDelay:
     samples: int = 1
 
 
-@dataclass
+@dataclass(slots=True)
 class Saturation:
     """Motors of limited torque.
 
@@ -56,7 +56,7 @@ class Saturation:
     peak_torque_Nm: list[float] | None = None
 
 
-@dataclass
+@dataclass(slots=True)
 class Twin:
     """How faithful the simulated device is. A part that is None is not in the diagram.
 

@@ -82,7 +82,7 @@ def test_costs_are_those_of_ticks(study):
 def test_a_setting_that_cannot_be_says_why(study):
     row = study.rows[-1]
     assert row.cost is None and row.errors is None
-    assert "unknown decomposition method 'cubes'" in row.why_not
+    assert "tool.decomposition is 'cubes'" in row.why_not
 
 
 def test_goes_through_json(study):

@@ -224,3 +224,22 @@ def test_a_mesh_file_has_no_chord_error(tmp_path):
     scene.environment[0].chord_error_m = 1e-4
     with pytest.raises(SceneError, match="chord_error_m is for models with round"):
         BuildHapticDiagram(scene)
+
+
+@pytest.mark.parametrize(
+    "group, key, value",
+    [
+        ("contact", "stiffness_N_per_m", -1.0),
+        ("contact", "cluster_size_m", 1e-3),
+        ("device", "rate_hz", 0.0),
+    ],
+)
+def test_a_value_that_was_set_in_python_is_refused_by_its_key(
+    tmp_path, group, key, value
+):
+    """As one in a file is; before any mesh is read."""
+    scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT)])
+    setattr(getattr(scene, group), key, value)
+    scene.tool.mesh = "not read.obj"
+    with pytest.raises(SceneError, match=rf"^{group}\.{key} "):
+        BuildHapticDiagram(scene)

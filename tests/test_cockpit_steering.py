@@ -225,7 +225,7 @@ def read_live_values(haptic, root):
     force = loop.penalty_force
     contact = force.get_gains(force.GetMyContextFromRoot(root))
     return {
-        **{key: getattr(gains, key) for key in vars(Scene().coupling)},
+        **{key: getattr(gains, key) for key in dataclasses.asdict(Scene().coupling)},
         "clustering": rule.method,
         "tolerance_m": rule.tolerance_m,
         "contact": contact.stiffness_N_per_m[0],

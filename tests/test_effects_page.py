@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 
 import pytest
@@ -63,7 +63,7 @@ def test_writing_twice_changes_nothing_but_the_figures():
 
 def test_the_scene_that_is_measured_names_every_effect():
     effects = load_scene(find_scene(SCENE)).effects
-    assert all(value is not None for value in vars(effects).values())
+    assert all(value is not None for value in asdict(effects).values())
 
 
 def test_a_page_without_marks_is_refused():

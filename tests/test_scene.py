@@ -19,6 +19,7 @@ from drake_haptics.scene import (
     Pose,
     SceneError,
     Shading,
+    Twin,
     Waypoint,
     load_scene,
 )
@@ -364,3 +365,21 @@ def test_an_unknown_package_is_refused(tmp_path):
     text = GOOD.replace("package://drake_haptics/", "package://drak/")
     with pytest.raises(SceneError, match=r"no package 'drak'; known: .*drake_haptics"):
         load(tmp_path, text)
+
+
+def test_a_name_that_a_scene_does_not_have_cannot_be_set():
+    """It would be silent otherwise: the value that was meant stays as it was."""
+    scene = load_scene(find_scene("cup_spoon"))
+    parts = (scene, scene.contact, scene.coupling, scene.device, scene.effects)
+    for part in (*parts, scene.hand.path.waypoints[0], Friction(), Twin()):
+        with pytest.raises(AttributeError, match="stiffnes_N_per_m"):
+            part.stiffnes_N_per_m = 1.0
+
+
+def test_the_name_of_a_shipped_scene_is_no_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SceneError, match=r"load_scene\(find_scene\('cup_spoon'\)\)"):
+        load_scene("cup_spoon")
+    Path("cup_spoon").write_text("tool: {}")
+    with pytest.raises(SceneError, match=r"tool\.mesh is missing"):
+        load_scene("cup_spoon")

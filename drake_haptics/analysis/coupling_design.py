@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -107,7 +107,7 @@ class CouplingDesign:
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers, words and lists only."""
         return {
-            "coupling": vars(self.coupling).copy(),
+            "coupling": asdict(self.coupling),
             "period_s": self.period_s,
             "delay_s": self.delay_s,
             "margin": self.margin,

@@ -12,6 +12,7 @@ import argparse
 import sys
 import warnings
 from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +49,7 @@ def _describe_value(value: Any) -> str:
 
 def _plain(value: Any) -> Iterator[tuple[str, Any]]:
     """Yields the keys that a line has room for: those that are one number."""
-    return ((k, v) for k, v in vars(value).items() if isinstance(v, float | int))
+    return ((k, v) for k, v in asdict(value).items() if isinstance(v, float | int))
 
 
 def make_row(case: Case) -> list[str]:
