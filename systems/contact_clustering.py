@@ -148,6 +148,7 @@ class ContactClustering(DifferentiableSystem):
             context: Of this system.
             rule: The new one.
         """
+        self.ValidateContext(context)
         context.get_mutable_abstract_parameter(self._rule).set_value(rule)
 
     def get_contacts_input_port(self) -> InputPort:

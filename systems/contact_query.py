@@ -192,6 +192,7 @@ class ContactQuery(DifferentiableSystem):
         Raises:
             ValueError: It is negative or not finite.
         """
+        self.ValidateContext(context)
         _check_tolerance(tolerance_m)
         context.get_mutable_abstract_parameter(self._tolerance).set_value(tolerance_m)
 

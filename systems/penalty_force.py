@@ -38,7 +38,7 @@ class ContactGains:
         damping_Ns_per_m: k_v of each object, (n,), N·s/m.
 
     Raises:
-        ValueError: A gain is negative or not finite.
+        ValueError: A gain is negative or not finite, or not one of a list.
     """
 
     stiffness_N_per_m: np.ndarray
@@ -47,12 +47,16 @@ class ContactGains:
     def __post_init__(self) -> None:
         """Checks the gains and takes read-only copies."""
         for name, gains in vars(self).items():
-            for gain in gains:
+            copied = np.array(gains, dtype=float)
+            if copied.ndim != 1:
+                raise ValueError(
+                    f"{name} must have one value for each object, (n,), is {gains}"
+                )
+            for gain in copied:
                 if not (gain >= 0.0 and math.isfinite(gain)):
                     raise ValueError(
-                        f"{name} must be finite and not negative, has {gain}"
+                        f"{name} must be finite and not negative, has {gain:g}"
                     )
-            copied = np.array(gains, dtype=float)
             copied.flags.writeable = False
             object.__setattr__(self, name, copied)
 
@@ -174,6 +178,7 @@ class PenaltyForce(DifferentiableSystem):
         Raises:
             ValueError: There is not one for each object.
         """
+        self.ValidateContext(context)
         self._check_number(gains)
         context.get_mutable_abstract_parameter(self._gains).set_value(gains)
 

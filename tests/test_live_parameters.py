@@ -12,6 +12,7 @@ from contact_state import K as K_CONTACT
 from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
+from pydrake.systems.framework import DiagramBuilder
 from test_contact_query import box_core, query_at
 from test_virtual_coupling import BR, KR, X_HT, X_WH, B, K
 
@@ -237,6 +238,8 @@ def test_there_is_one_gain_for_each_object():
         force.set_gains(context, ContactGains(np.ones(2), np.ones(2)))
     with pytest.raises(ValueError, match="damping_Ns_per_m must have one value for"):
         force.set_gains(context, ContactGains(np.ones(1), np.ones(2)))
+    with pytest.raises(ValueError, match=r"must have one value for each.*is 1000"):
+        ContactGains(1e3, 20.0)
     assert force.get_gains(context).damping_Ns_per_m.tolist() == [2.0]
 
 
@@ -247,3 +250,30 @@ def test_gains_that_were_written_cannot_be_changed_behind_the_back_of_a_context(
     assert gains.stiffness_N_per_m.tolist() == [100.0]
     with pytest.raises(ValueError, match="read-only"):
         gains.stiffness_N_per_m[0] = 5.0
+
+
+def test_the_context_of_another_system_is_refused_by_name():
+    """The root's is the one that is given by mistake."""
+    plate = ContactObject("plate", box_core(0.1, 0.1, 0.1), RigidTransform())
+    force = PenaltyForce([plate], [1.0], [2.0])
+    clustering = ContactClustering("shared", 1e-3)
+    query = ContactQuery(box_core(0.1, 0.1, 0.1), [plate], 1e-3)
+    coupling = VirtualCoupling(OTHER, X_HT)
+    writes = {
+        force: lambda context: force.set_gains(
+            context, ContactGains(np.ones(1), np.ones(1))
+        ),
+        clustering: lambda context: clustering.set_rule(
+            context, ClusteringRule("shared", 2e-3)
+        ),
+        query: lambda context: query.set_tolerance(context, 2e-3),
+        coupling: lambda context: coupling.set_gains(context, OTHER),
+    }
+    builder = DiagramBuilder()
+    for system in writes:
+        builder.AddSystem(system)
+    root = builder.Build().CreateDefaultContext()
+    for system, write in writes.items():
+        with pytest.raises(RuntimeError, match=r"GetMyContextFromRoot|not.*subsystem"):
+            write(root)
+        write(system.GetMyMutableContextFromRoot(root))
