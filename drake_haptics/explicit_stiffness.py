@@ -104,11 +104,15 @@ def check_explicit_stiffness(
     if stiffness <= bound:
         return None
     unit, mass_unit = units
-    remedy = f"a stiffness below {bound:.3g} {unit}, " if bound > 0.0 else ""
+    if bound > 0.0:
+        holds = f"holds at most (4 m - 2 B h)/h² = {bound:.3g} {unit}"
+        remedy = f"a stiffness below {bound:.3g} {unit}"
+    else:
+        holds = "does not even hold that damping, with 4 m < 2 B h,"
+        remedy = f"a damping below 2 m/h = {2.0 * mass / step_s:.3g}"
     return (
         f"{what}: stiffness {stiffness:g} {unit} with damping {damping:g} may not be"
         f" stable: forces on a discrete plant are explicit, and an apparent mass of"
-        f" {mass:.3g} {mass_unit} holds at most (4 m - 2 B h)/h² = {bound:.3g} {unit}"
-        f" at a step of {step_s:g} s; take {remedy}a smaller time_step, a continuous"
-        " plant (time_step=0), or a heavier body"
+        f" {mass:.3g} {mass_unit} {holds} at a step of {step_s:g} s; take {remedy}, a"
+        " smaller time_step, a continuous plant (time_step=0), or a heavier body"
     )

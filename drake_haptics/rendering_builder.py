@@ -20,6 +20,7 @@ from drake_haptics.rendered_bodies import (
     find_environment,
     make_rendered_bodies,
 )
+from drake_haptics.rendering_sizes import question_rendered_sizes
 from drake_haptics.rendering_stiffness import check_rendering_stiffness
 from drake_haptics.scene import Contact, Coupling, Effects, Material
 from drake_haptics.scene_check import SceneWarning
@@ -93,9 +94,10 @@ def AddHapticRendering(
         The system. Its ports are named; see `HapticRendering`.
 
     Warns:
-        SceneWarning: A gain is too stiff for the explicit step of a discrete plant, or
+        SceneWarning: A gain is too stiff for the explicit step of a discrete plant,
             Drake's own contact acts between the tool and bodies that neither this call
-            nor an earlier one renders.
+            nor an earlier one renders, or a body is as large as if its mesh were in
+            another unit than metres.
 
     Raises:
         ValueError: What was asked for cannot be; the message names the argument and
@@ -108,6 +110,8 @@ def AddHapticRendering(
     contact, effects = contact or Contact(), effects or Effects()
     inspector = scene_graph.model_inspector()
     tool = find_body(plant, tool_body, "tool_body")
+    if isinstance(environment, str):
+        raise ValueError(f"environment: is a list of bodies, as [{environment!r}]")
     if environment is None:
         bodies = find_environment(plant, inspector, tool, role)
     else:
@@ -145,6 +149,7 @@ def AddHapticRendering(
     touching = exclude_own_contact(plant, scene_graph, tool, bodies)
     for sentence in [
         *_describe_own_contact(tool, touching),
+        *question_rendered_sizes(rendered_tool, objects),
         *check_rendering_stiffness(
             plant, rendered_tool, objects, contact, ordered, coupling
         ),
@@ -171,7 +176,10 @@ def _check_builder(
     if not scene_graph.model_inspector().SourceIsRegistered(source_id):
         raise ValueError("scene_graph: is not that of the plant")
     if builder.HasSubsystemNamed(name):
-        raise ValueError(f"name: the builder has a system {name!r} already")
+        raise ValueError(
+            f"name: the builder has a system {name!r} already; give a second rendering"
+            " a name of its own, as name='left_hand'"
+        )
     find_applied_force(builder, plant)
 
 

@@ -84,6 +84,9 @@ def test_bodies_at_both_ends_of_a_contact_give_way_together():
 def test_where_no_stiffness_is_stable_none_is_proposed():
     sentence = check_explicit_stiffness("it", 10.0, 300.0, [10.0], STEP)
     assert "a stiffness below" not in sentence
+    # 2 m / h of 0.1 kg and 1 ms; as much does not hold the softest spring.
+    assert "4 m < 2 B h" in sentence and "a damping below 2 m/h = 200" in sentence
+    assert check_explicit_stiffness("it", 10.0, 199.0, [10.0], STEP) is None
 
 
 def test_a_continuous_plant_has_the_same_mobility():

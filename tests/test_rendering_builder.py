@@ -353,8 +353,13 @@ def test_a_plant_without_a_scene_graph_is_refused():
 
 def test_a_name_that_is_taken_is_refused():
     scene, _ = over_a_slab()
-    with pytest.raises(ValueError, match=r"name: .* 'haptic_rendering' already"):
+    with pytest.raises(ValueError, match=r"name: .* 'haptic_rendering' already.*name="):
         render(scene)
+
+
+def test_one_name_is_no_list_of_bodies():
+    with pytest.raises(ValueError, match=r"environment: is a list .* \['slab'\]"):
+        over_a_slab(environment="slab")
 
 
 def test_a_period_must_be_positive():

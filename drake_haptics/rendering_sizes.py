@@ -1,0 +1,46 @@
+"""Whether bodies of a plant are as large as what a hand moves and touches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from drake_haptics.mesh_checks import LARGEST_USUAL_EXTENT_M, SMALLEST_USUAL_EXTENT_M
+from drake_haptics.mesh_report import length
+from drake_haptics.rendered_bodies import RenderedBody
+from drake_haptics.units import METRES_PER_UNIT, guess_unit
+
+
+def question_rendered_sizes(
+    tool: RenderedBody, objects: Sequence[RenderedBody]
+) -> list[str]:
+    """Asks for the unit of bodies that are unlike anything that a hand touches.
+
+    A file in millimetres that is read as metres is a thousand times too large. What the
+    tool meets may be as large as it likes: a ground is.
+
+    Args:
+        tool: The body that is moved.
+        objects: What it meets.
+
+    Returns:
+        A sentence for each body that is probably in another unit.
+    """
+    asked = [_question_size("tool_body", tool, LARGEST_USUAL_EXTENT_M)]
+    asked += [_question_size("environment", item, np.inf) for item in objects]
+    return [sentence for sentence in asked if sentence]
+
+
+def _question_size(argument: str, item: RenderedBody, largest_m: float) -> str:
+    extent_m = float(np.ptp(np.asarray(item.pieces.vertices), axis=0).max())
+    if SMALLEST_USUAL_EXTENT_M <= extent_m <= largest_m:
+        return ""
+    sentence = f"{argument}: {item.name!r} is {length(extent_m)} wide"
+    unit = guess_unit(extent_m, SMALLEST_USUAL_EXTENT_M, LARGEST_USUAL_EXTENT_M)
+    if unit is None:
+        return f"{sentence}; is the scale of its geometry right?"
+    factor = METRES_PER_UNIT[unit]
+    return (
+        f"{sentence}; if its mesh is in {unit}, give the geometry a scale of {factor:g}"
+    )
