@@ -92,6 +92,20 @@ CASES = (
         motion="the hand goes through the wall",
         path=_THROUGH_WALL,
     ),
+    # The peg's radius is 12 mm; the hole's, of 22 mm, is made 0.54 mm larger than that.
+    Case(
+        "fit",
+        "torus_peg",
+        "tool behind a hand at rest, mm",
+        {
+            "environment.scale": 0.57,
+            "contact.tolerance_m": 2e-3,
+            "contact.stiffness_N_per_m": 20000.0,
+        },
+        {"contact.tolerance_m": 4e-4},
+        motion=_STOPS,
+        stop_s=0.5,
+    ),
     Case(
         "jumps",
         "cup_spoon",
