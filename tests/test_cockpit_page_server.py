@@ -12,6 +12,7 @@ import urllib.request
 import pytest
 import websocket
 
+from drake_haptics.cockpit import page_server
 from drake_haptics.cockpit.page_port import open_page_port
 from drake_haptics.cockpit.page_server import PageServer
 
@@ -221,6 +222,24 @@ def test_what_it_may_not_say_is_told_to_be_refused(server):
     page.send_binary(b"\x00\xff")
     assert server.heard.get(timeout=BOUND_S) == REFUSED
     page.close()
+
+
+def test_who_may_not_ask_keeps_nobody_waiting(monkeypatch):
+    """Each is heard once in a while; a flood took seconds of the page that drives."""
+    monkeypatch.setattr(page_server, "_REFUSED_PAUSE_S", 3600.0)
+    server = Served()
+    watchers = [connect(server) for _ in range(5)]
+    page = connect(server)
+    for watcher in watchers:
+        for _ in range(20):
+            watcher.send(json.dumps(HOME))
+    for _ in range(20):
+        page.send(json.dumps(HOME))
+    heard = []
+    while heard.count(HOME) < 20:
+        heard.append(server.heard.get(timeout=BOUND_S))
+    assert heard.count(REFUSED) <= len(watchers)
+    server.close()
 
 
 def test_long_messages_end_a_talk_and_not_the_server(server):

@@ -22,6 +22,9 @@ from drake_haptics.cockpit.page_request import REFUSED, TAKE, read_page_request
 _OWN_NAMES = ("localhost", "127.0.0.1")
 # A page speaks once a frame; more than this would only take time from the loop.
 _MESSAGE_PAUSE_S = 0.002
+# Who asks for what nobody may, or does not drive, is heard less: many such would keep
+# the page that drives waiting.
+_REFUSED_PAUSE_S = 0.1
 _LONGEST_MESSAGE = 256
 _CLOSE_S = 0.5
 # A page that reads slower than it is told misses frames.
@@ -108,22 +111,25 @@ class PageServer:
             for message in self._lasting.values():
                 broadcast([page], message)
             async for text in page:
-                await self._hear(page, text)
-                await asyncio.sleep(_MESSAGE_PAUSE_S)
+                is_passed = await self._hear(page, text)
+                pause_s = _MESSAGE_PAUSE_S if is_passed else _REFUSED_PAUSE_S
+                await asyncio.sleep(pause_s)
         except ConnectionClosed:
             pass
         finally:
             self._pages.remove(page)
 
-    async def _hear(self, page: ServerConnection, text: str | bytes) -> None:
-        """Passes on what a page may ask for."""
+    async def _hear(self, page: ServerConnection, text: str | bytes) -> bool:
+        """Passes on what a page may ask for; returns whether it may."""
         asked = read_page_request(text)
         if asked is not None and asked["do"] == TAKE:
             self._pages.remove(page)
             self._pages.append(page)
         if asked is None or page is not self._pages[-1]:
-            asked = {REFUSED: 1}
+            await self._forward({REFUSED: 1})
+            return False
         await self._forward(asked)
+        return True
 
     def _answer(
         self, connection: ServerConnection, request: Request
