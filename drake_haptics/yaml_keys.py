@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import yaml
 from pydrake.common.yaml import yaml_load_file
 
 from drake_haptics.errors import SceneError
@@ -20,10 +21,12 @@ def load_yaml(path: Path) -> Any:
     """Returns what a file of YAML holds.
 
     Raises:
-        SceneError: It cannot be opened, or is none; the message is one line.
+        SceneError: It cannot be opened, is none, or gives a key twice; the message is
+            one line.
     """
     try:
-        return yaml_load_file(str(path))
+        data = yaml_load_file(str(path))
+        tree = yaml.compose(path.read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
     except OSError as error:
         raise SceneError(
             f"{path}: cannot be opened: {error.strerror}; looked for {path.absolute()}"
@@ -33,6 +36,39 @@ def load_yaml(path: Path) -> Any:
         if "'\\t'" in reason:
             reason += "; indent with spaces, YAML takes no tabs"
         raise SceneError(f"{path}: cannot be read as YAML: {reason}") from error
+    _refuse_repeated_keys(path, tree)
+    return data
+
+
+def _refuse_repeated_keys(path: Path, tree: yaml.Node | None) -> None:
+    """Refuses a key that is given twice, of which YAML takes the last in silence.
+
+    Raises:
+        SceneError: There is one; the message names both lines.
+    """
+    left: list[tuple[str, yaml.Node | None]] = [("", tree)]
+    seen = set()
+    while left:
+        where, node = left.pop()
+        # An alias is the node that it names.
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        if isinstance(node, yaml.SequenceNode):
+            left += [(f"{where}[{i}]", item) for i, item in enumerate(node.value)]
+        if not isinstance(node, yaml.MappingNode):
+            continue
+        lines: dict[str, int] = {}
+        for key, item in node.value:
+            place = join_key(where, str(key.value))
+            line = key.start_mark.line + 1
+            if place in lines:
+                raise SceneError(
+                    f"{path}: {place}: given in line {lines[place]} and again in line"
+                    f" {line}; join the two"
+                )
+            lines[place] = line
+            left.append((place, item))
 
 
 def check_keys(schema: Any, data: Any, where: str = "") -> None:

@@ -212,6 +212,17 @@ def test_a_pose_is_drakes():
         ("hand:", "device: {rate_hz: 0}\nhand:", r"device\.rate_hz must be pos"),
         ("hand:", "device: {max_force_N: -1}\nhand:", r"device\.max_force_N must not"),
         ("hand:", "device: 3\nhand:", r"device: expected keys, found 3"),
+        (
+            "hand:",
+            "contact: {tolerance_m: 1e-3}\ncontact:\n  depth: global\nhand:",
+            r"contact: given in line \d+ and again in line \d+",
+        ),
+        (
+            "mass_kg",
+            "scale: 2\n  scale: 1\n  mass_kg",
+            r"tool\.scale: given in line",
+        ),
+        ("scale: 1e-3", "scale: 1e-3\n  scale: 1", r"environment\[0\]\.scale: given"),
     ],
 )
 def test_what_is_wrong_is_named_with_file_and_key(tmp_path, old, new, complaint):
