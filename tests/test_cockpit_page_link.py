@@ -2,7 +2,9 @@
 
 import json
 import os
+import resource
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -181,6 +183,24 @@ def test_a_process_that_ends_at_once_is_not_started_for_ever(link, caplog):
     assert "goes on without its page" in record.message
     link.close()
     assert len(caplog.records) == 1
+
+
+def test_more_connections_than_there_can_be_are_borne_in_silence(capfd):
+    most = 24
+    with PageLink(MESHCAT) as link:
+        link.tell({"hello": {"scene": "cup"}})
+        page = connect(link.url)
+        pid = link._process.pid
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, (most, most))
+        address = ("127.0.0.1", int(link.url.rstrip("/").rpartition(":")[2]))
+        strangers = [socket.create_connection(address, BOUND_S) for _ in range(40)]
+        wait_for(lambda: len(os.listdir(f"/proc/{pid}/fd")) >= most)
+        page.close()
+        for stranger in strangers:
+            stranger.close()
+        page = connect(link.url)
+        assert read_until(page, "hello") == {"scene": "cup"}
+    assert capfd.readouterr().err == ""
 
 
 def test_its_end_leaves_no_process_and_a_free_port():

@@ -42,6 +42,7 @@ class PageProcess:
     async def run(self) -> None:
         """Serves until the loop has ended."""
         loop = asyncio.get_running_loop()
+        loop.set_exception_handler(_report)
         ended = asyncio.Event()
 
         def look_for_end() -> None:
@@ -52,6 +53,8 @@ class PageProcess:
         loop.add_reader(self._link, self._read)
         loop.add_reader(_STDIN, look_for_end)
         await ended.wait()
+        # What waits for free connections finds its socket closed.
+        loop.set_exception_handler(lambda *_: None)
         loop.remove_reader(_STDIN)
         # What the loop said last.
         self._read()
@@ -89,6 +92,12 @@ class PageProcess:
         loop = asyncio.get_running_loop()
         with suppress(OSError):
             await loop.sock_sendall(self._link, json.dumps(asked).encode())
+
+
+def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """Reports a defect; that strangers take all connections is none, and passes."""
+    if not isinstance(context.get("exception"), OSError):
+        loop.default_exception_handler(context)
 
 
 def main() -> None:
