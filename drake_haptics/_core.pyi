@@ -959,9 +959,11 @@ def penalty_force(clusters: AutoDiffClusterSet, p_WTo: AutoDiffVector, V_WTool: 
     """
 
 class CouplingGains:
-    """Spring and damper of the virtual coupling. Immutable."""
+    """
+    Spring and damper of the virtual coupling, and the most they pull with together, force and torque each by its norm. Immutable.
+    """
 
-    def __init__(self, stiffness_N_per_m: float, damping_Ns_per_m: float, rotational_stiffness_Nm_per_rad: float, rotational_damping_Nms_per_rad: float) -> None: ...
+    def __init__(self, stiffness_N_per_m: float, damping_Ns_per_m: float, rotational_stiffness_Nm_per_rad: float, rotational_damping_Nms_per_rad: float, max_force_N: float = float('inf'), max_torque_Nm: float = float('inf')) -> None: ...
 
     def __deepcopy__(self, arg: object, /) -> object: ...
 
@@ -978,6 +980,12 @@ class CouplingGains:
 
     @property
     def rotational_damping_Nms_per_rad(self) -> float: ...
+
+    @property
+    def max_force_N(self) -> float: ...
+
+    @property
+    def max_torque_Nm(self) -> float: ...
 
     def __repr__(self) -> str: ...
 
@@ -1003,7 +1011,7 @@ def limit_wrench(F: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')
     Shortens torque and force of a wrench (6,), [N·m; N], each to its limit, along its own direction.
 
     Returns:
-        (7,): the wrench and what became of it: 0 as asked, 1 limited, 2 not finite, for which it is zero.
+        (7,): the wrench and what became of it: 0 as asked, 1 at a limit, 2 not finite, for which it is zero.
 
     Raises:
         ValueError: a limit is negative or not finite.

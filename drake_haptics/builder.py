@@ -21,6 +21,7 @@ from drake_haptics.contact_systems import (
     connect_by_name,
     find_contact_gains,
 )
+from drake_haptics.coupling_gains import make_coupling_gains
 from drake_haptics.decomposition import Decomposition
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.device_site import (
@@ -129,7 +130,7 @@ def AddHapticLoop(
             `drake_haptics.mass_properties.make_tool_dynamics`.
         objects: What the tool meets.
         contact: Tolerance, clustering and gains.
-        coupling: Gains between handle and tool.
+        coupling: Gains between handle and tool; it yields at the device's limits.
         X_HT: Pose of the tool in the handle at rest.
         X_WT: Where the tool starts.
         period_s: The tick, s; also the device's.
@@ -150,12 +151,7 @@ def AddHapticLoop(
     effects = effects or Effects()
     if materials is None:
         materials = [Material()] * len(objects)
-    gains = _core.CouplingGains(
-        coupling.stiffness_N_per_m,
-        coupling.damping_Ns_per_m,
-        coupling.rotational_stiffness_Nm_per_rad,
-        coupling.rotational_damping_Nms_per_rad,
-    )
+    gains = make_coupling_gains(coupling, device)
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
     if load_shedding is not None:
         builder.AddNamedSystem("load_shedding", load_shedding)

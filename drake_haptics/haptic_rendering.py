@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram, InputPort, OutputPort
 
-from drake_haptics import _core
 from drake_haptics.contact_systems import connect_by_name
+from drake_haptics.coupling_gains import make_coupling_gains
 from drake_haptics.rendered_bodies import RenderedBody
 from drake_haptics.rendering_wiring import RenderingWiring
 from drake_haptics.scene import Contact, Coupling, Effects, Material
@@ -98,7 +97,7 @@ class HapticRendering(Diagram):
         wiring = RenderingWiring(tool, objects)
         wiring.add_contact(contact, effects, materials, period_s)
         if coupling is not None:
-            wiring.add_coupling(_core.CouplingGains(**asdict(coupling)), X_HT, device)
+            wiring.add_coupling(make_coupling_gains(coupling, device), X_HT, device)
         wiring.add_effects(effects, materials, period_s)
         wiring.add_applied_wrenches()
         for system in wiring.builder.GetSystems():

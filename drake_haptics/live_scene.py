@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import cast
 
 from pydrake.systems.framework import Context
 
-from drake_haptics._core import CouplingGains
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.contact_systems import find_contact_gains, find_query_tolerance
+from drake_haptics.coupling_gains import make_coupling_gains
 from drake_haptics.scene import Contact, Coupling, Scene
 from drake_haptics.systems.contact_clustering import ClusteringMethod, ClusteringRule
 
@@ -44,7 +44,7 @@ def put_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
     As `write_live_values`, for values that are on their way to those of the diagram.
     """
     contact, loop = scene.contact, haptic.loop
-    gains = CouplingGains(**asdict(scene.coupling))
+    gains = make_coupling_gains(scene.coupling, loop.device)
     rule = ClusteringRule(
         cast(ClusteringMethod, contact.clustering),
         contact.tolerance_m,

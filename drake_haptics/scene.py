@@ -209,8 +209,9 @@ class Device:
         tick_budget_us: What the work of a tick may take, µs. Where ticks take longer,
             drawing stops, then contacts are looked for less far, then fewer push
             (docs/under-load.md). Nothing is dropped where not given.
-        max_force_N: Largest force shown, N; the preset's where not given.
-        max_torque_Nm: Largest torque shown, N·m; the preset's where not given.
+        max_force_N: Largest force shown, N; the preset's where not given. With no more
+            is the tool pressed; at 0 nothing is shown, and it is pressed without limit.
+        max_torque_Nm: Largest torque shown, N·m; the same holds.
         twin: What a simulated device has of a real one's faults.
     """
 

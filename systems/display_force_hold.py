@@ -44,7 +44,7 @@ class DisplayForceHold(Diagram):
         - status
 
     `F_display` and `F_applied` are wrenches [τ; f], N·m and N. `status` (1) tells of
-    the last sample: 0 shown as asked, 1 limited, 2 not finite.
+    the last sample: 0 shown as asked, 1 at a limit, 2 not finite.
 
     The state is one discrete group (7), [F_applied; status], updated every period
     from 0 s on; it depends on nothing before the sample.

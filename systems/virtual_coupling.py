@@ -29,6 +29,9 @@ class VirtualCoupling(Diagram):
     device thus feels at most this stiffness, however stiff the contact is
     (Adams and Hannaford 1999). It has no state and adds no delay.
 
+    It pulls with no more than the gains' `max_force_N` and `max_torque_Nm`, those of
+    the device in a loop: what stretches it further presses the tool no harder.
+
     .. pydrake_system::
 
         name: VirtualCoupling

@@ -116,14 +116,16 @@ def test_what_the_implicit_step_takes_is_not_in_the_bound():
     assert books.bound_J == pytest.approx(made)
 
 
+@pytest.mark.parametrize("limits", [(), (8.5, 0.188)])
 @pytest.mark.parametrize("explicit", [False, True])
 @pytest.mark.parametrize("seed", range(6))
 def test_no_motion_of_handle_and_tool_gets_more_out_than_sampling_explains(
-    seed, explicit
+    seed, explicit, limits
 ):
     """Large steps in all axes: also the terms of higher order must be in the bound."""
     rng = np.random.default_rng(seed)
-    gains = _core.CouplingGains(800, rng.choice([0, 3]), 2.0, rng.choice([0, 0.02]))
+    dampings = rng.choice([0, 3]), rng.choice([0, 0.02])
+    gains = _core.CouplingGains(800, dampings[0], 2.0, dampings[1], *limits)
     q_HT = pose(Rotation.random(random_state=seed), rng.normal(size=3))
     _, ledger = make_ledger(gains=gains, q_HT=q_HT)
     size = 10 ** rng.uniform(-4, -1)
@@ -156,6 +158,31 @@ def test_the_spring_s_energy_is_what_the_coupling_stores():
     assert ledger.accounts["coupling"].stored_J == pytest.approx(
         0.5 * 800 * 0.02**2 + 0.5 * 2 * 0.3**2
     )
+
+
+def test_a_spring_that_yields_stores_the_work_against_its_limit():
+    gains = _core.CouplingGains(800, 1, 2, 0.01, 8.5, 0.188)
+    _, ledger = make_ledger(gains=gains)
+    add(ledger, tool_at(0.0), q_WH=pose(Rotation.from_euler("x", 0.3), [0, 0.2, 0]))
+    yields_m, yields_rad = 8.5 / 800, 0.188 / 2
+    assert ledger.accounts["coupling"].stored_J == pytest.approx(
+        8.5 * (0.2 - yields_m / 2) + 0.188 * (0.3 - yields_rad / 2)
+    )
+
+
+def test_pulled_far_beyond_its_limit_and_back_it_gives_what_it_got():
+    """A constant force makes no energy by being sampled; only its spring does."""
+    k, step, ticks = 800.0, 2e-4, 400
+    gains = _core.CouplingGains(k, 0, 0, 0, 8.5)
+    x = step * np.concatenate([np.arange(ticks + 1), np.arange(ticks - 1, -1, -1)])
+    _, ledger = make_ledger(gains=gains)
+    hand_moves(ledger, [np.concatenate([IDENTITY[:4], [x, 0, 0]]) for x in x], gains)
+    books = ledger.accounts["device"]
+    # Up to the limit as any sampled wall, half a step's work each way.
+    assert books.out_J - books.in_J == pytest.approx(8.5 * step)
+    assert 0.0 < books.created_J <= books.bound_J
+    assert books.beyond_J < 1e-15
+    assert books.stored_J == pytest.approx(0, abs=1e-15)
 
 
 def test_a_limit_of_the_device_shows_in_the_display():

@@ -118,3 +118,28 @@ def test_derivatives_do_not_mind_the_length_of_a_quaternion(coupling):
     np.testing.assert_allclose(
         jacobian[:, :4] @ pose_to_vector(X_WH)[:4], 0.0, atol=1e-11
     )
+
+
+@pytest.mark.parametrize("speed", [1.0, -1.0])
+@pytest.mark.parametrize("times", [0.8, 1.2, 20.0])
+def test_its_twin_has_its_derivatives_where_it_yields(times, speed):
+    force_N, torque_Nm = 8.5, 0.188
+    coupling = VirtualCoupling(
+        CouplingGains(K, B, KR, BR, force_N, torque_Nm), RigidTransform()
+    )
+    axis = np.array([0.36, 0.48, -0.8])
+    there = RigidTransform(
+        RotationMatrix(AngleAxis(times * torque_Nm / KR, axis)),
+        times * force_N / K * axis,
+    )
+    check_twin(
+        coupling,
+        {
+            "X_WH": pose_to_vector(there),
+            "V_WH": 0.1 * speed * np.concatenate([axis, axis]),
+            "X_WTool": pose_to_vector(RigidTransform()),
+            "V_WTool": np.zeros(6),
+        },
+        step=1e-4,
+        rtol=1e-6,
+    )

@@ -1,4 +1,8 @@
+#include <nanobind/stl/string.h>
+
 #include <cmath>
+#include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include "autodiff.h"
@@ -35,38 +39,59 @@ Eigen::Matrix<T, 13, 1> Step(
   return out;
 }
 
+void RequireLimit(double limit, const char* name) {
+  if (limit != std::numeric_limits<double>::infinity()) {
+    RequirePositive(limit, name);
+  }
+}
+
 void BindCoupling(nb::module_& m) {
   nb::class_<CouplingGains> gains(
       m, "CouplingGains",
-      "Spring and damper of the virtual coupling. Immutable.");
+      "Spring and damper of the virtual coupling, and the most they pull with "
+      "together, force and torque each by its norm. Immutable.");
   DefFrozenCopy(&gains);
   gains
       .def(
           "__init__",
-          [](CouplingGains* self, double k, double b, double kr, double br) {
+          [](CouplingGains* self, double k, double b, double kr, double br,
+             double max_force, double max_torque) {
             for (const double gain : {k, b, kr, br}) {
               if (!std::isfinite(gain) || gain < 0) {
                 throw std::invalid_argument(
                     "coupling gains must be finite and at least 0");
               }
             }
-            new (self) CouplingGains{k, b, kr, br};
+            RequireLimit(max_force, "max_force_N");
+            RequireLimit(max_torque, "max_torque_Nm");
+            new (self) CouplingGains{k, b, kr, br, max_force, max_torque};
           },
           nb::arg("stiffness_N_per_m"), nb::arg("damping_Ns_per_m"),
           nb::arg("rotational_stiffness_Nm_per_rad"),
-          nb::arg("rotational_damping_Nms_per_rad"))
+          nb::arg("rotational_damping_Nms_per_rad"),
+          nb::arg("max_force_N") = std::numeric_limits<double>::infinity(),
+          nb::arg("max_torque_Nm") = std::numeric_limits<double>::infinity())
       .def_ro("stiffness_N_per_m", &CouplingGains::stiffness)
       .def_ro("damping_Ns_per_m", &CouplingGains::damping)
       .def_ro("rotational_stiffness_Nm_per_rad",
               &CouplingGains::rotational_stiffness)
       .def_ro("rotational_damping_Nms_per_rad",
               &CouplingGains::rotational_damping)
+      .def_ro("max_force_N", &CouplingGains::max_force)
+      .def_ro("max_torque_Nm", &CouplingGains::max_torque)
       .def("__repr__", [](const CouplingGains& self) {
-        return nb::str(
-                   "CouplingGains({:g} N/m, {:g} N·s/m, {:g} N·m/rad, {:g} "
-                   "N·m·s/rad)")
-            .format(self.stiffness, self.damping, self.rotational_stiffness,
-                    self.rotational_damping);
+        std::ostringstream text;
+        text << "CouplingGains(" << self.stiffness << " N/m, " << self.damping
+             << " N·s/m, " << self.rotational_stiffness << " N·m/rad, "
+             << self.rotational_damping << " N·m·s/rad";
+        if (std::isfinite(self.max_force)) {
+          text << ", at most " << self.max_force << " N";
+        }
+        if (std::isfinite(self.max_torque)) {
+          text << ", at most " << self.max_torque << " N·m";
+        }
+        text << ")";
+        return text.str();
       });
   m.def(
       "coupling_wrench",
@@ -162,7 +187,7 @@ void BindLimit(nb::module_& m) {
       "Shortens torque and force of a wrench (6,), [N·m; N], each to its "
       "limit, along its own direction.\n\n"
       "Returns:\n"
-      "    (7,): the wrench and what became of it: 0 as asked, 1 limited, 2 "
+      "    (7,): the wrench and what became of it: 0 as asked, 1 at a limit, 2 "
       "not finite, for which it is zero.\n\n"
       "Raises:\n"
       "    ValueError: a limit is negative or not finite.");

@@ -39,8 +39,7 @@ TickEnergy CouplingEnergy(const WrenchModel& start, const CouplingGains& gains,
   Vec6 held = motion.turn_dp;
   held.tail<3>() += lever_shift;
   const Vec6 apart = held - delta;
-  Vec6 spring;
-  spring << kr * from.twist, k * from.stretch;
+  const Vec6 spring = from.Load(gains);
 
   const Vec3 turn_tool = delta.head<3>();
   const double angle = std::min(
@@ -50,7 +49,7 @@ TickEnergy CouplingEnergy(const WrenchModel& start, const CouplingGains& gains,
       0.5 * kr *
           (apart.head<3>().squaredNorm() +
            angle * turn.cross(turn_tool).norm()) +
-      k * from.stretch.dot(to.p_HT_W - from.p_HT_W - lever_shift);
+      spring.tail<3>().dot(to.p_HT_W - from.p_HT_W - lever_shift);
 
   TickEnergy energy;
   energy.from_tool = -WorkOnTool(start, motion);

@@ -54,16 +54,17 @@ TickEnergy SourceEnergy(const WrenchModel& start, const WrenchModel& end,
 /// The reaction on the handle is held from the start of the tick on. With p
 /// from Ho to where the handle holds the tool, it does its work on
 /// x = [a; Δp + a × p], so that xᵀF comes from the handle. Let the spring have
-/// the stretch [θ; s], the wrench S = [k_r θ; k s] and the energy
-/// U = ½ k_r |θ|² + ½ k |s|². Then
-///   ΔU = (k s)ᵀΔs + ½ k |Δs|²   for the translation, exactly, and
-///   ΔU <= (k_r θ)ᵀ(a − δ_ω) + ½ k_r (|a − δ_ω|² + Θ |a × δ_ω|),
+/// the stretch [θ; s], the wrench S = [S_τ; S_f] and the energy U. Below its
+/// limits it has S = [k_r θ; k s] and U = ½ k_r |θ|² + ½ k |s|²; above, U
+/// curves less. So
+///   ΔU <= S_fᵀΔs + ½ k |Δs|²   for the translation, below the limit equal, and
+///   ΔU <= S_τᵀ(a − δ_ω) + ½ k_r (|a − δ_ω|² + Θ |a × δ_ω|),
 /// Θ = min(π, |θ| + |a| + |δ_ω|), for the rotation: along the path the second
 /// derivative of ½ |θ|² is at most |a − δ_ω|² + |θ| |a × δ_ω|.
 /// The damper would take D = (x − δ)ᵀB (x − δ)/h in continuous time; sampled,
 /// it takes (F − S)ᵀ(x − δ) + δᵀB ΔV. So sampling explains, where above zero,
 ///   ½ k |Δs|² + ½ k_r (|a − δ_ω|² + Θ |a × δ_ω|)
-///   + (k s)ᵀ(Δp_HT − a × p) + D − (F − S)ᵀ(x − δ) − δᵀB ΔV − δᵀK δ.
+///   + S_fᵀ(Δp_HT − a × p) + D − (F − S)ᵀ(x − δ) − δᵀB ΔV − δᵀK δ.
 /// For a tool held still and no damper that is the ½ k |Δs|² of every sampled
 /// wall, and is reached (Colgate and Schenkel 1997).
 TickEnergy CouplingEnergy(const WrenchModel& start, const CouplingGains& gains,

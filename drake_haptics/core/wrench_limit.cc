@@ -28,11 +28,17 @@ double Norm(const Vec3& v) {
 
 bool Exceeds(double norm, double largest) { return !(norm <= largest); }
 
+// Also what was shortened to the limit before, and rounded.
+bool Reaches(double norm, double largest) {
+  constexpr double kRounding = 1e-12;
+  return norm != 0 && Exceeds(norm, (1 - kRounding) * largest);
+}
+
 }  // namespace
 
 LimitedWrench LimitWrench(const Vec6& F, double max_torque, double max_force) {
   const double torque = Norm(F.head<3>()), force = Norm(F.tail<3>());
-  if (!Exceeds(torque, max_torque) && !Exceeds(force, max_force)) {
+  if (!Reaches(torque, max_torque) && !Reaches(force, max_force)) {
     return {F, WrenchFate::kAsAsked};
   }
   if (!F.allFinite()) return {};

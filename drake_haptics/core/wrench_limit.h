@@ -4,7 +4,8 @@
 
 namespace drake_haptics {
 
-/// How a wrench comes out of `LimitWrench`.
+/// How a wrench comes out of `LimitWrench`: kLimited where force or torque is
+/// at its limit, be it that it was shortened here or before.
 enum class WrenchFate { kAsAsked = 0, kLimited = 1, kNotFinite = 2 };
 
 /// A wrench within a device's limits.
