@@ -15,7 +15,6 @@ from drake_haptics.tick_clock import TickClock
 # Distributions are those of the latest ticks, so that a demo left running
 # does not fill the memory; largest values and counts are of all ticks.
 _MAX_RECORDS = 1 << 20
-_FIRST_RECORDS = 1 << 13
 # A tick only notes its numbers; what they amount to is found for many at once.
 _BLOCK = 1 << 8
 
@@ -70,7 +69,8 @@ class RunStatistics:
         self._period_s = period_s
         self._pending: list[tuple[float, ...]] = []
         self._latest: tuple[float, ...] = ()
-        self._records = np.zeros((_FIRST_RECORDS, 4))
+        # The system gives memory as it is written: no tick has to copy it to a larger one.
+        self._records = np.zeros((_MAX_RECORDS, 4))
         self._ticks = 0
         self._max_force_N = 0.0
         self._max_torque_Nm = 0.0
@@ -144,8 +144,6 @@ class RunStatistics:
         block = np.array(self._pending)
         self._pending.clear()
         end = self._ticks + len(block)
-        while len(self._records) < min(end, _MAX_RECORDS):
-            self._records = np.vstack([self._records, np.zeros_like(self._records)])
         self._records[np.arange(self._ticks, end) % _MAX_RECORDS] = block[:, :4]
         self._ticks = end
         distance, torque, force, status = np.split(block[:, 4:], [1, 4, 7], axis=1)

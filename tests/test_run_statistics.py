@@ -87,7 +87,6 @@ def test_ticks_are_counted_that_leave_something_out():
 
 
 def test_memory_is_bounded_and_keeps_the_latest(monkeypatch):
-    monkeypatch.setattr(run_statistics, "_FIRST_RECORDS", 4)
     monkeypatch.setattr(run_statistics, "_MAX_RECORDS", 16)
     statistics = RunStatistics(1e-3)
     add(statistics, force=(9.0, 0, 0), tick_s=1.0)
