@@ -18,8 +18,8 @@ import {setYaml} from "./yaml.js";
 
 // What a page is told may leave out what does not apply: the pointer of somebody's own program
 // has no scene to be changed.
-const FAULT = "The device is at fault: it shows no force. Hold it, mend what is wrong"
-  + " (the terminal says what), and press Enter there to take it up again.";
+const FAULT = "The device shows no force: it is at fault, or its driver no longer answers. The terminal"
+  + " says which. Hold the device, mend what is wrong, and press Enter there to take it up again.";
 const DEEP = "The tool is deep in an object, and may get through: a stiffer contact holds it.";
 // Contacts push from the tolerance on: one that is soft on purpose gives way by about as much again.
 const DEEP_TOLERANCES = 2;

@@ -29,8 +29,10 @@ export function setLimits({force_N, torque_Nm}) {
 
 export function showTrace(frame) {
   history.append(frame.time_s, frame.trace);
-  write(find("force"), newtons(norm(frame.f_W)));
-  write(find("torque"), millinewtonmetres(norm(frame.tau_W)));
+  // At a fault the loop still asks for what the hand does not feel.
+  const end = frame.gate === "fault" ? ", not shown" : "";
+  write(find("force"), newtons(norm(frame.f_W)) + end);
+  write(find("torque"), millinewtonmetres(norm(frame.tau_W)) + end);
   redraw();
 }
 
