@@ -6,6 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "require.h"
+
 namespace drake_haptics {
 namespace {
 
@@ -95,19 +97,13 @@ ClusterOf<T> Represent(const Sums<T>& sums, double tolerance) {
 
 }  // namespace
 
-void RequireTolerance(double tolerance) {
-  if (!std::isfinite(tolerance) || tolerance < 0) {
-    throw std::invalid_argument("tolerance must be finite and at least 0 m");
-  }
-}
-
 template <typename T>
 void ClusterContacts(const std::vector<ContactOf<T>>& contacts, double delta,
                      double tolerance, ClusterSetOf<T>* out) {
   if (!std::isfinite(delta) || !(delta > 0)) {
     throw std::invalid_argument("delta must be finite and above 0 m");
   }
-  RequireTolerance(tolerance);
+  RequireNotNegative(tolerance, "tolerance");
   out->label.assign(contacts.size(), -1);
   std::vector<Placed> placed;
   for (std::size_t i = 0; i < contacts.size(); ++i) {

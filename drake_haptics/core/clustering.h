@@ -36,9 +36,6 @@ struct ClusterSetOf {
 };
 using ClusterSet = ClusterSetOf<double>;
 
-/// @throws std::invalid_argument unless tolerance >= 0 and finite.
-void RequireTolerance(double tolerance);
-
 /// Groups contacts of the same object with an octree whose leaves have the
 /// size `delta`: contacts in one leaf are together, and adjacent occupied
 /// leaves (26 neighbours) are merged (paper, 4.2). Contacts closer than delta

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "require.h"
+
 namespace drake_haptics {
 namespace {
 
@@ -21,14 +23,6 @@ void RequireFinite(const Pose& X, const char* what) {
 // A tool that moves by more than this share of its radius between two queries
 // was put somewhere else.
 constexpr double kTeleportShare = 0.25;
-
-void RequireTolerance(double tolerance) {
-  if (!std::isfinite(tolerance) || tolerance < 0) {
-    throw std::invalid_argument(
-        "tolerance must be finite and at least 0 m, is " +
-        std::to_string(tolerance));
-  }
-}
 
 double RadiusAboutOrigin(const Decomposition& decomposition) {
   double squared = 0;
@@ -49,7 +43,7 @@ ContactTracker::ContactTracker(
     : tolerance_(tolerance),
       depth_(depth),
       wake_times_(static_cast<int>(objects.size())) {
-  RequireTolerance(tolerance);
+  RequireNotNegative(tolerance, "tolerance");
   if (depth.max_walk_steps < 1) {
     throw std::invalid_argument("max_walk_steps must be at least 1, is " +
                                 std::to_string(depth.max_walk_steps));
@@ -77,7 +71,7 @@ ContactTracker::ContactTracker(
 }
 
 void ContactTracker::SetTolerance(double tolerance) {
-  RequireTolerance(tolerance);
+  RequireNotNegative(tolerance, "tolerance");
   const double farther = tolerance - tolerance_;
   tolerance_ = tolerance;
   // What was sure to stay beyond the larger one stays beyond a smaller one.

@@ -8,6 +8,7 @@
 
 #include "contact_patch.h"
 #include "contact_shares.h"
+#include "require.h"
 #include "skin_forces.h"
 
 namespace drake_haptics {
@@ -140,7 +141,7 @@ void Press(std::span<const ContactOf<T>* const> contacts, double tolerance,
 template <typename T>
 void ShareStiffness(const std::vector<ContactOf<T>>& contacts, double tolerance,
                     ClusterSetOf<T>* out) {
-  RequireTolerance(tolerance);
+  RequireNotNegative(tolerance, "tolerance");
   out->clusters.clear();
   out->coupling.clear();
   out->label.assign(contacts.size(), -1);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "query_gradient.h"
+#include "require.h"
 #include "shared_stiffness.h"
 
 namespace drake_haptics {
@@ -33,7 +34,7 @@ WrenchJacobian ComputeWrenchJacobian(
     double tolerance, const MovingShape& tool,
     const std::vector<MovingShape>& objects,
     const std::vector<ContactMaterial>& materials) {
-  RequireTolerance(tolerance);
+  RequireNotNegative(tolerance, "tolerance");
   if (clusters.label.size() != contacts.size()) {
     throw std::invalid_argument("clusters must be those of the contacts");
   }
