@@ -69,7 +69,7 @@ class RunStatistics:
         self._period_s = period_s
         self._pending: list[tuple[float, ...]] = []
         self._latest: tuple[float, ...] = ()
-        # The system gives memory as it is written: no tick has to copy it to a larger one.
+        # Memory is had as it is written: no tick has to copy it to a larger one.
         self._records = np.zeros((_MAX_RECORDS, 4))
         self._ticks = 0
         self._max_force_N = 0.0

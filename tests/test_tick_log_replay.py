@@ -22,11 +22,11 @@ from drake_haptics.scene import (
     load_scene,
 )
 from drake_haptics.scene_library import find_scene
+from drake_haptics.scene_settings import change_scene
 from drake_haptics.simulation import run
 from drake_haptics.tick_log.log_diff import compare_logs
 from drake_haptics.tick_log.loop_log import make_log_header
 from drake_haptics.tick_log.replay import load_log_scene, replay
-from drake_haptics.scene_settings import change_scene
 from drake_haptics.tick_log.tick_log import Gap, TickLog, read_tick_log
 from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_recorder import TickRecorder

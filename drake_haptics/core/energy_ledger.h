@@ -66,9 +66,9 @@ class EnergyLedger {
   /// @throws std::invalid_argument unless there is a reading of each source.
   void Add(const LoopReading& reading);
 
-  /// The coupling's gains are others from now on, or those of a source. The tick
-  /// up to the next reading is left out of the books, and so is what the change
-  /// puts into springs or takes out.
+  /// The coupling's gains are others from now on, or those of a source. The
+  /// tick up to the next reading is left out of the books, and so is what the
+  /// change puts into springs or takes out.
   void BeginAgain(const CouplingGains& gains) {
     gains_ = gains;
     has_begun_ = false;
