@@ -20,7 +20,7 @@ import {setYaml} from "./yaml.js";
 // has no scene to be changed.
 const FAULT = "The device shows no force: it is at fault, or its driver no longer answers. The terminal"
   + " says which. Hold the device, mend what is wrong, and press Enter there to take it up again.";
-const DEEP = "The tool is deep in an object, and may get through: a stiffer contact holds it.";
+const DEEP = "The tool is deep in an object: a stiffer contact holds it further out.";
 // Contacts push from the tolerance on: one that is soft on purpose gives way by about as much again.
 const DEEP_TOLERANCES = 2;
 const MAKERS = {
