@@ -2,6 +2,8 @@
 
 from types import SimpleNamespace
 
+from box_scenes import TOOL_HALF_HEIGHT
+
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cockpit.cockpit import Cockpit
 from drake_haptics.cockpit.coupling_advice import CouplingAdvice
@@ -13,6 +15,20 @@ from drake_haptics.cockpit.segments import Segments
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
 from drake_haptics.tick_clock import TickClock
+
+# Waypoints over a plate, of a path that presses it.
+ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
+PRESSING = (0.2, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.01)
+# What a page asks for.
+FRICTION = {"do": "effect", "name": "friction", "on": True}
+STIFFER = {"do": "set", "key": "coupling.stiffness_N_per_m", "to": 1200}
+MOUSE = {"do": "handle", "to": "mouse"}
+
+
+def find_tool(haptic, root):
+    """The tool's pose (7,)."""
+    tool = haptic.loop.haptic_tool
+    return tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root)).copy()
 
 
 class ScriptedPage:

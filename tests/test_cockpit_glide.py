@@ -9,7 +9,7 @@ import dataclasses
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
-from cockpit_rig import CockpitRig
+from cockpit_rig import FRICTION, CockpitRig
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.cockpit import holding
@@ -29,7 +29,6 @@ SOFT = {**STIFF, "to": 100}
 HARD = {"do": "set", "key": "contact.stiffness_N_per_m", "to": 1e5}
 EARLY = {"do": "set", "key": "contact.tolerance_m", "to": 6e-3}
 OCTREE = {"do": "choose", "key": "contact.clustering", "to": "octree"}
-FRICTION = {"do": "effect", "name": "friction", "on": True}
 
 
 def press_held(k):

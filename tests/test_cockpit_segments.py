@@ -6,8 +6,16 @@ import time
 
 import numpy as np
 import pytest
-from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
-from cockpit_rig import CockpitRig
+from box_scenes import over_a_plate
+from cockpit_rig import (
+    ABOVE,
+    FRICTION,
+    MOUSE,
+    PRESSING,
+    STIFFER,
+    CockpitRig,
+    find_tool,
+)
 from driver_process import device_command, running
 from fake_device import ScriptedDevice, make_reading
 
@@ -21,12 +29,6 @@ from drake_haptics.scene_check import SceneError
 from drake_haptics.simulation import RunError, run
 from drake_haptics.stage import open_meshcat
 from drake_haptics.tick_clock import TickClock
-
-ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
-PRESSING = (0.2, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.01)
-FRICTION = {"do": "effect", "name": "friction", "on": True}
-STIFFER = {"do": "set", "key": "coupling.stiffness_N_per_m", "to": 1200}
-MOUSE = {"do": "handle", "to": "mouse"}
 
 
 @pytest.fixture(scope="module")
@@ -50,12 +52,6 @@ def make(scene, meshcat, monkeypatch):
     yield make
     for rig in rigs:
         rig.holding.close()
-
-
-def find_tool(haptic, root):
-    """The tool's pose (7,)."""
-    tool = haptic.loop.haptic_tool
-    return tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root)).copy()
 
 
 def test_nothing_asked_is_a_plain_run(make, scene):

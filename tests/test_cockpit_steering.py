@@ -5,8 +5,16 @@ import json
 
 import numpy as np
 import pytest
-from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
-from cockpit_rig import CockpitRig
+from box_scenes import over_a_plate
+from cockpit_rig import (
+    ABOVE,
+    FRICTION,
+    MOUSE,
+    PRESSING,
+    STIFFER,
+    CockpitRig,
+    find_tool,
+)
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cockpit.page_request import read_page_request
@@ -19,12 +27,6 @@ from drake_haptics.scene import Effects, EnvironmentObject, Passivity, Scene
 from drake_haptics.simulation import run
 from drake_haptics.stage import CAMERAS, open_meshcat
 from drake_haptics.systems.picture_views import PICTURE_VIEWS
-
-ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
-PRESSING = (0.2, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.01)
-FRICTION = {"do": "effect", "name": "friction", "on": True}
-STIFFER = {"do": "set", "key": "coupling.stiffness_N_per_m", "to": 1200}
-MOUSE = {"do": "handle", "to": "mouse"}
 
 
 @pytest.fixture(scope="module")
@@ -48,12 +50,6 @@ def make(scene, meshcat, monkeypatch):
     yield make
     for rig in rigs:
         rig.holding.close()
-
-
-def find_tool(haptic, root):
-    """The tool's pose (7,)."""
-    tool = haptic.loop.haptic_tool
-    return tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root)).copy()
 
 
 def test_a_page_is_told_what_there_is_to_see_and_to_change(make, scene):
