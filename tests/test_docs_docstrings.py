@@ -12,10 +12,21 @@ import docutils.core
 from module_pages import LEFT_OUT, group_modules, list_modules
 from sphinx.ext.napoleon import Config, GoogleDocstring
 
+# Modules that measure these import them, and may be without.
+PEERS = ("coal", "fcl", "mujoco", "pybullet")
+
 
 def list_docstrings(module_name: str) -> Iterator[tuple[str, str]]:
-    """Yields names and docstrings of a module and of what is public in it."""
-    module = import_module(f"drake_haptics.{module_name}")
+    """Yields names and docstrings of a module and of what is public in it.
+
+    Nothing of one that needs a library which is not installed.
+    """
+    try:
+        module = import_module(f"drake_haptics.{module_name}")
+    except ModuleNotFoundError as error:
+        if error.name not in PEERS:
+            raise
+        return
     yield module_name, inspect.getdoc(module) or ""
     for name, value in vars(module).items():
         if name.startswith("_") or getattr(value, "__module__", "") != module.__name__:

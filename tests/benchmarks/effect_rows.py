@@ -86,7 +86,8 @@ def make_rows() -> list[EffectRow]:
             "F · min(1, F_max/‖F‖), and so for the torque; zero if not finite",
             "the device's preset",
             f"{device.max_force_N:g} N, {device.max_torque_Nm:g} N·m",
-            "Only ever lowers the loop's gain; direction is kept.",
+            "Only ever lowers the loop's gain; direction is kept. The coupling presses"
+            " the tool with no more.",
         ),
         EffectRow(
             "force shading",
