@@ -23,7 +23,7 @@ test: lint unit
 # Tests of one file stay together, so that they share what they have set up, until a
 # worker has nothing left of its own.
 unit: $(STAMP)-test
-	$(BIN)/python -m pytest -n 2 --dist worksteal tests
+	$(BIN)/python -m pytest -n auto --dist worksteal tests
 
 lint: $(STAMP)-test
 	$(BIN)/ruff check .

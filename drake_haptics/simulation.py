@@ -6,6 +6,7 @@ import gc
 import math
 import time
 from collections.abc import Callable
+from contextlib import nullcontext
 
 from pydrake.systems.analysis import (
     InitializeParams,
@@ -16,6 +17,7 @@ from pydrake.systems.framework import Context, EventStatus
 
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.energy_ledger import EnergyLedger
+from drake_haptics.realtime_priority import realtime_priority
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.tick_clock import TickClock
 
@@ -68,7 +70,8 @@ def run(
         haptic: What `BuildHapticDiagram` returned.
         duration_s: Simulated time, s; until Ctrl-C where not given.
         pace: Waits for each tick, so that simulated time is clock time; a device needs
-            it. As fast as it can where not given.
+            it, and the system is asked for a real-time priority. As fast as it can
+            where not given.
         energy: Whether to keep the books of an `EnergyLedger`, for some 10 µs in
             each tick. Only of a simulated device: what any other does between two
             readings is not known.
@@ -117,7 +120,8 @@ def run(
         if ledger is not None:
             ledger.add()
         simulator.set_monitor(_make_monitor(haptic, measure, on_tick, pace))
-        simulator.AdvanceTo(end_s)
+        with nullcontext() if pace is None else realtime_priority():
+            simulator.AdvanceTo(end_s)
     except KeyboardInterrupt:
         pass
     except FloatingPointError as error:

@@ -63,7 +63,7 @@ class ArrowPool:
     ) -> Iterator[None]:
         """Shows these arrows and no others; the first ones if there are too many.
 
-        Works as it is iterated over, an arrow at a time.
+        Works as it is iterated over, a message to the page at a time.
 
         Args:
             keys: (n,) what each arrow stands for, each once.
@@ -74,6 +74,7 @@ class ArrowPool:
         """
         keys = keys[: len(self._slots)]
         self._assign_slots(keys)
+        yield
         visible: list[int | None] = [None] * len(self._slots)
         for key, p, vector, color in zip(keys, p_WTip, vectors_W, colors, strict=False):
             i = self._slot_of_key[key]
@@ -82,12 +83,13 @@ class ArrowPool:
                 RotationMatrix.MakeFromOneVector(vector, 2), p - vector
             )
             self._meshcat.SetTransform(self._slots[i], X_WArrow, time_s)
+            yield
             length = float(np.linalg.norm(vector))
             if not math.isclose(length, self._lengths[i], rel_tol=1e-6):
                 self._lengths[i] = length
                 path = f"{self._slots[i]}/arrow"
                 self._meshcat.SetProperty(path, "scale", [length] * 3, time_s)
-            yield
+                yield
         for i, shown in enumerate(visible):
             if shown != self._shown[i]:
                 self._show(i, shown, time_s)

@@ -204,6 +204,7 @@ class HapticPicture:
                 strict=True,
             )
         )
+        yield
         length = _CONTACT_ARROW * self._size_m
         yield from self._contacts.draw(
             keys,
@@ -260,6 +261,7 @@ class HapticPicture:
             _LONGEST_FORCE_ARROW,
         )
         scale = self._size_m * length / force[felt]
+        yield
         yield from pool.draw(
             [keys[i] for i in felt.tolist()],
             p_W[felt],
