@@ -66,8 +66,9 @@ class HapticVisualizer(DifferentiableSystem):
     is that of `StickSlipFriction`, `relief` that of `LoadShedding`.
 
     It draws about 32 times per simulated second, at ticks of the loop, while a browser
-    is connected. So that drawing delays no tick, a frame is drawn in slices of 60 µs
-    spread over the ticks that follow; and drawing takes at most one twentieth of clock
+    is connected. So that drawing delays no tick, a frame is drawn in slices
+    spread over the ticks that follow, each over with the message at which it has taken
+    60 µs; and drawing takes at most one twentieth of clock
     time: after a frame that was slow to draw, the next ones are left out. Where the
     loop sheds load, drawing stops at once. A recording is complete, whatever time that
     takes. Of scalar type AutoDiffXd it draws nothing.

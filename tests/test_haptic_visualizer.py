@@ -1,6 +1,5 @@
 """What is drawn, when, and that a recording holds all of it."""
 
-# ruff: noqa: D102 - the methods of the fake are documented by Drake.
 import copy
 from types import SimpleNamespace
 
@@ -10,144 +9,23 @@ from pydrake.autodiffutils import AutoDiffXd
 from pydrake.common.value import Value
 from pydrake.geometry import Rgba
 from pydrake.math import RigidTransform, RollPitchYaw
-from pydrake.systems.analysis import Simulator, Simulator_
+from pydrake.systems.analysis import Simulator_
+from visualizer_rig import (
+    X_HT,
+    X_WH,
+    FakeMeshcat,
+    Frozen,
+    make_contacts,
+    make_context,
+    make_mesh,
+    make_visualizer,
+)
 
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems import haptic_visualizer
 from drake_haptics.systems.arrow_pool import ArrowPool
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.haptic_visualizer import HapticVisualizer
-
-
-class FakeMeshcat:
-    """Keeps what it is told, like a browser, and what it was told when."""
-
-    def __init__(self, connections=1):
-        self.connections = connections
-        self.objects = set()
-        self.transforms = {}
-        self.properties = {}
-        self.recording = False
-        self.frames = []
-
-    def SetTriangleMesh(self, path, vertices, faces, rgba):
-        assert vertices.shape[0] == 3 and faces.max() < vertices.shape[1]
-        self.objects.add(path)
-
-    def SetTriangleColorMesh(self, path, vertices, faces, colors):
-        assert vertices.shape == colors.shape and faces.max() < vertices.shape[1]
-        self.objects.add(path)
-
-    def Delete(self, path):
-        self.objects = {
-            p for p in self.objects if p != path and not p.startswith(f"{path}/")
-        }
-
-    def SetObject(self, path, shape, rgba):
-        self.objects.add(path)
-
-    def SetTransform(self, path, X_ParentPath, time_in_recording=None):
-        self.transforms[path] = X_ParentPath
-        # As the page does: a pose is position, rotation and a scale of 1.
-        self.properties.pop((path, "scale"), None)
-        self._record(path, "transform", X_ParentPath, time_in_recording)
-
-    def SetProperty(self, path, name, value, time_in_recording=None):
-        self.properties[path, name] = value
-        self._record(path, name, value, time_in_recording)
-
-    def _record(self, path, name, value, time):
-        if self.recording and time is not None:
-            self.frames.append((time, path, name, value))
-
-    def StartRecording(self, frames_per_second):
-        self.frames_per_second = frames_per_second
-        self.recording = True
-
-    def StopRecording(self):
-        self.recording = False
-
-    def GetNumActiveConnections(self):
-        return self.connections
-
-    def SetSimulationTime(self, time):
-        pass
-
-    def visible(self, folder):
-        """Paths of the arrows in a folder that are to be seen."""
-        return sorted(
-            path
-            for (path, name), value in self.properties.items()
-            if name == "visible" and value and path.startswith(f"{folder}/")
-        )
-
-
-class Frozen(SimpleNamespace):
-    """A value of an abstract port, as the core's are."""
-
-    def __deepcopy__(self, memo):
-        return self
-
-    def __len__(self):
-        return len(self.distance)
-
-
-def make_contacts(distance, nhat=(0, 0, 1.0)):
-    n = len(distance)
-    return Frozen(
-        distance=np.array(distance, dtype=float),
-        nhat_BA_W=np.tile(nhat, (n, 1)),
-        p_WC=np.arange(3.0 * n).reshape(n, 3),
-        object_index=np.zeros(n, dtype=np.int32),
-        piece_A=np.arange(n, dtype=np.int32),
-        piece_B=np.zeros(n, dtype=np.int32),
-    )
-
-
-def make_mesh(size=0.1):
-    corners = size * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
-    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], dtype=np.int32)
-    # A tetrahedron of which one facet is not on the mesh.
-    piece = SimpleNamespace(
-        vertices=corners,
-        facets=faces.tolist(),
-        facet_original=[True, True, True, False],
-        dimension=3,
-    )
-    return SimpleNamespace(vertices=corners, triangles=faces, pieces=[piece])
-
-
-X_HT = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [0.01, 0.02, 0.03])
-X_WH = RigidTransform(RollPitchYaw(-0.5, 0.0, 0.7), [0.1, 0.0, 0.2])
-
-
-def make_visualizer(meshcat, objects=(), **options):
-    return HapticVisualizer(
-        meshcat, make_mesh(), objects, X_HT, tick_s=1 / 1024, **options
-    )
-
-
-def make_context(
-    visualizer, contacts=(), forces=None, X_WTool=X_WH @ X_HT, f_H_W=(0, 0, 0)
-):
-    context = visualizer.CreateDefaultContext()
-    values = {
-        "X_WH": pose_to_vector(X_WH),
-        "X_WTool": pose_to_vector(X_WTool),
-        "F_display": np.array([0.0, 0, 0, *f_H_W]),
-        "contacts": Value(make_contacts(contacts)),
-        "clusters": Value(make_contacts(contacts)),
-        "contact_wrench": Value(
-            Frozen(
-                f_cluster_W=np.array(
-                    forces if forces is not None else [(0, 0, 1.0)] * len(contacts)
-                ).reshape(-1, 3)
-            )
-        ),
-    }
-    for name, value in values.items():
-        visualizer.GetInputPort(name).FixValue(context, value)
-    return context
 
 
 def test_ports_have_drakes_names_and_sizes():
@@ -374,109 +252,6 @@ def test_a_view_that_there_is_not_is_refused():
         make_visualizer(FakeMeshcat()).Show("piece", True)
 
 
-def test_nothing_is_drawn_while_nobody_looks():
-    meshcat = FakeMeshcat(connections=0)
-    visualizer = make_visualizer(meshcat)
-    visualizer.ForcedPublish(make_context(visualizer, [-0.001]))
-    assert "/haptics/tool" not in meshcat.transforms
-
-
-def test_drawing_takes_at_most_its_share_of_clock_time(monkeypatch):
-    clock = SimpleNamespace(now=100.0)
-    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
-    meshcat = FakeMeshcat()
-    drawn = []
-
-    def slow_transform(path, X, time=None):
-        if path == "/haptics/tool":
-            drawn.append(clock.now)
-            clock.now += 0.010  # a frame takes 10 ms
-
-    visualizer = make_visualizer(meshcat)
-    meshcat.SetTransform = slow_transform
-    context = make_context(visualizer)
-    while clock.now < 102.0:
-        visualizer.ForcedPublish(context)
-        clock.now += 1 / 32
-    assert 0.010 * len(drawn) <= 0.05 * 2.0 + 0.010
-    assert len(drawn) >= 8
-
-
-def test_a_frame_is_drawn_in_slices_that_no_tick_notices(monkeypatch):
-    clock = SimpleNamespace(now=100.0)
-    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
-    calls = []
-
-    def call(path, *args):
-        calls.append((ticks[-1], path))
-        clock.now += 20e-6  # what a call of Meshcat's takes
-
-    meshcat.SetTransform = meshcat.SetProperty = call
-    ticks = [0]
-    simulator = Simulator(visualizer, make_context(visualizer, [-1e-3] * 20))
-    simulator.Initialize()
-    for tick in range(1, 97):
-        ticks.append(tick)
-        simulator.AdvanceTo(tick / 1024)
-    # The first frame: 20 contacts and 16 clusters, each placed, scaled and shown.
-    assert len(calls) > 100
-    per_tick = np.bincount([tick for tick, _ in calls])
-    assert per_tick.max() * 20e-6 <= 60e-6 + 4 * 20e-6
-    assert np.count_nonzero(per_tick) > 15
-
-
-@pytest.mark.parametrize("recording", [False, True])
-def test_a_loop_that_sheds_load_draws_nothing_but_a_recording(recording):
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat, sheds_load=True)
-    if recording:
-        visualizer.StartRecording()
-    context = make_context(visualizer, [-1e-3])
-    relief = visualizer.get_relief_input_port()
-    relief.FixValue(context, [0.02, 1.0, 0.0])
-    simulator = Simulator(visualizer, context)
-    simulator.Initialize()
-    simulator.AdvanceTo(0.125)
-    assert ("/haptics/tool" in meshcat.transforms) == recording
-    relief.FixValue(context, [0.0, 1.0, 0.0])
-    simulator.AdvanceTo(0.25)
-    assert "/haptics/tool" in meshcat.transforms
-
-
-def test_a_recording_is_complete_though_nobody_looks():
-    meshcat = FakeMeshcat(connections=0)
-    visualizer = make_visualizer(meshcat)
-    visualizer.StartRecording()
-    context = make_context(visualizer, [-0.001])
-    for frame in range(5):
-        context.SetTime(frame / 32)
-        visualizer.ForcedPublish(context)
-    visualizer.StopRecording()
-    times = [time for time, path, name, _ in meshcat.frames if path == "/haptics/tool"]
-    assert times == [0, 1 / 32, 2 / 32, 3 / 32, 4 / 32]
-    context.SetTime(1.0)
-    visualizer.ForcedPublish(context)
-    assert max(time for time, *_ in meshcat.frames) == 4 / 32
-
-
-def test_the_first_recorded_frame_says_of_every_arrow_whether_it_is_seen():
-    meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat)
-    visualizer.ForcedPublish(make_context(visualizer, [-0.001, 0.001]))
-    visualizer.StartRecording()
-    visualizer.ForcedPublish(make_context(visualizer, [-0.001]))
-    first = {
-        path: value for _, path, name, value in meshcat.frames if name == "visible"
-    }
-    arrows = {path for (path, name) in meshcat.properties if name == "visible"}
-    assert set(first) == arrows
-    assert [
-        path for path, seen in sorted(first.items()) if "contacts" in path and seen
-    ] == ["/haptics/contacts/0/arrow/1"]
-
-
 def test_an_arrow_stays_in_its_slot_while_others_come_and_go():
     meshcat = FakeMeshcat()
     pool = ArrowPool(meshcat, "/a", 4, [Rgba(1, 0, 0)])
@@ -523,19 +298,6 @@ def test_no_context_is_kept():
     assert not any(
         type(value).__name__ == "LeafContext" for value in vars(visualizer).values()
     )
-
-
-@pytest.mark.parametrize("tick_s", [1e-3, 1 / 1024, 2.5e-4, 3e-3, 0.1])
-def test_frames_fall_on_ticks_to_the_last_bit(tick_s):
-    meshcat = FakeMeshcat()
-    visualizer = HapticVisualizer(meshcat, make_mesh(), [], X_HT, tick_s)
-    visualizer.StartRecording()
-    Simulator(visualizer, make_context(visualizer)).AdvanceTo(3.0)
-    times = [time for time, path, *_ in meshcat.frames if path == "/haptics/tool"]
-    assert len(times) >= 3.0 / max(1 / 15, tick_s)
-    assert np.all(np.diff(times) > 0.9 * max(1 / 64, tick_s))
-    for time in times:
-        assert time == round(time / tick_s) * tick_s
 
 
 def test_its_twin_takes_the_same_and_draws_nothing():

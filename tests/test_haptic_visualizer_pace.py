@@ -1,0 +1,133 @@
+"""When the loop is drawn, and how little of a tick that takes."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from pydrake.systems.analysis import Simulator
+from visualizer_rig import (
+    X_HT,
+    FakeMeshcat,
+    make_context,
+    make_mesh,
+    make_visualizer,
+)
+
+from drake_haptics.systems import haptic_visualizer
+from drake_haptics.systems.haptic_visualizer import HapticVisualizer
+
+
+def test_nothing_is_drawn_while_nobody_looks():
+    meshcat = FakeMeshcat(connections=0)
+    visualizer = make_visualizer(meshcat)
+    visualizer.ForcedPublish(make_context(visualizer, [-0.001]))
+    assert "/haptics/tool" not in meshcat.transforms
+
+
+def test_drawing_takes_at_most_its_share_of_clock_time(monkeypatch):
+    clock = SimpleNamespace(now=100.0)
+    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
+    meshcat = FakeMeshcat()
+    drawn = []
+
+    def slow_transform(path, X, time=None):
+        if path == "/haptics/tool":
+            drawn.append(clock.now)
+            clock.now += 0.010  # a frame takes 10 ms
+
+    visualizer = make_visualizer(meshcat)
+    meshcat.SetTransform = slow_transform
+    context = make_context(visualizer)
+    while clock.now < 102.0:
+        visualizer.ForcedPublish(context)
+        clock.now += 1 / 32
+    assert 0.010 * len(drawn) <= 0.05 * 2.0 + 0.010
+    assert len(drawn) >= 8
+
+
+def test_a_frame_is_drawn_in_slices_that_no_tick_notices(monkeypatch):
+    clock = SimpleNamespace(now=100.0)
+    monkeypatch.setattr(haptic_visualizer.time, "perf_counter", lambda: clock.now)
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    calls = []
+
+    def call(path, *args):
+        calls.append((ticks[-1], path))
+        clock.now += 20e-6  # what a call of Meshcat's takes
+
+    meshcat.SetTransform = meshcat.SetProperty = call
+    ticks = [0]
+    simulator = Simulator(visualizer, make_context(visualizer, [-1e-3] * 20))
+    simulator.Initialize()
+    for tick in range(1, 97):
+        ticks.append(tick)
+        simulator.AdvanceTo(tick / 1024)
+    # The first frame: 20 contacts and 16 clusters, each placed, scaled and shown.
+    assert len(calls) > 100
+    per_tick = np.bincount([tick for tick, _ in calls])
+    assert per_tick.max() * 20e-6 <= 60e-6 + 4 * 20e-6
+    assert np.count_nonzero(per_tick) > 15
+
+
+@pytest.mark.parametrize("recording", [False, True])
+def test_a_loop_that_sheds_load_draws_nothing_but_a_recording(recording):
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat, sheds_load=True)
+    if recording:
+        visualizer.StartRecording()
+    context = make_context(visualizer, [-1e-3])
+    relief = visualizer.get_relief_input_port()
+    relief.FixValue(context, [0.02, 1.0, 0.0])
+    simulator = Simulator(visualizer, context)
+    simulator.Initialize()
+    simulator.AdvanceTo(0.125)
+    assert ("/haptics/tool" in meshcat.transforms) == recording
+    relief.FixValue(context, [0.0, 1.0, 0.0])
+    simulator.AdvanceTo(0.25)
+    assert "/haptics/tool" in meshcat.transforms
+
+
+def test_a_recording_is_complete_though_nobody_looks():
+    meshcat = FakeMeshcat(connections=0)
+    visualizer = make_visualizer(meshcat)
+    visualizer.StartRecording()
+    context = make_context(visualizer, [-0.001])
+    for frame in range(5):
+        context.SetTime(frame / 32)
+        visualizer.ForcedPublish(context)
+    visualizer.StopRecording()
+    times = [time for time, path, name, _ in meshcat.frames if path == "/haptics/tool"]
+    assert times == [0, 1 / 32, 2 / 32, 3 / 32, 4 / 32]
+    context.SetTime(1.0)
+    visualizer.ForcedPublish(context)
+    assert max(time for time, *_ in meshcat.frames) == 4 / 32
+
+
+def test_the_first_recorded_frame_says_of_every_arrow_whether_it_is_seen():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    visualizer.ForcedPublish(make_context(visualizer, [-0.001, 0.001]))
+    visualizer.StartRecording()
+    visualizer.ForcedPublish(make_context(visualizer, [-0.001]))
+    first = {
+        path: value for _, path, name, value in meshcat.frames if name == "visible"
+    }
+    arrows = {path for (path, name) in meshcat.properties if name == "visible"}
+    assert set(first) == arrows
+    assert [
+        path for path, seen in sorted(first.items()) if "contacts" in path and seen
+    ] == ["/haptics/contacts/0/arrow/1"]
+
+
+@pytest.mark.parametrize("tick_s", [1e-3, 1 / 1024, 2.5e-4, 3e-3, 0.1])
+def test_frames_fall_on_ticks_to_the_last_bit(tick_s):
+    meshcat = FakeMeshcat()
+    visualizer = HapticVisualizer(meshcat, make_mesh(), [], X_HT, tick_s)
+    visualizer.StartRecording()
+    Simulator(visualizer, make_context(visualizer)).AdvanceTo(3.0)
+    times = [time for time, path, *_ in meshcat.frames if path == "/haptics/tool"]
+    assert len(times) >= 3.0 / max(1 / 15, tick_s)
+    assert np.all(np.diff(times) > 0.9 * max(1 / 64, tick_s))
+    for time in times:
+        assert time == round(time / tick_s) * tick_s
