@@ -39,6 +39,10 @@ def find_browser() -> str | None:
     return next((path for name in _NAMES if (path := shutil.which(name))), None)
 
 
+class PageGoneError(RuntimeError):
+    """The page went to another while it was asked."""
+
+
 class HeadlessBrowser:
     """One page of a Chromium, driven through its debugging port.
 
@@ -82,16 +86,23 @@ class HeadlessBrowser:
         self.wait_for("document.readyState == 'complete'")
 
     def wait_for(self, expression: str) -> None:
-        """Waits until a JavaScript expression is true.
+        """Waits until a JavaScript expression is true, also over a change of page.
 
         Raises:
             TimeoutError: It never became so.
         """
         deadline = time.monotonic() + self._timeout_s
-        while not self.evaluate(expression):
+        while not self._is_true(expression):
             if time.monotonic() > deadline:
                 raise TimeoutError(f"{expression}; the page says {self.errors}")
             time.sleep(0.1)
+
+    def _is_true(self, expression: str) -> bool:
+        """Returns whether it is true of the page that is there after asking."""
+        try:
+            return bool(self.evaluate(expression))
+        except PageGoneError:
+            return False
 
     def evaluate(self, expression: str) -> Any:
         """Returns the value of a JavaScript expression."""
@@ -116,7 +127,12 @@ class HeadlessBrowser:
         return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
-        """Calls a method of the protocol and notes complaints on the way."""
+        """Calls a method of the protocol and notes complaints on the way.
+
+        Raises:
+            PageGoneError: The page went to another before it answered.
+            RuntimeError: The browser refuses.
+        """
         self._id += 1
         message = {"id": self._id, "method": method, "params": parameters}
         self._socket.send(json.dumps(message))
@@ -125,7 +141,9 @@ class HeadlessBrowser:
             self._note(answer)
             if answer.get("id") == self._id:
                 if "error" in answer:
-                    raise RuntimeError(f"{method}: {answer['error']}")
+                    gone = "navigated" in answer["error"]["message"]
+                    kind = PageGoneError if gone else RuntimeError
+                    raise kind(f"{method}: {answer['error']}")
                 return dict(answer["result"])
 
     def _note(self, message: dict[str, Any]) -> None:

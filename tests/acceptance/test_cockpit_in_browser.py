@@ -340,10 +340,9 @@ def test_another_run_at_the_same_port_brings_its_own_picture(page):
     """As where a run is started anew while its page is open: Meshcat has moved."""
     stranger = {"hello": {"meshcat": "http://localhost:1/", "scene": "other"}}
     stranger["hello"]["limits"] = {"force_N": 1, "torque_Nm": 1}
-    page.evaluate("window.isOld = true")
-    page.evaluate(
-        f"ways.at(-1).onmessage({{data: {json.dumps(json.dumps(stranger))}}})"
-    )
+    words = f"{{data: {json.dumps(json.dumps(stranger))}}}"
+    # Said after the browser has answered, as the page goes when it hears it.
+    page.evaluate(f"setTimeout(() => ways.at(-1).onmessage({words})); isOld = true")
     page.wait_for("!window.isOld && document.readyState == 'complete'")
     page.wait_for("document.getElementById('scene').textContent == 'press'")
     page.wait_for("parseFloat(document.getElementById('time').textContent) > 0")
