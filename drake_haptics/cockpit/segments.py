@@ -13,6 +13,7 @@ from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.carried_context import carry_on, find_handle
 from drake_haptics.cockpit.cockpit import Cockpit
 from drake_haptics.cockpit.holding import DEVICE, Holding
+from drake_haptics.cockpit.retired_diagram import retire
 from drake_haptics.cockpit.steering import Change
 from drake_haptics.errors import UserError
 from drake_haptics.run_statistics import RunStatistics
@@ -72,7 +73,10 @@ class Segments:
                 )
                 if change is None:
                     break
+                old = self._haptic
                 self._haptic, context = self._change(change, last)
+                if self._haptic is not old:
+                    retire(old)
             except KeyboardInterrupt:
                 break
             # Building was no stall of the loop.
