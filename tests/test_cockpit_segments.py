@@ -30,6 +30,9 @@ from drake_haptics.simulation import RunError, run
 from drake_haptics.stage import open_meshcat
 from drake_haptics.tick_clock import TickClock
 
+RETAKE = {"do": "handle", "to": "device"}
+TURN = {"do": "turn", "by": [0.3, 0.0, 0.0]}
+
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
@@ -243,12 +246,10 @@ def test_a_device_stays_where_it_was_put(make, device):
 
 
 def test_a_device_is_let_go_and_taken_again(make, device):
-    rig = make(
-        {100: [MOUSE], 200: [{"do": "handle", "to": "device"}]}, address="udp://there"
-    )
+    rig = make({100: [MOUSE], 200: [RETAKE]}, address="udp://there")
     rig.run(0.3)
     assert [opened.closed for opened in device] == [True, False]
-    assert rig.last.backend is device[1]
+    assert rig.last.backend.device is device[1]
 
 
 def test_a_scene_without_a_simulated_device_has_no_simulated_hand(
@@ -267,9 +268,7 @@ def test_a_scene_without_a_simulated_device_has_no_simulated_hand(
 
 
 def test_a_device_that_is_gone_leaves_the_handle_where_it_is(make, monkeypatch, device):
-    rig = make(
-        {100: [MOUSE], 200: [{"do": "handle", "to": "device"}]}, address="udp://there"
-    )
+    rig = make({100: [MOUSE], 200: [RETAKE]}, address="udp://there")
 
     def fail(address, scene, meshcat):
         raise DeviceError("the device has said nothing")
@@ -311,6 +310,45 @@ def test_a_driver_bears_the_pause_of_a_rebuild(make, monkeypatch, tmp_path, mesh
     assert GateState.FAULT not in gates
     assert figures["faults"] == {}
     assert figures["limit_violations"] == 0
+
+
+def test_a_device_is_taken_again_without_a_kick(make, monkeypatch, tmp_path):
+    """The mouse has turned the tool; it goes on, and force sets in gently."""
+
+    def watch(haptic, root):
+        port = haptic.loop.device.get_applied_wrench_output_port()
+        asked = port.Eval(haptic.loop.device.GetMyContextFromRoot(root))
+        shown = np.zeros(6)
+        if haptic.backend is not None:
+            shown = haptic.backend.read().F_BH
+        return [*find_tool(haptic, root)[4:], *asked[:3], *shown[:3]]
+
+    file = tmp_path / "figures.json"
+    with running(device_command(file, "--ttl-ms", 500), file) as driver:
+        monkeypatch.setattr(
+            holding,
+            "open_device",
+            lambda *_: UdpDevice("127.0.0.1", driver.port, ttl_s=0.5),
+        )
+        rig = make(
+            {300: [MOUSE], 310: [TURN], 550: [RETAKE]},
+            address="udp://there",
+            watch=watch,
+        )
+        rig.run(1.15, pace=TickClock(rig.period_s))
+        rig.holding.close()
+        driver.end()
+    p_WT, asked, shown = np.split(np.array(rig.seen), [3, 6], axis=1)
+    # The scene goes on, where it is.
+    np.testing.assert_allclose(rig.page.times, 1e-3 * np.arange(1, 1151), atol=1e-9)
+    assert np.linalg.norm(np.diff(p_WT, axis=0), axis=1).max() < 0.5e-3
+    asked_Nm, shown_Nm = (np.linalg.norm(each[550:], axis=1) for each in (asked, shown))
+    limit_Nm = rig.holding.site.max_torque_Nm
+    # The handle is turned against the tool.
+    assert asked_Nm[:10].max() > 0.5 * limit_Nm
+    most = np.clip((np.arange(600) - 99) / 200, 0.0, 1.0) * limit_Nm
+    assert (shown_Nm < most + 0.02 * limit_Nm).all()
+    assert rig.holding.taken is not None and not rig.holding.taken.waits
 
 
 def test_gravity_of_the_page_is_that_of_a_scene_file(make, scene):

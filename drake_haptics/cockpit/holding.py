@@ -6,7 +6,8 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 
 from drake_haptics.cockpit.page_handle import PageHandle
-from drake_haptics.device.backend import DeviceBackend, DeviceError
+from drake_haptics.cockpit.taken_device import TakenDevice
+from drake_haptics.device.backend import DeviceBackend, DeviceError, GateState
 from drake_haptics.device.meshcat_device import MeshcatDevice
 from drake_haptics.device_address import open_device
 from drake_haptics.device_site import find_device_site, wait_for_reading
@@ -65,6 +66,19 @@ class Holding:
         """What the pointer on the page moves, if it holds the handle."""
         return self.backend if isinstance(self.backend, PageHandle) else None
 
+    @property
+    def taken(self) -> TakenDevice | None:
+        """The device in a hand, if one holds the handle."""
+        return self.backend if isinstance(self.backend, TakenDevice) else None
+
+    @property
+    def is_felt(self) -> bool:
+        """Whether a device is held that shows force."""
+        if self.taken is None:
+            return False
+        reading = self.taken.read()
+        return reading is not None and reading.gate == GateState.ACTIVE
+
     def take(self, name: str, X_WH: RigidTransform | None = None) -> None:
         """Gives the handle to somebody; whoever had it lets go at zero force.
 
@@ -111,11 +125,16 @@ class Holding:
         return None
 
     def _open_device(self, address: str) -> DeviceBackend:
-        """Returns a device that has been heard of."""
+        """Returns a device that has been heard of, and whose force sets in gently."""
         device = open_device(address, self._scene, self._meshcat)
         try:
             wait_for_reading(device)
         except BaseException:
             device.close()
             raise
-        return device
+        return TakenDevice(
+            device,
+            max_force_N=self.site.max_force_N,
+            max_torque_Nm=self.site.max_torque_Nm,
+            period_s=1.0 / self._scene.device.rate_hz,
+        )

@@ -55,6 +55,8 @@ _VERBS: Mapping[str, Mapping[str, Callable[[object], bool]]] = {
     "choose": {"key": _is_name, "to": _is_name},
     "effect": {"name": _is_name, "on": _is_switch},
     "handle": {"to": _is_name},
+    # Takes up a device at fault, or lets one that waits show its force.
+    "resume": {},
     "view": {"name": _is_name, "on": _is_switch},
     "camera": {"to": _is_name, "within?": _is_number},
     "reset": {},

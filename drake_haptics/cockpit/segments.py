@@ -12,7 +12,7 @@ from pydrake.systems.framework import Context
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.carried_context import carry_on, find_handle
 from drake_haptics.cockpit.cockpit import Cockpit
-from drake_haptics.cockpit.holding import DEVICE, Holding
+from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.retired_diagram import retire
 from drake_haptics.cockpit.steering import Change
 from drake_haptics.errors import UserError
@@ -140,7 +140,8 @@ class Segments:
         # What says itself where it is begins there anew.
         is_anew = change.restarts and backend is not None and backend.is_placed
         # A hand on a device may press: a tool put into its handle would kick.
-        is_felt = change.handle == holding.name == DEVICE and not is_anew
+        is_kept = change.handle == holding.name and not is_anew
+        is_felt = is_kept and holding.is_felt
         goes_on = last is not None and (is_felt or not change.restarts)
         X_WH = find_handle(old, last) if goes_on else None
         try:

@@ -193,6 +193,9 @@ class Steering:
             ChangeError: It cannot be.
         """
         verb = request.get("do")
+        if verb == "resume" and (taken := self._holding.taken) is not None:
+            taken.resume()
+            return True
         if verb not in ("handle", "restart", *SCENE_VERBS):
             return False
         if self._locked:
@@ -203,8 +206,8 @@ class Steering:
         handle = request.get("to")
         if handle is not None and handle not in self._holding.names:
             raise ChangeError(f"There is nobody called {handle!r} to hold the handle.")
-        # A real hand takes the tool with it; the simulated one begins its path.
-        self._end(_AT_ONCE, handle, verb == "restart" or handle in (HAND, DEVICE))
+        # All others take the tool where it is; the simulated hand begins its path.
+        self._end(_AT_ONCE, handle, verb == "restart" or handle == HAND)
         return True
 
     def _fail(self, why: str) -> None:
