@@ -1,4 +1,4 @@
-"""Ctrl-C ends a run, wherever it falls."""
+"""Ctrl-C, SIGTERM and a closed terminal end a run, wherever they fall."""
 
 import io
 import os
@@ -13,33 +13,47 @@ from drake_haptics.cli.lasting_interrupt import lasting_interrupt
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
 
+NUMBERS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
-def interrupt_and_swallow():
-    """Ctrl-C within code that drops what is raised, as destructors do."""
+
+def interrupt_and_swallow(number=signal.SIGINT):
+    """A signal within code that drops what is raised, as destructors do."""
     with pytest.raises(KeyboardInterrupt):
-        os.kill(os.getpid(), signal.SIGINT)
+        os.kill(os.getpid(), number)
 
 
-def test_it_is_raised_again_where_it_was_swallowed():
-    before = signal.getsignal(signal.SIGINT)
+@pytest.mark.parametrize("number", NUMBERS)
+def test_it_is_raised_again_where_it_was_swallowed(number):
+    before = signal.getsignal(number)
     with lasting_interrupt() as check:
         check()
-        interrupt_and_swallow()
+        interrupt_and_swallow(number)
         for _ in range(2):
             with pytest.raises(KeyboardInterrupt):
                 check()
-    assert signal.getsignal(signal.SIGINT) == before
+    assert signal.getsignal(number) == before
 
 
-def test_where_it_was_ignored_it_still_is():
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+@pytest.mark.parametrize("number", NUMBERS)
+def test_where_it_was_ignored_it_still_is(number):
+    before = signal.signal(number, signal.SIG_IGN)
     try:
         with lasting_interrupt() as check:
-            os.kill(os.getpid(), signal.SIGINT)
+            os.kill(os.getpid(), number)
             check()
-        assert signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+        assert signal.getsignal(number) == signal.SIG_IGN
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(number, before)
+
+
+def test_ten_at_once_are_one_and_one_that_insists_is_another():
+    times_s = [0.0, 0.0, 0.1, 1.9, 2.1, 2.1]
+    with lasting_interrupt(iter(times_s).__next__):
+        interrupt_and_swallow()
+        for _ in range(3):
+            os.kill(os.getpid(), signal.SIGINT)
+        interrupt_and_swallow()
+        os.kill(os.getpid(), signal.SIGTERM)
 
 
 @pytest.mark.parametrize("call", [1, 20])
@@ -53,17 +67,19 @@ def test_a_run_ends_though_its_interrupt_was_swallowed(monkeypatch, call):
 
     device = ScriptedDevice(read)
     monkeypatch.setattr(module, "open_device", lambda *_: device)
-    session = module.run_session(
-        Console(file=io.StringIO()),
-        load_scene(find_scene("sphere_pen")),
-        device="here",
-        meshcat=None,
-        page=None,
-        prepare=lambda *_: None,
-        duration_s=1.0,
-        energy=False,
-        explained=False,
-        log=None,
-    )
+    with lasting_interrupt() as check:
+        session = module.run_session(
+            Console(file=io.StringIO()),
+            load_scene(find_scene("sphere_pen")),
+            device="here",
+            meshcat=None,
+            page=None,
+            prepare=lambda *_: None,
+            duration_s=1.0,
+            energy=False,
+            explained=False,
+            log=None,
+            check_interrupt=check,
+        )
     assert session.figures["duration_s"] < 0.5
     assert device.closed

@@ -1,41 +1,60 @@
-"""A Ctrl-C that cannot get lost."""
+"""A request to end that cannot get lost, however it comes and how often."""
 
 from __future__ import annotations
 
 import signal
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
+# What ends a program from a keyboard, a script or a service, and with its terminal.
+_NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+# Of a person who presses Ctrl-C ten times: one request, whose report is not to be lost.
+_REPEATED_S = 2.0
+
 
 @contextmanager
-def lasting_interrupt() -> Iterator[Callable[[], None]]:
-    """Makes Ctrl-C last until somebody ends for it.
+def lasting_interrupt(
+    clock: Callable[[], float] = time.monotonic,
+) -> Iterator[Callable[[], None]]:
+    """Makes Ctrl-C, SIGTERM and SIGHUP last until somebody ends for them.
 
     A `KeyboardInterrupt` is raised wherever the interpreter is just then. Where that
     is in Python code that C++ has called, or in a destructor, it may be dropped, and a
-    device would go on with force.
+    device would go on with force. More of them within two seconds are the same one;
+    later ones are raised again, for what hangs.
 
-    Where it is ignored, as in a script's background, it still is. Only the main thread
-    may use it.
+    Signals that are ignored, as in a script's background or under `nohup`, still are.
+    Only the main thread may use it.
+
+    Args:
+        clock: Reads the time, s.
 
     Yields:
         What a loop calls now and then: raises `KeyboardInterrupt` if there was one.
     """
-    asked = False
+    asked_s: float | None = None
 
     def interrupt(_number: int, _frame: FrameType | None) -> None:
-        nonlocal asked
-        asked = True
+        nonlocal asked_s
+        now_s = clock()
+        if asked_s is not None and now_s < asked_s + _REPEATED_S:
+            return
+        asked_s = now_s
         raise KeyboardInterrupt
 
     def check() -> None:
-        if asked:
+        if asked_s is not None:
             raise KeyboardInterrupt
 
-    is_ignored = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN if is_ignored else interrupt)
+    before = {
+        number: signal.signal(number, interrupt)
+        for number in _NUMBERS
+        if signal.getsignal(number) is not signal.SIG_IGN
+    }
     try:
         yield check
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -13,6 +13,7 @@ from rich.console import Console
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.exit_codes import ExitCode
+from drake_haptics.cli.lasting_interrupt import lasting_interrupt
 from drake_haptics.cli.mesh_options import write_json
 from drake_haptics.cli.page_words import describe_page
 from drake_haptics.cli.parts_table import make_parts_table
@@ -107,37 +108,40 @@ def run_scene(
         views = SHOWN_AT_FIRST | {"pieces"} if pieces else SHOWN_AT_FIRST
         page = PageOptions(open_page_port(port), name, locked, views)
     meshcat = None if headless and record is None else open_meshcat()
-    session = run_session(
-        console,
-        scene,
-        device=device,
-        meshcat=meshcat,
-        page=page,
-        prepare=lambda haptic, url: _prepare(
-            console, haptic, meshcat, url, pieces, record
-        ),
-        duration_s=duration_s,
-        energy=json_file is not None,
-        explained=explain,
-        log=log,
-    )
-    console.print(make_summary(session.figures))
-    if explain:
-        session.figures["parts"] = [part.to_dict() for part in session.parts]
-        console.print()
-        console.print(make_parts_table(session.parts))
-    if record is not None:
-        _write_recording(session.haptic, meshcat, record)
-        console.print(f"Wrote {record}.", soft_wrap=True, markup=False)
-    if log is not None:
-        console.print(f"Wrote {log}.", soft_wrap=True, markup=False)
-    if scene_file is not None:
-        head = f"Of {name}, with all its keys: written by drake-haptics run."
-        write_scene(session.scene, scene_file, [head])
-        again = shlex.join(["drake-haptics", "run", str(scene_file)])
-        console.print(f"Wrote {scene_file}: {again}", soft_wrap=True, markup=False)
-    if json_file is not None:
-        write_json(session.figures, json_file)
+    # Also while the report is written: a second Ctrl-C must not lose it.
+    with lasting_interrupt() as check_interrupt:
+        session = run_session(
+            console,
+            scene,
+            device=device,
+            meshcat=meshcat,
+            page=page,
+            prepare=lambda haptic, url: _prepare(
+                console, haptic, meshcat, url, pieces, record
+            ),
+            duration_s=duration_s,
+            energy=json_file is not None,
+            explained=explain,
+            log=log,
+            check_interrupt=check_interrupt,
+        )
+        console.print(make_summary(session.figures))
+        if explain:
+            session.figures["parts"] = [part.to_dict() for part in session.parts]
+            console.print()
+            console.print(make_parts_table(session.parts))
+        if record is not None:
+            _write_recording(session.haptic, meshcat, record)
+            console.print(f"Wrote {record}.", soft_wrap=True, markup=False)
+        if log is not None:
+            console.print(f"Wrote {log}.", soft_wrap=True, markup=False)
+        if scene_file is not None:
+            head = f"Of {name}, with all its keys: written by drake-haptics run."
+            write_scene(session.scene, scene_file, [head])
+            again = shlex.join(["drake-haptics", "run", str(scene_file)])
+            console.print(f"Wrote {scene_file}: {again}", soft_wrap=True, markup=False)
+        if json_file is not None:
+            write_json(session.figures, json_file)
     if session.error is not None:
         raise _UnstableError(str(session.error)) from session.error
 

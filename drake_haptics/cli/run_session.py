@@ -17,7 +17,6 @@ from drake_haptics.builder import HapticDiagram
 from drake_haptics.callback_timer import CallbackTimer
 from drake_haptics.cli.build_scene import build_scene
 from drake_haptics.cli.enter_key import is_enter_pressed
-from drake_haptics.cli.lasting_interrupt import lasting_interrupt
 from drake_haptics.cli.status_line import StatusLine
 from drake_haptics.cockpit.cockpit_run import CockpitRun
 from drake_haptics.device.backend import DeviceBackend
@@ -82,6 +81,7 @@ def run_session(
     energy: bool,
     explained: bool,
     log: Path | None,
+    check_interrupt: Callable[[], None],
 ) -> Session:
     """Opens the device, builds the scene and runs it under a status line.
 
@@ -96,10 +96,10 @@ def run_session(
         energy: Whether to book energy, where the device is simulated.
         explained: Whether to explain the parts of a tick.
         log: File for every tick, if wanted.
+        check_interrupt: Of a `lasting_interrupt`; called after every tick.
     """
     timer = CallbackTimer() if explained else None
     with ExitStack() as stack:
-        check_interrupt = stack.enter_context(lasting_interrupt())
         recorder = None
         if log is not None:
             recorder = stack.enter_context(TickRecorder(log, make_log_header(scene)))

@@ -58,6 +58,27 @@ def in_terminal(*arguments, interrupt_after=None, **variables):
     return output.decode(), os.waitstatus_to_exitcode(status)
 
 
+@pytest.mark.parametrize(
+    ("command", "shown"), [("run", b"x real time"), ("device", b" Hz, late")]
+)
+def test_a_terminal_that_is_closed_does_not_take_the_figures_with_it(
+    tmp_path, command, shown
+):
+    file = tmp_path / "figures.json"
+    options = ["--headless"] if command == "run" else ["--port", "0"]
+    words = [COMMAND, command, "sphere_pen", *options, "--json", str(file)]
+    pid, terminal = pty.fork()
+    if pid == 0:  # pragma: no cover
+        os.execv(COMMAND, words)
+    output = b""
+    while shown not in output:
+        assert select.select([terminal], [], [], 60.0)[0]
+        output += os.read(terminal, 4096)
+    os.close(terminal)
+    os.waitpid(pid, 0)
+    assert json.loads(file.read_text())["duration_s"] > 0.0
+
+
 def in_pipe(*arguments, **settings):
     return subprocess.run(
         [COMMAND, *arguments], capture_output=True, text=True, timeout=60, **settings

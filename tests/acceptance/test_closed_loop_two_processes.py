@@ -79,9 +79,14 @@ def test_contact_is_felt_and_the_end_of_a_run_is_idle(link, host_file):
         assert last.gate == IDLE
 
 
-def test_ctrl_c_of_the_host_leaves_the_device_idle(link, host_file):
+@pytest.mark.parametrize("numbers", [[signal.SIGINT] * 10, [signal.SIGTERM]])
+def test_a_host_that_is_asked_to_end_leaves_the_device_idle(link, host_file, numbers):
     with hosting(link.port, host_file) as host:
         press_enter_until(host, link, is_felt)
+        for number in numbers:
+            host.send_signal(number)
+        status, said = host.wait()
+        assert status == 0, said
         assert host.end()["device"]["received"] > 100
     last = link.wait_for(lambda state: True)
     assert (last.gate, last.force_N) == (IDLE, 0.0)
