@@ -36,6 +36,7 @@ docs: $(STAMP)-test
 	$(BIN)/python -m sphinx --builder html --jobs auto --quiet --nitpicky \
 	  --fail-on-warning --keep-going docs build/docs
 	@echo "The front page is $(CURDIR)/build/docs/index.html"
+	@echo "For the search to show more than titles: $(BIN)/python -m http.server -d build/docs"
 
 format: $(STAMP)-test
 	$(BIN)/ruff check --fix .

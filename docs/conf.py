@@ -62,6 +62,7 @@ html_theme = "furo"
 html_static_path = ["_static"]
 html_favicon = "_static/favicon.svg"
 html_css_files = ["reference.css"]
+html_search_scorer = str(Path(__file__).parent / "_static" / "searchscorer.js")
 html_domain_indices = False  # the page of modules is made by hand
 html_show_copyright = False
 html_show_sphinx = False

@@ -2,6 +2,7 @@
 
 import functools
 import http.server
+import re
 import subprocess
 import sys
 import threading
@@ -28,6 +29,20 @@ LOOKED_AT = (
     "tutorials/2-felt-force.html",
 )
 WIDTHS = (390, 1440)
+# What people look for, and the page that they are to find.
+SOUGHT = {
+    "PenaltyForce": "reference/generated/system-penalty_force",
+    "cluster_size_m": "reference/scene-file",
+    "peg hole tolerance": "troubleshooting",
+    "damping unit": "glossary",
+    "force on the hand": "glossary",
+    "buzzing": "troubleshooting",
+    "mesh in millimetres": "troubleshooting",
+    "network delay": "stability",
+    "own plant": "compose",
+    "friction": "effects",
+    "no device": "no-device",
+}
 
 
 def test_the_site_is_built_without_a_warning_and_is_whole(tmp_path: Path) -> None:
@@ -139,15 +154,26 @@ def look(page: HeadlessBrowser, address: str) -> None:
 
 
 def search(page: HeadlessBrowser, address: str) -> None:
-    """A word of a system's docstring and a key of a scene are found."""
-    for words, target in {
-        "PenaltyForce": "reference/generated/system-penalty_force.html",
-        "cluster_size_m": "reference/scene-file.html",
-    }.items():
+    """Names in code and everyday words lead to their page among the first three."""
+    for words, target in SOUGHT.items():
         page.open(f"{address}search.html?q={words}")
         page.wait_for(
-            f"!!document.querySelector('#search-results a[href^=\"{target}\"]')"
+            "document.querySelector('.search-summary')?.innerText.includes('finished')"
         )
+        first = page.evaluate(
+            "[...document.querySelectorAll('#search-results li > a')].slice(0, 3)"
+            ".map(a => a.getAttribute('href'))"
+        )
+        found = {address.partition("#")[0] for address in first}
+        assert f"{target}.html" in found, f"{words}: {first}"
+
+
+def test_what_the_search_knows_of_pages_is_of_pages_that_are() -> None:
+    text = (ROOT / "docs/_static/searchscorer.js").read_text(encoding="utf-8")
+    about = text.partition("ABOUT = {")[2].partition("};")[0]
+    pages = re.findall(r'"([\w-]+)": "', about)
+    assert len(pages) > 10
+    assert not [page for page in pages if not (ROOT / f"docs/{page}.md").is_file()]
 
 
 @pytest.mark.parametrize(
