@@ -14,6 +14,7 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort
 
 from drake_haptics import _core
+from drake_haptics.argument_kinds import require_kinds
 from drake_haptics.builder_effects import EffectSite, add_effects, find_springs
 from drake_haptics.builder_picture import add_picture
 from drake_haptics.contact_systems import (
@@ -147,7 +148,23 @@ def AddHapticLoop(
     Raises:
         ValueError: A gain or size is out of range, two objects share a name, or
             there is not a material for each object.
+        TypeError: An argument is of another kind; the message names it.
     """
+    require_kinds(
+        builder=(builder, DiagramBuilder),
+        device=(device, HapticDevice),
+        tool=(tool, _core.Decomposition),
+        tool_dynamics=(tool_dynamics, _core.RigidToolDynamics),
+        objects=(objects, Sequence[ContactObject]),
+        contact=(contact, Contact),
+        coupling=(coupling, Coupling),
+        X_HT=(X_HT, RigidTransform),
+        X_WT=(X_WT, RigidTransform),
+        period_s=(period_s, float),
+        effects=(effects, Effects | None),
+        materials=(materials, Sequence[Material] | None),
+        load_shedding=(load_shedding, LoadShedding | None),
+    )
     effects = effects or Effects()
     if materials is None:
         materials = [Material()] * len(objects)
@@ -331,8 +348,23 @@ def BuildHapticDiagram(
             in Python, or the hand's path cannot be reached.
         MeshError: A mesh cannot be treated.
         DeviceError: The device says nothing.
+        TypeError: An argument, or a value of the scene, is of another kind; the
+            message names it.
     """
     # First what is quick to fail.
+    require_kinds(
+        "load_scene(find_scene('cup_spoon')) is a scene", scene=(scene, Scene)
+    )
+    require_kinds(
+        "`open_device` opens an address",
+        device=(device, DeviceBackend | HapticDevice | None),
+    )
+    require_kinds(
+        meshcat=(meshcat, Meshcat | None),
+        progress=(progress, Callable | None),
+        reuse=(reuse, HapticDiagram | None),
+        X_WH=(X_WH, RigidTransform | None),
+    )
     check_values(scene)
     period_s = 1.0 / scene.device.rate_hz
     path = make_hand_path(scene.hand.path)
@@ -427,11 +459,6 @@ def _find_port(
     """Returns the port of all but a backend, which must be read when all is ready."""
     if isinstance(device, HapticDevice):
         return device
-    if device is not None and not isinstance(device, DeviceBackend):
-        raise TypeError(
-            "device must be a DeviceBackend or a HapticDevice, is a"
-            f" {type(device).__name__}; `open_device` opens an address"
-        )
     try:
         # A real device is held to what is known of its kind.
         port = make_simulated_device(scene, path)

@@ -12,6 +12,7 @@ from pydrake.multibody.tree import RigidBody
 from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics.applied_force_port import AddAppliedSpatialForce, find_applied_force
+from drake_haptics.argument_kinds import require_kinds
 from drake_haptics.haptic_rendering import HapticRendering
 from drake_haptics.rendered_bodies import (
     RenderedBody,
@@ -103,15 +104,37 @@ def AddHapticRendering(
         ValueError: What was asked for cannot be; the message names the argument and
             what to do. A mesh that cannot be treated is a
             `drake_haptics.mesh.MeshError`.
+        TypeError: An argument is of another kind; the message names it.
     """
+    require_kinds(
+        "AddHapticRendering(builder, plant, scene_graph, tool_body) is their order",
+        builder=(builder, DiagramBuilder),
+        plant=(plant, MultibodyPlant),
+        scene_graph=(scene_graph, SceneGraph),
+        tool_body=(tool_body, RigidBody | str),
+    )
+    if isinstance(environment, str):
+        raise ValueError(f"environment: is a list of bodies, as [{environment!r}]")
+    require_kinds(
+        environment=(environment, Sequence[RigidBody | str] | None),
+        role=(role, Role),
+        chord_error_m=(chord_error_m, float),
+        contact=(contact, Contact | None),
+        materials=(materials, Mapping[str, Material] | None),
+        effects=(effects, Effects | None),
+        coupling=(coupling, Coupling | None),
+        device=(device, HapticDevice | None),
+        X_HT=(X_HT, RigidTransform | None),
+        period_s=(period_s, float | None),
+        name=(name, str),
+        progress=(progress, Callable | None),
+    )
     _check_builder(builder, plant, scene_graph, name)
     if period_s is not None and not period_s > 0.0:
         raise ValueError(f"period_s must be positive, is {period_s}")
     contact, effects = contact or Contact(), effects or Effects()
     inspector = scene_graph.model_inspector()
     tool = find_body(plant, tool_body, "tool_body")
-    if isinstance(environment, str):
-        raise ValueError(f"environment: is a list of bodies, as [{environment!r}]")
     if environment is None:
         bodies = find_environment(plant, inspector, tool, role)
     else:

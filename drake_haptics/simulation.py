@@ -15,6 +15,7 @@ from pydrake.systems.analysis import (
 )
 from pydrake.systems.framework import Context, EventStatus
 
+from drake_haptics.argument_kinds import require_kinds
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.energy_ledger import EnergyLedger
 from drake_haptics.realtime_priority import realtime_priority
@@ -90,7 +91,17 @@ def run(
         ValueError: `duration_s` is negative, `energy` is asked for, but the device is
             not simulated, or the run goes on with the statistics of others.
         RunError: The tool or the arm has a pose or velocity that is not finite.
+        TypeError: An argument is of another kind; the message names it.
     """
+    require_kinds(
+        "BuildHapticDiagram(scene) makes it of a scene", haptic=(haptic, HapticDiagram)
+    )
+    require_kinds(
+        duration_s=(duration_s, float | None),
+        pace=(pace, TickClock | None),
+        on_tick=(on_tick, Callable | None),
+        statistics=(statistics, RunStatistics | None),
+    )
     # Drake ends the whole program for a time before now.
     if duration_s is not None and not duration_s >= 0.0:
         raise ValueError(f"duration_s must not be negative, is {duration_s}")
