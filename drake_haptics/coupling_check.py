@@ -50,6 +50,21 @@ class HeldHandle:
 
 
 @dataclass(frozen=True)
+class BrokenBound:
+    """A bound that a coupling breaks.
+
+    Attributes:
+        key: Of the value to be changed, one of `SpringAndDamper`.
+        words: What comes of it and what to do, without symbols.
+        sentence: Which value, which bound by which law, what to change.
+    """
+
+    key: str
+    words: str
+    sentence: str
+
+
+@dataclass(frozen=True)
 class _Kind:
     """Names and units of translation or of rotation."""
 
@@ -76,6 +91,17 @@ def check_coupling(
     period_s: float,
     delay_s: float = 0.0,
 ) -> list[str]:
+    """Returns the sentences of `find_broken_bounds`, with the same arguments."""
+    found = find_broken_bounds(coupling, handle, period_s, delay_s)
+    return [bound.sentence for bound in found]
+
+
+def find_broken_bounds(
+    coupling: SpringAndDamper,
+    handle: HeldHandle,
+    period_s: float,
+    delay_s: float = 0.0,
+) -> list[BrokenBound]:
     """Checks a coupling against the bounds of `drake_haptics.passivity_bounds`.
 
     Args:
@@ -85,10 +111,9 @@ def check_coupling(
         delay_s: Delay t_d on top of the hold's half period, s.
 
     Returns:
-        A sentence for each bound that is broken: which value, which bound, what to
-        change. Empty if the loop is stable by `calc_stable_stiffness` and
-        `calc_sampled_damping`, and passive by `calc_passive_damping`, in which the
-        damping of the hand counts.
+        Each bound that is broken. Empty if the loop is stable by
+        `calc_stable_stiffness` and `calc_sampled_damping`, and passive by
+        `calc_passive_damping`, in which the damping of the hand counts.
 
     Raises:
         ValueError: The period, the mass or the inertia is not positive.
@@ -100,7 +125,7 @@ def check_coupling(
     ]:
         if not value > 0.0:
             raise ValueError(f"{name} must be positive, is {value}")
-    found = []
+    found: list[BrokenBound] = []
     for kind, m, b in [
         (_TRANSLATION, handle.mass_kg, handle.damping_Ns_per_m),
         (_ROTATION, handle.inertia_kgm2, handle.rotational_damping_Nms_per_rad),
@@ -116,52 +141,74 @@ def check_coupling(
 
 def _check_stiffness(
     kind: _Kind, K: float, B: float, b: float, period_s: float, delay_s: float
-) -> list[str]:
+) -> list[BrokenBound]:
     """Checks K against the law of Gil et al."""
     bound = calc_stable_stiffness(b, B, period_s, delay_s)
     if K <= bound:
         return []
     return [
-        f"{kind.stiffness} is {K:g}, but stable only up to {bound:.5g}"
-        f" {kind.stiffness_unit}, (b + B) / (T/2 + t_d) (Gil et al.), with b = {b:g}"
-        f" {kind.damping_unit} of device and hand at {1.0 / period_s:g} Hz: lower it,"
-        f" raise {kind.damping} or the rate, or hold the device more firmly"
+        BrokenBound(
+            kind.stiffness,
+            f"This will shake: device and hand bear {bound:.3g} {kind.stiffness_unit}"
+            " at this rate. Lower it, raise the damping, or hold more firmly.",
+            f"{kind.stiffness} is {K:g}, but stable only up to {bound:.5g}"
+            f" {kind.stiffness_unit}, (b + B) / (T/2 + t_d) (Gil et al.), with"
+            f" b = {b:.3g} {kind.damping_unit} of device and hand at"
+            f" {1.0 / period_s:g} Hz: lower it, raise {kind.damping} or the rate, or"
+            " hold the device more firmly",
+        )
     ]
 
 
 def _check_damping(
     kind: _Kind, K: float, B: float, m: float, period_s: float
-) -> list[str]:
+) -> list[BrokenBound]:
     """Checks B against Jury's criterion."""
     bound = calc_sampled_damping(m, K, period_s)
     if B <= bound:
         return []
     if bound == 0.0:
         return [
-            f"{kind.stiffness} is {K:g}, too stiff for any damping (Jury's criterion)"
-            f" on {m:.3g} {kind.mass_unit} of device and hand at {1.0 / period_s:g} Hz:"
-            " lower it or raise the rate"
+            BrokenBound(
+                kind.stiffness,
+                f"This will shake, whatever the damping: device and hand have {m:.2g}"
+                f" {kind.mass_unit}, too little at this rate. Lower it.",
+                f"{kind.stiffness} is {K:g}, too stiff for any damping (Jury's"
+                f" criterion) on {m:.3g} {kind.mass_unit} of device and hand at"
+                f" {1.0 / period_s:g} Hz: lower it or raise the rate",
+            )
         ]
     return [
-        f"{kind.damping} is {B:g}, but stable only up to {bound:.5g}"
-        f" {kind.damping_unit}, below 2 m/T (Jury's criterion), on {m:.3g}"
-        f" {kind.mass_unit} of device and hand at {1.0 / period_s:g} Hz: lower it or"
-        " raise the rate"
+        BrokenBound(
+            kind.damping,
+            f"This will shake: device and hand bear {bound:.3g} {kind.damping_unit} at"
+            " this rate. Lower it.",
+            f"{kind.damping} is {B:g}, but stable only up to {bound:.5g}"
+            f" {kind.damping_unit}, below 2 m/T (Jury's criterion), on {m:.3g}"
+            f" {kind.mass_unit} of device and hand at {1.0 / period_s:g} Hz: lower it"
+            " or raise the rate",
+        )
     ]
 
 
 def _check_passivity(
     kind: _Kind, K: float, B: float, b: float, period_s: float, delay_s: float
-) -> list[str]:
+) -> list[BrokenBound]:
     """Checks K and B against the bound of Colgate and Schenkel."""
     bound = calc_passive_damping(K, B, period_s, delay_s)
     if b >= bound:
         return []
     name, value = (kind.damping, B) if 2.0 * B > K * period_s else (kind.stiffness, K)
     return [
-        f"{name} is {value:g}: not passive, because device and hand damp"
-        f" by b = {b:g} {kind.damping_unit} and K (T/2 + t_d) + |B| is {bound:.5g}"
-        " (Colgate and Schenkel), so that some grips may vibrate: lower"
-        f" {kind.damping} or {kind.stiffness}, raise the rate, or hold the device more"
-        " firmly"
+        BrokenBound(
+            name,
+            f"A loose grip may vibrate: device and hand damp by {b:.3g}"
+            f" {kind.damping_unit}, stiffness and damping together ask for"
+            f" {bound:.3g}. Lower one of them, or hold more firmly.",
+            f"{name} is {value:g}: not passive, because device and hand damp"
+            f" by b = {b:.3g} {kind.damping_unit} and K (T/2 + t_d) + |B| is"
+            f" {bound:.5g} (Colgate and Schenkel), so that some grips may vibrate:"
+            f" lower {kind.damping} or {kind.stiffness}, raise the rate, or hold the"
+            " device more firmly",
+        )
     ]

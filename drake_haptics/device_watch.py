@@ -6,7 +6,40 @@ import math
 from collections import Counter
 from collections.abc import Callable
 
-from drake_haptics.device.backend import DeviceBackend, Fault, GateState
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceReading,
+    Fault,
+    GateState,
+)
+
+# A driver that has said nothing for so long is not one that is merely late.
+SILENT_S = 1.0
+
+
+class DriverSilence:
+    """For how long a device's driver has said nothing new."""
+
+    def __init__(self) -> None:
+        self._sequence: int | None = None
+        self._silent_s = 0.0
+
+    def add(self, reading: DeviceReading | None, passed_s: float) -> float:
+        """Looks at the newest reading.
+
+        Args:
+            reading: None before the first.
+            passed_s: Time since the last look, s.
+
+        Returns:
+            For how long it has been the same, s; nobody need be told of less than
+            `SILENT_S`.
+        """
+        sequence = None if reading is None else reading.sequence
+        is_new = sequence != self._sequence
+        self._sequence = sequence
+        self._silent_s = 0.0 if is_new else self._silent_s + passed_s
+        return self._silent_s
 
 
 class DeviceWatch:

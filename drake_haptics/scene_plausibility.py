@@ -37,7 +37,7 @@ def question_scene(haptic: HapticDiagram) -> list[str]:
         *_question_sizes(haptic),
         *_question_reach(haptic),
         *_question_device(haptic),
-        *_question_start(haptic),
+        *question_start(haptic),
     ]
 
 
@@ -178,8 +178,12 @@ def _question_device(haptic: HapticDiagram) -> list[str]:
     return sentences
 
 
-def _question_start(haptic: HapticDiagram) -> list[str]:
-    """Asks whether the tool is meant to start inside an object."""
+def question_start(haptic: HapticDiagram) -> list[str]:
+    """Returns in sentences where the tool starts inside an object, if it does.
+
+    Args:
+        haptic: The scene, built; a device's handle is taken where it is now.
+    """
     scene = haptic.scene
     if haptic.backend is None:
         X_WT = make_hand_path(scene.hand.path).start

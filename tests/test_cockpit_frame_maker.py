@@ -30,6 +30,8 @@ def tick(time_s, **changes):
 def packet(ticks, clock_s=0.0, **changes):
     known = {
         "gate": "active",
+        "fault": "",
+        "silent_s": 0.0,
         "shed": 0,
         "skipped": 3,
         "R_WC": tuple(X_WC.rotation().matrix().ravel().tolist()),
@@ -120,8 +122,10 @@ def test_what_is_not_known_is_null_in_json():
 
 
 def test_a_frame_without_ticks_says_how_things_are():
-    frame = FrameMaker(["drawing", "far"]).make(packet([], shed=1))
+    told = {"gate": "fault", "fault": "stale", "silent_s": 5.0}
+    frame = FrameMaker(["drawing", "far"]).make(packet([], shed=1, **told))
     json.dumps(frame, allow_nan=False)
     assert frame["shed"] == ["drawing"]
-    assert (frame["gate"], frame["skipped"]) == ("active", 3)
+    assert {name: frame[name] for name in told} == told
+    assert frame["skipped"] == 3
     assert frame["trace"]["force_N"] == []

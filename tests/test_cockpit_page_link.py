@@ -21,6 +21,8 @@ BOUND_S = 20.0
 MESHCAT = "http://localhost:6999"
 HEAD = {
     "gate": 3,
+    "fault": 0,
+    "silent_s": 0.0,
     "shed": 0,
     "skipped": 0,
     "clock_s": 0.0,

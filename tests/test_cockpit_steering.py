@@ -180,7 +180,10 @@ def test_the_coupling_is_judged_as_it_is_now(make):
     rig.run(0.3)
     warned = [bool(state["warnings"]) for state in rig.page.states]
     assert warned == [False, True, False]
-    assert rig.page.states[1]["warnings"][0].startswith("coupling.damping_Ns_per_m is")
+    [warning] = rig.page.states[1]["warnings"]
+    assert warning["key"] == "coupling.damping_Ns_per_m"
+    assert warning["words"].startswith("A loose grip may vibrate: device and hand")
+    assert warning["why"].startswith("damping_Ns_per_m is 20: not passive")
 
 
 def make_requests(rng, count):

@@ -5,16 +5,20 @@ import math
 import pytest
 
 from drake_haptics.cockpit.telemetry import (
+    FAULTS,
     GATES,
     KIND,
     LARGEST_DATAGRAM,
     TickBuffer,
     read_telemetry,
 )
+from drake_haptics.device.backend import Fault, GateState
 
 LATEST = (60e-6, 30e-6, 12, 3, -1e-3, 0.1, 0.2, 0.3, 1.0, 2.0, 3.0, 1.0)
 HEAD = {
     "gate": 1,
+    "fault": 1,
+    "silent_s": 2.5,
     "shed": 2,
     "skipped": 70_000,
     "clock_s": 1e5 + 1e-6,
@@ -29,6 +33,7 @@ def test_a_packet_says_what_was_noted():
     buffer.note(0.501, LATEST, 2e-4)
     packet = read_telemetry(bytes(buffer.take(**HEAD)))
     assert packet.gate == GATES[1] == "active"
+    assert (packet.fault, packet.silent_s) == (FAULTS[1], 2.5) == ("stale", 2.5)
     assert (packet.shed, packet.skipped, packet.clock_s) == (2, 70_000, 1e5 + 1e-6)
     assert packet.R_WC == tuple(range(9)) and packet.p_WC == (9, 10, 11)
     assert packet.p_WH == (0.1, 0.2, 0.3)
@@ -37,6 +42,12 @@ def test_a_packet_says_what_was_noted():
     assert (first.tick_s, first.query_s) == (60e-6, 30e-6)
     assert (first.contacts, first.clusters, first.distance_m) == (12, 3, -1e-3)
     assert (first.tau_W, first.f_W) == ((0.1, 0.2, 0.3), (1.0, 2.0, 3.0))
+
+
+def test_gates_and_faults_are_named_as_devices_number_them():
+    assert [gate.name.lower() for gate in GateState] == list(GATES[: len(GateState)])
+    names = [fault.name.lower().replace("_", " ") for fault in Fault]
+    assert names == ["none", *FAULTS[1:]]
 
 
 def test_each_tick_is_in_one_packet():

@@ -7,7 +7,7 @@ import pytest
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.device.backend import Fault, GateState, LinkStatus
-from drake_haptics.device_watch import DeviceWatch
+from drake_haptics.device_watch import DeviceWatch, DriverSilence
 
 ACTIVE = (GateState.ACTIVE, Fault.NONE)
 STALE = (GateState.FAULT, Fault.STALE)
@@ -91,3 +91,11 @@ def test_loads_are_those_that_the_device_showed():
     figures = watch.to_dict()
     assert figures["max_force_N"] == 5.0
     assert figures["max_torque_Nm"] == 0.5
+
+
+def test_a_driver_is_silent_from_its_last_new_reading_on():
+    silence = DriverSilence()
+    readings = [None, *(make_reading(n) for n in (1, 2, 2, 2, 3))]
+    said = [silence.add(reading, 0.4) for reading in readings]
+    # None the first time is as it was before.
+    assert said == pytest.approx([0.4, 0.0, 0.0, 0.4, 0.8, 0.0])

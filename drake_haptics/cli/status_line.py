@@ -20,6 +20,7 @@ from drake_haptics.cli.device_words import (
 )
 from drake_haptics.cli.live_line import LiveLine
 from drake_haptics.device.backend import DeviceReading, GateState
+from drake_haptics.device_watch import SILENT_S, DriverSilence
 from drake_haptics.systems.load_shedding import SHED_STAGES
 from drake_haptics.tick_clock import TickClock
 
@@ -28,8 +29,6 @@ from drake_haptics.tick_clock import TickClock
 _ROUNDING_J = 1e-9
 # Lateness in the line is that of so many latest ticks.
 _LATEST = 1000
-# A driver that has said nothing for so long is not one that is merely late.
-_SILENT_S = 1.0
 
 
 class StatusLine(LiveLine):
@@ -54,9 +53,7 @@ class StatusLine(LiveLine):
         self._pace = pace
         self._context: Context | None = None
         self._before_s = 0.0
-        # Of the device's newest reading: its number, and for how long it is the same.
-        self._sequence: int | None = None
-        self._silent_s = 0.0
+        self._silence = DriverSilence()
 
     def follow(self, haptic: HapticDiagram) -> None:
         """Tells from now on of another diagram, with which the run goes on."""
@@ -101,13 +98,10 @@ class StatusLine(LiveLine):
 
     def _describe_device(self, reading: DeviceReading | None, passed_s: float) -> str:
         """Returns whether the device shows force, and whether its driver is there."""
-        sequence = None if reading is None else reading.sequence
-        is_new = sequence != self._sequence
-        self._sequence = sequence
-        self._silent_s = 0.0 if is_new else self._silent_s + passed_s
-        if self._silent_s < _SILENT_S:
+        silent_s = self._silence.add(reading, passed_s)
+        if silent_s < SILENT_S:
             return describe_gate(reading)
-        silence = f"silent for {self._silent_s:.0f} s, is its driver running?"
+        silence = f"silent for {silent_s:.0f} s, is its driver running?"
         return describe_gate(reading, silence)
 
     def _describe_relief(self, context: Context) -> list[str]:

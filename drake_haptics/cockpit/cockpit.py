@@ -15,9 +15,12 @@ from drake_haptics.cockpit.live_page import LivePage, Outlook
 from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import SceneChanges
 from drake_haptics.cockpit.steering import Steering
-from drake_haptics.cockpit.telemetry import SIMULATED
+from drake_haptics.cockpit.telemetry import ACTIVE, SIMULATED, WAITING
+from drake_haptics.device.backend import DeviceReading, GateState
+from drake_haptics.device_watch import DriverSilence
 from drake_haptics.live_key import LiveKey
 from drake_haptics.run_statistics import RunStatistics
+from drake_haptics.scene_plausibility import question_start
 from drake_haptics.tick_clock import TickClock
 
 # Pages are told of changes no oftener: a slider that is dragged makes one per frame.
@@ -65,9 +68,17 @@ class Cockpit:
         self._tell_s, self._told_s = math.inf, -math.inf
         self._greeted: tuple[LiveKey, ...] = ()
         self._root: Context | None = None
+        # What is wrong with where the tool began.
+        self._start = ""
+        self._silence, self._looked_s = DriverSilence(), monotonic()
 
     def begin(
-        self, haptic: HapticDiagram, statistics: RunStatistics, pace: TickClock
+        self,
+        haptic: HapticDiagram,
+        statistics: RunStatistics,
+        pace: TickClock,
+        *,
+        is_anew: bool,
     ) -> None:
         """Begins a segment, of a diagram of the scene as it is now.
 
@@ -75,7 +86,11 @@ class Cockpit:
             haptic: What runs.
             statistics: Of the run.
             pace: Of the run.
+            is_anew: Whether the tool begins where the handle is.
         """
+        if is_anew:
+            found = question_start(haptic)
+            self._start = " ".join(f"{x[0].upper()}{x[1:]}." for x in found)
         self._haptic, self._statistics, self._pace = haptic, statistics, pace
         self._root = None
         self.steering.begin(haptic)
@@ -110,12 +125,20 @@ class Cockpit:
         if self._greeted != (keys := self._changes.list_keys()):
             self._greeted = keys
             self._greet()
-        warnings = self._advice.check(self._changes.scene)
+        warnings = [
+            {
+                "key": f"coupling.{bound.key}",
+                "words": bound.words,
+                "why": bound.sentence,
+            }
+            for bound in self._advice.check(self._changes.scene)
+        ]
         state = {
             **self._changes.describe(),
             "handle": self._holding.name,
             "views": self._picture.views,
-            "warnings": [f"coupling.{sentence}" for sentence in warnings],
+            "warnings": warnings,
+            "start": self._start,
             "error": self.steering.tell_error(),
         }
         self._page.tell("state", state)
@@ -143,9 +166,23 @@ class Cockpit:
         if loop.load_shedding is not None:
             relief = loop.load_shedding.GetMyContextFromRoot(self._root)
             shed = math.ceil(relief.get_discrete_state_vector().value()[0])
+        before_s, self._looked_s = self._looked_s, monotonic()
+        gate = self._find_gate(reading)
+        self._picture.mark_felt(gate in (ACTIVE, SIMULATED))
         return Outlook(
-            gate=SIMULATED if reading is None else int(reading.gate),
+            gate=gate,
             p_WH=X_WH[4:].tolist(),
+            fault=0 if reading is None else int(reading.fault),
+            silent_s=self._silence.add(reading, self._looked_s - before_s),
             shed=shed,
             skipped=self._pace.skipped,
         )
+
+    def _find_gate(self, reading: DeviceReading | None) -> int:
+        """Returns the index into `GATES` of what a reading tells."""
+        if reading is None:
+            return SIMULATED
+        taken = self._holding.taken
+        if taken is not None and taken.waits and reading.gate == GateState.IDLE:
+            return WAITING
+        return int(reading.gate)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from drake_haptics.coupling_check import check_coupling
+from drake_haptics.coupling_check import BrokenBound, find_broken_bounds
 from drake_haptics.held_handle import calc_force_delay, calc_scene_handle
 from drake_haptics.scene import Scene, SceneError
 from drake_haptics.simulated_device import make_hand_path, make_simulated_device
@@ -32,8 +32,10 @@ class CouplingAdvice:
         """Whether the scene's device can be simulated, in its hand."""
         return self._held is not None
 
-    def check(self, scene: Scene) -> list[str]:
-        """Returns a sentence for each bound that a scene's coupling breaks."""
+    def check(self, scene: Scene) -> list[BrokenBound]:
+        """Returns each bound that a scene's coupling breaks."""
         if self._held is None:
             return []
-        return check_coupling(scene.coupling, self._held, self._period_s, self._delay_s)
+        return find_broken_bounds(
+            scene.coupling, self._held, self._period_s, self._delay_s
+        )

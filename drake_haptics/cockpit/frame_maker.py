@@ -46,6 +46,8 @@ class FrameMaker:
         frame: dict[str, Any] = {
             "trace": self._trace.take(),
             "gate": packet.gate,
+            "fault": packet.fault,
+            "silent_s": packet.silent_s,
             "skipped": packet.skipped,
             "shed": list(self._shed_stages[: packet.shed]),
             "handle": find_in_view(packet.p_WH, packet.R_WC, packet.p_WC),

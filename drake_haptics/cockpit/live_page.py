@@ -26,12 +26,16 @@ class Outlook:
     Attributes:
         gate: Index into `telemetry.GATES`.
         p_WH: (3,) where the handle is, m.
+        fault: Index into `telemetry.FAULTS`.
+        silent_s: For how long the device's driver has said nothing new, s.
         shed: How many stages of work are left out.
         skipped: Ticks lost to stalls since the run began.
     """
 
     gate: int
     p_WH: Sequence[float]
+    fault: int = 0
+    silent_s: float = 0.0
     shed: int = 0
     skipped: int = 0
 
@@ -131,6 +135,8 @@ class LivePage:
         self._link.send(
             self._ticks.take(
                 gate=outlook.gate,
+                fault=outlook.fault,
+                silent_s=outlook.silent_s,
                 shed=outlook.shed,
                 skipped=outlook.skipped,
                 clock_s=now_s,

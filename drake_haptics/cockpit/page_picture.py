@@ -10,6 +10,10 @@ from drake_haptics.builder import HapticDiagram
 from drake_haptics.stage import aim_camera, find_framed_points
 from drake_haptics.systems.picture_views import PICTURE_VIEWS, check_view
 
+# Of the force on the hand, in the picture's scene tree.
+_FORCE = "/haptics/force"
+_UNFELT_OPACITY = 0.25
+
 
 class PagePicture:
     """Keeps what is shown, whatever diagram is drawn.
@@ -27,15 +31,26 @@ class PagePicture:
         """
         self._meshcat = meshcat
         self.views = {view: view in views for view in PICTURE_VIEWS}
+        self._is_felt = True
 
     def begin(self, haptic: HapticDiagram) -> None:
         """Shows of a diagram what was shown of the one before."""
         self._visualizer = haptic.visualizer
         # Of many objects it would be long for a tick.
         self._p_WP = find_framed_points(haptic)
+        # What is drawn for the first time is not faded.
+        self._is_felt = True
         if self._visualizer is not None:
             for view, visible in self.views.items():
                 self._visualizer.Show(view, visible)
+
+    def mark_felt(self, is_felt: bool) -> None:
+        """Fades the arrow of a force that is asked for and not shown."""
+        if is_felt == self._is_felt:
+            return
+        self._is_felt = is_felt
+        opacity = 1.0 if is_felt else _UNFELT_OPACITY
+        self._meshcat.SetProperty(_FORCE, "modulated_opacity", opacity)
 
     def obey(self, request: dict[str, Any]) -> bool:
         """Does what a page asks for, if that is a matter of the picture.

@@ -45,6 +45,8 @@ class Segments:
         self._steering = cockpit.steering
         self._holding = holding
         self._meshcat = meshcat
+        # Whether the tool begins where the handle is.
+        self._is_anew = True
 
     def run(
         self,
@@ -61,7 +63,9 @@ class Segments:
         # Less than a tick is left of what round-off makes of whole ticks.
         while left_s is None or left_s > 0.5 * self._haptic.period_s:
             try:
-                self._cockpit.begin(self._haptic, statistics, pace)
+                self._cockpit.begin(
+                    self._haptic, statistics, pace, is_anew=self._is_anew
+                )
                 on_begin(self._haptic)
                 change, last = self._run_one(
                     left_s,
@@ -144,6 +148,7 @@ class Segments:
         is_felt = is_kept and holding.is_felt
         goes_on = last is not None and (is_felt or not change.restarts)
         X_WH = find_handle(old, last) if goes_on else None
+        self._is_anew = not goes_on
         try:
             if change.handle != holding.name or is_anew:
                 holding.take(change.handle, X_WH)

@@ -14,12 +14,14 @@ from dataclasses import dataclass
 # First bytes of packets: numbers here, JSON text where it is a brace.
 KIND = b"#"
 # Names of gates, as the page is told them, by their numbers in a packet.
-GATES = ("idle", "active", "fault", "simulated")
-SIMULATED = GATES.index("simulated")
+GATES = ("idle", "active", "fault", "simulated", "waiting")
+ACTIVE, SIMULATED, WAITING = map(GATES.index, ("active", "simulated", "waiting"))
+# And of faults, by those of `drake_haptics.device.backend.Fault`.
+FAULTS = ("", "stale", "not finite", "overspeed", "clock", "device")
 
-# Kind, gate, stages of shed load; ticks skipped; clock, s; camera's R_WC row by row and
-# p_WC, m; handle's p_WH, m.
-_HEAD = struct.Struct("=cBBxId12d3d")
+# Kind, gate, fault, stages of shed load; ticks skipped; clock, silence, s; camera's
+# R_WC row by row and p_WC, m; handle's p_WH, m.
+_HEAD = struct.Struct("=cBBBI2d12d3d")
 # Time, s; then `RunStatistics.latest`; then how late the tick was, s.
 _TICK = struct.Struct("=14d")
 _MOST_TICKS = 512
@@ -63,6 +65,8 @@ class Telemetry:
 
     Attributes:
         gate: Of `GATES`.
+        fault: Of `FAULTS`.
+        silent_s: For how long the device's driver has said nothing new, s.
         shed: How many stages of work were left out.
         skipped: Ticks lost to stalls since the run began.
         clock_s: The loop's clock, s.
@@ -73,6 +77,8 @@ class Telemetry:
     """
 
     gate: str
+    fault: str
+    silent_s: float
     shed: int
     skipped: int
     clock_s: float
@@ -109,6 +115,8 @@ class TickBuffer:
         self,
         *,
         gate: int,
+        fault: int,
+        silent_s: float,
         shed: int,
         skipped: int,
         clock_s: float,
@@ -119,14 +127,17 @@ class TickBuffer:
 
         Args:
             gate: Index into `GATES`.
+            fault: Index into `FAULTS`.
+            silent_s: For how long the device's driver has said nothing new, s.
             shed: How many stages of work are left out.
             skipped: Ticks lost to stalls since the run began.
             clock_s: The loop's clock, s.
             camera: (12,) R_WC row by row and p_WC, m.
             p_WH: (3,) where the handle is, m.
         """
+        counts = gate, fault, shed, skipped
         _HEAD.pack_into(
-            self._bytes, 0, KIND, gate, shed, skipped, clock_s, *camera, *p_WH
+            self._bytes, 0, KIND, *counts, clock_s, silent_s, *camera, *p_WH
         )
         packet = self._view[: self._end]
         self._end = _HEAD.size
@@ -135,10 +146,14 @@ class TickBuffer:
 
 def read_telemetry(packet: bytes) -> Telemetry:
     """Returns what a packet says."""
-    _, gate, shed, skipped, clock_s, *places = _HEAD.unpack_from(packet)
+    _, gate, fault, shed, skipped, clock_s, silent_s, *places = _HEAD.unpack_from(
+        packet
+    )
     rows = _TICK.iter_unpack(memoryview(packet)[_HEAD.size :])
     return Telemetry(
         gate=GATES[gate],
+        fault=FAULTS[fault],
+        silent_s=silent_s,
         shed=shed,
         skipped=skipped,
         clock_s=clock_s,

@@ -322,18 +322,45 @@ def test_thousands_of_frames_leave_no_more_behind(page):
     assert heap_later - heap < 200e3
 
 
-def test_a_tool_that_is_deep_in_a_wall_is_told_of(page):
-    """The next frame of the run takes it back."""
+def feed(page, expression, **changes):
+    """Feeds a frame to the page; returns what is so before the run's next one."""
     frame = {
         "time_s": 1e6, "trace": {"dt_s": 0.004, "force_N": [], "torque_Nm": []},
-        "gate": "simulated", "shed": [], "handle": None, "drives": True,
+        "gate": "simulated", "fault": "", "silent_s": 0.0, "shed": [], "handle": None,
+        "drives": True, "skipped": 0, "f": [0, 0, 1], "f_W": [0, 0, 1],
+        "tau_W": [0, 0, 0], "tau": [0, 0, 0],
     }  # fmt: skip
+    data = json.dumps(json.dumps({"frame": {**frame, **changes}}))
+    return page.evaluate(f"(ways.at(-1).onmessage({{data: {data}}}), {expression})")
+
+
+def test_a_tool_that_is_deep_in_a_wall_is_told_of(page):
+    is_told = "document.getElementById('notice-deep') != null"
     for depth_m, told in [(1.9 * TOLERANCE_M, False), (2.1 * TOLERANCE_M, True)]:
-        data = json.dumps(json.dumps({"frame": {**frame, "depth_m": depth_m}}))
-        assert told == page.evaluate(
-            f"(ways.at(-1).onmessage({{data: {data}}}),"
-            " document.getElementById('notice-deep') != null)"
-        )
+        assert feed(page, is_told, depth_m=depth_m) == told
+
+
+def test_a_device_that_shows_no_force_says_why_and_what_to_do(page):
+    """As the terminal has it."""
+    said = (
+        "['gate', 'notices', 'force'].map(n => document.getElementById(n).textContent)"
+    )
+    gate, notices, force = feed(page, said, gate="fault", fault="stale", silent_s=5.4)
+    assert gate == "fault (stale)"
+    assert "silent for 5 s or more: is it running?" in notices
+    # That would bring no driver back.
+    assert "Take it up again" not in notices
+    assert force == "1.00 N, not shown"
+    gate, notices, force = feed(page, said, gate="fault", fault="overspeed")
+    assert gate == "fault (overspeed)"
+    assert "the handle was too fast" in notices and "silent" not in notices
+    assert "Take it up again" in notices
+    for gate in ("idle", "waiting"):
+        assert feed(page, said, gate=gate)[2] == "1.00 N, not shown"
+        assert feed(page, "document.body.classList.contains('unfelt')", gate=gate)
+    gate, notices, force = feed(page, said, gate="active")
+    assert (gate, force) == ("active", "1.00 N")
+    assert "device" not in notices
 
 
 def test_another_run_at_the_same_port_brings_its_own_picture(page):

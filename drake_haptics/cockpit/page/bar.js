@@ -8,12 +8,13 @@ const GATES = {
   active: "What holds the handle is shown force.",
   idle: "What holds the handle is shown no force.",
   fault: "The device is at fault and shows no force.",
+  waiting: "The device shows no force until that sets in gently.",
 };
 
-export function showGate(gate) {
+export function showGate(gate, fault = "") {
   find("gate").className = "chip " + gate;
   find("gate").title = GATES[gate] ?? "";
-  write(find("gate"), gate);
+  write(find("gate"), gate + (fault ? ` (${fault})` : ""));
 }
 
 export function showFigures(frame, period_s) {

@@ -6,6 +6,7 @@ const CAPACITY = 16384;
 export class History {
   constructor() {
     this.time = new Float64Array(CAPACITY);
+    this.felt = new Uint8Array(CAPACITY);
     this.values = {force: new Float32Array(CAPACITY), torque: new Float32Array(CAPACITY)};
     this.clear();
   }
@@ -17,11 +18,12 @@ export class History {
   }
 
   /** Takes a frame's trace, whose last sample is of the frame's time. */
-  append(time_s, {dt_s, force_N, torque_Nm}) {
+  append(time_s, {dt_s, force_N, torque_Nm}, felt) {
     // The scene begins anew.
     if (time_s < this.end) this.clear();
     for (let i = 0; i < force_N.length; i++) {
       this.time[this.head] = time_s - dt_s * (force_N.length - 1 - i);
+      this.felt[this.head] = felt;
       this.values.force[this.head] = force_N[i];
       this.values.torque[this.head] = torque_Nm[i];
       this.head = (this.head + 1) % CAPACITY;
@@ -30,13 +32,13 @@ export class History {
     this.end = time_s;
   }
 
-  /** Calls with (seconds before now, value) of what is not too old, oldest first. */
+  /** Calls with (seconds before now, value, whether it is felt) of what is not too old, oldest first. */
   forEach(name, call) {
     const values = this.values[name];
     for (let n = this.count; n > 0; n--) {
       const i = (this.head - n + CAPACITY) % CAPACITY;
       const age = this.end - this.time[i];
-      if (age <= SPAN_S) call(age, values[i]);
+      if (age <= SPAN_S) call(age, values[i], this.felt[i] === 1);
     }
   }
 

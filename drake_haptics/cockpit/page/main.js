@@ -1,6 +1,7 @@
 // Joins the run and the page's parts.
 
 import {showFigures, showGate} from "./bar.js";
+import {showDevice} from "./device.js";
 import {showDirection} from "./dial.js";
 import {find, write} from "./find.js";
 import "./folds.js";
@@ -13,13 +14,10 @@ import "./shortcuts.js";
 import {aim, layOut, makeCameras} from "./stage.js";
 import {makeChoices, makeHandles, makeSwitches, showSwitches} from "./switches.js";
 import {setLimits, showTrace} from "./traces.js";
-import {warn} from "./warning.js";
 import {setYaml} from "./yaml.js";
 
 // What a page is told may leave out what does not apply: the pointer of somebody's own program
 // has no scene to be changed.
-const FAULT = "The device shows no force: it is at fault, or its driver no longer answers. The terminal"
-  + " says which. Hold the device, mend what is wrong, and press Enter there to take it up again.";
 const DEEP = "The tool is deep in an object: a stiffer contact holds it further out.";
 // Contacts push from the tolerance on: one that is soft on purpose gives way by about as much again.
 const DEEP_TOLERANCES = 2;
@@ -31,6 +29,8 @@ const made = {};
 let settings = {limits: {force_N: 0, torque_Nm: 0}, period_s: 1e-3};
 let tolerance_m = Infinity;
 let isFramed = false;
+let start = "";
+let dismissed = "";
 
 const on = {
   hello(hello) {
@@ -54,11 +54,11 @@ const on = {
 
   frame(frame) {
     notify("watching", frame.drives ? "" : "Another page drives. This one watches.",
-           {button: {label: "Drive from here", act: () => say({do: "take"})}});
-    notify("fault", frame.gate === "fault" ? FAULT : "", {kind: "fault"});
+           {buttons: [{label: "Drive from here", act: () => say({do: "take"})}]});
+    showDevice(frame);
     notify("shed", frame.shed.length ? "Ticks take too long. Left out: " + frame.shed.join(", ") + "." : "", {kind: "warn"});
     notify("deep", frame.depth_m > DEEP_TOLERANCES * tolerance_m ? DEEP : "", {kind: "warn"});
-    showGate(frame.gate);
+    showGate(frame.gate, frame.fault);
     enable(frame.drives);
     // A loop that stands still has no new tick to tell of.
     if (frame.f_W) {
@@ -77,16 +77,17 @@ const on = {
     showValues(state.values ?? {});
     tolerance_m = state.values?.["contact.tolerance_m"] ?? Infinity;
     showSwitches(state);
-    const rest = placeWarnings(state.warnings ?? []);
-    find("warnings").replaceChildren(...rest.map(text => {
-      const note = document.createElement("p");
-      warn(note, text);
-      return note;
-    }));
+    placeWarnings(state.warnings ?? []);
     setHandle(state.handle, settings.handles ?? []);
     setYaml(state.yaml ?? "");
-    const button = {label: "Dismiss", act: () => notify("error", "")};
-    notify("error", state.error ?? "", {kind: "fault", button});
+    notify("error", state.error ?? "", {kind: "fault", buttons: [makeDismiss("error")]});
+    start = state.start;
+    const restart = {label: "Restart", act: () => say({do: "restart"})};
+    notify("start", start !== dismissed ? start : "", {kind: "warn", buttons: [
+      // A simulated hand would begin there again.
+      ...(state.handle === "device" && !settings.locked ? [restart] : []),
+      makeDismiss("start", () => { dismissed = start; }),
+    ]});
   },
 
   over({why}) {
@@ -109,7 +110,12 @@ function end(gate) {
   showGate(gate);
   enable(false);
   showHandle(null);
-  for (const matter of ["watching", "fault", "shed", "deep", "error"]) notify(matter, "");
+  for (const matter of ["watching", "silent", "fault", "waiting", "start", "shed", "deep", "error"]) notify(matter, "");
+}
+
+/** A button that takes a notice away. */
+function makeDismiss(matter, act = () => {}) {
+  return {label: "Dismiss", act: () => { act(); notify(matter, ""); }};
 }
 
 function enable(drives) {

@@ -28,21 +28,13 @@ export function showValues(values) {
   for (const [key, value] of Object.entries(values)) rows.get(key)?.show(value);
 }
 
-/** Puts each warning at the slider that it is about; returns those that are about none. */
+/** Puts warnings, {key, words, why}, at the sliders that they are about. */
 export function placeWarnings(warnings) {
-  const rest = [];
-  const texts = new Map([...rows.keys()].map(key => [key, []]));
-  for (const warning of warnings) {
-    const key = [...rows.keys()].find(k => startsWithKey(warning, k));
-    (key ? texts.get(key) : rest).push(warning);
+  for (const [key, row] of rows) {
+    const found = warnings.filter(warning => warning.key === key);
+    const join = part => found.map(warning => warning[part]).join(" ");
+    warn(row.note, join("words"), join("why"));
   }
-  for (const [key, row] of rows) warn(row.note, texts.get(key).join(" "));
-  return rest;
-}
-
-function startsWithKey(sentence, key) {
-  const first = sentence.split(/[\s:,]/, 1)[0];
-  return first === key || first === key.split(".").pop();
 }
 
 class Slider {

@@ -4,6 +4,8 @@ import {SPAN_S} from "./history.js";
 
 const MARGIN = {left: 38, right: 12, top: 16, bottom: 17};
 const STEPS = [1, 2, 5, 10];
+// Of what was asked for and not shown.
+const UNFELT = "#8b939f";
 
 /** The step of an axis that reaches a value in two to five steps. */
 function niceStep(top) {
@@ -107,22 +109,28 @@ export class Trace {
 
   _drawLine(context, x, y) {
     let before = null, first = 0;
-    context.strokeStyle = context.fillStyle = this.color;
+    const end = () => {
+      if (before === null) return;
+      context.strokeStyle = context.fillStyle = before.felt ? this.color : UNFELT;
+      context.stroke();
+      context.lineTo(x(before.age), y(0));
+      context.lineTo(x(first), y(0));
+      context.globalAlpha = 0.09;
+      context.fill();
+      context.globalAlpha = 1;
+    };
     context.lineWidth = 1.6;
     context.lineJoin = "round";
-    context.beginPath();
-    this.history.forEach(this.name, (age, v) => {
-      if (before === null) { context.moveTo(x(age), y(v)); first = age; }
-      else context.lineTo(x(age), y(v));
-      before = age;
+    this.history.forEach(this.name, (age, v, felt) => {
+      if (before?.felt !== felt) {
+        end();
+        context.beginPath();
+        context.moveTo(x(age), y(v));
+        first = age;
+      } else context.lineTo(x(age), y(v));
+      before = {age, felt};
     });
-    if (before === null) return;
-    context.stroke();
-    context.lineTo(x(before), y(0));
-    context.lineTo(x(first), y(0));
-    context.globalAlpha = 0.09;
-    context.fill();
-    context.globalAlpha = 1;
+    end();
   }
 
   _drawReading(context, x, y, age) {

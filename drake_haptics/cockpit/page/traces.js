@@ -1,5 +1,6 @@
 // Both traces: drawn once for each picture in which something is new.
 
+import {isFelt} from "./device.js";
 import {find, write} from "./find.js";
 import {History} from "./history.js";
 import {millinewtonmetres, newtons, norm} from "./format.js";
@@ -28,9 +29,10 @@ export function setLimits({force_N, torque_Nm}) {
 }
 
 export function showTrace(frame) {
-  history.append(frame.time_s, frame.trace);
-  // At a fault the loop still asks for what the hand does not feel.
-  const end = frame.gate === "fault" ? ", not shown" : "";
+  const felt = isFelt(frame.gate);
+  history.append(frame.time_s, frame.trace, felt);
+  // The loop still asks for what the hand does not feel.
+  const end = felt ? "" : ", not shown";
   write(find("force"), newtons(norm(frame.f_W)) + end);
   write(find("torque"), millinewtonmetres(norm(frame.tau_W)) + end);
   redraw();

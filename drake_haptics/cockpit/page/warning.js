@@ -1,12 +1,10 @@
-// A warning in two lines, and whole when it is pressed.
+// A warning, and when it is pressed the law behind it.
 
-/** Makes of a paragraph a warning; without a text it is hidden. */
-export function warn(element, text) {
+import {write} from "./find.js";
+
+/** Makes of a details element a warning: a text, and why it is so. Without a text it is hidden. */
+export function warn(element, text, why) {
   element.hidden = text === "";
-  if (element.textContent === text) return;
-  element.textContent = element.title = text;
-  element.classList.remove("whole");
-  element.tabIndex = 0;
-  element.onclick = () => element.classList.toggle("whole");
-  element.onkeydown = event => { if (event.key === "Enter") element.onclick(); };
+  write(element.querySelector("summary"), text);
+  write(element.querySelector("p"), why);
 }
