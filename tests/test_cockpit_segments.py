@@ -162,9 +162,9 @@ def test_ctrl_c_ends_it_also_between_two_segments(make, monkeypatch, place):
     def interrupt(*_, **__):
         raise KeyboardInterrupt
 
-    def begin_once(*arguments):
+    def begin_once(*arguments, **options):
         monkeypatch.setattr(rig.cockpit, "begin", interrupt)
-        begin(*arguments)
+        begin(*arguments, **options)
 
     if place == "build":
         monkeypatch.setattr(segments, "BuildHapticDiagram", interrupt)
