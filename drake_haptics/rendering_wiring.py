@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder, OutputPort, System
-from pydrake.systems.primitives import Demultiplexer
+from pydrake.systems.primitives import Demultiplexer, Multiplexer
 
 from drake_haptics import _core
 from drake_haptics.builder_effects import EffectSite, add_effects, find_springs
@@ -118,7 +118,13 @@ class RenderingWiring:
                 coupling.get_handle_pose_input_port(),
                 coupling.get_handle_velocity_input_port(),
             ):
-                self.builder.ExportInput(port, port.get_name())
+                # Drake names the system whose input nobody has connected; through a
+                # `PassThrough` there would be NaN.
+                named = self.builder.AddNamedSystem(
+                    port.get_name(), Multiplexer([port.size()])
+                )
+                self.builder.Connect(named.get_output_port(), port)
+                self.builder.ExportInput(named.get_input_port(), port.get_name())
             return
         self.builder.AddNamedSystem("device", device)
         self.outputs |= _name_outputs(device)

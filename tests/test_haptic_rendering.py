@@ -275,7 +275,8 @@ def test_a_handle_outside_holds_the_tool_and_feels_it():
         "V_WH",
     }
     assert outputs(rendering) == OUTPUTS | {"F_display"}
-    assert names(rendering) == BASE | {"virtual_coupling", "virtual_coupling_wrench"}
+    coupled = {"virtual_coupling", "virtual_coupling_wrench", "X_WH", "V_WH"}
+    assert names(rendering) == BASE | coupled
     hold_handle(scene, rendering, RigidTransform([0, 0, 0.4]))
     scene.start(tool=RigidTransform([0, 0, 0.3]))
     scene.simulator.AdvanceTo(1.0)
@@ -285,6 +286,18 @@ def test_a_handle_outside_holds_the_tool_and_feels_it():
     np.testing.assert_allclose(F[3:], [0, 0, -MASS * G], atol=1e-4)
     # The contact's own output is without the coupling.
     np.testing.assert_array_equal(scene.read(rendering, "F_Tool_W"), np.zeros(6))
+
+
+@pytest.mark.parametrize("left_out", ["X_WH", "V_WH"])
+def test_a_handle_that_is_not_connected_is_named(left_out):
+    scene, rendering = make_scene(coupling=Coupling())
+    (given,) = {"X_WH", "V_WH"} - {left_out}
+    value = pose_to_vector(RigidTransform()) if given == "X_WH" else np.zeros(6)
+    source = scene.builder.AddSystem(ConstantVectorSource(value))
+    scene.builder.Connect(source.get_output_port(), rendering.GetInputPort(given))
+    scene.start(tool=RigidTransform([0, 0, 0.3]))
+    with pytest.raises(RuntimeError, match=f"::{left_out} .* is not connected"):
+        scene.simulator.AdvanceTo(0.01)
 
 
 def start_with_handle(scene, rendering, speed):
