@@ -23,6 +23,8 @@ _VIEWS = {
     "top": (0.0, -1e-3, 1.0),
 }
 CAMERAS = tuple(_VIEWS)
+# Drake says so of every second page.
+_TWO_CAMERAS = "More than one meshcat client is attempting to broadcast its camera pose"
 # Half the angle of Meshcat's camera is 37.5 degrees; the rest is margin.
 _HALF_VIEW_RAD = np.deg2rad(35.0)
 
@@ -36,7 +38,9 @@ def open_meshcat(port: int | None = None) -> Meshcat:
     Raises:
         UserError: The port cannot be had.
     """
-    logging.getLogger("drake").setLevel(logging.WARNING)
+    logger = logging.getLogger("drake")
+    logger.setLevel(logging.WARNING)
+    logger.addFilter(_is_of_use)
     # Drake gives no reason where it fails, so ask the system first.
     if port is not None:
         with socket.socket() as probe:
@@ -52,6 +56,14 @@ def open_meshcat(port: int | None = None) -> Meshcat:
         )
     except RuntimeError as error:
         raise UserError(f"Meshcat cannot open a page: {error}") from error
+
+
+def _is_of_use(record: logging.LogRecord) -> bool:
+    """Whether a person at the terminal can do anything about a message of Drake's.
+
+    Two pages may show a run: which of them has the camera is told on the pages.
+    """
+    return not record.getMessage().startswith(_TWO_CAMERAS)
 
 
 def set_stage(meshcat: Meshcat, haptic: HapticDiagram) -> None:
@@ -114,9 +126,41 @@ def find_framed_points(haptic: HapticDiagram) -> np.ndarray:
     for item, decomposition in zip(
         haptic.scene.environment, haptic.environment, strict=True
     ):
-        corners = _transform(item.pose, decomposition.mesh.vertices)
+        mesh = decomposition.mesh
+        corners = _transform(item.pose, mesh.vertices)
         framed.append(corners[np.all((corners > low) & (corners < high), axis=1)])
+        # Of a facet that is larger than all that is framed no corner may be there.
+        facets = corners[mesh.triangles]
+        is_large = np.ptp(facets, axis=1).max(axis=1) > size
+        is_near = np.all((facets.max(1) > low) & (facets.min(1) < high), axis=1)
+        framed += [clip_facet(facet, low, high) for facet in facets[is_large & is_near]]
     return np.vstack(framed)
+
+
+def clip_facet(p_WF: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Returns the corners (n, 3) of what a box leaves of a flat convex facet.
+
+    By Sutherland and Hodgman: one plane of the box after the other cuts it.
+
+    Args:
+        p_WF: (k, 3) its corners in order, m.
+        low: (3,) least coordinates of the box, m.
+        high: (3,) largest coordinates, m.
+    """
+    for axis, bound, sign in [
+        *((axis, low[axis], 1.0) for axis in range(3)),
+        *((axis, high[axis], -1.0) for axis in range(3)),
+    ]:
+        inside = sign * (p_WF[:, axis] - bound)
+        beyond, p_WNext = np.roll(inside, -1), np.roll(p_WF, -1, axis=0)
+        crosses = (inside >= 0.0) != (beyond >= 0.0)
+        share = np.divide(
+            inside, inside - beyond, out=np.zeros_like(inside), where=crosses
+        )
+        p_WCut = p_WF + share[:, np.newaxis] * (p_WNext - p_WF)
+        kept = np.stack([inside >= 0.0, crosses], axis=1)
+        p_WF = np.stack([p_WF, p_WCut], axis=1)[kept]
+    return p_WF
 
 
 def _transform(pose: Pose, points: np.ndarray) -> np.ndarray:

@@ -2,9 +2,11 @@
 
 import logging
 import socket
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.errors import UserError
@@ -13,6 +15,7 @@ from drake_haptics.scene_library import list_scenes
 from drake_haptics.stage import (
     CAMERAS,
     aim_camera,
+    clip_facet,
     find_framed_points,
     open_meshcat,
     set_stage,
@@ -100,10 +103,63 @@ def test_of_large_surroundings_only_what_is_near_is_framed():
     assert distance[1] < 3 * distance[0]
 
 
+def test_a_table_of_two_facets_is_in_the_middle_of_its_picture(tmp_path):
+    """None of its corners is near the tool."""
+    table = tmp_path / "table.obj"
+    box = trimesh.creation.box((0.6, 0.4, 0.02))
+    table.write_text(trimesh.exchange.obj.export_obj(box, include_normals=False))
+    scene = load_scene(list_scenes()["sphere_pen"])
+    scene.environment[0].mesh, scene.environment[0].scale = str(table), 1.0
+    scene.environment[0].pose.position_m = [0.1, 0.05, 0.03]
+    framed = find_framed_points(BuildHapticDiagram(scene))
+    tool = find_framed_points(
+        BuildHapticDiagram(replace(scene, environment=[distant(scene)]))
+    )
+    # As much of the table as is framed at one side is so at the other.
+    before, after = tool.min(axis=0) - framed.min(axis=0), framed.max(0) - tool.max(0)
+    np.testing.assert_allclose(before[:2], after[:2], rtol=1e-9)
+    assert (before[:2] > 0.01).all()
+
+
+def distant(scene):
+    """The scene's object out of the picture."""
+    return replace(scene.environment[0], pose=Pose([5.0, 0.0, 0.0]))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_facet_is_clipped_to_what_is_in_the_box(seed):
+    """Against points of the facet: all in the box are in the hull of what is left."""
+    rng = np.random.default_rng(seed)
+    facet = rng.normal(size=(3, 3))
+    low, high = np.full(3, -0.4), np.full(3, 0.5)
+    left = clip_facet(facet, low, high)
+    assert ((left > low - 1e-12) & (left < high + 1e-12)).all()
+    shares = rng.dirichlet(np.ones(3), size=4000)
+    points = shares @ facet
+    points = points[((points > low) & (points < high)).all(axis=1)]
+    assert (len(left) > 2 and len(points) > 10) or not len(points)
+    for way in rng.normal(size=(20, 3)) if len(points) else ():
+        assert (points @ way).max() <= (left @ way).max() + 1e-12
+        # And no more than that is left.
+        assert (left @ way).max() <= (points @ way).max() + 0.2
+
+
 def test_the_terminal_stays_quiet(capfd):
     open_meshcat()
     assert capfd.readouterr().err == ""
     assert logging.getLogger("drake").level == logging.WARNING
+
+
+def test_of_drakes_warnings_only_that_of_two_pages_is_not_shown(caplog):
+    open_meshcat()
+    logger = logging.getLogger("drake")
+    logger.warning(
+        "More than one meshcat client is attempting to broadcast its camera pose. The"
+        " view rendered will be that of the browser whose camera was last modified."
+    )
+    assert caplog.messages == []
+    logger.warning("something else")
+    assert caplog.messages == ["something else"]
 
 
 def test_a_taken_port_is_a_users_error():
