@@ -129,7 +129,7 @@ class Cockpit:
             {
                 "key": f"coupling.{bound.key}",
                 "words": bound.words,
-                "why": bound.sentence,
+                "why": f"{bound.sentence}.",
             }
             for bound in self._advice.check(self._changes.scene)
         ]

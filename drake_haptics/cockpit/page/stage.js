@@ -23,6 +23,7 @@ function findFree() {
 /** Puts the picture's middle at the middle of what is free; the picture fills the window. */
 export function layOut() {
   const style = find("stage").style;
+  document.documentElement.style.setProperty("--tools", find("tools").offsetHeight + 12 + "px");
   if (SMALL.matches) {
     style.inset = "";
     return;
