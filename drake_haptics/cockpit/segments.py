@@ -13,9 +13,9 @@ from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.carried_context import carry_on, find_handle
 from drake_haptics.cockpit.cockpit import Cockpit
 from drake_haptics.cockpit.holding import Holding
-from drake_haptics.cockpit.retired_diagram import retire
 from drake_haptics.cockpit.steering import Change
 from drake_haptics.errors import UserError
+from drake_haptics.retired_diagram import retire
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene_check import SceneWarning
 from drake_haptics.simulation import RunError, run
