@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 import pytest
-from box_scenes import over_a_plate
+from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
 from cockpit_rig import (
     ABOVE,
     FRICTION,
@@ -22,9 +22,10 @@ from fake_device import ScriptedDevice, make_reading
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.carried_context import find_handle
 from drake_haptics.cockpit import holding, segments
+from drake_haptics.cockpit.telemetry import GATES
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice
-from drake_haptics.scene import Gravity
+from drake_haptics.scene import Gravity, Pose
 from drake_haptics.scene_check import SceneError
 from drake_haptics.simulation import RunError, run
 from drake_haptics.stage import open_meshcat
@@ -349,6 +350,38 @@ def test_a_device_is_taken_again_without_a_kick(make, monkeypatch, tmp_path):
     most = np.clip((np.arange(600) - 99) / 200, 0.0, 1.0) * limit_Nm
     assert (shown_Nm < most + 0.02 * limit_Nm).all()
     assert rig.holding.taken is not None and not rig.holding.taken.waits
+
+
+def test_a_tool_that_begins_in_an_object_is_told_of_and_not_felt(
+    scene, meshcat, monkeypatch
+):
+    """The handle is led out, and Restart puts the tool into it."""
+    placed = dataclasses.replace(
+        scene, device=dataclasses.replace(scene.device, base=Pose())
+    )
+    height_m = [PLATE_TOP + TOOL_HALF_HEIGHT - 0.008]
+    device = ScriptedDevice(lambda k: make_reading(k, position=(0, 0, height_m[0])))
+    monkeypatch.setattr(holding, "open_device", lambda *_: device)
+
+    def watch(haptic, root):
+        if len(rig.seen) == 397:
+            height_m[0] = 0.05
+        return find_tool(haptic, root)[6]
+
+    rig = CockpitRig(
+        placed, meshcat, monkeypatch, {400: [{"do": "restart"}]},
+        address="udp://there", watch=watch,
+    )  # fmt: skip
+    rig.run(0.8)
+    first, last = rig.page.states[0], rig.page.states[-1]
+    assert first["start"].startswith("The tool starts 8 mm deep in 'plate': lead")
+    assert last["start"] == ""
+    gates = [GATES[outlook.gate] for outlook in rig.page.outlooks]
+    assert set(gates[:9]) == {"waiting"} and gates[-1] == "active"
+    # From the plate it was pressed up, and nobody felt it.
+    assert rig.seen[299] > rig.seen[0]
+    assert not any(command.F_BH.any() for command in device.commands[:400])
+    assert rig.seen[400] == pytest.approx(0.05, abs=1e-6)
 
 
 def test_gravity_of_the_page_is_that_of_a_scene_file(make, scene):
