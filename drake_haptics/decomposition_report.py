@@ -11,6 +11,10 @@ from rich.table import Table
 from rich.text import Text
 
 from drake_haptics.mesh_report import length
+from drake_haptics.one_line import count
+
+# A mesh of so many pieces is mostly a scan, whose noise folds inward everywhere.
+_MANY_PIECES = 2000
 
 
 @dataclass(frozen=True)
@@ -55,11 +59,11 @@ class DecompositionReport:
         yield Text(self.source, style="bold")
         table = Table.grid(padding=(0, 2))
         table.add_row("  method", self.method)
-        pieces = "1 piece" if self.pieces == 1 else f"{self.pieces:,} pieces"
         flat = f", {self.flat_pieces:,} of them flat" if self.flat_pieces else ""
         table.add_row(
             "  result",
-            f"{pieces} from {self.triangles:,} triangles{flat}",
+            f"{count(self.pieces, 'piece')} from"
+            f" {count(self.triangles, 'triangle')}{flat}",
         )
         table.add_row(
             "  facets",
@@ -77,6 +81,14 @@ class DecompositionReport:
                 f"  {self.one_sided_triangles:,} triangles ({share:.0%}) bound no "
                 f"solid: their pieces are one-sided and nothing can be inside. Closing "
                 f"the holes of the mesh gives fewer pieces and an inside.",
+                style="yellow",
+            )
+        if self.method == "surface" and self.pieces > _MANY_PIECES:
+            yield Text(
+                f"  {self.pieces:,} pieces are many. Fewer are quicker to touch:"
+                " --max-triangles 2000 reduces the mesh first, --method merged --error"
+                " 1e-4 joins pieces within 0.1 mm (minutes for a large mesh). A scene"
+                " has max_triangles, decomposition and decomposition_error_m.",
                 style="yellow",
             )
 

@@ -6,11 +6,18 @@ import numpy as np
 
 from drake_haptics.mesh_report import Finding, Severity, length
 from drake_haptics.mesh_topology import Edges, connected_labels, find_edges
+from drake_haptics.one_line import count
 from drake_haptics.units import guess_unit
 
 # A hand holds the tool: beyond these sizes the unit is more likely wrong than not.
 LARGEST_USUAL_EXTENT_M = 10.0
 SMALLEST_USUAL_EXTENT_M = 1e-3
+# What closes holes; trimesh does it where they are triangles or quadrilaterals.
+_HOLES = "MeshLab (Close Holes) or Blender (Fill Holes)"
+_SMALL_HOLES = (
+    'pip install networkx, then in Python m = trimesh.load("old.stl"); m.fill_holes();'
+    ' m.export("new.stl")'
+)
 
 
 def check_branching(triangles: np.ndarray, findings: list[Finding]) -> None:
@@ -37,7 +44,7 @@ def check_holes(
     num_open = int(is_open.sum())
     if not num_open:
         return
-    loops = _count_loops(edges, is_open)
+    rims = _measure_rims(edges, is_open)
     open_parts = len(
         np.unique(component[is_open[edges.of_halfedge.reshape(-1, 3)].any(axis=1)])
     )
@@ -46,17 +53,22 @@ def check_holes(
             "holes",
             Severity.DEFECT,
             num_open,
-            f"{num_open:,} open edges form {loops:,} rim(s) of holes or sheets in "
-            f"{open_parts:,} part(s)",
-            "left open; these parts bound no solid, their pieces are one-sided",
+            f"{count(num_open, 'open edge')} {'forms' if num_open == 1 else 'form'} "
+            f"{count(len(rims), 'rim')} of holes or sheets in "
+            f"{count(open_parts, 'part')}",
+            "left open; these parts bound no solid, their pieces are one-sided. To "
+            f"close holes: {_SMALL_HOLES if max(rims) <= 4 else _HOLES}",
         )
     )
 
 
-def _count_loops(edges: Edges, is_open: np.ndarray) -> int:
+def _measure_rims(edges: Edges, is_open: np.ndarray) -> np.ndarray:
+    """Returns the number of edges of each rim."""
     ends = edges.ends[is_open]
     vertices, links = np.unique(ends, return_inverse=True)
-    return len(np.unique(connected_labels(len(vertices), links.reshape(-1, 2))))
+    links = links.reshape(-1, 2)
+    label = connected_labels(len(vertices), links)
+    return np.unique(label[links[:, 0]], return_counts=True)[1]
 
 
 def check_components(
@@ -73,7 +85,8 @@ def check_components(
                 "not-orientable",
                 Severity.DEFECT,
                 twisted,
-                f"{twisted} part(s) have only one side, as a Möbius strip",
+                f"{count(twisted, 'part')} {'has' if twisted == 1 else 'have'} only"
+                " one side, as a Möbius strip",
                 "left as wound; they bound no solid, their pieces are one-sided",
             )
         )
@@ -84,7 +97,9 @@ def check_components(
                 "no-volume",
                 Severity.DEFECT,
                 hollow,
-                f"{hollow} closed part(s) enclose no volume (a sheet folded on itself)",
+                f"{count(hollow, 'closed part')} "
+                f"{'encloses' if hollow == 1 else 'enclose'} no volume (a sheet folded"
+                " on itself)",
                 "left as they are; they bound no solid, their pieces are one-sided",
             )
         )

@@ -11,6 +11,8 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
 
+from drake_haptics.one_line import count
+
 
 class Severity(str, Enum):
     """How much a finding matters.
@@ -188,12 +190,12 @@ class MeshReport:
         table.add_row("  size", "{} x {} x {}".format(*map(length, self.extent)))
         table.add_row(
             "  surface",
-            f"{_count(self.triangles, 'triangle')}, "
-            f"{_count(self.vertices, 'vertex', 'vertices')}, "
-            f"{_count(self.components, 'part')}, {self.area:.4g} m²",
+            f"{count(self.triangles, 'triangle')}, "
+            f"{count(self.vertices, 'vertex', 'vertices')}, "
+            f"{count(self.components, 'part')}, {_power(self.area, 2)}",
         )
         if self.solids:
-            table.add_row("  volume", f"{self.volume:.4g} m³")
+            table.add_row("  volume", _power(self.volume, 3))
         return table
 
     def _findings(self) -> Table:
@@ -224,5 +226,16 @@ def length(metres: float) -> str:
     return f"{metres * 1e6:.4g} µm"
 
 
-def _count(number: int, singular: str, plural: str | None = None) -> str:
-    return f"{number:,} {singular if number == 1 else plural or singular + 's'}"
+def _power(value: float, exponent: int) -> str:
+    """Writes an area or a volume in the unit that people would use for it.
+
+    Args:
+        value: In m² or m³.
+        exponent: 2 or 3.
+    """
+    mark = {2: "²", 3: "³"}[exponent]
+    # From a litre on, 1000 cm³ are better said as 0.001 m³.
+    for least_m, unit, per_m in ((0.1, "m", 1), (0.01, "cm", 100)):
+        if value >= least_m**exponent or value == 0:
+            return f"{value * per_m**exponent:.4g} {unit}{mark}"
+    return f"{value * 1000**exponent:.4g} mm{mark}"

@@ -13,6 +13,7 @@ from drake_haptics.mesh_topology import (
     triangle_area_vectors,
     winding_numbers,
 )
+from drake_haptics.one_line import count
 
 # Points of a component that must all be inside another one to call it nested.
 _NESTING_SAMPLES = 12
@@ -169,8 +170,8 @@ def _report(
                 "incoherent-winding",
                 Severity.REPAIRED,
                 int(flip.sum()),
-                f"{int(flip.sum()):,} triangles in {parts} part(s) are wound against "
-                f"their neighbours",
+                f"{count(int(flip.sum()), 'triangle')} in {count(parts, 'part')} "
+                f"{_are(flip)} wound against the neighbours",
                 "turned over, the larger area decides",
             )
         )
@@ -180,7 +181,8 @@ def _report(
                 "inverted-winding",
                 Severity.REPAIRED,
                 int(inverted.sum()),
-                f"{int(inverted.sum())} closed part(s) are wound inward",
+                f"{count(int(inverted.sum()), 'closed part')} {_are(inverted)} wound "
+                "inward",
                 "turned outward",
             )
         )
@@ -190,7 +192,12 @@ def _report(
                 "cavities",
                 Severity.NOTE,
                 int(cavity.sum()),
-                f"{int(cavity.sum())} closed part(s) inside another are wound inward",
+                f"{count(int(cavity.sum()), 'closed part')} inside another "
+                f"{_are(cavity)} wound inward",
                 "kept, as the walls of cavities",
             )
         )
+
+
+def _are(which: np.ndarray) -> str:
+    return "is" if which.sum() == 1 else "are"

@@ -50,9 +50,15 @@ def brief(value: object) -> str:
     return type(value).__name__
 
 
-def count(number: int, noun: str) -> str:
-    """Returns "1 piece", "2 pieces"."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+def count(number: int, noun: str, plural: str | None = None) -> str:
+    """Returns "1 piece", "2 pieces", "3,000 vertices".
+
+    Args:
+        number: How many there are.
+        noun: What they are.
+        plural: Of the noun, where it is not the noun with an s.
+    """
+    return f"{number:,} {noun if number == 1 else plural or f'{noun}s'}"
 
 
 def _array(value: np.ndarray) -> str:

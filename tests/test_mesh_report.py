@@ -63,6 +63,29 @@ def test_verdict(triangles, words):
 
 
 @pytest.mark.parametrize(
+    ("size_m", "surface", "volume"),
+    [
+        (2.0, "24 m²", "8 m³"),
+        (0.1, "0.06 m²", "0.001 m³"),
+        (0.02, "24 cm²", "8 cm³"),
+        (0.002, "24 mm²", "8 mm³"),
+    ],
+)
+def test_areas_and_volumes_are_in_units_that_people_use(size_m, surface, volume):
+    text = str(Mesh.from_arrays(*box((size_m,) * 3)).report)
+    assert f"1 part, {surface}\n" in text
+    assert f"volume   {volume}\n" in text
+
+
+@pytest.mark.parametrize(("count", "words"), [(1, "m.fill_holes()"), (6, "MeshLab")])
+def test_holes_come_with_what_closes_them(count, words):
+    V, F = box()
+    (finding,) = Mesh.from_arrays(V, F[count:]).report.findings
+    assert words in finding.action
+    assert "1 rim of holes or sheets in 1 part" in finding.message
+
+
+@pytest.mark.parametrize(
     ("metres", "text"),
     [(0, "0 m"), (1.5, "1.5 m"), (0.25, "250 mm"), (2e-3, "2 mm"), (5e-5, "50 µm")],
 )

@@ -24,6 +24,21 @@ class _Terminal(Console):
             self.quiet = True
 
 
+class _Pipe(Console):
+    """A file or a pipe: lines of any length, without blanks at their ends."""
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Prints; tables too are no wider than what is in them."""
+        with self.capture() as captured:
+            super().print(*objects, **options)
+        lines = captured.get().split("\n")
+        try:
+            self.file.write("\n".join(line.rstrip() for line in lines))
+            self.file.flush()
+        except BrokenPipeError:
+            self.on_broken_pipe()
+
+
 def make_console(*, stderr: bool = False, markup: bool = True) -> Console:
     """Returns a console as wide as the terminal, or any width where there is none.
 
@@ -37,4 +52,4 @@ def make_console(*, stderr: bool = False, markup: bool = True) -> Console:
     console = _Terminal(highlight=False, markup=markup, stderr=stderr)
     if console.is_terminal:
         return console
-    return Console(highlight=False, markup=markup, stderr=stderr, width=_ANY_WIDTH)
+    return _Pipe(highlight=False, markup=markup, stderr=stderr, width=_ANY_WIDTH)
