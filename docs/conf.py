@@ -31,10 +31,12 @@ extensions = [
     "repository_pages",
     "system_pages",
     "template_systems",
+    "wordy_cells",
 ]
 exclude_patterns = ["_build", "**.ipynb_checkpoints"]
 
 default_role = "code-or-link"
+smartquotes_action = "qe"  # no dashes: --headless is an option in sentences too
 
 autoclass_content = "both"  # constructors are documented where they are
 autodoc_default_options = {"members": True}
@@ -55,7 +57,7 @@ nitpick_ignore_regex = [
 ]
 
 nb_execution_mode = "off"  # the tests run the notebooks
-myst_enable_extensions = []  # no maths: MathJax would be asked of another host
+myst_enable_extensions = ["tasklist"]  # no maths: MathJax is on another host
 myst_heading_anchors = 4  # the anchors that a code host gives to headings
 
 html_theme = "furo"
