@@ -232,6 +232,28 @@ def test_every_control_is_reached_by_tab_and_has_a_name(page):
     )
 
 
+def test_a_screen_reader_is_told_what_things_are_and_not_every_number(page):
+    nodes = page.browser.call("Accessibility.getFullAXTree")["nodes"]
+
+    def read(node, what):
+        return node.get(what, {}).get("value", "")
+
+    controls = {"button", "textbox", "slider", "switch", "combobox", "radio"}
+    found = [node for node in nodes if read(node, "role") in controls]
+    assert len(found) > 30
+    assert [node for node in found if not read(node, "name")] == []
+    # What a value means, and in which unit it is.
+    stiffness = next(node for node in found if read(node, "name") == "Stiffness")
+    assert read(stiffness, "description").startswith("Force per metre")
+    assert "to 5000 N/m" in read(stiffness, "description")
+    friction = next(node for node in found if read(node, "name") == "Friction")
+    assert read(friction, "description") == "Stick-slip friction."
+    # Force and torque change thirty times a second.
+    assert page.evaluate(
+        "[...document.querySelectorAll('output')].every(o => o.ariaLive == 'off')"
+    )
+
+
 def test_keys_fold_the_panels_and_list_themselves(page):
     for key, code, side in [
         ("[", "BracketLeft", "left"),
@@ -361,6 +383,25 @@ def test_a_device_that_shows_no_force_says_why_and_what_to_do(page):
     gate, notices, force = feed(page, said, gate="active")
     assert (gate, force) == ("active", "1.00 N")
     assert "device" not in notices
+
+
+def test_a_tool_that_starts_in_an_object_can_be_restarted(page):
+    notice = "document.getElementById('notice-start')"
+
+    def tell(start, handle):
+        data = json.dumps(json.dumps({"state": {"start": start, "handle": handle}}))
+        page.evaluate(f"ways.at(-1).onmessage({{data: {data}}})")
+        buttons = f"[...{notice}.querySelectorAll('button')].map(b => b.innerText)"
+        return page.evaluate(f"{notice} && {buttons}")
+
+    assert tell("It starts 8 mm deep.", "hand") == ["Dismiss"]
+    assert tell("", "hand") is None
+    assert tell("It starts 8 mm deep.", "device") == ["Restart", "Dismiss"]
+    page.click("#notice-start button:last-child")
+    # That was read, and another one was not.
+    assert tell("It starts 8 mm deep.", "device") is None
+    assert tell("It starts 9 mm deep.", "device") == ["Restart", "Dismiss"]
+    tell("", "hand")
 
 
 def test_another_run_at_the_same_port_brings_its_own_picture(page):

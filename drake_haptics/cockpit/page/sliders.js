@@ -58,7 +58,6 @@ class Slider {
     this.range.setAttribute("aria-label", key.label + ", slider");
     for (const input of [this.number, this.range]) {
       input.title = `${help} It goes ${this.bounds}; the scene file has ${file}.`;
-      input.setAttribute("aria-describedby", this.note.id);
     }
     // The thumb's middle goes from 8 px to 8 px before the end.
     part(".mark").style.left = `calc(8px + ${this._share(key.file)} * (100% - 16px))`;

@@ -28,10 +28,14 @@ export function makeSwitches(kind, list) {
   folder.querySelectorAll(".switch").forEach(row => row.remove());
   made.clear();
   for (const {name, label, help, file} of list) {
-    const row = copy("switch-row"), input = row.querySelector("input");
+    const row = copy("switch-row"), input = row.querySelector("input"), words = row.querySelector("small");
     input.id = kind + "-" + name;
     row.querySelector(".name").textContent = label;
-    row.querySelector("small").textContent = help || "";
+    input.setAttribute("aria-label", label);
+    if (help) {
+      [words.id, words.textContent, words.hidden] = [input.id + ".help", help, false];
+      input.setAttribute("aria-describedby", words.id);
+    }
     input.addEventListener("change", () => {
       row.classList.add("waiting");
       say({do: kind, name, on: input.checked});
