@@ -36,18 +36,18 @@ def run_with_status(haptic, *, terminal):
 
 def test_a_terminal_sees_time_contacts_and_force(haptic):
     text, _ = run_with_status(haptic, terminal=True)
-    assert "1 contacts in  1 clusters" in text
+    assert "1 contact, 1 cluster" in text
     assert "x real time" in text
     assert " N " in text and "mm deep" in text
     assert "-0.00" not in text
 
 
-def follow_device(script, duration_s=0.05):
+def follow_device(script, duration_s=0.05, width=200):
     """Returns what a terminal sees of a run on a device, 0.1 s of clock per tick."""
     scene = load_scene(find_scene("sphere_pen"))
     haptic = BuildHapticDiagram(scene, device=ScriptedDevice(script))
     text = io.StringIO()
-    console = Console(file=text, force_terminal=True, width=200, color_system=None)
+    console = Console(file=text, force_terminal=True, width=width, color_system=None)
     clock = itertools.count(0.0, 0.1)
     pace = TickClock(haptic.period_s)
     with StatusLine(console, haptic, pace, clock=lambda: next(clock)) as status:
@@ -61,6 +61,19 @@ def test_a_force_that_the_device_does_not_show_is_said_to_be_none(gate):
     assert f"{gate.name}" in text
     assert ("(not shown)" in text) == (gate != GateState.ACTIVE)
     assert "silent" not in text
+
+
+def test_eighty_columns_show_the_touch_and_leave_out_how_late_ticks_are():
+    def script(call):
+        return replace(make_reading(call), gate=GateState.ACTIVE)
+
+    text = follow_device(script, width=80)
+    lines = re.findall(r"\d+\.\d s ·[^\r\n\x1b]*", text)
+    assert lines and all(len(line) <= 80 for line in lines)
+    for line in lines:
+        assert line.endswith(" contacts, 0 clusters") and "mm deep" in line
+        assert "ACTIVE" in line and "late" not in line
+    assert "late p50" in follow_device(script, width=200)
 
 
 def test_a_driver_that_has_gone_is_not_said_to_wait_for_enter():
@@ -107,6 +120,15 @@ def test_the_summary_has_the_figures(haptic):
     Console(file=text, width=160).print(make_summary(figures))
     assert f"force {figures['max_force_N']:.2f} N" in text.getvalue()
     assert "1500 ticks" in text.getvalue()
+
+
+def test_a_force_without_penetration_is_explained(haptic):
+    _, figures = run_with_status(haptic, terminal=False)
+    for depth_m, is_explained in [(1e-4, False), (0.0, True)]:
+        text = io.StringIO()
+        figures["max_penetration_m"] = depth_m
+        Console(file=text, width=160).print(make_summary(figures))
+        assert ("contact.tolerance_m" in text.getvalue()) == is_explained
 
 
 def energy_line(haptic, **changes):

@@ -11,8 +11,8 @@ RUN = Lesson(
         ("The spoon in the cup, in the browser", "drake-haptics run cup_spoon"),
         ("Move the spoon yourself", "drake-haptics run cup_spoon --device mouse:"),
         (
-            "Your own meshes, the tool in millimetres",
-            "drake-haptics run --tool pen.obj --environment cup.obj --tool-scale 1e-3",
+            "Your own meshes, in millimetres",
+            "drake-haptics run --tool pen.stl --environment mug.stl --unit mm",
         ),
         (
             "With another value, and kept as a scene file at the end",

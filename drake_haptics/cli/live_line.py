@@ -15,6 +15,7 @@ from rich.live import Live
 from rich.text import Text
 
 _PERIOD_S = 0.2
+_BETWEEN = " · "
 # A terminal that takes nothing for so long is left as it is.
 _END_S = 0.5
 
@@ -29,7 +30,9 @@ class LiveLine:
 
     Args:
         console: Where to write.
-        make_line: Called with the time since the last line, s; returns the next.
+        make_line: Called with the time since the last line, s; returns the next, of
+            parts between " · ", the most important first: the last ones are left out
+            where a terminal is narrow.
         clock: Reads the time, s.
     """
 
@@ -86,12 +89,17 @@ class LiveLine:
         with suppress(OSError):
             self._live.start()
             for line in iter(self._lines.get, None):
-                self._live.update(_make_text(line), refresh=True)
+                self._live.update(
+                    _make_text(line, self._live.console.width), refresh=True
+                )
             self._live.stop()
 
 
-def _make_text(line: str) -> Text:
-    """Returns a line that a narrow terminal cuts, and does not break into several."""
-    text = Text.from_markup(line, overflow="ellipsis")
-    text.no_wrap = True
+def _make_text(line: str, width: int) -> Text:
+    """Returns as many parts of a line as a terminal has room for; cut if one is not."""
+    parts = [Text.from_markup(part) for part in line.split(_BETWEEN)]
+    while len(parts) > 1 and Text(_BETWEEN).join(parts).cell_len > width:
+        parts.pop()
+    text = Text(_BETWEEN).join(parts)
+    text.no_wrap, text.overflow = True, "ellipsis"
     return text

@@ -27,13 +27,21 @@ def unit_options(function: _Function) -> _Function:
         metavar="METRES",
         help="Metres per unit of the file, instead of --unit.",
     )
-    unit = click.option(
+    return unit_option("the file")(scale(function))
+
+
+def unit_option(what: str) -> Callable[[_Function], _Function]:
+    """Adds --unit.
+
+    Args:
+        what: Is in that unit, for --help.
+    """
+    return click.option(
         "--unit",
         metavar="UNIT",
         shell_complete=complete_unit,
-        help=f"Length unit of the file: {', '.join(METRES_PER_UNIT)}.  [default: m]",
+        help=f"Length unit of {what}: {', '.join(METRES_PER_UNIT)}.  [default: m]",
     )
-    return unit(scale(function))
 
 
 def max_triangles_option(function: _Function) -> _Function:

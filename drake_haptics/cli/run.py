@@ -11,9 +11,10 @@ from drake_haptics.cli import lessons
 from drake_haptics.cli.complete import complete_address, complete_file, complete_scene
 from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import require_folder
+from drake_haptics.cli.mesh_options import require_folder, unit_option
 from drake_haptics.cli.scene_options import set_option
 from drake_haptics.errors import UserError
+from drake_haptics.units import metres_per_unit
 
 _EXPLAINED_S = 2.0
 
@@ -32,17 +33,18 @@ _EXPLAINED_S = 2.0
     shell_complete=complete_file,
     help="Instead of SCENE: mesh file of what it meets.",
 )
+@unit_option("both mesh files")
 @click.option(
     "--tool-scale",
     type=FiniteRange(0, min_open=True),
     metavar="METRES",
-    help="Metres per unit of the tool's file.  [default: 1]",
+    help="Metres per unit of the tool's file, where it has a unit of its own.",
 )
 @click.option(
     "--environment-scale",
     type=FiniteRange(0, min_open=True),
     metavar="METRES",
-    help="Metres per unit of the environment's file.  [default: 1]",
+    help="The same for the environment's file.",
 )
 @set_option
 @click.option(
@@ -112,6 +114,7 @@ def run(
     scene: str | None,
     tool: str | None,
     environment: str | None,
+    unit: str | None,
     tool_scale: float | None,
     environment_scale: float | None,
     settings: tuple[str, ...],
@@ -139,7 +142,7 @@ def run(
         raise click.UsageError("give SCENE, or both --tool and --environment")
     if scene is not None and any(
         given is not None
-        for given in (tool, environment, tool_scale, environment_scale)
+        for given in (tool, environment, unit, tool_scale, environment_scale)
     ):
         raise click.UsageError("give either SCENE or --tool and --environment")
     if write_scene is not None and _is_same(scene, write_scene):
@@ -154,7 +157,12 @@ def run(
 
     run_scene(
         *choose_scene(
-            scene, tool, environment, tool_scale, environment_scale, settings
+            scene,
+            tool,
+            environment,
+            tool_scale or metres_per_unit(unit, None),
+            environment_scale or metres_per_unit(unit, None),
+            settings,
         ),
         device=device,
         duration_s=duration,

@@ -40,8 +40,8 @@ def choose_scene(
     scene: str | None,
     tool: str | None,
     environment: str | None,
-    tool_scale: float | None,
-    environment_scale: float | None,
+    tool_scale: float,
+    environment_scale: float,
     settings: Sequence[str],
 ) -> tuple[Scene, str]:
     """Returns the scene that the arguments of `run` name, and a name for it.
@@ -56,8 +56,8 @@ def choose_scene(
     made = Scene.for_meshes(
         tool,
         environment,
-        tool_scale=tool_scale or 1.0,
-        environment_scale=environment_scale or 1.0,
+        tool_scale=tool_scale,
+        environment_scale=environment_scale,
     )
     return set_values(made, settings), f"{Path(tool).stem} on {Path(environment).stem}"
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable
-from contextlib import ExitStack, closing, nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from drake_haptics.cli.build_scene import build_scene
 from drake_haptics.cli.enter_key import is_enter_pressed
 from drake_haptics.cli.status_line import StatusLine
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.device.backend import DeviceBackend
+from drake_haptics.device.backend import DeviceBackend, DeviceError
 from drake_haptics.device_address import open_device
 from drake_haptics.device_watch import DeviceWatch
 from drake_haptics.explain import Part, explain_tick
@@ -119,7 +119,7 @@ def run_session(
             backend = cockpit.backend
         elif device is not None:
             backend = stack.enter_context(open_device(device, scene, meshcat))
-        with timer or nullcontext():
+        with timer or nullcontext(), _address_in_words(device):
             haptic = build_scene(console, scene, meshcat, backend, recorder)
         prepare(haptic, None if cockpit is None else cockpit.url)
         is_paced = cockpit is not None or backend is not None
@@ -157,6 +157,15 @@ def run_session(
         figures = statistics.to_dict() | onlookers.describe_device()
     parts = explain_tick(haptic, timer) if timer is not None else []
     return Session(haptic, last, figures, parts, error)
+
+
+@contextmanager
+def _address_in_words(device: str | None) -> Iterator[None]:
+    """Says of a device that does not answer where it was looked for."""
+    try:
+        yield
+    except DeviceError as error:
+        raise DeviceError(f"{device}: {error}") from error
 
 
 class _Onlookers:

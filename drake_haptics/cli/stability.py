@@ -98,7 +98,10 @@ def stability(
                 chosen, time_s, map_size=map_size, store=store, progress=show
             )
     except (ValueError, RunError, StudyError) as error:
-        raise UserError(str(error)) from error
+        words = str(error)
+        if words.startswith("time_s "):  # of the function, as which --at is given
+            words = f"--at {words.removeprefix('time_s ')}"
+        raise UserError(words) from error
     write_stability_page(result, Path(scene).stem, path)
     if json_file is not None:
         write_json(result.to_dict(), json_file)

@@ -21,6 +21,7 @@ from drake_haptics.cli.device_words import (
 from drake_haptics.cli.live_line import LiveLine
 from drake_haptics.device.backend import DeviceReading, GateState
 from drake_haptics.device_watch import SILENT_S, DriverSilence
+from drake_haptics.one_line import count
 from drake_haptics.systems.load_shedding import SHED_STAGES
 from drake_haptics.tick_clock import TickClock
 
@@ -75,25 +76,28 @@ class StatusLine(LiveLine):
         # A scene that is begun anew has gone nowhere yet.
         run_s, self._before_s = max(0.0, time_s - self._before_s), time_s
         backend = self._haptic.backend
-        force, contacts = self._describe_touch(self._context)
+        force, depth, contacts = self._describe_touch(self._context)
+        relief = self._describe_relief(self._context)
         if backend is None or self._pace is None:
-            parts = [f"{run_s / passed_s:5.2f} x real time", contacts, force]
+            speed = f"{run_s / passed_s:5.2f} x real time"
+            parts = [speed, force, depth, *relief, contacts]
         else:
             reading = backend.read()
             if not _shows_force(reading):
                 force += " [dim](not shown)[/]"
             ticks = run_s / self._haptic.period_s
             late_s = self._pace.calc_lateness(_LATEST)
-            # What a person acts on comes first: a narrow terminal cuts the line.
+            # What a person acts on comes first: a narrow terminal leaves out the rest.
             parts = [
                 self._describe_device(reading, passed_s),
                 force,
+                depth,
+                *relief,
+                contacts,
                 f"{ticks / passed_s:.0f} Hz, late p50/p99/p99.9"
                 f" {describe_lateness(late_s)}",
                 describe_link(backend.get_link_status()),
-                contacts,
             ]
-        parts += self._describe_relief(self._context)
         return " · ".join([f"[bold]{time_s:7.1f} s[/]", *parts])
 
     def _describe_device(self, reading: DeviceReading | None, passed_s: float) -> str:
@@ -114,8 +118,8 @@ class StatusLine(LiveLine):
         stages = [name for stage, name in enumerate(SHED_STAGES) if shed > stage]
         return [f"[yellow]leaves out {', '.join(stages)}[/]"] if stages else []
 
-    def _describe_touch(self, context: Context) -> tuple[str, str]:
-        """Returns what is felt, and by how many contacts."""
+    def _describe_touch(self, context: Context) -> tuple[str, str, str]:
+        """Returns what is felt, how deep the tool is, and by how many contacts."""
         loop = self._haptic.loop
         found = loop.found_contacts
         contacts = found.Eval(found.get_system().GetMyContextFromRoot(context))
@@ -127,8 +131,8 @@ class StatusLine(LiveLine):
         return (
             f"[bold]{np.linalg.norm(F_applied[3:]):4.1f} N[/]"
             f" {1e3 * np.linalg.norm(F_applied[:3]):4.0f} mN·m",
-            f"{len(contacts):3d} contacts in {len(clusters):2d} clusters"
-            f" · {deepest_mm:4.2f} mm deep",
+            f"{deepest_mm:4.2f} mm deep",
+            f"{count(len(contacts), 'contact')}, {count(len(clusters), 'cluster')}",
         )
 
 
@@ -169,7 +173,8 @@ def make_summary(figures: dict[str, Any]) -> Table:
         "largest asked for" if figures.get("device") else "largest",
         f"force {figures['max_force_N']:.2f} N,"
         f" torque {1e3 * figures['max_torque_Nm']:.0f} mN·m,"
-        f" penetration {1e3 * figures['max_penetration_m']:.3f} mm",
+        f" penetration {1e3 * figures['max_penetration_m']:.3f} mm"
+        f"{_explain_near_force(figures)}",
     )
     if any(figures["shed_ticks"].values()):
         table.add_row(
@@ -185,6 +190,14 @@ def make_summary(figures: dict[str, Any]) -> Table:
     if figures["energy_J"]:
         table.add_row("energy", _describe_energy(figures["energy_J"]))
     return table
+
+
+def _explain_near_force(figures: dict[str, Any]) -> str:
+    """Returns where a force without penetration comes from; empty if there is none."""
+    is_near = figures["contacts"]["max"] > 0 and figures["max_penetration_m"] == 0.0
+    if not is_near or figures["max_force_N"] == 0.0:
+        return ""
+    return ": force begins before surfaces touch, at contact.tolerance_m"
 
 
 def _describe_energy(energy_J: dict[str, dict[str, float]]) -> str:

@@ -77,8 +77,9 @@ def folder(tmp_path_factory):
     """Holds the files that the examples name."""
     folder = tmp_path_factory.mktemp("examples")
     SHAPES["cup"]().write_obj(folder / "cup.obj", "cup")
-    pen = SHAPES["pen"]()
-    type(pen)(1e3 * pen.vertices, pen.triangles).write_obj(folder / "pen.obj", "pen")
+    for shape, name in (("pen", "pen.stl"), ("cup", "mug.stl")):
+        metres = SHAPES[shape]()
+        trimesh.Trimesh(1e3 * metres.vertices, metres.triangles).export(folder / name)
     trimesh.creation.box([50.0, 20.0, 10.0]).export(folder / "my_mesh.stl")
     return folder
 

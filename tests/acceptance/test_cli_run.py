@@ -109,7 +109,8 @@ def test_scale_is_applied(tmp_path):
     largest = []
     for factor, options in [
         (1, []),
-        (1000, ["--tool-scale", 1e-3, "--environment-scale", 1e-3]),
+        (1000, ["--unit", "mm"]),
+        (1000, ["--unit", "km", "--tool-scale", 1e-3, "--environment-scale", 1e-3]),
     ]:
         for name in ("pen", "sphere"):
             surface = SHAPES[name]()
@@ -123,7 +124,7 @@ def test_scale_is_applied(tmp_path):
         assert result.exit_code == 0, result.output
         largest.append(json.loads((tmp_path / "s.json").read_text())["max_force_N"])
     assert largest[0] > 0.1
-    assert largest[1] == pytest.approx(largest[0], rel=1e-3)
+    assert largest[1:] == pytest.approx(2 * [largest[0]], rel=1e-3)
 
 
 def test_explain_says_what_is_there_and_why_and_what_it_takes():
@@ -242,6 +243,12 @@ def test_pieces_are_coloured_in_a_recording(tmp_path):
         (["run"], 2, ["SCENE"]),
         (["run", "--tool", "a.obj"], 2, ["--environment"]),
         (["run", "cup_spoon", "--tool", "a.obj"], 2, ["either"]),
+        (["run", "cup_spoon", "--unit", "mm"], 2, ["either"]),
+        (
+            ["run", "--tool", "a.obj", "--environment", "a.obj", "--unit", "yard"],
+            1,
+            ["yard", "mm"],
+        ),
         (["run", "--tool", "no.obj", "--environment", "no.obj"], 1, ["no.obj"]),
         (["run", "cup_spoon", "--duration", "-1"], 2, ["duration"]),
         (["run", "cup_spoon", "--headless", "--port", "7001"], 2, ["--port"]),
@@ -283,6 +290,13 @@ def test_a_mesh_with_nan_is_refused(tmp_path):
     assert result.exit_code == 1
     assert "nan.obj" in result.output
     assert "finite" in result.output.lower() or "nan" in result.output.lower()
+
+
+def test_a_device_that_does_not_answer_is_told_with_its_address():
+    address = "udp://127.0.0.1:9"
+    result = invoke("run", "sphere_pen", "--headless", "--device", address)
+    assert result.exit_code == 1
+    assert f"Error: {address}: the device has said nothing" in result.output
 
 
 def test_a_port_in_use_is_named():

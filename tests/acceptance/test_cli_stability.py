@@ -90,8 +90,8 @@ def test_out_says_where_the_page_is_written(invoke, sample, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--at", "1e3"], "time_s must be on the hand's path, from 0 to"),
-        (["--at", "99"], "time_s must be on the hand's path, from 0 to"),
+        (["--at", "1e3"], "Error: --at must be on the hand's path, from 0 to"),
+        (["--at", "99"], "Error: --at must be on the hand's path, from 0 to"),
         (["--out", "page.png"], "must not be called page.png"),
         (["--out", "nowhere/page.html"], "--out: there is no folder nowhere"),
     ],
