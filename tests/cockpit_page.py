@@ -67,7 +67,7 @@ class CockpitRun:
     def close(self):
         """Ends it."""
         self.process.terminate()
-        self.process.communicate(timeout=30)
+        self.process.communicate(timeout=120)
 
 
 class Page:
@@ -92,7 +92,7 @@ class Page:
     def wait_for_rest(self):
         """Waits until the force stands still for a while of the run; returns it."""
         same, before, then = 0, None, ""
-        deadline = time.monotonic() + 60.0
+        deadline = time.monotonic() + 180.0
         while same < 4:
             assert time.monotonic() < deadline, "the force never came to rest"
             time.sleep(0.02)

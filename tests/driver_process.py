@@ -36,8 +36,8 @@ class DriverProcess:
         self.port = self._read_port()
 
     def _read_port(self):
-        """Returns the port that it prints within a minute."""
-        timer = threading.Timer(60.0, self._process.kill)
+        """Returns the port that it prints within three minutes."""
+        timer = threading.Timer(180.0, self._process.kill)
         timer.start()
         try:
             said = ""
@@ -62,7 +62,7 @@ class DriverProcess:
     def end(self, number=signal.SIGINT):
         """Ends it as Ctrl-C does; returns its figures."""
         self._process.send_signal(number)
-        said, _ = self._process.communicate(timeout=30)
+        said, _ = self._process.communicate(timeout=120)
         assert self._process.returncode == 0, said
         return json.loads(self._json_file.read_text())
 
@@ -86,7 +86,7 @@ class WatchedLink(LossyLink):
             self.states.append(unpack_state(packet))
             self._news.notify_all()
 
-    def wait_for(self, wanted, bound_s=20.0):
+    def wait_for(self, wanted, bound_s=120.0):
         """Returns the first state from now on that is as wanted."""
         with self._news:
             seen = len(self.states)

@@ -50,7 +50,7 @@ class HeadlessBrowser:
         errors: what the page complained about: console errors and exceptions.
     """
 
-    def __init__(self, executable: str, timeout_s: float = 60.0):
+    def __init__(self, executable: str, timeout_s: float = 180.0):
         self.errors: list[str] = []
         self._timeout_s = timeout_s
         self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)

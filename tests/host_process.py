@@ -48,7 +48,7 @@ class HostProcess:
 
     def wait(self):
         """Waits for its end; returns its exit status and what it said."""
-        said, _ = self._process.communicate(timeout=60)
+        said, _ = self._process.communicate(timeout=180)
         return self._process.returncode, said
 
     def end(self):

@@ -80,35 +80,29 @@ class LossyLink:
         return self
 
     def __exit__(self, *_):
-        """Ends it; what was under way is lost."""
+        """Ends it when it has passed on what has come; what it held back is lost."""
         self._ends.set()
         self._thread.join(10.0)
         self._host_side.close()
         self._device_side.close()
 
-    def flood(self, packets_per_s, duration_s, make_packet):
+    def flood(self, packets_per_s, packets, make_packet):
         """Sends packets to the device as a stranger, beside the relay.
 
         Args:
-            packets_per_s: How many; fewer where the machine cannot.
-            duration_s: For how long, s.
+            packets_per_s: How fast; slower where the machine cannot.
+            packets: How many.
             make_packet: Called with the number of each.
-
-        Returns:
-            How many were sent.
         """
         sent = 0
         with _open_socket() as stranger:
             start_s = time.monotonic()
-            while (now_s := time.monotonic() - start_s) < duration_s:
-                while sent < now_s * packets_per_s:
+            while sent < packets:
+                if sent < (time.monotonic() - start_s) * packets_per_s:
                     _send(stranger, make_packet(sent), self._device)
                     sent += 1
-                    if sent % 64 == 0:
-                        break  # look at the clock
                 else:
                     time.sleep(1e-4)
-        return sent
 
     def send_to_device(self, packet):
         """Sends a packet as if a host had."""
@@ -120,12 +114,17 @@ class LossyLink:
             due_s = self._held[0][0] if self._held else float("inf")
             wait_s = min(max(due_s - time.monotonic(), 0.0), 0.05)
             ready, _, _ = select.select(sockets, [], [], wait_s)
-            for side in ready:
-                for packet, sender in _take(side):
-                    self._pass_on(packet, sender, to_device=side is self._host_side)
+            self._take_from(ready)
             while self._held and self._held[0][0] <= time.monotonic():
                 _, _, packet, to_device = heapq.heappop(self._held)
                 self._deliver(packet, to_device)
+        self._take_from(sockets)
+
+    def _take_from(self, sides):
+        """Takes what has come and lets happen to it what may."""
+        for side in sides:
+            for packet, sender in _take(side):
+                self._pass_on(packet, sender, to_device=side is self._host_side)
 
     def _pass_on(self, packet, sender, *, to_device):
         """Lets happen to a packet what may."""
@@ -135,9 +134,10 @@ class LossyLink:
             self.last_command = packet
         else:
             self._on_state(packet)
+        is_lost = trouble.cut or chance() < trouble.loss
+        self.counts["lost"] += is_lost
         self.counts["to_device" if to_device else "to_host"] += 1
-        if trouble.cut or chance() < trouble.loss:
-            self.counts["lost"] += 1
+        if is_lost:
             return
         if chance() < trouble.corrupt:
             self.counts["corrupted"] += 1

@@ -12,7 +12,7 @@ import websocket
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 
-BOUND_S = 20.0
+BOUND_S = 120.0
 
 
 class MeshcatPage:

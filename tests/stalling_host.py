@@ -1,11 +1,12 @@
 """A host whose Python stalls, as a program: python tests/stalling_host.py PORT.
 
-Asks for 2 N along z for a second, lets nothing of Python run for 0.4 s, asks again
-for a second, and closes the device.
+Asks for 2 N along z until a line comes in; lets nothing of Python run until the next
+line; asks again until a third, and closes the device.
 """
 
+import ctypes
+import select
 import sys
-import time
 
 import numpy as np
 
@@ -15,24 +16,28 @@ from drake_haptics.device.udp_device import UdpDevice
 PUSH_F = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 2.0])
 
 
-def push(device, duration_s):
-    """Writes once a millisecond."""
-    end = time.monotonic() + duration_s
-    while time.monotonic() < end:
+def push(device):
+    """Writes once a millisecond, until something has come in."""
+    while not select.select([0], [], [], 1e-3)[0]:
         reading = device.read()
         if reading is not None:
             device.write(DeviceCommand(PUSH_F, reading.X_BH, reading.V_BH))
-        time.sleep(1e-3)
+
+
+def read_with_the_lock(file):
+    """Waits for a byte of a file without giving Python's lock away; returns it."""
+    byte = ctypes.create_string_buffer(1)
+    count = ctypes.PyDLL(None).read(file, byte, 1)
+    return byte.raw[:count]
 
 
 def main():
     """Pushes, stalls, pushes."""
     with UdpDevice("127.0.0.1", int(sys.argv[1]), ttl_s=1.0, hold_s=0.1) as device:
-        push(device, 1.0)
-        end = time.monotonic() + 0.4
-        while time.monotonic() < end:
-            sum(range(1_000_000))  # holds the interpreter's lock
-        push(device, 1.0)
+        push(device)
+        read_with_the_lock(0)  # the word to stall
+        read_with_the_lock(0)  # and to go on
+        push(device)
 
 
 if __name__ == "__main__":

@@ -168,7 +168,7 @@ class StructHost:
         except (BlockingIOError, ConnectionRefusedError):
             return self.state
 
-    def exchange(self, until, *, bound_s=20.0, **command):
+    def exchange(self, until, *, bound_s=120.0, **command):
         """Answers states with commands until a state is as wanted; returns that state.
 
         Args:

@@ -106,7 +106,7 @@ def test_a_study_that_was_killed_goes_on_where_it_was(start, tmp_path, how):
         time.sleep(0.2)
         assert find_living(driver.pid) == {driver.pid, *workers}
         driver.send_signal(how)
-    _, stderr = driver.communicate(timeout=30)
+    _, stderr = driver.communicate(timeout=120)
     done = count_lines(store)
     if how == signal.SIGINT:
         assert f"KeyboardInterrupt: Stopped. {done} of 13 tasks are done" in stderr
@@ -126,7 +126,7 @@ def test_a_study_that_was_killed_goes_on_where_it_was(start, tmp_path, how):
 def test_a_program_without_its_guard_is_told_so(start, tmp_path):
     program = PROGRAM.replace('if __name__ == "__main__":', "if True:")
     driver = start(program, tmp_path / "journal", tmp_path / "store", 1)
-    _, stderr = driver.communicate(timeout=60)
+    _, stderr = driver.communicate(timeout=120)
     assert driver.returncode == 1
     assert "RuntimeError: a worker process imports your program" in stderr
     assert 'put that under if __name__ == "__main__":' in stderr

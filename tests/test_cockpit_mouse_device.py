@@ -24,7 +24,7 @@ from drake_haptics.stage import open_meshcat
 X_WB = RigidTransform(RollPitchYaw(0.3, -0.2, 1.8), [0.1, 0.2, -0.3])
 X_BH = RigidTransform(RollPitchYaw(-0.4, 0.5, 0.1), [0.02, -0.05, 0.3])
 RADIUS_M = 0.12
-BOUND_S = 20.0
+BOUND_S = 120.0
 # Four radii before the workspace, Meshcat's camera sees so much of the world.
 HEIGHT_M = 2 * 4 * RADIUS_M * np.tan(np.deg2rad(37.5))
 

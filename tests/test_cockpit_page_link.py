@@ -17,7 +17,7 @@ from drake_haptics.cockpit.page_link import PageLink
 from drake_haptics.cockpit.page_port import open_page_port
 from drake_haptics.cockpit.telemetry import TickBuffer
 
-BOUND_S = 20.0
+BOUND_S = 120.0
 MESHCAT = "http://localhost:6999"
 HEAD = {
     "gate": 3,

@@ -17,7 +17,7 @@ from drake_haptics.cockpit.page_port import open_page_port
 from drake_haptics.cockpit.page_server import PageServer
 
 MESHCAT = "http://localhost:6999"
-BOUND_S = 20.0
+BOUND_S = 120.0
 HOME = {"do": "home"}
 REFUSED = {"refused": 1}
 

@@ -16,7 +16,7 @@ from drake_haptics.simulation import RunError
 from drake_haptics.stage import open_meshcat
 from drake_haptics.tick_clock import TickClock
 
-BOUND_S = 20.0
+BOUND_S = 120.0
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
 
 

@@ -283,17 +283,17 @@ def test_a_device_that_is_gone_leaves_the_handle_where_it_is(make, monkeypatch, 
 def test_a_driver_bears_the_pause_of_a_rebuild(make, monkeypatch, tmp_path, meshcat):
     """The servo's thread goes on: the gate is at no fault, and the force comes back."""
     file = tmp_path / "figures.json"
-    with running(device_command(file, "--ttl-ms", 500), file) as driver:
+    with running(device_command(file, "--ttl-ms", 1000), file) as driver:
         # What it shows without a host for so long would be a fault.
         monkeypatch.setattr(
             holding,
             "open_device",
-            lambda *_: UdpDevice("127.0.0.1", driver.port, ttl_s=0.5),
+            lambda *_: UdpDevice("127.0.0.1", driver.port, ttl_s=1.0),
         )
         build = segments.BuildHapticDiagram
 
         def build_slowly(scene, **options):
-            time.sleep(0.6)
+            time.sleep(1.2)
             return build(scene, **options)
 
         monkeypatch.setattr(segments, "BuildHapticDiagram", build_slowly)
@@ -325,11 +325,11 @@ def test_a_device_is_taken_again_without_a_kick(make, monkeypatch, tmp_path):
         return [*find_tool(haptic, root)[4:], *asked[:3], *shown[:3]]
 
     file = tmp_path / "figures.json"
-    with running(device_command(file, "--ttl-ms", 500), file) as driver:
+    with running(device_command(file, "--ttl-ms", 1000), file) as driver:
         monkeypatch.setattr(
             holding,
             "open_device",
-            lambda *_: UdpDevice("127.0.0.1", driver.port, ttl_s=0.5),
+            lambda *_: UdpDevice("127.0.0.1", driver.port, ttl_s=1.0),
         )
         rig = make(
             {300: [MOUSE], 310: [TURN], 550: [RETAKE]},

@@ -160,7 +160,7 @@ def start_writer(rounds):
 def test_two_processes_may_write_the_same_entry_at_once(folder):
     writers = [start_writer(100) for _ in range(2)]
     for writer in writers:
-        _, error = writer.communicate(timeout=60)
+        _, error = writer.communicate(timeout=180)
         assert writer.returncode == 0, error
     assert [path.name for path in folder.iterdir()] == ["key.npz"]
 

@@ -22,7 +22,7 @@ STIFFNESS_N_PER_M = 300.0
 MAX_FORCE_N = 2.0
 
 
-def wait_until(condition, act=lambda: None, bound_s=30.0):
+def wait_until(condition, act=lambda: None, bound_s=120.0):
     """Acts every millisecond until something holds."""
     end_s = time.monotonic() + bound_s
     while not condition():

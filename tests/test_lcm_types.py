@@ -39,7 +39,7 @@ def generated(tmp_path_factory):
     subprocess.run(
         [Path(lcm.LCM_BIN_DIR) / "lcm-gen", "--python", "--ppath", folder, *files],
         check=True,
-        timeout=60,
+        timeout=180,
     )
     classes = {}
     for file in files:

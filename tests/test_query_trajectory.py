@@ -230,8 +230,8 @@ def test_an_interrupt_ends_a_long_trajectory() -> None:
     timer = threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT))
     X_B = np.eye(4)
     pair.query(X[0], X_B)
-    timer.start()
     with pytest.raises(KeyboardInterrupt):
+        timer.start()
         for _ in range(100):
             pair.query_trajectory(X, X_B)
     timer.join()

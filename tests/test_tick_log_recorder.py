@@ -16,7 +16,7 @@ from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 from drake_haptics.tick_log.tick_rows import TickRows
 
-LONG_S = 60.0
+LONG_S = 180.0
 
 
 def add_rows(recorder, rows):

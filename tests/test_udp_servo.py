@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import socket
@@ -13,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from stalling_host import read_with_the_lock
 from struct_driver import ACTIVE, FAULT, IDLE, StructDriver
 
 from drake_haptics._core import UdpServo
@@ -22,6 +22,7 @@ STILL = np.zeros(6)
 PUSH = np.array([0, 0, 0, 2.0, 0, 0])
 STALE, OVERSPEED, DEVICE = 1, 3, 5
 LONG = {"ttl_s": 5.0, "hold_s": 5.0}  # nothing times out on a busy machine
+SHORT = {"ttl_s": 1.0, "hold_s": 5.0}  # a driver is missed soon, and not too soon
 TESTS = Path(__file__).parent
 
 
@@ -51,7 +52,7 @@ def connect(driver, servo):
     assert driver.exchange(gate=ACTIVE).enable
 
 
-def wait_for(condition, bound_s=30.0):
+def wait_for(condition, bound_s=120.0):
     end = time.monotonic() + bound_s
     while not condition():
         assert time.monotonic() < end
@@ -158,8 +159,7 @@ def test_a_wrench_that_is_not_renewed_is_released(driver):
     servo = UdpServo("127.0.0.1", driver.port, ttl_s=5.0, hold_s=0.2)
     try:
         connect(driver, servo)
-        forces = [driver.exchange().F_BH[3] for _ in range(20)]
-        assert max(forces) > 0.0
+        wait_for(lambda: publish(servo) or driver.exchange().F_BH[3] > 0.0)
         wait_for(lambda: driver.exchange().F_BH[3] == 0.0)
         time.sleep(0.05)
         command = driver.exchange()
@@ -252,7 +252,7 @@ def test_a_driver_that_was_restarted_is_not_enabled(driver, servo):
 
 
 def test_a_driver_that_is_silent_is_looked_for_disabled(driver):
-    servo = UdpServo("127.0.0.1", driver.port, ttl_s=0.3, hold_s=5.0)
+    servo = UdpServo("127.0.0.1", driver.port, **SHORT)
     try:
         connect(driver, servo)
         wait_for(lambda: not driver.receive().enable)
@@ -272,7 +272,7 @@ def test_a_driver_that_is_silent_is_looked_for_disabled(driver):
 
 
 def test_a_driver_that_has_gone_is_not_active_because_it_is_wanted_back(driver):
-    servo = UdpServo("127.0.0.1", driver.port, ttl_s=0.3, hold_s=5.0)
+    servo = UdpServo("127.0.0.1", driver.port, **SHORT)
     try:
         connect(driver, servo)
         engage(driver, servo, gate=ACTIVE)
@@ -391,7 +391,7 @@ def test_ctrl_c_reaches_the_program_and_ends_at_zero_force(driver):
     program = start_program(driver, 60)
     try:
         program.send_signal(signal.SIGINT)
-        _, said = program.communicate(timeout=30)
+        _, said = program.communicate(timeout=120)
         assert "KeyboardInterrupt" in said
         assert not driver.receive_all()[-1].enable
     finally:
@@ -401,7 +401,7 @@ def test_ctrl_c_reaches_the_program_and_ends_at_zero_force(driver):
 def test_a_program_that_forgets_to_close_ends(driver):
     program = start_program(driver, 0)
     try:
-        _, said = program.communicate(timeout=30)
+        _, said = program.communicate(timeout=120)
         assert (program.returncode, said) == (0, "")
         assert not driver.receive_all()[-1].enable
     finally:
@@ -409,34 +409,27 @@ def test_a_program_that_forgets_to_close_ends(driver):
 
 
 def test_it_answers_while_python_is_stalled_and_shows_nothing_stale():
-    """The driver is another process; here one call keeps the GIL for 0.3 s."""
+    """The driver is another process; here one call keeps the lock until it has seen."""
     driver = subprocess.Popen(
-        [sys.executable, TESTS / "struct_driver.py", "2.5"],
+        [sys.executable, TESTS / "struct_driver.py"],
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        text=True,
+        bufsize=0,
     )
     servo = UdpServo("127.0.0.1", int(driver.stdout.readline()), ttl_s=5.0)
     try:
         publish(servo)
         wait_for(lambda: servo.read() and servo.read().gate == ACTIVE)
-        end = time.monotonic() + 0.5
-        while time.monotonic() < end:
-            publish(servo)
-            time.sleep(1e-3)
-        stall_began = time.monotonic()
-        while time.monotonic() < stall_began + 0.3:
-            sum(range(3_000_000))  # one call that never lets another thread run
-        stall_ended = time.monotonic()
-        commands = json.loads(driver.communicate(timeout=60)[0])
+        wait_for(lambda: publish(servo) or servo.status().scale == 1.0)
+        driver.stdin.write(b"!")
+        assert read_with_the_lock(driver.stdout.fileno()) == b"s"
+        assert servo.status().is_active
     finally:
         servo.close()
         driver.kill()
-    during = [f for t, _, f in commands if stall_began < t < stall_ended]
-    late = [f for t, _, f in commands if stall_began + 0.2 < t < stall_ended]
-    assert len(during) > 10
-    assert max(during) > 0.0  # was showing force
-    assert len(late) > 0
-    assert set(late) == {0.0}
+        driver.wait(60)
+        driver.stdin.close()
+        driver.stdout.close()
 
 
 @pytest.mark.parametrize(

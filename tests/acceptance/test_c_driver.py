@@ -44,7 +44,7 @@ def running(program, port=0):
     process = subprocess.Popen(
         [program, str(port), "0.5"], stdout=subprocess.PIPE, text=True
     )
-    timer = threading.Timer(60.0, process.kill)
+    timer = threading.Timer(180.0, process.kill)
     timer.start()
     try:
         address = process.stdout.readline()
@@ -73,7 +73,7 @@ def host(driver):
 
 def receive_until(host, wanted):
     """Listens without a word; returns the state that is as wanted."""
-    end_s = time.monotonic() + 20.0
+    end_s = time.monotonic() + 120.0
     while time.monotonic() < end_s:
         state = host.receive(0.05)
         if state is not None and wanted(state):
@@ -135,7 +135,7 @@ def test_a_host_that_is_killed_leaves_zero_and_a_fault(driver, host):
         stdout=subprocess.PIPE,
         text=True,
     )
-    timer = threading.Timer(60.0, other.kill)
+    timer = threading.Timer(180.0, other.kill)
     timer.start()
     try:
         assert other.stdout.readline() == "active\n"
@@ -176,7 +176,7 @@ def test_a_driver_that_is_restarted_shows_no_force_by_itself(program, driver, ho
 
 def test_the_host_of_the_package_holds_it(driver):
     with UdpDevice("127.0.0.1", driver[1], ttl_s=0.4, hold_s=0.4) as device:
-        end_s = time.monotonic() + 20.0
+        end_s = time.monotonic() + 120.0
         reading = None
         while time.monotonic() < end_s:
             reading = device.read() or reading
@@ -198,13 +198,13 @@ def test_an_interrupt_ends_it_at_zero_force(driver, host, number):
     process.send_signal(number)
     state = receive_until(host, lambda s: s.gate == FAULT)
     assert (state.fault, state.force_N) == ("DEVICE", 0.0)
-    assert process.wait(20) == 0
+    assert process.wait(120) == 0
     assert "zero force" in process.stdout.read()
 
 
 @pytest.mark.parametrize("port", ["abc", "99999", "-1", "", "--help"])
 def test_a_wrong_port_does_not_become_another(program, port):
-    said = subprocess.run([program, port], capture_output=True, text=True, timeout=10)
+    said = subprocess.run([program, port], capture_output=True, text=True, timeout=60)
     assert said.returncode == 2 and said.stdout == ""
     assert said.stderr.startswith("use: device_driver [PORT")
 

@@ -15,7 +15,7 @@ PROGRAM = [str(Path(sys.executable).with_name("drake-haptics")), "bench"]
 
 def run(*arguments):
     return subprocess.run(
-        [*PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=300
+        [*PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=600
     )
 
 

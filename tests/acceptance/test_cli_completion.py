@@ -95,6 +95,6 @@ def test_bash_itself_completes():
     _drake_haptics_completion drake-haptics; echo "${{COMPREPLY[@]}}"
     """
     result = subprocess.run(
-        ["bash", "-c", script], capture_output=True, text=True, timeout=60
+        ["bash", "-c", script], capture_output=True, text=True, timeout=180
     )
     assert (result.stdout, result.stderr) == ("torus_peg\n", "")

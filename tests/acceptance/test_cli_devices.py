@@ -16,7 +16,7 @@ COMMAND = Path(sys.executable).with_name("drake-haptics")
 
 def test_the_table_has_every_device_and_its_source():
     result = subprocess.run(
-        [COMMAND, "devices"], capture_output=True, text=True, timeout=120, check=True
+        [COMMAND, "devices"], capture_output=True, text=True, timeout=300, check=True
     )
     rows = {
         line.split()[0]: line.split() for line in result.stdout.splitlines() if line

@@ -127,7 +127,7 @@ def test_examples_of_the_shell_are_the_shells_own():
     folder = Path(sys.executable).parent
     result = subprocess.run(
         ["bash", "-c", f"PATH={folder}:$PATH; {script}; complete -p drake-haptics"],
-        capture_output=True, text=True, timeout=60,
+        capture_output=True, text=True, timeout=180,
     )  # fmt: skip
     assert result.returncode == 0, result.stderr
     assert "_drake_haptics_completion drake-haptics" in result.stdout

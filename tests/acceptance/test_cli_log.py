@@ -20,7 +20,7 @@ from drake_haptics.cli import main
 from drake_haptics.tick_log.tick_log import read_tick_log
 
 COMMAND = Path(sys.executable).with_name("drake-haptics")
-LONG_S = 120.0
+LONG_S = 300.0
 
 
 def invoke(*arguments):

@@ -2,15 +2,16 @@
 
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+import websocket
 from click.testing import CliRunner
 
 from drake_haptics.cli import main, run_session
@@ -197,13 +198,20 @@ def test_ctrl_c_ends_a_run_with_its_figures(tmp_path):
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )  # fmt: skip
     first = process.stdout.readline()
-    time.sleep(2.0)
+    wait_for_run(re.search(r"http(://localhost:\d+/)", first)[1])
     process.send_signal(signal.SIGINT)
-    rest, _ = process.communicate(timeout=60)
+    rest, _ = process.communicate(timeout=120)
     assert process.returncode == 0, rest
-    assert "http://localhost:" in first
     assert "INFO" not in first + rest and "Traceback" not in rest
     assert json.loads(file.read_text())["ticks"] > 100
+
+
+def wait_for_run(address):
+    """Waits until the page of a run has seen a fifth of a second of it."""
+    page = websocket.create_connection(f"ws{address}", timeout=120)
+    while json.loads(page.recv()).get("frame", {}).get("time_s", 0.0) < 0.2:
+        pass
+    page.close()
 
 
 def test_a_recording_is_one_file_and_does_not_name_a_server(tmp_path):

@@ -43,7 +43,7 @@ def in_terminal(*arguments, interrupt_after=None, **variables):
         environment |= {"TERM": "xterm-256color", **variables}
         os.execve(COMMAND, [COMMAND, *arguments], environment)
     ioctl(terminal, TIOCSWINSZ, struct.pack("HHHH", 24, WIDTH, 0, 0))
-    output, end_s = b"", time.monotonic() + 60.0
+    output, end_s = b"", time.monotonic() + 180.0
     while select.select([terminal], [], [], max(0.0, end_s - time.monotonic()))[0]:
         try:
             output += os.read(terminal, 4096)
@@ -72,7 +72,7 @@ def test_a_terminal_that_is_closed_does_not_take_the_figures_with_it(
         os.execv(COMMAND, words)
     output = b""
     while shown not in output:
-        assert select.select([terminal], [], [], 60.0)[0]
+        assert select.select([terminal], [], [], 180.0)[0]
         output += os.read(terminal, 4096)
     os.close(terminal)
     os.waitpid(pid, 0)
@@ -81,7 +81,7 @@ def test_a_terminal_that_is_closed_does_not_take_the_figures_with_it(
 
 def in_pipe(*arguments, **settings):
     return subprocess.run(
-        [COMMAND, *arguments], capture_output=True, text=True, timeout=60, **settings
+        [COMMAND, *arguments], capture_output=True, text=True, timeout=180, **settings
     )
 
 
@@ -136,7 +136,7 @@ def test_ctrl_c_is_one_line():
 def test_a_reader_that_goes_is_no_error():
     script = f"set -o pipefail; {COMMAND} devices --json - | head -n 1"
     result = subprocess.run(
-        ["bash", "-c", script], capture_output=True, text=True, timeout=60
+        ["bash", "-c", script], capture_output=True, text=True, timeout=180
     )
     assert (result.stdout, result.stderr) == ("{\n", "")
 

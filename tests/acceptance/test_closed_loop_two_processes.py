@@ -39,7 +39,7 @@ def host_file(tmp_path):
     return tmp_path / "host.json"
 
 
-def press_enter_until(host, link, wanted, bound_s=60.0):
+def press_enter_until(host, link, wanted, bound_s=180.0):
     """Takes the device up whenever it is no longer active; returns a state as wanted.
 
     Where the host noticed the silence, the device is idle and only the host at fault.

@@ -307,7 +307,7 @@ def drag_aside(page):
 
 
 def test_a_page_that_comes_later_drives_and_this_one_can_take_over(run, page):
-    other = websocket.create_connection(run.url.replace("http", "ws"), timeout=30)
+    other = websocket.create_connection(run.url.replace("http", "ws"), timeout=120)
     page.wait_for("document.getElementById('notice-watching') != null")
     assert page.evaluate("document.getElementById('coupling').disabled")
     page.click("#notice-watching button")

@@ -65,7 +65,7 @@ def host_process(link):
         stdout=subprocess.PIPE,
         text=True,
     )
-    timer = threading.Timer(60.0, process.kill)
+    timer = threading.Timer(180.0, process.kill)
     timer.start()
     try:
         assert process.stdout.readline() == "active\n"
@@ -243,22 +243,19 @@ def test_a_flood_leaves_the_driver_its_ticks(device, link, host, kind):
 
     foreign = pack_command(session=7, sequence=5, wrench=(0, 0, 0, 0, 0, -8))
     before = host.state
-    sent = []
-    flood = threading.Thread(
-        target=lambda: sent.append(link.flood(100_000, 1.0, make_packet))
-    )
+    flood = threading.Thread(target=link.flood, args=(100_000, 50_000, make_packet))
     flood.start()
     try:
         while flood.is_alive():
             host.exchange(lambda state: True, force_z=2.0)
     finally:
-        flood.join(30)
+        flood.join(120)
     after = host.exchange(lambda state: state is not before, force_z=2.0)
     ticks, refused = (
         after.sequence - before.sequence,
         after.rejected - before.rejected,
     )
-    assert sent[0] > 5_000 and refused > 1_000
+    assert refused > 1_000
     # However slow the machine: no tick was spent on more packets than a tick may take.
     assert ticks >= refused / 64
     assert ticks > 50

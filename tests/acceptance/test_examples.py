@@ -28,7 +28,7 @@ def run(tmp_path_factory):
                 [sys.executable, EXAMPLES / name, *arguments.get(name, [])],
                 capture_output=True,
                 text=True,
-                timeout=180,
+                timeout=600,
             )
             assert process.returncode == 0, process.stderr
             assert process.stderr == ""

@@ -14,7 +14,7 @@ from drake_haptics.device.backend import DeviceCommand
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.stage import open_meshcat
 
-BOUND_S = 30.0
+BOUND_S = 180.0
 X_WB = RigidTransform(RotationMatrix.MakeZRotation(2.0), [0.3, 0.0, 0.1])
 X_WH = RigidTransform([0.02, 0.01, 0.05])
 F_W = np.array([0.0, 0.06, 0.08, 1.0, -2.0, 2.0])

@@ -15,7 +15,7 @@ import websocket
 from drake_haptics import find_scene, load_scene
 from drake_haptics.scene import Gravity
 
-BOUND_S = 60.0
+BOUND_S = 180.0
 PROGRAM = "from drake_haptics.cli import main; main()"
 
 

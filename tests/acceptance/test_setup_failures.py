@@ -17,7 +17,7 @@ def make(folder, target=".venv/bin/python", **variables):
     return subprocess.run(
         ["make", "-f", ROOT / "Makefile", target, f"PYTHON={sys.executable}",
          *[f"{key}={value}" for key, value in variables.items()]],
-        cwd=folder, capture_output=True, text=True, timeout=60,
+        cwd=folder, capture_output=True, text=True, timeout=180,
     )  # fmt: skip
 
 
@@ -64,7 +64,7 @@ def test_pip_tells_of_a_missing_compiler_in_our_words(tmp_path):
         [CMAKE, "-S", ROOT / "drake_haptics" / "core", "-B", tmp_path, "-G", "Ninja",
          f"-DCMAKE_MAKE_PROGRAM={ninja}"],
         env={**os.environ, "CXX": "/no/such/compiler"},
-        capture_output=True, text=True, timeout=60,
+        capture_output=True, text=True, timeout=180,
     )  # fmt: skip
     assert result.returncode != 0
     words = " ".join(result.stderr.split())

@@ -14,7 +14,7 @@ def test_a_short_soak_breaks_no_limit(tmp_path):
         [sys.executable, SOAK, "--minutes", "0.1", "--pause-s", "0.5", "--json", file],
         capture_output=True,
         text=True,
-        timeout=150,
+        timeout=300,
     )
     assert process.returncode == 0, process.stderr
     rows = json.loads(file.read_text())

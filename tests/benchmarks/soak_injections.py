@@ -54,8 +54,8 @@ class Injections:
         self._disturb(Trouble(reorder=0.3, duplicate=0.3, jitter_s=0.005), 1.0)
 
     def flood_device(self):
-        """A stranger sends 20 000 packets per second for half a second."""
-        self._link.flood(20_000, 0.5, lambda number: os.urandom(88))
+        """A stranger sends 10 000 packets, 20 000 per second."""
+        self._link.flood(20_000, 10_000, lambda number: os.urandom(88))
 
     def send_nan(self):
         """The host itself seems to ask for a wrench that is no number."""
