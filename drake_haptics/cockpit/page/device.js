@@ -29,7 +29,7 @@ export function showDevice({gate, fault, silent_s}) {
     {kind: "fault", buttons: [{label: "Take it up again", act: () => say({do: "resume"})}]});
   waitsFrom = gate === "waiting" ? waitsFrom ?? performance.now() : null;
   const isLong = waitsFrom !== null && performance.now() - waitsFrom > PATIENCE_MS;
-  notify("waiting", isLong ? "No force is shown yet, for it would set in with a kick. Lead the device's handle to"
-    + " where the tool can follow: it then comes by itself." : "",
+  notify("waiting", isLong ? "No force is shown yet: it would set in with a kick. Lead the device's handle to where"
+    + " the tool can follow, or let it set in as it is." : "",
     {kind: "warn", buttons: [{label: "Show it now", act: () => say({do: "resume"})}]});
 }
