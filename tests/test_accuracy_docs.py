@@ -56,7 +56,7 @@ def test_every_setting_has_a_row_with_all_columns(name: str) -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_every_scene_has_its_sentences(name: str) -> None:
     part = TEXT[span_of(TEXT, name)]
-    assert "The scene as it is takes" in part
+    assert "A tick of the scene as it is takes" in part
     assert "Errors are against" in part
     assert "read ratios" in part
 

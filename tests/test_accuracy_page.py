@@ -61,7 +61,7 @@ def test_every_row_has_its_figures_and_a_command_that_asks_for_it(page):
     assert len(rows) == len(STUDY.rows)
     grouped = [row for _, group in group_rows(STUDY) for row in group]
     for row, (label, *cells, command) in zip(grouped, rows, strict=True):
-        assert label.lstrip("*~ ") == row.setting.label
+        assert label.lstrip("*† ") == row.setting.label
         assert tuple(cells) == make_cells(row, columns)
         words = shlex.split(command)
         assert set(words[::2]) == {"--only"}

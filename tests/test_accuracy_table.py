@@ -80,10 +80,10 @@ def test_instructions_have_a_column_where_they_were_counted():
 def test_labels_tell_the_scenes_own_and_differences_of_model():
     assert make_label(make_row("a", "b", 1, 1, 1)) == "  b"
     assert make_label(make_row("a", "b", 1, 1, 1, is_scene=True)) == "* b"
-    assert make_label(make_row("a", "b", 1, 1, 1, contact__depth="global")) == " ~b"
+    assert make_label(make_row("a", "b", 1, 1, 1, contact__depth="global")) == " †b"
     # Any key of a setting makes it another model.
     both = make_row("a", "b", 1, 1, 1, tool__scale=2, effects__friction=None)
-    assert make_label(both) == " ~b"
+    assert make_label(both) == " †b"
 
 
 def test_rows_of_a_knob_stay_together():

@@ -20,8 +20,8 @@ STUDY = make_study(peers=make_peers())
 
 def test_the_verdict_is_that_of_the_scene():
     assert describe_verdict(STUDY) == [
-        "The scene as it is takes 150 µs a tick (p99 300), 24.0 of them for contact"
-        " inside the core. Its force is off by 0.004 N rms, 0.016 N at most.",
+        "A tick of the scene as it is takes 150 µs (p99 300 µs), contact inside the"
+        " core 24.0 µs of it. Its force is off by 0.004 N rms, 0.016 N at most.",
         "No setting here is both faster and more exact.",
     ]
 
@@ -34,7 +34,7 @@ def test_a_setting_that_beats_the_scene_is_named():
     (_, words) = describe_verdict(make_study(scene, noise, model, better))
     assert words == (
         "tool.max_triangles 900 is faster and more exact: 20.0 µs in the core, a tick"
-        " of 140, for 0.010 N rms."
+        " of 140 µs, for 0.010 N rms."
     )
 
 
@@ -64,8 +64,8 @@ def test_a_knee_is_compared_with_the_scene_and_its_neighbours():
     # 2.1 µs and 2.4 N on one side: 5.9 µs for 1.68 decades; 24 µs and 4 mN on the
     # other: 16 µs for 1.10.
     assert words == (
-        "tool.max_triangles 200: 8.00 µs in the core, a tick of 145, for 0.050 N rms,"
-        " a third of the scene's time there. Up to it a tenth of the error costs"
+        "tool.max_triangles 200: 8.00 µs in the core, a tick of 145 µs, for 0.050 N"
+        " rms, a third of the scene's time there. Up to it a tenth of the error costs"
         " 3.51 µs, beyond it 14.6."
     )
 

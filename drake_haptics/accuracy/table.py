@@ -17,7 +17,7 @@ from drake_haptics.accuracy.model_changes import find_model_change
 
 # Before a label: the scene's own setting; a difference of model.
 SCENE_MARK = "*"
-MODEL_MARK = "~"
+MODEL_MARK = "†"
 # Smaller figures are round-off.
 _LEAST_SHOWN = {"N": 5e-4, "µm": 5e-4, "°": 0.05, "mJ": 5e-4}
 

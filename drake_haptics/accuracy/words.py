@@ -39,9 +39,9 @@ def describe_verdict(study: AccuracyStudy) -> list[str]:
     tick = scene.cost.tick
     wrong = scene.errors.force_rms_N
     sentences = [
-        f"The scene as it is takes {format_us(tick.median_us)} µs a tick (p99"
-        f" {format_us(tick.p99_us)}), {format_us(scene.cost.native.median_us)} of them"
-        " for contact inside the core. Its force is "
+        f"A tick of the scene as it is takes {format_us(tick.median_us)} µs (p99"
+        f" {format_us(tick.p99_us)} µs), contact inside the core"
+        f" {format_us(scene.cost.native.median_us)} µs of it. Its force is "
         + (
             f"the reference's to {format_N(ERROR_FLOOR_N)}."
             if wrong < ERROR_FLOOR_N
@@ -162,8 +162,8 @@ def _describe_price(row: Row) -> str:
     assert row.cost is not None and row.errors is not None
     return (
         f"{format_us(row.cost.native.median_us)} µs in the core, a tick of"
-        f" {format_us(row.cost.tick.median_us)}, for {format_N(row.errors.force_rms_N)}"
-        " rms"
+        f" {format_us(row.cost.tick.median_us)} µs, for"
+        f" {format_N(row.errors.force_rms_N)} rms"
     )
 
 

@@ -85,7 +85,7 @@ def test_one_row_from_end_to_end_and_again_from_its_store(tmp_path):
     assert json.loads((tmp_path / "second.json").read_text()) == json.loads(
         first.stdout
     )
-    assert "~0.5 mm" in second.stdout and "Wrote" not in second.stdout
+    assert "†0.5 mm" in second.stdout and "Wrote" not in second.stdout
 
 
 def test_a_generous_budget_gives_up_nothing_and_its_file_runs(tmp_path):
@@ -115,7 +115,7 @@ def test_the_terminal_shows_the_price_list(invoke, sample):
     text = " ".join(result.stdout.split())
     assert "Knee: tool.max_triangles 200: 8.00 µs in the core" in text
     assert "Errors are against every contact by itself" in text
-    assert "~ differences of model, not errors: contact.depth:" in text
+    assert "† differences of model, not errors: contact.depth:" in text
     assert "not measured: decomposition CoACD: coacd is not installed" in text
     rows = [x for x in result.stdout.splitlines() if "150/300" in x]
     assert 0 < max(map(len, rows)) <= 100
