@@ -27,6 +27,9 @@ struct PairState {
   Vec3 refused_n = Vec3::Zero();  ///< where the last search ended, in A's frame
   Hub refused_hub;
   int press = -1;  ///< its place among the tick's pressed contacts, if any
+  /// Set where no contact was found on the features that face each other, for
+  /// they end: of how many walls that A presses into was known then.
+  int num_ways_out = -1;
 };
 
 /// Buffers of a query, kept between ticks so that a warm one allocates nothing.

@@ -12,6 +12,7 @@
 #include "facet_revisit.h"
 #include "flush_features.h"
 #include "gauss_overlay.h"
+#include "near_promotion.h"
 #include "pair_answer.h"
 #include "separation.h"
 #include "surface_support.h"
@@ -35,9 +36,6 @@ constexpr double kComingFrom = -0.2;
 // How much deeper than the shallowest facet a new contact may be, as a share of
 // the tolerance.
 constexpr double kEntryShare = 0.25;
-// Cosine of the largest turn from the direction of the closest points to the
-// facet that takes their place.
-constexpr double kLargestPromotion = 0.5;
 // Cosine of the angle within which two normals count as one.
 constexpr double kSameNormal = 0.996;
 constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
@@ -64,6 +62,9 @@ class Query {
     }
     Remember(contact);
     if (!is_refused_) state_.refusals = 0;
+    state_.num_ways_out = contact || !ends_early_
+                              ? -1
+                              : static_cast<int>(request_.ways_out.size());
     if (!contact) return contact;
     const bool is_pressed = contact->distance < 0 && facet_hub_;
     const bool is_within = is_pressed && IsWithinSides(pair_, *contact);
@@ -110,51 +111,23 @@ class Query {
     if (AreBothWanted(pair_, separation_)) return Overlapping();
     const PairContact contact = ContactApart(pair_, separation_);
     if (IsSupported(contact)) return contact;
-    const auto promoted = Promoted(IsSupported(contact, kFlush));
+    const auto promoted = Promoted(contact);
     return promoted ? promoted : Behind();
   }
 
-  // The closest points of the hulls are not closest points of the surfaces, as
-  // at a hollow corner or a seam: the nearest facet beside them that faces a
-  // vertex of the other body, if that vertex is over it (paper, 5.3.2), or its
-  // face lies flush on it.
-  std::optional<PairContact> Promoted(bool surface_goes_on_flat) {
-    DepthCandidate best;
-    Hub best_hub;
-    const auto consider = [&](const Vec3& n, int facet, bool is_of_A) {
-      if (n.dot(separation_.n) < kLargestPromotion) return;
-      Hub hub = separation_.simplex.hubs[0];
-      const double h = SupportGap(pair_, n, &hub);
-      if (!(h > best.h) || h > request_.tolerance) return;
-      const Feature face(FeatureKind::kFacet, facet);
-      const Feature a = is_of_A ? face : Feature(FeatureKind::kVertex, hub.a);
-      const Feature b = is_of_A ? Feature(FeatureKind::kVertex, hub.b) : face;
-      const Witness witness = WitnessOfFeatures(pair_, a, b, n, h);
-      const SurfaceSupport support = ClassifySupport(
-          pair_.A, a, n, pair_.B, b, pair_.X_AB.R.transpose() * n);
-      if (support != SurfaceSupport::kSupported) return;
-      // A flush face wider than the pieces has its lowest corner over another
-      // one.
-      if (LateralOffset(pair_, a, b, witness) > 0 &&
-          !(surface_goes_on_flat &&
-            FindPatch(n, h, hub, witness.p_a).has_faces)) {
-        return;
-      }
-      best = {h, n, a, b, support};
-      best_hub = hub;
-    };
-    for (int i = 0; i < separation_.simplex.size; ++i) {
-      const Hub& corner = separation_.simplex.hubs[i];
-      for (const Polytope::Spoke& spoke : pair_.A.fan_of(corner.a)) {
-        consider(-spoke.normal, spoke.facet, true);
-      }
-      for (const Polytope::Spoke& spoke : pair_.B.fan_of(corner.b)) {
-        consider(pair_.X_AB.R * spoke.normal, spoke.facet, false);
-      }
+  // What becomes of the contact at the closest points where the surfaces do not
+  // carry it.
+  std::optional<PairContact> Promoted(const PairContact& closest) {
+    const Promotion promotion =
+        PromoteClosestPoints(pair_, separation_, request_,
+                             IsSupported(closest, kFlush), &workspace_.patch);
+    ends_early_ = promotion.ends_early;
+    if (promotion.facet.support != SurfaceSupport::kSupported) {
+      if (promotion.is_beside_wall) return closest;
+      return std::nullopt;
     }
-    if (best.support != SurfaceSupport::kSupported) return std::nullopt;
-    facet_hub_ = best_hub;
-    return ContactAtFacet(pair_, best, ContactStatus::kNear);
+    facet_hub_ = promotion.hub;
+    return ContactAtFacet(pair_, promotion.facet, ContactStatus::kNear);
   }
 
   // No contact of its own: the tool is out of reach, or behind the surface.
@@ -440,6 +413,7 @@ class Query {
   GlobalDepthState* const global_;  // null where the depth is tracked
   Separation separation_;
   bool is_refused_ = false;       // an overlap had no plausible facet
+  bool ends_early_ = false;       // see Promotion
   std::optional<Hub> facet_hub_;  // of the facet that is the answer, if one is
 };
 

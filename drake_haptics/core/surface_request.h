@@ -47,6 +47,9 @@ struct SurfaceRequest {
   /// Where the tool presses already. A pair that was not in contact may take
   /// over there.
   std::span<const PressedContact> pressed{};
+  /// Translations of A (m, in its frame), each out of one of the walls that it
+  /// presses into at this tick, as far as these are known by now.
+  std::span<const Vec3> ways_out{};
   /// Bound on the steps of a walk. The search for a first facet that both
   /// surfaces carry has bounds of its own, so that no contact is lost for want
   /// of it.

@@ -29,6 +29,7 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
   if (!workspace->entered.empty()) Admit(tick.watched, &workspace->entered);
 
   workspace->pressed.clear();
+  workspace->ways_out.clear();
   const std::size_t first = out->size();
   AskPairsInContact(tick, workspace, out);
   double least_slack = kForever;
@@ -44,6 +45,7 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
     ++kept;
   }
   watched_.erase(kept, watched_.end());
+  AskPairsBeside(tick, workspace, out);
   std::sort(out->begin() + static_cast<std::ptrdiff_t>(first), out->end(),
             [](const Contact& p, const Contact& q) {
               return std::tie(p.piece_A, p.piece_B) <
@@ -77,7 +79,20 @@ void TrackedObject::AskPairsInContact(const Tick& tick,
     }
     pair.slack -= missed + motion;
     pair.was_in_contact = states_[pair.state].in_contact;
+    states_[pair.state].num_ways_out = -1;
     if (pair.was_in_contact) Ask(tick, workspace, &pair, out);
+  }
+}
+
+// Asks again the pairs that may be in contact by what the tool presses into
+// elsewhere, which is not known before all pairs are asked.
+void TrackedObject::AskPairsBeside(const Tick& tick,
+                                   TrackerWorkspace* workspace,
+                                   std::vector<Contact>* out) {
+  const int num_ways_out = static_cast<int>(workspace->ways_out.size());
+  for (WatchedPair& pair : watched_) {
+    const int known = states_[pair.state].num_ways_out;
+    if (known >= 0 && known < num_ways_out) Ask(tick, workspace, &pair, out);
   }
 }
 
@@ -163,7 +178,7 @@ void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
   const auto answer =
       QuerySurfacePair(Posed(tick, pair->pieces),
                        {tick.tolerance, is_first_, tick.last_X_AB, pressed_,
-                        tick.depth.max_walk_steps},
+                        workspace->ways_out, tick.depth.max_walk_steps},
                        &state, &workspace->pair, global);
   pair->slack = 0;
   state.press = -1;
@@ -177,6 +192,7 @@ void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
     press.n = tick.X_AB.R.transpose() * answer->n;
     press.p_b = tick.X_AB.inverse() * answer->p_b;
     workspace->pressed.push_back(press);
+    workspace->ways_out.push_back(-answer->distance * answer->n);
   }
   Contact contact = InWorld(*answer, tick.X_WA);
   contact.piece_A = pair->pieces.a;

@@ -33,6 +33,7 @@ struct TrackerWorkspace {
   PairWorkspace pair;
   std::vector<EnteredPair> entered;
   std::vector<PressedContact> pressed;
+  std::vector<Vec3> ways_out;  ///< of the pressed ones, see SurfaceRequest
 };
 
 /// One object that the tool may touch: which pairs of pieces are within reach,
@@ -89,6 +90,8 @@ class TrackedObject {
             std::vector<Contact>* out);
   void AskPairsInContact(const Tick& tick, TrackerWorkspace* workspace,
                          std::vector<Contact>* out);
+  void AskPairsBeside(const Tick& tick, TrackerWorkspace* workspace,
+                      std::vector<Contact>* out);
   bool MayTakeOver(const Tick& tick, const PiecePair& pieces) const;
   int NewState();
   void Ask(const Tick& tick, TrackerWorkspace* workspace, WatchedPair* pair,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flush_features.h"
+
 namespace drake_haptics {
 namespace {
 
@@ -35,15 +37,27 @@ Vec3 NearestOn(const Segment& s, const Vec3& point) {
   return s.p + std::clamp((point - s.p).dot(d) / d.squaredNorm(), 0.0, 1.0) * d;
 }
 
-double OutsideSegment(const Segment& s, const Vec3& point) {
+// How far a point lies beyond a segment's ends, less what is allowed beyond an
+// end in that direction.
+template <typename Allowed>
+double OutsideSegment(const Segment& s, const Vec3& point,
+                      const Allowed& allowed) {
   const Vec3 d = s.q - s.p;
   const double length = d.norm();
   const double t = (point - s.p).dot(d) / length;
-  return std::max({0.0, -t, t - length});
+  if (t < 0) return std::max(0.0, -t - allowed(-d / length));
+  return t > length ? std::max(0.0, t - length - allowed(d / length)) : 0.0;
 }
 
-// How far a point (in the polytope's frame) lies beyond a facet's sides.
-double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point) {
+double OutsideSegment(const Segment& s, const Vec3& point) {
+  return OutsideSegment(s, point, [](const Vec3&) { return 0.0; });
+}
+
+// How far a point (in the polytope's frame) lies beyond a facet's sides, less
+// what is allowed beyond a side with that outward normal.
+template <typename Allowed>
+double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point,
+                    const Allowed& allowed) {
   const auto loop = polytope.loop_of(facet);
   const Vec3& normal = polytope.facets[facet].normal;
   double outside = 0;
@@ -51,9 +65,15 @@ double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point) {
     const Vec3& p = polytope.vertices[loop[k]];
     const Vec3& q = polytope.vertices[loop[(k + 1) % loop.size()]];
     const Vec3 outward = (q - p).cross(normal).normalized();
-    outside = std::max(outside, outward.dot(point - p));
+    const double beyond = outward.dot(point - p);
+    if (beyond > outside)
+      outside = std::max(outside, beyond - allowed(outward));
   }
   return outside;
+}
+
+double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point) {
+  return OutsideFacet(polytope, facet, point, [](const Vec3&) { return 0.0; });
 }
 
 }  // namespace
@@ -89,6 +109,32 @@ double LateralOffset(const PosedPair& pair, Feature feature_A,
   }
   return std::max(OutsideSegment(EdgeOfA(pair, feature_A), witness.p_a),
                   OutsideSegment(EdgeOfB(pair, feature_B), witness.p_b));
+}
+
+double LateralOffsetOutOfWalls(const PosedPair& pair, Feature feature_A,
+                               Feature feature_B, const Vec3& n,
+                               const Witness& witness,
+                               std::span<const Vec3> ways_out) {
+  // How far the farthest way out takes A against a direction in its frame.
+  const auto back = [&](const Vec3& along) {
+    double farthest = 0;
+    for (const Vec3& way : ways_out) {
+      if (n.dot(way) > kFlush * way.norm()) continue;
+      farthest = std::max(farthest, -along.dot(way));
+    }
+    return farthest;
+  };
+  const auto back_A = [&](const Vec3& outward) { return back(-outward); };
+  if (feature_B.kind() == FeatureKind::kFacet) {
+    return OutsideFacet(
+        pair.B, feature_B.index(), pair.X_AB.inverse() * witness.p_b,
+        [&](const Vec3& outward) { return back(pair.X_AB.R * outward); });
+  }
+  if (feature_A.kind() == FeatureKind::kFacet) {
+    return OutsideFacet(pair.A, feature_A.index(), witness.p_a, back_A);
+  }
+  return std::max(OutsideSegment(EdgeOfA(pair, feature_A), witness.p_a, back_A),
+                  OutsideSegment(EdgeOfB(pair, feature_B), witness.p_b, back));
 }
 
 }  // namespace drake_haptics

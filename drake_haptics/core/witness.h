@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "support.h"
 #include "types.h"
 
@@ -26,5 +28,14 @@ Vec3 OnCrossedEdges(const PosedPair& pair, Feature edge_A, Feature edge_B,
 /// contact's plane; zero where the contact is within both.
 double LateralOffset(const PosedPair& pair, Feature feature_A,
                      Feature feature_B, const Witness& witness);
+
+/// The same with A out of the walls that stand upright on the contact's plane,
+/// or lean over it.
+/// @param n of the contact, unit, in A's frame.
+/// @param ways_out translations of A out of one wall each, in its frame, m.
+double LateralOffsetOutOfWalls(const PosedPair& pair, Feature feature_A,
+                               Feature feature_B, const Vec3& n,
+                               const Witness& witness,
+                               std::span<const Vec3> ways_out);
 
 }  // namespace drake_haptics
