@@ -1,5 +1,6 @@
 """How arrays of NumPy's come into the core and out of it."""
 
+import ctypes
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,25 @@ def test_doubles_are_read_where_they_are(change):
 def test_other_numbers_are_converted(dtype):
     vector = np.arange(6.0).astype(dtype)
     assert pass_through(vector).tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+
+
+@pytest.mark.parametrize("item", [ctypes.c_double, ctypes.c_float, ctypes.c_int])
+def test_arrays_of_ctypes_are_converted(item):
+    """Their buffers say nothing of strides."""
+    vector = (item * 6)(*range(6))
+    assert pass_through(vector).tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    with pytest.raises(TypeError):
+        pass_through((item * 5)())
+
+
+@pytest.mark.parametrize("dtype", ["float64", "float32"])
+@pytest.mark.parametrize("shape", [(10**13,), (10**13, 3)])
+def test_an_array_larger_than_memory_is_refused(dtype, shape):
+    """One number that NumPy shows ten million million times."""
+    many = np.broadcast_to(np.zeros(1, dtype), shape)
+    column, table = (many, np.zeros((2, 2))) if len(shape) == 1 else (np.zeros(2), many)
+    with pytest.raises(TypeError):
+        _core.AutoDiffVector(column, table)
 
 
 @pytest.mark.parametrize(

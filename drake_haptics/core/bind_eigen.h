@@ -3,6 +3,7 @@
 #include <nanobind/eigen/dense.h>
 
 #include <cstring>
+#include <new>
 
 #include "bind_real_array.h"
 
@@ -37,11 +38,18 @@ struct type_caster<T, enable_if_t<is_eigen_plain_v<T> &&
 
   bool from_python(handle source, uint32_t flags,
                    cleanup_list* cleanup) noexcept {
-    if (Read(source.ptr())) return true;
-    make_caster<Other> other;
-    if (!other.from_python(source, flags, cleanup)) return false;
-    value = other.value;
-    return true;
+    switch (Read(source.ptr())) {
+      case Found::kDoubles:
+        return true;
+      case Found::kTooLarge:
+        return false;
+      case Found::kNoStrides: {
+        const object array = AsArray(source.ptr());
+        return array.is_valid() && from_python(array, flags, cleanup);
+      }
+      default:
+        return FromOther(source, flags, cleanup);
+    }
   }
 
   static handle from_cpp(const T& matrix, rv_policy, cleanup_list*) noexcept {
@@ -63,10 +71,39 @@ struct type_caster<T, enable_if_t<is_eigen_plain_v<T> &&
   }
 
  private:
+  // What a value has proven to be.
+  enum class Found {
+    kDoubles,    // an array of doubles of this shape, read
+    kTooLarge,   // the same, of more items than memory holds (they may be one)
+    kNoStrides,  // a buffer that leaves its strides out, as those of ctypes do:
+                 // nanobind's own caster would follow a null pointer
+    kOther
+  };
+
+  static PyObject* OfNumpy(const char* name) {
+    return object(module_::import_("numpy").attr(name)).release().ptr();
+  }
+
+  static object AsArray(PyObject* source) noexcept {
+    static PyObject* const asarray = OfNumpy("asarray");
+    object array = steal(PyObject_CallOneArg(asarray, source));
+    if (!array.is_valid()) PyErr_Clear();
+    return array;
+  }
+
+  bool FromOther(handle source, uint32_t flags, cleanup_list* cleanup) noexcept
+      try {
+    make_caster<Other> other;
+    if (!other.from_python(source, flags, cleanup)) return false;
+    value = other.value;
+    return true;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+
   static PyObject* NewArray(Py_ssize_t num_rows, Py_ssize_t num_columns) {
     // Looked up once: Python's search for a module takes longer than the call.
-    static PyObject* const empty =
-        object(module_::import_("numpy").attr("empty")).release().ptr();
+    static PyObject* const empty = OfNumpy("empty");
     PyObject* const shape = kDimensions == 1
                                 ? PyLong_FromSsize_t(num_rows * num_columns)
                                 : Py_BuildValue("(nn)", num_rows, num_columns);
@@ -76,18 +113,28 @@ struct type_caster<T, enable_if_t<is_eigen_plain_v<T> &&
     return array;
   }
 
-  // False for all but an array of doubles of this shape.
-  bool Read(PyObject* source) noexcept {
-    if (!PyObject_CheckBuffer(source)) return false;
+  Found Read(PyObject* source) noexcept {
+    if (!PyObject_CheckBuffer(source)) return Found::kOther;
     Py_buffer view;
     if (PyObject_GetBuffer(source, &view, PyBUF_RECORDS_RO) != 0) {
       PyErr_Clear();
-      return false;
+      return Found::kOther;
     }
-    const bool fits = Fits(view);
-    if (fits) Copy(view);
+    Found found = Found::kOther;
+    if (view.ndim > 0 && view.strides == nullptr) {
+      found = Found::kNoStrides;
+    } else if (Fits(view)) {
+      found = TryCopy(view) ? Found::kDoubles : Found::kTooLarge;
+    }
     PyBuffer_Release(&view);
-    return fits;
+    return found;
+  }
+
+  bool TryCopy(const Py_buffer& view) noexcept try {
+    Copy(view);
+    return true;
+  } catch (const std::bad_alloc&) {
+    return false;
   }
 
   static bool Fits(const Py_buffer& view) {
