@@ -1,5 +1,6 @@
 #include "draw_mesh.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "draw.h"
@@ -79,6 +80,10 @@ void Damage(ByteSource* source, DrawnMesh* mesh) {
   const int k = source->Choice(3);
   const int num_vertices = static_cast<int>(mesh->vertices.size());
   Triangle& triangle = mesh->triangles[t];
+  // An earlier damage may have led a corner to no vertex.
+  const auto vertex = [&](int corner) -> Vec3& {
+    return mesh->vertices[std::clamp(triangle[corner], 0, num_vertices - 1)];
+  };
   switch (source->Choice(8)) {
     case 0:
       triangle[k] = source->Byte() % num_vertices;
@@ -87,7 +92,7 @@ void Damage(ByteSource* source, DrawnMesh* mesh) {
       std::swap(triangle[0], triangle[1]);
       break;
     case 2:
-      mesh->vertices[triangle[0]] = mesh->vertices[triangle[1]];
+      vertex(0) = vertex(1);
       break;
     case 3:
       mesh->triangles.push_back(Triangle(triangle));
@@ -98,14 +103,14 @@ void Damage(ByteSource* source, DrawnMesh* mesh) {
       mesh->solid.erase(mesh->solid.begin() + t);
       break;
     case 5:
-      mesh->vertices[triangle[0]] += source->Power(-16, 0) * DrawVector(source);
+      vertex(0) += source->Power(-16, 0) * DrawVector(source);
       break;
     case 6:
       mesh->solid[t] ^= 1;
       break;
     default:
       if (source->Flag()) {
-        mesh->vertices[triangle[0]][k] = source->AnyDouble();
+        vertex(0)[k] = source->AnyDouble();
       } else {
         triangle[k] = source->Byte() - 128;
       }
