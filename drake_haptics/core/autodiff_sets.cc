@@ -39,35 +39,24 @@ void ZipContacts(A& a, B& b, const F& f) {
 }
 
 template <typename F>
-void ZipCoupling(SkinCouplingOf<AutoDiff>& a, const SkinCouplingOf<AutoDiff>& b,
+void ZipCoupling(MovingSkinCoupling& a, const MovingSkinCoupling& b,
                  const F& f) {
-  for (std::size_t i = 0; i < a.members.size(); ++i) {
-    f(a.members[i].slope, b.members[i].slope);
-  }
-  for (std::size_t i = 0; i < a.directions.size(); ++i) {
-    f(a.directions[i].slope, b.directions[i].slope);
-  }
   ZipItems(a.together, b.together, f);
 }
 
-// Each cluster of `a` is a direction, so that N is H.
 template <typename F>
-void ZipCoupling(SkinCouplingOf<AutoDiff>& a, const SkinCouplingOf<double>& b,
-                 const F& f) {
+void ZipCoupling(MovingSkinCoupling& a, const SkinCoupling& b, const F& f) {
   a.values = b;
   for (std::size_t i = 0; i < a.members.size(); ++i) {
-    auto& direction = a.directions[i];
-    f(a.members[i].slope, b.members[i].slope);
-    f(direction.slope, b.members[i].slope);
-    for (std::int32_t k = 0; k < direction.count; ++k) {
-      f(a.together[direction.row + k], b(i, direction.first + k));
+    const auto& [first, count, row] = a.members[i];
+    for (std::int32_t k = 0; k < count; ++k) {
+      f(a.together[row + k], b(i, first + k));
     }
   }
 }
 
 template <typename F>
-void ZipCoupling(const SkinCouplingOf<AutoDiff>& a, SkinCouplingOf<double>& b,
-                 const F&) {
+void ZipCoupling(const MovingSkinCoupling& a, SkinCoupling& b, const F&) {
   b = a.values;
 }
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 #include <vector>
 
+#include "contact_groups.h"
 #include "contact_patch.h"
 
 namespace drake_haptics {
@@ -57,19 +60,21 @@ T Sameness(const ContactOf<T>& a, const ContactOf<T>& b, double tolerance) {
       1.0, T(kAlmost * same_depth * std::max(in_one_plane, in_one_place)));
 }
 
+// Whether all contacts within the bounds are wholly the same, by their planes.
+bool AreSame(const GroupBounds& bounds, double flushness) {
+  // Rounding may not count as same what is not.
+  constexpr double kSurely = 1 + 1e-9;
+  return kAlmost * Fade<double>(1 - bounds.least_ratio, kSameDepth) *
+             Fade<double>(bounds.most_turn, kSamePlane) * flushness >=
+         kSurely;
+}
+
 // Another contact that is in part the same as contact `of`.
 template <typename T>
 struct Kin {
   std::size_t of;
   T sameness;
   T extent;
-};
-
-// A contact along the axis in which all are farthest apart.
-struct Placed {
-  double at;     // m
-  double reach;  // m
-  std::size_t contact;
 };
 
 template <typename T>
@@ -79,9 +84,7 @@ class Kinship {
       : contacts_(contacts), tolerance_(tolerance), total_(contacts.size()) {
     for (std::size_t i = 0; i < contacts.size(); ++i) total_[i] = Extent(i);
     Compare();
-    std::sort(kin_.begin(), kin_.end(), [](const auto& a, const auto& b) {
-      return a.of != b.of ? a.of < b.of : a.sameness > b.sameness;
-    });
+    SortKin();
   }
 
   // A contact's share of the extent of those that are more than θ the same,
@@ -108,33 +111,40 @@ class Kinship {
  private:
   T Extent(std::size_t i) const { return contacts_[i]->extent + kLeastExtent; }
 
-  // Looks at all pairs that are near along one axis, and at those of which both
-  // are flush.
-  void Compare() {
-    const std::vector<Placed> placed = Place();
-    double widest = 0;
-    for (const Placed& one : placed) widest = std::max(widest, one.reach);
-    std::vector<std::size_t> flush;
-    for (std::size_t k = 0; k < placed.size(); ++k) {
-      if (contacts_[placed[k].contact]->flushness > 0.0) flush.push_back(k);
+  // By contacts, the most alike first.
+  void SortKin() {
+    std::vector<std::size_t> end(total_.size() + 1, 0);
+    for (const Kin<T>& kin : kin_) ++end[kin.of];
+    std::exclusive_scan(end.begin(), end.end(), end.begin(), std::size_t{0});
+    std::vector<Kin<T>> sorted(kin_.size());
+    for (const Kin<T>& kin : kin_) sorted[end[kin.of]++] = kin;
+    auto first = sorted.begin();
+    for (Eigen::Index i = 0; i < total_.size(); ++i) {
+      const auto last = sorted.begin() + end[i];
+      std::sort(first, last, [](const auto& a, const auto& b) {
+        return a.sameness > b.sameness;
+      });
+      first = last;
     }
-    auto next_flush = flush.begin();
-    for (std::size_t k = 0; k < placed.size(); ++k) {
-      const double end = placed[k].at + tolerance_ + placed[k].reach + widest;
-      std::size_t l = k + 1;
-      for (; l < placed.size() && placed[l].at <= end; ++l) {
-        Compare(placed[k].contact, placed[l].contact);
-      }
-      if (next_flush == flush.end() || *next_flush != k) continue;
-      ++next_flush;
-      for (auto far = std::lower_bound(next_flush, flush.end(), l);
-           far != flush.end(); ++far) {
-        Compare(placed[k].contact, placed[*far].contact);
-      }
-    }
+    kin_ = std::move(sorted);
   }
 
-  std::vector<Placed> Place() const {
+  // Looks at the pairs that are near along the axis or both flush.
+  void Compare() {
+    const std::vector<GroupedContact> placed = Place();
+    double widest = 0;
+    std::vector<GroupedContact> flush;
+    for (const GroupedContact& contact : placed) {
+      widest = std::max(widest, contact.reach);
+      if (contact.flushness > 0) flush.push_back(contact);
+    }
+    for (std::size_t k = 0; k < placed.size(); ++k) {
+      if (!(placed[k].flushness > 0)) CompareNear(placed, k, widest);
+    }
+    CompareFlush(GroupContacts(&flush));
+  }
+
+  std::vector<GroupedContact> Place() const {
     Eigen::Array3d low = ValuesOf(contacts_[0]->p_WC), high = low;
     for (const ContactOf<T>* contact : contacts_) {
       const Eigen::Array3d p = ValuesOf(contact->p_WC);
@@ -143,15 +153,78 @@ class Kinship {
     }
     Eigen::Index axis;
     (high - low).maxCoeff(&axis);
-    std::vector<Placed> placed(contacts_.size());
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-      placed[i] = {ValueOf(contacts_[i]->p_WC[axis]),
-                   ValueOf(Reach(*contacts_[i], tolerance_)), i};
+    std::vector<GroupedContact> placed;
+    placed.reserve(contacts_.size());
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      const ContactOf<T>& contact = *contacts_[i];
+      placed.push_back(
+          {ValuesOf(contact.nhat_BA_W), tolerance_ - ValueOf(contact.distance),
+           ValueOf(contact.flushness), ValueOf(Reach(contact, tolerance_)),
+           ValueOf(contact.p_WC[axis]), i});
     }
     std::sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) {
       return a.at != b.at ? a.at < b.at : a.contact < b.contact;
     });
     return placed;
+  }
+
+  // One that is not flush, with those near it: with the later ones of its kind.
+  void CompareNear(const std::vector<GroupedContact>& placed, std::size_t k,
+                   double widest) {
+    const double at = placed[k].at;
+    const std::size_t contact = placed[k].contact;
+    const double reach = tolerance_ + widest;
+    for (std::size_t l = k; l > 0 && placed[l - 1].at >= at - reach; --l) {
+      const GroupedContact& other = placed[l - 1];
+      if (other.flushness > 0) Compare(contact, other.contact);
+    }
+    for (std::size_t l = k + 1; l < placed.size() && placed[l].at <= at + reach;
+         ++l) {
+      Compare(contact, placed[l].contact);
+    }
+  }
+
+  // All pairs of flush contacts, those of two groups at once where they can.
+  void CompareFlush(const std::vector<ContactGroup>& groups) {
+    for (auto one = groups.begin(); one != groups.end(); ++one) {
+      for (auto other = one; other != groups.end(); ++other) {
+        const GroupBounds bounds = BoundGroups(*one, *other);
+        if (bounds.most_ratio <= 1 - kSameDepth ||
+            bounds.least_turn >= kSameDirection) {
+          continue;
+        }
+        if (AreSame(bounds, one->least_flushness * other->least_flushness)) {
+          AddSame(*one, *other);
+        } else {
+          CompareAll(*one, *other);
+        }
+      }
+    }
+  }
+
+  void AddSame(const ContactGroup& one, const ContactGroup& other) {
+    const auto add = [this](const ContactGroup& to, const ContactGroup& from) {
+      T extent{0};
+      for (const auto& member : from.members) extent += Extent(member.contact);
+      for (const auto& member : to.members) total_[member.contact] += extent;
+    };
+    add(one, other);
+    if (&one != &other) {
+      add(other, one);
+      return;
+    }
+    for (const auto& member : one.members) {
+      total_[member.contact] -= Extent(member.contact);
+    }
+  }
+
+  void CompareAll(const ContactGroup& one, const ContactGroup& other) {
+    const bool is_same = &one == &other;
+    for (std::size_t k = 0; k < one.members.size(); ++k) {
+      for (std::size_t l = is_same ? k + 1 : 0; l < other.members.size(); ++l) {
+        Compare(one.members[k].contact, other.members[l].contact);
+      }
+    }
   }
 
   void Compare(std::size_t i, std::size_t j) {

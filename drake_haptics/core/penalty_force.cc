@@ -30,45 +30,67 @@ Vec6Of<T> Wrench(const Vec3Of<T>& p_WC, const Vec3Of<T>& n,
 template <typename T>
 using Wrenches = Eigen::Matrix<T, 6, Eigen::Dynamic>;
 
-// Σ k H_ij G_i G_jᵀ. Clusters of different objects have nothing in common. The
-// clusters of a direction count by their mean, and by what they differ from it,
-// so that no rounding makes the sum less than positive semidefinite.
+// Σ k H_ij G_i G_jᵀ. With U = M Σ r φ Gᵀ that is, object by object,
+//   k Uᵀ U + k Σ r (G − Uᵀ φ)(G − Uᵀ φ)ᵀ:
+// no rounding makes the sum less than positive semidefinite.
+Mat6 SumCoupled(const SkinCoupling& coupling, const Wrenches<double>& G,
+                const Eigen::VectorXd& k) {
+  Mat6 K = Mat6::Zero();
+  for (Eigen::Index i = 0, end; i < G.cols(); i = end) {
+    const auto& members = coupling.members;
+    const std::int32_t place = members[i].skin;
+    end = i + 1;
+    if (place < 0) {
+      K += k[i] * members[i].slope * G.col(i) * G.col(i).transpose();
+      continue;
+    }
+    while (end < G.cols() && members[end].skin == place) ++end;
+    const auto& [features, factor] = coupling.skins[place];
+    Wrenches<double> sums = Wrenches<double>::Zero(6, features.cols());
+    for (Eigen::Index j = i; j < end; ++j) {
+      sums.col(members[j].direction) += members[j].slope * G.col(j);
+    }
+    const auto L = factor.triangularView<Eigen::Lower>();
+    Eigen::Matrix<double, Eigen::Dynamic, 6> U = features * sums.transpose();
+    L.solveInPlace(U);
+    L.transpose().solveInPlace(U);
+    const Wrenches<double> yielded = U.transpose() * features;
+    Mat6 in_skin = U.transpose() * U;
+    for (Eigen::Index j = i; j < end; ++j) {
+      if (members[j].slope == 0) continue;
+      const Vec6 own = G.col(j) - yielded.col(members[j].direction);
+      in_skin += members[j].slope * own * own.transpose();
+    }
+    K += k[i] * in_skin;
+  }
+  return K;
+}
+
+Mat6Of<AutoDiff> SumCoupled(const MovingSkinCoupling& coupling,
+                            const Wrenches<AutoDiff>& G,
+                            const Eigen::VectorXd& k) {
+  Mat6Of<AutoDiff> K = Mat6Of<AutoDiff>::Zero();
+  for (Eigen::Index i = 0; i < G.cols(); ++i) {
+    const auto& [first, count, row] = coupling.members[i];
+    const Eigen::Map<const VectorOf<AutoDiff>> H(coupling.together.data() + row,
+                                                 count);
+    K += k[i] * G.col(i) * (G.middleCols(first, count) * H).transpose();
+  }
+  return K;
+}
+
+// Σ k H_ij G_i G_jᵀ. Clusters of different objects have nothing in common.
 template <typename T>
 Mat6Of<T> Stiffness(const ClusterSetOf<T>& set, const Wrenches<T>& G,
                     const std::vector<ContactMaterial>& materials) {
-  const auto stiffness = [&](Eigen::Index i) {
-    return materials[set.clusters[i].object].stiffness;
-  };
-  if (set.coupling.empty()) {
-    Wrenches<T> kG = G;
-    for (Eigen::Index i = 0; i < G.cols(); ++i) kG.col(i) *= stiffness(i);
-    return kG * G.transpose();
+  Eigen::VectorXd k(G.cols());
+  for (Eigen::Index i = 0; i < k.size(); ++i) {
+    k[i] = materials[set.clusters[i].object].stiffness;
   }
-  const auto& members = set.coupling.members;
-  const auto& directions = set.coupling.directions;
-  Wrenches<T> mean = Wrenches<T>::Zero(6, directions.size());
-  for (Eigen::Index i = 0; i < G.cols(); ++i) {
-    const auto a = members[i].direction;
-    if (directions[a].slope == 0.0) continue;
-    mean.col(a) += G.col(i) * T(members[i].slope / directions[a].slope);
-  }
-  Mat6Of<T> K = Mat6Of<T>::Zero();
-  std::vector<double> k(directions.size());
-  for (Eigen::Index i = 0; i < G.cols(); ++i) {
-    const auto a = members[i].direction;
-    k[a] = stiffness(i);
-    // One that is alone is its direction's mean.
-    if (members[i].slope == directions[a].slope) continue;
-    const Vec6Of<T> beside = G.col(i) - mean.col(a);
-    K += T(k[a] * members[i].slope) * beside * beside.transpose();
-  }
-  for (std::size_t a = 0; a < directions.size(); ++a) {
-    const auto& [slope, first, count, row] = directions[a];
-    const Eigen::Map<const VectorOf<T>> N(set.coupling.together.data() + row,
-                                          count);
-    K += k[a] * mean.col(a) * (mean.middleCols(first, count) * N).transpose();
-  }
-  return K;
+  if (!set.coupling.empty()) return SumCoupled(set.coupling, G, k);
+  Wrenches<T> kG = G;
+  for (Eigen::Index i = 0; i < G.cols(); ++i) kG.col(i) *= k[i];
+  return kG * G.transpose();
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <span>
-#include <type_traits>
+#include <utility>
 
 #include "contact_patch.h"
 #include "contact_shares.h"
+#include "low_rank.h"
 #include "require.h"
 #include "skin_forces.h"
 
@@ -19,82 +21,136 @@ constexpr double kOwnShare = 0.25;
 // Square of what rounding leaves between equal normals: far below what a force
 // can show.
 constexpr double kSameNormal = 1e-26;
-
-template <typename T>
-using Normals = std::vector<Vec3Of<T>>;
+// Equal normals are looked for among those of this many directions before:
+// enough for faces that take turns, and others cost little more (low_rank.h).
+constexpr std::size_t kRecent = 8;
+// What of c the features may leave out: a billionth, as much of the forces, and
+// far below what a force can show.
+constexpr double kLeftOut = 1e-9;
 
 // What contacts under an angle have in common: 1 along one direction, nothing
 // from a right angle on. A Wendland function, which is positive definite on the
 // sphere (Gneiting 2013), so that C is, for any number of contacts.
 template <typename T>
 T InCommon(const Vec3Of<T>& n, const Vec3Of<T>& other) {
-  using std::atan2, std::sqrt;
-  const T cosine = n.dot(other);
-  if (cosine <= 0.0) return T(0);
-  const T sine_squared = n.cross(other).squaredNorm();
+  using std::asin, std::sqrt;
+  const T square = (n - other).squaredNorm();
+  if (square >= 2.0) return T(0);
   // Flat there, but the angle has no slope.
-  if (sine_squared == 0.0) return T(1);
-  const T angle = atan2(T(sqrt(sine_squared)), cosine) / std::numbers::pi * 2;
+  if (square == 0.0) return T(1);
+  const T angle = asin(T(sqrt(square) / 2)) * (4 / std::numbers::pi);
   const T rest = 1 - angle;
   return (1 + 4 * angle) * rest * rest * rest * rest;
 }
 
-// The direction of a contact among those of the contacts before it. With
-// derivatives each contact has its own: equal normals may turn differently.
-template <typename T>
-std::int32_t FindDirection(const Vec3Of<T>& nhat_BA_W, Normals<T>* normals) {
-  const auto count = static_cast<std::int32_t>(normals->size());
-  if constexpr (std::is_same_v<T, double>) {
-    for (std::int32_t a = count - 1; a >= 0; --a) {
-      if (((*normals)[a] - nhat_BA_W).squaredNorm() < kSameNormal) return a;
+// The direction of a contact among those of the contacts before it.
+std::int32_t FindDirection(const Vec3& nhat_BA_W, std::vector<Vec3>* normals) {
+  const std::size_t count = normals->size();
+  for (std::size_t a = count; a > 0 && count - a < kRecent; --a) {
+    if (((*normals)[a - 1] - nhat_BA_W).squaredNorm() < kSameNormal) {
+      return static_cast<std::int32_t>(a - 1);
     }
   }
   normals->push_back(nhat_BA_W);
-  return count;
+  return static_cast<std::int32_t>(count);
 }
 
-template <typename T>
-SkinOf<T> MakeSkin(std::span<const ContactOf<T>* const> contacts,
-                   double tolerance) {
+Skin MakeSkin(std::span<const Contact* const> contacts, double tolerance) {
   const auto n = static_cast<Eigen::Index>(contacts.size());
-  SkinOf<T> skin{VectorOf<T>(n), ContactShares<T>(contacts, tolerance), {}, {}};
-  Normals<T> normals;
+  Skin skin{
+      Eigen::VectorXd(n), ContactShares<double>(contacts, tolerance), {}, {}};
+  skin.slope /= kOwnShare;
+  std::vector<Vec3> normals;
   normals.reserve(n);
   skin.direction.reserve(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     skin.depth[i] = tolerance - contacts[i]->distance;
-    skin.slope[i] /= kOwnShare;
     skin.direction.push_back(FindDirection(contacts[i]->nhat_BA_W, &normals));
   }
-  const auto d = static_cast<Eigen::Index>(normals.size());
-  skin.common.resize(d, d);
-  for (Eigen::Index a = 0; a < d; ++a) {
-    skin.common(a, a) = 1 - kOwnShare;
-    for (Eigen::Index b = 0; b < a; ++b) {
-      skin.common(a, b) = skin.common(b, a) =
-          (1 - kOwnShare) * InCommon<T>(normals[a], normals[b]);
+  skin.features = FindFeatures(
+      static_cast<Eigen::Index>(normals.size()), 1 - kOwnShare, kLeftOut,
+      [&normals](Eigen::Index a, Eigen::Index b) {
+        return (1 - kOwnShare) * InCommon<double>(normals[a], normals[b]);
+      });
+  return skin;
+}
+
+// With derivatives each contact has a direction of its own: equal normals may
+// turn differently.
+MovingSkin MakeSkin(std::span<const ContactOf<AutoDiff>* const> contacts,
+                    double tolerance) {
+  const auto n = static_cast<Eigen::Index>(contacts.size());
+  MovingSkin skin{VectorOf<AutoDiff>(n),
+                  ContactShares<AutoDiff>(contacts, tolerance),
+                  MatrixOf<AutoDiff>(n, n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    skin.depth[i] = tolerance - contacts[i]->distance;
+    skin.slope[i] /= kOwnShare;
+    skin.common(i, i) = 1 - kOwnShare;
+    for (Eigen::Index j = 0; j < i; ++j) {
+      skin.common(i, j) = skin.common(j, i) =
+          (1 - kOwnShare) *
+          InCommon<AutoDiff>(contacts[i]->nhat_BA_W, contacts[j]->nhat_BA_W);
     }
   }
   return skin;
 }
 
-// Appends the coupling of one object's contacts.
-template <typename T>
-void Append(const SkinOf<T>& skin, const SkinForcesOf<T>& forces,
-            SkinCouplingOf<T>* out) {
-  const auto first = static_cast<std::int32_t>(out->directions.size());
-  const auto count = static_cast<std::int32_t>(skin.common.rows());
-  out->together.reserve(out->together.size() + forces.together.size());
-  for (std::size_t i = 0; i < skin.direction.size(); ++i) {
-    out->members.push_back({forces.slope[i], first + skin.direction[i]});
+// Which contacts push.
+std::vector<char> FindPushing(const MovingSkin& skin) {
+  const Eigen::Index n = skin.depth.size();
+  std::vector<std::int32_t> direction(n);
+  std::iota(direction.begin(), direction.end(), 0);
+  const SkinForces forces = SolveSkin(
+      {ValuesOf(skin.depth), ValuesOf(skin.slope), std::move(direction),
+       FindFeatures(n, 1 - kOwnShare, kLeftOut,
+                    [&skin](Eigen::Index i, Eigen::Index j) {
+                      return skin.common(i, j).value();
+                    })});
+  std::vector<char> is_pushing;
+  for (const double slope : forces.slope) is_pushing.push_back(slope > 0);
+  return is_pushing;
+}
+
+// A contact alone bears all of its depth.
+void AppendAlone(SkinCoupling* coupling) {
+  coupling->members.push_back({1.0, -1, 0});
+}
+
+void AppendAlone(MovingSkinCoupling* coupling) {
+  const auto first = static_cast<std::int32_t>(coupling->members.size());
+  coupling->members.push_back({first, 1, coupling->together.size()});
+  coupling->together.push_back(AutoDiff(1));
+}
+
+// Solves for the compressions of an object's contacts (m), and appends how they
+// change with the depths.
+Eigen::VectorXd Solve(std::span<const Contact* const> contacts,
+                      double tolerance, SkinCoupling* coupling) {
+  Skin skin = MakeSkin(contacts, tolerance);
+  SkinForces forces = SolveSkin(skin);
+  const auto place = static_cast<std::int32_t>(coupling->skins.size());
+  for (Eigen::Index i = 0; i < forces.slope.size(); ++i) {
+    coupling->members.push_back({forces.slope[i], place, skin.direction[i]});
   }
-  for (std::int32_t a = 0; a < count; ++a) {
-    out->directions.push_back(
-        {forces.direction_slope[a], first, count, out->together.size()});
-    for (std::int32_t b = 0; b < count; ++b) {
-      out->together.push_back(forces.together(b, a));
+  coupling->skins.push_back(
+      {std::move(skin.features), std::move(forces.factor)});
+  return std::move(forces.compression);
+}
+
+VectorOf<AutoDiff> Solve(std::span<const ContactOf<AutoDiff>* const> contacts,
+                         double tolerance, MovingSkinCoupling* coupling) {
+  const MovingSkin skin = MakeSkin(contacts, tolerance);
+  MovingSkinForces forces = SolveSkin(skin, FindPushing(skin));
+  const auto first = static_cast<std::int32_t>(coupling->members.size());
+  const auto count = static_cast<std::int32_t>(contacts.size());
+  for (std::int32_t i = 0; i < count; ++i) {
+    coupling->members.push_back({first, count, coupling->together.size()});
+    for (std::int32_t j = 0; j < count; ++j) {
+      coupling->together.push_back(forces.together(i, j));
     }
   }
+  return std::move(forces.compression);
 }
 
 // Damping sets in over the thickness of the pressure layer.
@@ -103,37 +159,23 @@ T DampingDepth(const T& depth, double tolerance) {
   return std::max<T>(depth, PressureLayer(tolerance));
 }
 
-// A contact alone bears all of its depth, with the compliance of one.
-template <typename T>
-void PressAlone(double tolerance, ClusterOf<T>* cluster,
-                SkinCouplingOf<T>* coupling) {
-  cluster->compression = tolerance - cluster->distance;
-  cluster->damping_share =
-      cluster->compression / DampingDepth(cluster->compression, tolerance);
-  const auto direction = static_cast<std::int32_t>(coupling->directions.size());
-  coupling->members.push_back({T(1 / kOwnShare), direction});
-  coupling->directions.push_back(
-      {T(1 / kOwnShare), direction, 1, coupling->together.size()});
-  coupling->together.push_back(T(1));
-}
-
 // Presses with the clusters from `first` on, which are those of one object.
 template <typename T>
 void Press(std::span<const ContactOf<T>* const> contacts, double tolerance,
            std::size_t first, ClusterSetOf<T>* out) {
+  const auto press = [&](std::size_t i, const T& compression) {
+    ClusterOf<T>& cluster = out->clusters[first + i];
+    const T depth = tolerance - cluster.distance;
+    cluster.compression = compression;
+    cluster.damping_share = compression / DampingDepth(depth, tolerance);
+  };
   if (contacts.size() == 1) {
-    PressAlone(tolerance, &out->clusters[first], &out->coupling);
+    press(0, tolerance - contacts[0]->distance);
+    AppendAlone(&out->coupling);
     return;
   }
-  const SkinOf<T> skin = MakeSkin(contacts, tolerance);
-  const SkinForcesOf<T> forces = SolveSkin(skin);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    ClusterOf<T>& cluster = out->clusters[first + i];
-    cluster.compression = forces.compression[i];
-    cluster.damping_share =
-        cluster.compression / DampingDepth(skin.depth[i], tolerance);
-  }
-  Append(skin, forces, &out->coupling);
+  const VectorOf<T> compressions = Solve(contacts, tolerance, &out->coupling);
+  for (std::size_t i = 0; i < contacts.size(); ++i) press(i, compressions[i]);
 }
 
 }  // namespace
@@ -157,7 +199,6 @@ void ShareStiffness(const std::vector<ContactOf<T>>& contacts, double tolerance,
     pushing.push_back(&contact);
   }
   out->coupling.members.reserve(pushing.size());
-  out->coupling.directions.reserve(pushing.size());
   for (std::size_t first = 0, end; first < pushing.size(); first = end) {
     end = first;
     while (end < pushing.size() &&

@@ -9,37 +9,45 @@
 namespace drake_haptics {
 
 /// Contacts that press into a common elastic skin, which yields to forces λ by
-///   y_i = Σ_j G_ab λ_j + λ_i / r_i,  a and b the directions of i and j.
-template <typename T>
-struct SkinOf {
-  VectorOf<T> depth;                    ///< w, m, above 0
-  VectorOf<T> slope;                    ///< r, above 0
+///   y_i = Σ_j φ_aᵀ φ_b λ_j + λ_i / r_i,  a and b the directions of i and j.
+struct Skin {
+  Eigen::VectorXd depth;                ///< w, m, above 0
+  Eigen::VectorXd slope;                ///< r, above 0
   std::vector<std::int32_t> direction;  ///< of each contact
-  MatrixOf<T> common;  ///< G between directions, positive semidefinite
+  Eigen::MatrixXd features;             ///< φ, a column for each direction
 };
-using Skin = SkinOf<double>;
 
-/// The forces, over the stiffness, and how they change with the depths, as in
-/// SkinCouplingOf.
-template <typename T>
-struct SkinForcesOf {
-  VectorOf<T> compression;      ///< λ, m
-  VectorOf<T> slope;            ///< r where λ > 0, else 0
-  VectorOf<T> direction_slope;  ///< R, sums of these
-  MatrixOf<T> together;         ///< N; rows of directions with R = 0 are 0
+/// The forces, over the stiffness, and what SkinCoupling keeps of how they
+/// change with the depths.
+struct SkinForces {
+  Eigen::VectorXd compression;  ///< λ, m
+  Eigen::VectorXd slope;        ///< r where λ > 0, else 0
+  Eigen::MatrixXd factor;       ///< L, L Lᵀ = 1 + Σ r φ φᵀ over these
 };
-using SkinForces = SkinForcesOf<double>;
 
 /// Finds λ >= 0 with y >= w, and y = w where λ > 0: the one minimum of
 /// ½ λᵀ y(λ) − wᵀ λ. By block principal pivoting (Júdice and Pires 1994):
 /// contacts that would pull are left out, those left out that would be
-/// overlapped are taken back. The equations are those of the directions, each
-/// of which is one contact at its mean depth: the time grows with the contacts
-/// and with the cube of the directions.
+/// overlapped are taken back. What the skin yields by as a whole, u = Σ φ_a
+/// λ_i, is of as many numbers as there are features: the time grows with the
+/// contacts, and with the directions and the square of the features.
 SkinForces SolveSkin(const Skin& skin);
 
-/// The same with derivatives. Which contacts push stays, and N changes by
-/// −N d(G + 1/R) N.
-SkinForcesOf<AutoDiff> SolveSkin(const SkinOf<AutoDiff>& skin);
+/// The same with derivatives, under which each contact has a direction of its
+/// own.
+struct MovingSkin {
+  VectorOf<AutoDiff> depth;   ///< w, m
+  VectorOf<AutoDiff> slope;   ///< r
+  MatrixOf<AutoDiff> common;  ///< φᵀ φ between contacts
+};
+struct MovingSkinForces {
+  VectorOf<AutoDiff> compression;  ///< λ, m
+  MatrixOf<AutoDiff> together;     ///< H
+};
+
+/// The forces of contacts of which it is known which push. What these bear
+/// changes with C = φᵀ φ + 1/r by −H dC H.
+MovingSkinForces SolveSkin(const MovingSkin& skin,
+                           const std::vector<char>& is_pushing);
 
 }  // namespace drake_haptics

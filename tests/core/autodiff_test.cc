@@ -150,8 +150,7 @@ void WhatPushesNothingMixes() {
   set.clusters = {cluster, cluster};
   set.clusters[1].compression = variables[3];
   set.clusters[1].damping_share = variables[4];
-  set.coupling.members = {{AutoDiff(0), 0}, {variables[5], 1}};
-  set.coupling.directions = {{AutoDiff(0), 0, 2, 0}, {variables[5], 0, 2, 2}};
+  set.coupling.members = {{0, 2, 0}, {0, 2, 2}};
   set.coupling.together = {AutoDiff(0), AutoDiff(0), AutoDiff(0), variables[5]};
   MovingFrameOf<AutoDiff> tool, object;
   tool.V_WF = -variables;
