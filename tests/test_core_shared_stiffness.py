@@ -378,3 +378,45 @@ def test_hundreds_of_contacts_along_few_directions() -> None:
         of = np.flatnonzero((clusters.object_index == o) & (truth.compression > 0))
         C = compliance(clusters.nhat_BA_W, shares(contacts, of, T)) if False else None
         assert C is None
+
+
+@pytest.mark.parametrize("spread", [1e-9, 1e-5, 1e-3, 1e-2])
+def test_many_contacts_along_nearly_one_direction(spread: float) -> None:
+    """Flush faces and spikes, at depths that are the same wholly, in part or not."""
+    rng = np.random.default_rng(11)
+    sites = []
+    for turn in rng.normal(0, spread, (12, 2)):
+        x, y = np.meshgrid([-0.015, -0.005, 0.005, 0.015], [-0.01, 0.01])
+        lift = rng.choice([1e-6, 1e-4]) * rng.normal(size=8)
+        faces = np.column_stack(
+            [x.ravel(), y.ravel(), -1e-3 + lift, rng.choice([0, 0.02], 8)]
+        )
+        tips = rng.uniform(-1, 1, (3, 3)) * [0.018, 0.018, 1e-3]
+        sites.append(Site(Rotation.from_rotvec([*turn, 0]), tips, faces))
+    contacts = scatter(sites, T)
+    assert len(contacts) > 120
+    # Here features leave out a billionth of what directions have in common.
+    np.testing.assert_allclose(
+        _core.share_stiffness(contacts, T).compression,
+        shared(contacts, T).compression,
+        atol=1e-8 * T,
+    )
+
+
+def test_coupling_of_near_parallel_contacts_is_the_inverse_of_their_compliance() -> (
+    None
+):
+    rng = np.random.default_rng(5)
+    sites = [
+        Site(
+            Rotation.from_rotvec([*turn, 0]),
+            np.column_stack([rng.uniform(-0.015, 0.015, (4, 2)), np.full(4, -1e-3)]),
+            NO_CUBES,
+        )
+        for turn in rng.normal(0, 1e-3, (10, 2))
+    ]
+    contacts = scatter(sites, T)
+    clusters = _core.share_stiffness(contacts, T)
+    assert clusters.compression.min() > 0
+    C, _ = rows(contacts, T)
+    np.testing.assert_allclose(clusters.coupling @ C, np.eye(40), atol=1e-7)

@@ -8,18 +8,15 @@
 
 namespace drake_haptics {
 
-/// What tells contacts apart.
+/// What tells flush contacts apart.
 struct GroupedContact {
   Vec3 nhat_BA_W;
   double depth;      ///< below the tolerance, m, above 0
   double flushness;  ///< 0 to 1
-  double reach;      ///< m
-  double at;         ///< along one axis, m
   std::size_t contact;
 };
 
-/// Contacts of nearly one direction and depth, either all flush in part or
-/// none, ordered along the axis.
+/// Contacts of nearly one direction and depth.
 struct ContactGroup {
   std::span<const GroupedContact> members;
   double shallowest, deepest;  ///< of the depths, m

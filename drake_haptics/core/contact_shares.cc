@@ -77,6 +77,13 @@ struct Kin {
   T extent;
 };
 
+// A contact along the axis in which all are farthest apart.
+struct Placed {
+  double at;     // m
+  double reach;  // m
+  std::size_t contact;
+};
+
 template <typename T>
 class Kinship {
  public:
@@ -131,20 +138,30 @@ class Kinship {
 
   // Looks at the pairs that are near along the axis or both flush.
   void Compare() {
-    const std::vector<GroupedContact> placed = Place();
+    const std::vector<Placed> placed = Place();
     double widest = 0;
     std::vector<GroupedContact> flush;
-    for (const GroupedContact& contact : placed) {
-      widest = std::max(widest, contact.reach);
-      if (contact.flushness > 0) flush.push_back(contact);
+    for (const Placed& one : placed) {
+      widest = std::max(widest, one.reach);
+      const ContactOf<T>& contact = *contacts_[one.contact];
+      if (!(contact.flushness > 0.0)) continue;
+      flush.push_back({ValuesOf(contact.nhat_BA_W),
+                       tolerance_ - ValueOf(contact.distance),
+                       ValueOf(contact.flushness), one.contact});
     }
     for (std::size_t k = 0; k < placed.size(); ++k) {
-      if (!(placed[k].flushness > 0)) CompareNear(placed, k, widest);
+      if (IsFlush(placed[k])) continue;
+      CompareAfter(placed, k, widest);
+      if (!flush.empty()) CompareFlushBefore(placed, k, widest);
     }
-    CompareFlush(GroupContacts(&flush));
+    if (flush.size() > 1) CompareFlush(GroupContacts(&flush));
   }
 
-  std::vector<GroupedContact> Place() const {
+  bool IsFlush(const Placed& placed) const {
+    return contacts_[placed.contact]->flushness > 0.0;
+  }
+
+  std::vector<Placed> Place() const {
     Eigen::Array3d low = ValuesOf(contacts_[0]->p_WC), high = low;
     for (const ContactOf<T>* contact : contacts_) {
       const Eigen::Array3d p = ValuesOf(contact->p_WC);
@@ -153,14 +170,10 @@ class Kinship {
     }
     Eigen::Index axis;
     (high - low).maxCoeff(&axis);
-    std::vector<GroupedContact> placed;
-    placed.reserve(contacts_.size());
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      const ContactOf<T>& contact = *contacts_[i];
-      placed.push_back(
-          {ValuesOf(contact.nhat_BA_W), tolerance_ - ValueOf(contact.distance),
-           ValueOf(contact.flushness), ValueOf(Reach(contact, tolerance_)),
-           ValueOf(contact.p_WC[axis]), i});
+    std::vector<Placed> placed(contacts_.size());
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      placed[i] = {ValueOf(contacts_[i]->p_WC[axis]),
+                   ValueOf(Reach(*contacts_[i], tolerance_)), i};
     }
     std::sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) {
       return a.at != b.at ? a.at < b.at : a.contact < b.contact;
@@ -168,19 +181,23 @@ class Kinship {
     return placed;
   }
 
-  // One that is not flush, with those near it: with the later ones of its kind.
-  void CompareNear(const std::vector<GroupedContact>& placed, std::size_t k,
-                   double widest) {
-    const double at = placed[k].at;
-    const std::size_t contact = placed[k].contact;
-    const double reach = tolerance_ + widest;
-    for (std::size_t l = k; l > 0 && placed[l - 1].at >= at - reach; --l) {
-      const GroupedContact& other = placed[l - 1];
-      if (other.flushness > 0) Compare(contact, other.contact);
+  // One that is not flush, with those near it that come after it on the axis.
+  void CompareAfter(const std::vector<Placed>& placed, std::size_t k,
+                    double widest) {
+    const double end = placed[k].at + tolerance_ + placed[k].reach + widest;
+    for (std::size_t l = k + 1; l < placed.size() && placed[l].at <= end; ++l) {
+      Compare(placed[k].contact, placed[l].contact);
     }
-    for (std::size_t l = k + 1; l < placed.size() && placed[l].at <= at + reach;
-         ++l) {
-      Compare(contact, placed[l].contact);
+  }
+
+  // The same with those before it, of which only the flush ones are left.
+  void CompareFlushBefore(const std::vector<Placed>& placed, std::size_t k,
+                          double widest) {
+    const double end = placed[k].at - tolerance_ - placed[k].reach - widest;
+    for (std::size_t l = k; l > 0 && placed[l - 1].at >= end; --l) {
+      if (IsFlush(placed[l - 1])) {
+        Compare(placed[k].contact, placed[l - 1].contact);
+      }
     }
   }
 
