@@ -27,6 +27,7 @@ from drake_haptics.scene import Scene
 from drake_haptics.scene_file import write_scene
 from drake_haptics.stage import open_meshcat, set_stage
 from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
+from drake_haptics.tick_relief import find_tick_relief
 
 _MESH_OPTIONS = {
     "tool.mesh": "--tool",
@@ -130,6 +131,9 @@ def run_scene(
             session.figures["parts"] = [part.to_dict() for part in session.parts]
             console.print()
             console.print(make_parts_table(session.parts))
+            relief = find_tick_relief(session.parts, session.scene)
+            if relief is not None:
+                console.print(relief, soft_wrap=True, markup=False)
         if record is not None:
             _write_recording(session.haptic, meshcat, record)
             console.print(f"Wrote {record}.", soft_wrap=True, markup=False)
