@@ -17,6 +17,9 @@ from drake_haptics.device_preset import (
     load_device_preset,
 )
 
+# What the table needs.
+_WIDTH = 80
+
 
 @click.command(cls=TaughtCommand, lesson=lessons.DEVICES)
 @json_option
@@ -59,6 +62,8 @@ def _print(presets: dict[str, DevicePreset]) -> None:
             "yes" if preset.has_model else "no",
         )
     console = make_console()
+    # A terminal that is narrower breaks the rows; cut, they would lose figures.
+    console.width = max(_WIDTH, console.width)
     console.print(table)
     console.print("\naxes: how many of the handle's six have motors", style="dim")
     for source in sorted({preset.source for preset in presets.values()}):

@@ -11,6 +11,8 @@ import click
 class FiniteRange(click.FloatRange):
     """A number in a range, and neither `nan` nor `inf`."""
 
+    name = "number"  # in messages
+
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:

@@ -1,6 +1,7 @@
 """`drake-haptics devices` from end to end."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -30,6 +31,16 @@ def test_the_table_has_every_device_and_its_source():
     # The table fits into a terminal of 80 columns.
     table = result.stdout.split("\n\n")[0]
     assert max(map(len, table.splitlines())) <= 80
+
+
+def test_a_narrow_terminal_loses_no_figure(monkeypatch):
+    whole = CliRunner().invoke(main, ["devices"]).stdout
+    monkeypatch.setenv("COLUMNS", "40")
+    monkeypatch.setenv("FORCE_COLOR", "1")  # taken for a terminal
+    monkeypatch.setenv("NO_COLOR", "1")
+    narrow = CliRunner().invoke(main, ["devices"]).stdout
+    plain = re.sub(r"\x1b\[[0-9;]*m", "", narrow)
+    assert "\x1b" in narrow and plain.split() == whole.split()
 
 
 def test_json_has_the_figures_of_each():

@@ -259,6 +259,7 @@ def test_pieces_are_coloured_in_a_recording(tmp_path):
         ),
         (["run", "--tool", "no.obj", "--environment", "no.obj"], 1, ["no.obj"]),
         (["run", "cup_spoon", "--duration", "-1"], 2, ["duration"]),
+        (["run", "cup_spoon", "--duration", "a"], 2, ["'a' is not a valid number"]),
         (["run", "cup_spoon", "--headless", "--port", "7001"], 2, ["--port"]),
         (["run", "cup_spoon", "--explain", "--pieces"], 2, ["--explain", "--pieces"]),
         (["run", "cup_spoon", "--headless", "--record", "no/x.html"], 1, ["folder no"]),
