@@ -186,6 +186,27 @@ def test_the_coupling_is_judged_as_it_is_now(make):
     assert warning["why"].startswith("damping_Ns_per_m is 20: not passive")
 
 
+def test_ticks_that_take_too_long_are_told_with_the_key_that_helps(
+    make, scene, monkeypatch
+):
+    asked = []
+
+    def find_key(costs_us, scene):
+        asked.append((costs_us, scene))
+        return "contact.tolerance_m: a smaller one."
+
+    monkeypatch.setattr("drake_haptics.cockpit.cockpit.find_key_that_helps", find_key)
+    # Less than any tick takes.
+    device = dataclasses.replace(scene.device, tick_budget_us=10.0)
+    rig = make({}, scene=dataclasses.replace(scene, device=device))
+    rig.run(0.2)
+    assert rig.page.outlooks[-1].shed > 0
+    assert rig.page.states[0]["relief"] == ""
+    assert rig.page.states[-1]["relief"] == "contact.tolerance_m: a smaller one."
+    [(costs_us, slow)] = asked
+    assert costs_us["contact_query"] > 0.0 and slow is rig.changes.scene
+
+
 def make_requests(rng, count):
     """Returns requests of every kind, right and wrong, as pages are allowed to ask."""
     keys = [*(item.key for item in live_keys(Scene(environment=[EnvironmentObject()]))),

@@ -22,6 +22,7 @@ from drake_haptics.live_key import LiveKey
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene_plausibility import question_start
 from drake_haptics.tick_clock import TickClock
+from drake_haptics.tick_relief import find_key_that_helps
 
 # Pages are told of changes no oftener: a slider that is dragged makes one per frame.
 _TELL_PERIOD_S = 0.1
@@ -70,6 +71,8 @@ class Cockpit:
         self._root: Context | None = None
         # What is wrong with where the tool began.
         self._start = ""
+        # How many stages of work are left out, and what would help.
+        self._shed, self._relief = 0, ""
         self._silence, self._looked_s = DriverSilence(), monotonic()
 
     def begin(
@@ -139,6 +142,7 @@ class Cockpit:
             "views": self._picture.views,
             "warnings": warnings,
             "start": self._start,
+            "relief": self._relief,
             "error": self.steering.tell_error(),
         }
         self._page.tell("state", state)
@@ -166,6 +170,7 @@ class Cockpit:
         if loop.load_shedding is not None:
             relief = loop.load_shedding.GetMyContextFromRoot(self._root)
             shed = math.ceil(relief.get_discrete_state_vector().value()[0])
+        self._find_relief(shed)
         before_s, self._looked_s = self._looked_s, monotonic()
         gate = self._find_gate(reading)
         self._picture.mark_felt(gate in (ACTIVE, SIMULATED))
@@ -177,6 +182,15 @@ class Cockpit:
             shed=shed,
             skipped=self._pace.skipped,
         )
+
+    def _find_relief(self, shed: int) -> None:
+        """Finds which key helps, once, when work begins to be left out."""
+        if shed and not self._shed:
+            _, query_s, *_ = self._statistics.latest
+            costs_us = {"contact_query": 1e6 * query_s}
+            self._relief = find_key_that_helps(costs_us, self._changes.scene) or ""
+            self._tell_s = monotonic()
+        self._shed = shed
 
     def _find_gate(self, reading: DeviceReading | None) -> int:
         """Returns the index into `GATES` of what a reading tells."""

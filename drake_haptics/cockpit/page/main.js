@@ -29,6 +29,7 @@ const made = {};
 let settings = {limits: {force_N: 0, torque_Nm: 0}, period_s: 1e-3};
 let tolerance_m = Infinity;
 let isFramed = false;
+let relief = "";
 let start = "";
 let dismissed = "";
 
@@ -56,7 +57,7 @@ const on = {
     notify("watching", frame.drives ? "" : "Another page drives. This one watches.",
            {buttons: [{label: "Drive from here", act: () => say({do: "take"})}]});
     showDevice(frame);
-    notify("shed", frame.shed.length ? "Ticks take too long. Left out: " + frame.shed.join(", ") + "." : "", {kind: "warn"});
+    notify("shed", frame.shed.length ? `Ticks take too long. Left out: ${frame.shed.join(", ")}. ${relief}` : "", {kind: "warn"});
     notify("deep", frame.depth_m > DEEP_TOLERANCES * tolerance_m ? DEEP : "", {kind: "warn"});
     showGate(frame.gate, frame.fault);
     enable(frame.drives);
@@ -81,6 +82,7 @@ const on = {
     setHandle(state.handle, settings.handles ?? []);
     setYaml(state.yaml ?? "");
     notify("error", state.error ?? "", {kind: "fault", buttons: [makeDismiss("error")]});
+    relief = state.relief ?? "";
     start = state.start;
     const restart = {label: "Restart", act: () => say({do: "restart"})};
     notify("start", start !== dismissed ? start : "", {kind: "warn", buttons: [
