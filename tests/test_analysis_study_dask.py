@@ -18,12 +18,22 @@ from drake_haptics.analysis.study_pool import SerialExecutor
 distributed = pytest.importorskip(
     "distributed", reason="needs Dask: pip install 'drake_haptics[cluster]'"
 )
+dask = pytest.importorskip("dask")
+PATIENT = {
+    # A worker that has died may not come back where a machine is slow to start it, and
+    # tasks without a worker would be waited for without end.
+    "distributed.scheduler.allowed-failures": 0,
+    "distributed.scheduler.no-workers-timeout": "300s",
+    "distributed.comm.timeouts.connect": "300s",
+    "distributed.comm.timeouts.tcp": "300s",
+}
 
 
 @pytest.fixture(scope="module")
 def client():
     """A real scheduler and two worker processes, without a web page."""
     with (
+        dask.config.set(PATIENT),
         distributed.LocalCluster(
             processes=True, n_workers=2, threads_per_worker=1, dashboard_address=None
         ) as cluster,
