@@ -20,10 +20,10 @@ tutorials: $(STAMP)
 
 test: lint unit
 
-# Tests of one file stay together, so that they share what they have set up, until a
-# worker has nothing left of its own.
+# Tests of one file stay together and in order: they share what they have set up, and
+# some go on from one another. The longest files come first: see tests/conftest.py.
 unit: $(STAMP)-test
-	$(BIN)/python -m pytest -n auto --dist worksteal tests
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder tests
 
 lint: $(STAMP)-test
 	$(BIN)/ruff check .
