@@ -1,5 +1,6 @@
 """The core builds without Python, and its own C++ tests pass."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -39,4 +40,7 @@ def test_the_cpp_tests_pass_without_python():
         f"-DCMAKE_PREFIX_PATH={sysconfig.get_path('purelib')}",
     )
     run(tool("cmake"), "--build", BUILD, "--target", "core_tests")
-    run(tool("ctest"), "--output-on-failure", "--no-tests=error")
+    run(
+        *(tool("ctest"), "--output-on-failure", "--no-tests=error"),
+        *("--parallel", str(os.cpu_count())),
+    )
