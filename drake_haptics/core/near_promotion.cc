@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "facet_press.h"
+#include "facet_promise.h"
 #include "gauss_overlay.h"
 #include "witness.h"
 
@@ -30,9 +31,12 @@ class Search {
   Promotion Run() {
     for (int i = 0; i < simplex().size; ++i) {
       const Hub& corner = simplex().hubs[i];
-      for (const Polytope::Spoke& spoke : pair_.A.fan_of(corner.a)) {
-        ConsiderFacet(-spoke.normal, spoke.facet, true);
+      if (!IsRepeated(simplex(), i, &Hub::a)) {
+        for (const Polytope::Spoke& spoke : pair_.A.fan_of(corner.a)) {
+          ConsiderFacet(-spoke.normal, spoke.facet, true);
+        }
       }
+      if (IsRepeated(simplex(), i, &Hub::b)) continue;
       for (const Polytope::Spoke& spoke : pair_.B.fan_of(corner.b)) {
         ConsiderFacet(pair_.X_AB.R * spoke.normal, spoke.facet, false);
       }
@@ -50,6 +54,7 @@ class Search {
   void ConsiderFacet(const Vec3& n, int facet, bool is_of_A) {
     if (n.dot(separation_.n) < kLargestPromotion) return;
     Hub hub = simplex().hubs[0];
+    if (!MayPromote(pair_, n, facet, is_of_A, hub, found_.facet.h)) return;
     const double h = SupportGap(pair_, n, &hub);
     if (!(h > found_.facet.h) || h > request_.tolerance) return;
     const Feature face(FeatureKind::kFacet, facet);
