@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gauss_overlay.h"
 #include "surface_support.h"
@@ -34,11 +35,14 @@ class Listing {
         near_A_(R_BA_ * (pair.a(near.a) - pair.X_AB.p)),
         wanted_(wanted),
         facets_(*facets) {
+    for (const WantedFacets& some : wanted_) {
+      least_ = std::min(least_, some.least);
+    }
     facets_.clear();
   }
 
   bool Run() {
-    if (!DoConesMeet()) return true;
+    if (!IsAnyInReach()) return true;
     AddFacetsOfA();
     AddFacetsOfB();
     return pair_.A.edges.size() <= pair_.B.edges.size() ? AddArcsOfA()
@@ -46,17 +50,27 @@ class Listing {
   }
 
  private:
-  // Whether there is a direction along which both surfaces can carry a contact.
-  bool DoConesMeet() const {
-    const double a = of_A_.cosine, b = of_B_.cosine;
-    return a < 0 || b < 0 ||
-           of_A_.axis.dot(of_B_.axis) >=
-               a * b - std::sqrt((1 - a * a) * (1 - b * b));
+  // Whether two cones share a direction.
+  static bool DoMeet(const DirectionCone& p, const DirectionCone& q) {
+    constexpr double kRoundOff = 1e-12;
+    const double a = p.cosine, b = q.cosine;
+    return a + b <= 0 ||
+           p.axis.dot(q.axis) >=
+               a * b - std::sqrt((1 - a * a) * (1 - b * b)) - kRoundOff;
+  }
+
+  // Whether there is a direction along which both surfaces can carry a contact
+  // and one is wanted.
+  bool IsAnyInReach() const {
+    if (!DoMeet(of_A_, of_B_)) return false;
+    return std::any_of(wanted_.begin(), wanted_.end(), [&](const auto& some) {
+      return DoMeet(some.cone, of_A_) && DoMeet(some.cone, of_B_);
+    });
   }
 
   // @param gap a bound from above, m.
   bool IsWanted(const Vec3& n, double gap, double slack = 0) const {
-    return of_A_.Holds(n, slack) && of_B_.Holds(n, slack) &&
+    return gap >= least_ && of_A_.Holds(n, slack) && of_B_.Holds(n, slack) &&
            std::any_of(wanted_.begin(), wanted_.end(), [&](const auto& some) {
              return some.Hold(n, gap, slack);
            });
@@ -73,6 +87,7 @@ class Listing {
     const double gap =
         std::min(std::max(from.dot(between), to.dot(between)),
                  std::max(from.dot(or_between), to.dot(or_between)));
+    if (gap < least_) return false;
     return IsWanted(from, gap, kBetween) || IsWanted(to, gap, kBetween) ||
            IsWanted((from + to).normalized(), gap, kBetween);
   }
@@ -234,6 +249,7 @@ class Listing {
   // Points of B in A's frame and of A in B's, which bound gaps from above.
   const Vec3 center_B_, near_B_, center_A_, near_A_;
   const std::span<const WantedFacets> wanted_;
+  double least_ = std::numeric_limits<double>::infinity();  // of the wanted, m
   std::vector<DepthCandidate>& facets_;
 };
 

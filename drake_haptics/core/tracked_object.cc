@@ -32,6 +32,9 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
   workspace->ways_out.clear();
   const std::size_t first = out->size();
   AskPairsInContact(tick, workspace, out);
+  is_any_left_ =
+      std::any_of(pressed_.begin(), pressed_.end(),
+                  [](const PressedContact& last) { return !last.is_kept; });
   double least_slack = kForever;
   auto kept = watched_.begin();
   for (auto pair = watched_.begin(); pair != watched_.end(); ++pair) {
@@ -145,7 +148,7 @@ int TrackedObject::NewState() {
 bool TrackedObject::Tend(const Tick& tick, const PairFront::Tick& front_tick,
                          TrackerWorkspace* workspace, WatchedPair* pair,
                          std::vector<Contact>* out) {
-  const bool may_take_over = MayTakeOver(tick, pair->pieces);
+  const bool may_take_over = is_any_left_ && MayTakeOver(tick, pair->pieces);
   if (pair->slack > 0 && !may_take_over) return true;
   PairState& state = states_[pair->state];
   if (!may_take_over && state.n.squaredNorm() > 0) {
