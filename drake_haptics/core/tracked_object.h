@@ -105,10 +105,11 @@ class TrackedObject {
   std::vector<GlobalDepthState> global_states_;  // of states_, where needed
   std::vector<int> free_states_;
   std::vector<PressedContact> pressed_;  // last tick's
-  bool is_any_left_ = false;  // of them, by the pairs that were in contact
-  double odometer_ = 0;       // at the last tick, m
+  double odometer_ = 0;                  // at the last tick, m
   double quiet_until_ = 0;
   bool is_first_ = true;  // nothing is known of an earlier tick
+  // Of the pressed ones, by the pairs that were in contact.
+  bool is_any_left_ = false;
 };
 
 }  // namespace drake_haptics
