@@ -907,6 +907,66 @@ def share_stiffness(contacts: ContactSet, tolerance: float) -> ClusterSet:
 def share_stiffness(contacts: AutoDiffContactSet, tolerance: float) -> AutoDiffClusterSet:
     """The same with derivatives; which contacts push stays."""
 
+class ObjectFrames:
+    """
+    Where each object of a scene is and how it moves, as the core reads it. Immutable.
+    """
+
+    def __init__(self, p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]) -> None:
+        """
+        Args:
+            p_WO: (m, 3) objects' origins, m.
+            V_WO: (m, 6) their spatial velocities [rad/s; m/s].
+
+        Raises:
+            ValueError: rows do not match.
+        """
+
+    def __len__(self) -> int: ...
+
+    @property
+    def p_WO(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), writable=False)]:
+        """(m, 3) origins, m."""
+
+    @property
+    def V_WO(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
+        """(m, 6) spatial velocities [rad/s; m/s]."""
+
+    def moved(self, index: Sequence[int], X_WO: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]], V_WO: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]]) -> ObjectFrames:
+        """
+        Returns a copy in which some objects are elsewhere.
+
+        Args:
+            index: which.
+            X_WO: pose (7,) [qw qx qy qz x y z] of each of them, m.
+            V_WO: spatial velocity (6,) of each of them.
+
+        Raises:
+            ValueError: there is not one of each for each index.
+            IndexError: there is no such object.
+        """
+
+class ContactMaterials:
+    """
+    How each object of a scene answers contact, as the core reads it. Immutable.
+    """
+
+    def __init__(self, stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> None:
+        """
+        Args:
+            stiffness: (m,) k of each object, N/m.
+            damping: (m,) k_v of each object, N·s/m.
+
+        Raises:
+            ValueError: a gain is negative or not finite, or rows do not match.
+        """
+
+    def __len__(self) -> int: ...
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
 class PenaltyWrench:
     """The wrenches of all clusters. Immutable; copies are the object itself."""
 
@@ -934,18 +994,31 @@ class PenaltyWrench:
 
     def __copy__(self) -> object: ...
 
+def penalty_wrench_model(clusters: ClusterSet, X_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, materials: ContactMaterials) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
+    """
+    The `wrench_model` (78,) of `penalty_force` of the same, for a tick that asks for nothing else.
+    """
+
+@overload
+def penalty_force(clusters: ClusterSet, X_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, materials: ContactMaterials) -> PenaltyWrench:
+    """
+    Penalty wrenches of the clusters (paper, Eq. 6 to 10): k times the compression along the normal, plus damping while approaching; never a pull. What it takes depends on the clusters, not on how many objects there are.
+
+    Args:
+        X_WTool: (7,) pose of the tool [qw qx qy qz x y z], m.
+        V_WTool: (6,) its spatial velocity [rad/s; m/s].
+        objects: where they are.
+        materials: one for each of them.
+
+    Raises:
+        ValueError: there is not a material for each object.
+        IndexError: a cluster names an object that is not given.
+    """
+
 @overload
 def penalty_force(clusters: ClusterSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> PenaltyWrench:
     """
-    Penalty wrenches of the clusters (paper, Eq. 6 to 10): k times the compression along the normal, plus damping while approaching; never a pull.
-
-    Args:
-        p_WTo: (3,) tool's origin, m.
-        V_WTool: (6,) its spatial velocity [rad/s; m/s].
-        p_WO: (m, 3) objects' origins, m.
-        V_WO: (m, 6) their spatial velocities.
-        stiffness: (m,) k of each object, N/m.
-        damping: (m,) k_v of each object, N·s/m.
+    The same for what is asked once, from the arguments of `ObjectFrames` and `ContactMaterials`; p_WTo (3,) is the tool's origin, m.
 
     Raises:
         ValueError: a gain is negative or not finite, or rows do not match.
@@ -1006,6 +1079,23 @@ def coupling_wrench(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), orde
 def coupling_wrench(q_WH: AutoDiffVector, V_WH: AutoDiffVector, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WTool: AutoDiffVector, V_WTool: AutoDiffVector, gains: CouplingGains) -> AutoDiffVector:
     """The same with derivatives."""
 
+@overload
+def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
+    """
+    `coupling_wrench` of one vector, as a multiplexer joins it: an array that crosses takes as long as the law.
+
+    Args:
+        joined: (32,) [q_WH; V_WH; q_WTool; V_WTool; gains], the gains (6) in the order of `CouplingGains`.
+        q_HT: (7,) the tool's place in the handle.
+
+    Raises:
+        ValueError: a gain is out of range, or the handle's quaternion is far from length 1.
+    """
+
+@overload
+def joined_coupling_wrench(joined: AutoDiffVector, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> AutoDiffVector:
+    """The same with derivatives, but by the gains."""
+
 def limit_wrench(F: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], max_torque_Nm: float, max_force_N: float) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
     """
     Shortens torque and force of a wrench (6,), [N·m; N], each to its limit, along its own direction.
@@ -1037,10 +1127,14 @@ class RigidToolDynamics:
         """Centre of mass (3,) in the tool's frame, m."""
 
     @overload
+    def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], wrench_models: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]], h: float) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
+        """
+        Advances the state (13,) = [pose (7); spatial velocity (6)] by one linearized backward Euler step of h seconds under the sum of wrench models (78,).
+        """
+
+    @overload
     def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], wrench_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], h: float) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
-        """
-        Advances the state (13,) = [pose (7); spatial velocity (6)] by one linearized backward Euler step of h seconds under a wrench model (78,).
-        """
+        """The same under one wrench model (78,)."""
 
     @overload
     def step(self, state: AutoDiffVector, wrench_model: AutoDiffVector, h: float) -> AutoDiffVector:
@@ -1425,22 +1519,20 @@ class BrakingGains:
         """
 
 @overload
-def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], gains: BrakingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
+def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, gains: BrakingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
     """
     Braking of the approach of surfaces that do not touch yet (McNeely, Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s w v along its normal, v the speed of approach, w = 4 (d/D)(1 − d/D), s its share among contacts with like normals (braking.h). Never a pull.
 
     Args:
         p_WTo: (3,) tool's origin, m.
         V_WTool: (6,) its spatial velocity [rad/s; m/s].
-        p_WO: (m, 3) objects' origins, m.
-        V_WO: (m, 6) their spatial velocities.
+        objects: where they are.
 
     Returns:
         (78 + 6 m,) wrench model on the tool at To in W: [F (6); K (36), zero; B (36, by rows)], rotational first; then the wrench on each object at its origin in W, N·m and N.
 
     Raises:
-        ValueError: rows do not match.
-        IndexError: a contact names an object that has no row.
+        IndexError: a contact names an object that is not given.
     """
 
 @overload

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
@@ -18,8 +19,10 @@ from pydrake.systems.framework import (
 from drake_haptics._core import (
     AutoDiffPenaltyWrench,
     AutoDiffVector,
+    ContactMaterials,
     PenaltyWrench,
     penalty_force,
+    penalty_wrench_model,
 )
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.differentiable_system import (
@@ -27,6 +30,8 @@ from drake_haptics.systems.differentiable_system import (
     DifferentiableSystem,
 )
 from drake_haptics.systems.object_motions import ObjectMotions
+
+_GAINS = ("stiffness_N_per_m", "damping_Ns_per_m")
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +41,7 @@ class ContactGains:
     Attributes:
         stiffness_N_per_m: k of each object, (n,), N/m.
         damping_Ns_per_m: k_v of each object, (n,), N·s/m.
+        materials: Both as the core reads them.
 
     Raises:
         ValueError: A gain is negative or not finite, or not one of a list.
@@ -43,10 +49,12 @@ class ContactGains:
 
     stiffness_N_per_m: np.ndarray
     damping_Ns_per_m: np.ndarray
+    materials: ContactMaterials = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Checks the gains and takes read-only copies."""
-        for name, gains in vars(self).items():
+        for name in _GAINS:
+            gains = getattr(self, name)
             copied = np.array(gains, dtype=float)
             if copied.ndim != 1:
                 raise ValueError(
@@ -59,6 +67,14 @@ class ContactGains:
                     )
             copied.flags.writeable = False
             object.__setattr__(self, name, copied)
+        if len(self.stiffness_N_per_m) != len(self.damping_Ns_per_m):
+            raise ValueError(
+                "stiffness_N_per_m and damping_Ns_per_m must have one value for each"
+                f" object, have {len(self.stiffness_N_per_m)} and"
+                f" {len(self.damping_Ns_per_m)}"
+            )
+        materials = ContactMaterials(self.stiffness_N_per_m, self.damping_Ns_per_m)
+        object.__setattr__(self, "materials", materials)
 
     def __deepcopy__(self, memo: object) -> ContactGains:
         """Returns itself, so that it crosses into copies of a Context."""
@@ -134,6 +150,9 @@ class PenaltyForce(DifferentiableSystem):
         self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
         self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
+        self._eval_clusters = self._clusters.Eval
+        self._eval_X_WTool = self._X_WTool.Eval
+        self._eval_V_WTool = self._V_WTool.Eval
         self._motions = ObjectMotions(self, objects)
         from_inputs = {self.all_input_ports_ticket(), self.pa_ticket()}
         self._wrench_model = self.DeclareVectorOutputPort(
@@ -242,30 +261,31 @@ class PenaltyForce(DifferentiableSystem):
             return AutoDiffVector(F.value[rows], F.gradient[rows])
         return wrench.F_Tool_W if port == "F_Tool_W" else wrench.wrench_model
 
-    def _calc_wrench(self, context: Context) -> PenaltyWrench:
-        p_WO, V_WO = self._motions.read(context)
-        gains = self.get_gains(context)
-        return penalty_force(
-            self._clusters.Eval(context),
-            self._X_WTool.Eval(context)[4:],
-            self._V_WTool.Eval(context),
-            p_WO,
-            V_WO,
-            gains.stiffness_N_per_m,
-            gains.damping_Ns_per_m,
+    def _read(self, context: Context) -> tuple[Any, ...]:
+        """Returns what the law is a function of."""
+        return (
+            self._eval_clusters(context),
+            self._eval_X_WTool(context),
+            self._eval_V_WTool(context),
+            self._motions.read(context),
+            context.get_abstract_parameter(self._gains).get_value().materials,
         )
 
     def _check_number(self, gains: ContactGains) -> None:
         """Refuses gains that are not one for each object."""
-        for name, values in vars(gains).items():
+        for name in _GAINS:
+            values = getattr(gains, name)
             if len(values) != self._num_objects:
                 raise ValueError(
                     f"{name} must have one value for each of the {self._num_objects}"
                     f" objects, has {len(values)}"
                 )
 
+    def _calc_wrench(self, context: Context) -> PenaltyWrench:
+        return penalty_force(*self._read(context))
+
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._calc_wrench(context).wrench_model)
+        output.set_value(penalty_wrench_model(*self._read(context)))
 
     def _calc_F_Tool_W(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._eval_wrench(context).F_Tool_W)

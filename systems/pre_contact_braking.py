@@ -171,13 +171,11 @@ class PreContactBraking(DifferentiableSystem):
 
     def _calc_wrenches(self, context: Context) -> np.ndarray:
         """Returns the wrench model (78,) and the wrench (6) on each object."""
-        p_WO, V_WO = self._motions.read(context)
         return pre_contact_braking(
             self._contacts.Eval(context),
             self._X_WTool.Eval(context)[4:],
             self._V_WTool.Eval(context),
-            p_WO,
-            V_WO,
+            self._motions.read(context),
             self._gains
             if self._relief is None
             else self._relieve(self._relief.Eval(context)[1]),

@@ -50,8 +50,9 @@ def brake(
     """Returns the wrench (6,) and the damping (6, 6)."""
     count = 1 + max(contacts.object_index, default=0)
     V_O = np.zeros((count, 6)) if V_O is None else V_O
+    objects = _core.ObjectFrames(np.zeros((count, 3)), V_O)
     model = _core.pre_contact_braking(
-        contacts, np.asarray(p_WTo, float), V, np.zeros((count, 3)), V_O, gains
+        contacts, np.asarray(p_WTo, float), V, objects, gains
     )
     assert not model[6:42].any()
     return model[:6], model[42:78].reshape(6, 6)
@@ -106,7 +107,8 @@ def test_each_object_gets_the_reaction_of_its_own_contacts(seed: int) -> None:
     V = rng.normal(size=6)
 
     def wrenches(V_O: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        all_of_them = _core.pre_contact_braking(contacts, p_WTo, V, p_WO, V_O, GAINS)
+        objects = _core.ObjectFrames(p_WO, V_O)
+        all_of_them = _core.pre_contact_braking(contacts, p_WTo, V, objects, GAINS)
         return all_of_them[:6], all_of_them[78:].reshape(count, 6)
 
     def about_origin(F: np.ndarray, p: np.ndarray) -> np.ndarray:
@@ -272,10 +274,6 @@ def test_gains_are_checked_by_name(name: str, bad: float) -> None:
 
 def test_objects_are_checked() -> None:
     contacts = slabs_around([[0, 0, 1]], [0.5 * D])
-    three, six, none = np.zeros((1, 3)), np.zeros((2, 6)), np.zeros((0, 3))
-    with pytest.raises(ValueError, match="one row"):
-        _core.pre_contact_braking(contacts, np.zeros(3), DOWN, three, six, GAINS)
+    none = _core.ObjectFrames(np.zeros((0, 3)), np.zeros((0, 6)))
     with pytest.raises(IndexError):
-        _core.pre_contact_braking(
-            contacts, np.zeros(3), DOWN, none, np.zeros((0, 6)), GAINS
-        )
+        _core.pre_contact_braking(contacts, np.zeros(3), DOWN, none, GAINS)

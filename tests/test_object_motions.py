@@ -6,7 +6,7 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import LeafSystem
 from test_contact_query import box_core
 
-from drake_haptics._core import AutoDiffVector
+from drake_haptics._core import AutoDiffVector, ObjectFrames
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.object_motions import ObjectMotions
 
@@ -27,9 +27,9 @@ def core():
 def test_an_object_at_rest_has_no_port(core):
     system = Asking([ContactObject("table", core, RigidTransform([1.0, 2.0, 3.0]))])
     assert system.num_input_ports() == 0
-    p_WO, V_WO = system.motions.read(system.CreateDefaultContext())
-    np.testing.assert_array_equal(p_WO, [[1.0, 2.0, 3.0]])
-    np.testing.assert_array_equal(V_WO, np.zeros((1, 6)))
+    frames = system.motions.read(system.CreateDefaultContext())
+    np.testing.assert_array_equal(frames.p_WO, [[1.0, 2.0, 3.0]])
+    np.testing.assert_array_equal(frames.V_WO, np.zeros((1, 6)))
 
 
 def test_an_object_that_moves_is_read_in_its_place(core):
@@ -39,9 +39,9 @@ def test_an_object_that_moves_is_read_in_its_place(core):
     for x in (0.1, 0.2):
         system.GetInputPort("X_WO_cart").FixValue(context, [1, 0, 0, 0, x, 0, 0])
         system.GetInputPort("V_WO_cart").FixValue(context, [0, 0, 1, x, 0, 0])
-        p_WO, V_WO = system.motions.read(context)
-        np.testing.assert_array_equal(p_WO, [[1.0, 2.0, 3.0], [x, 0, 0]])
-        np.testing.assert_array_equal(V_WO, [np.zeros(6), [0, 0, 1, x, 0, 0]])
+        frames = system.motions.read(context)
+        np.testing.assert_array_equal(frames.p_WO, [[1.0, 2.0, 3.0], [x, 0, 0]])
+        np.testing.assert_array_equal(frames.V_WO, [np.zeros(6), [0, 0, 1, x, 0, 0]])
 
 
 class Point(dict):
@@ -61,3 +61,23 @@ def test_only_what_moves_has_derivatives(core):
     np.testing.assert_array_equal(V.value, [*np.zeros(6), *V_WO.value])
     np.testing.assert_array_equal(p.gradient, [*np.zeros((3, 4)), *X_WO.gradient[4:]])
     np.testing.assert_array_equal(V.gradient, [*np.zeros((6, 4)), *V_WO.gradient])
+
+
+def test_frames_that_are_moved_leave_the_others_and_themselves():
+    frames = ObjectFrames(np.eye(3), np.zeros((3, 6)))
+    moved = frames.moved([1], [np.array([1.0, 0, 0, 0, 4, 5, 6])], [np.arange(6.0)])
+    np.testing.assert_array_equal(moved.p_WO, [[1, 0, 0], [4, 5, 6], [0, 0, 1]])
+    np.testing.assert_array_equal(moved.V_WO[1], np.arange(6))
+    np.testing.assert_array_equal(frames.p_WO, np.eye(3))
+
+
+def test_frames_are_checked():
+    frames = ObjectFrames(np.eye(3), np.zeros((3, 6)))
+    pose, still = np.array([1.0, 0, 0, 0, 0, 0, 0]), np.zeros(6)
+    with pytest.raises(ValueError, match="one row for each object"):
+        ObjectFrames(np.eye(3), np.zeros((2, 6)))
+    with pytest.raises(ValueError, match="one entry for each index"):
+        frames.moved([0, 1], [pose], [still])
+    for absent in (3, -1):
+        with pytest.raises(IndexError):
+            frames.moved([absent], [pose], [still])

@@ -14,6 +14,7 @@ from drake_haptics._core import (
     AutoDiffPenaltyWrench,
     cluster_contacts,
     penalty_force,
+    penalty_wrench_model,
 )
 from drake_haptics.systems.contact_query import ContactObject, ContactQuery
 from drake_haptics.systems.penalty_force import PenaltyForce
@@ -115,6 +116,30 @@ def test_tool_and_objects_share_one_answer(plate, clusters, monkeypatch):
 def test_nothing_that_moves_has_no_reaction(plate):
     force, _ = make_force([ContactObject("plate", plate, RigidTransform())])
     assert not force.HasOutputPort("F_O_W")
+
+
+def test_of_many_objects_at_rest_a_tick_reads_none(plate, clusters, monkeypatch):
+    """They cross to the core when the system is made, however many there are."""
+    objects = [ContactObject(f"o{i}", plate, RigidTransform()) for i in range(900)]
+    force, context = make_force(objects)
+    asked = []
+    monkeypatch.setattr(
+        "drake_haptics.systems.penalty_force.penalty_wrench_model",
+        lambda *inputs: asked.append(inputs[3:]) or penalty_wrench_model(*inputs),
+    )
+    port = force.get_wrench_model_output_port()
+    for speed in (0.0, -0.1):
+        fix(force, context, clusters, [0, 0, 0, 0, 0, speed])
+        model = port.Eval(context)
+    (frames, materials), later = asked
+    assert later[0] is frames
+    assert later[1] is materials
+    assert len(frames) == len(materials) == 900
+    wrench = force.get_contact_wrench_output_port().Eval(context)
+    np.testing.assert_array_equal(wrench.wrench_model, model)
+    assert wrench.F_objects_W.shape == (900, 6)
+    assert wrench.F_objects_W[0].any()
+    assert not wrench.F_objects_W[1:].any()
 
 
 def test_approach_is_damped_and_departure_is_not(plate, clusters):

@@ -80,8 +80,8 @@ void ZipWrenches(A& a, B& b, const F& f) {
   ZipNumbers(a.tool.K, b.tool.K, f);
   ZipNumbers(a.tool.B, b.tool.B, f);
   ZipItems(a.f_cluster_W, b.f_cluster_W, f);
-  if constexpr (requires { a.F_objects_W; }) {
-    ZipItems(a.F_objects_W, b.F_objects_W, f);
+  if constexpr (requires { a.F_cluster_W; }) {
+    ZipItems(a.F_cluster_W, b.F_cluster_W, f);
   }
 }
 
@@ -144,8 +144,10 @@ MovingFrame ValuesOf(const MovingFrameOf<AutoDiff>& frame) {
 
 PenaltyWrench ValuesOf(const PenaltyWrenchOf<AutoDiff>& wrench) {
   PenaltyWrench values;
-  values.F_objects_W.resize(wrench.F_objects_W.size());
   values.f_cluster_W.resize(wrench.f_cluster_W.size());
+  values.F_cluster_W.resize(wrench.F_cluster_W.size());
+  values.object = wrench.object;
+  values.num_objects = wrench.num_objects;
   Zip(wrench, values, CopyValue);
   return values;
 }

@@ -128,6 +128,7 @@ AutoDiffPenaltyWrench Compute(const AutoDiffClusterSet& clusters,
     objects.push_back(FrameOf(p_WO, V_WO, i));
     values.push_back(ValuesOf(objects.back()));
     materials.push_back({stiffness[i], damping[i]});
+    RequireMaterial(materials.back());
   }
   AutoDiffPenaltyWrench wrench{
       ComputePenaltyWrench(clusters.set, tool, objects, materials), D};
@@ -170,7 +171,7 @@ void BindWrench(nb::module_& m) {
   wrench.def_prop_ro(
       "F_objects_W",
       [](const Wrench& w) {
-        return Flat<6>(w.set.F_objects_W, w.num_derivatives);
+        return Flat<6>(w.set.SumByObject(), w.num_derivatives);
       },
       "(6 m,) wrench on each object at its origin, [N·m; N].");
   wrench.def_prop_ro(

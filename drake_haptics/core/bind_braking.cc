@@ -3,6 +3,7 @@
 #include "autodiff_sets.h"
 #include "bind.h"
 #include "bind_eigen.h"
+#include "bind_objects.h"
 #include "braking.h"
 
 namespace nb = nanobind;
@@ -10,22 +11,11 @@ namespace nb = nanobind;
 namespace drake_haptics {
 namespace {
 
-using Rows3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-using Rows6 = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
-
 Eigen::VectorXd Brake(const ContactSet& contacts, const Vec3& p_WTo,
-                      const Vec6& V_WTool, const Rows3& p_WO, const Rows6& V_WO,
+                      const Vec6& V_WTool, const ObjectFrames& objects,
                       const BrakingGains& gains) {
-  if (p_WO.rows() != V_WO.rows()) {
-    throw std::invalid_argument(
-        "p_WO and V_WO must have one row for each object");
-  }
-  std::vector<MovingFrame> objects;
-  for (Eigen::Index i = 0; i < p_WO.rows(); ++i) {
-    objects.push_back({p_WO.row(i), V_WO.row(i)});
-  }
   return ToVector(ComputeBraking<double>(contacts.contacts, {p_WTo, V_WTool},
-                                         objects, gains));
+                                         objects.frames, gains));
 }
 
 AutoDiffVector DifferentiateBraking(const AutoDiffContactSet& contacts,
@@ -71,7 +61,7 @@ void BindBraking(nb::module_& m) {
           "Raises:\n"
           "    ValueError: b < 0, D <= 0, or one of them is not finite.");
   m.def("pre_contact_braking", &Brake, nb::arg("contacts"), nb::arg("p_WTo"),
-        nb::arg("V_WTool"), nb::arg("p_WO"), nb::arg("V_WO"), nb::arg("gains"),
+        nb::arg("V_WTool"), nb::arg("objects"), nb::arg("gains"),
         "Braking of the approach of surfaces that do not touch yet (McNeely, "
         "Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s "
         "w v along its normal, v the speed of approach, w = 4 (d/D)(1 − d/D), "
@@ -80,15 +70,13 @@ void BindBraking(nb::module_& m) {
         "Args:\n"
         "    p_WTo: (3,) tool's origin, m.\n"
         "    V_WTool: (6,) its spatial velocity [rad/s; m/s].\n"
-        "    p_WO: (m, 3) objects' origins, m.\n"
-        "    V_WO: (m, 6) their spatial velocities.\n\n"
+        "    objects: where they are.\n\n"
         "Returns:\n"
         "    (78 + 6 m,) wrench model on the tool at To in W: [F (6); K (36), "
         "zero; B (36, by rows)], rotational first; then the wrench on each "
         "object at its origin in W, N·m and N.\n\n"
         "Raises:\n"
-        "    ValueError: rows do not match.\n"
-        "    IndexError: a contact names an object that has no row.");
+        "    IndexError: a contact names an object that is not given.");
   m.def("pre_contact_braking", &DifferentiateBraking, nb::arg("contacts"),
         nb::arg("p_WTo"), nb::arg("V_WTool"), nb::arg("p_WO"), nb::arg("V_WO"),
         nb::arg("gains"),

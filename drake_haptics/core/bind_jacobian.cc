@@ -46,6 +46,7 @@ WrenchJacobian Compute(const ContactSet& contacts, const ClusterSet& clusters,
                       PoseFromVector(X_WO.row(i).transpose(), "X_WO"),
                       V_WO.row(i).transpose()});
     materials.push_back({stiffness[i], damping[i]});
+    RequireMaterial(materials.back());
   }
   return ComputeWrenchJacobian(
       contacts.contacts, clusters, tolerance,

@@ -15,7 +15,8 @@ NB_MODULE(_core, m) {
   drake_haptics::BindConvexPair(m);
   drake_haptics::BindTracker(m);
   drake_haptics::BindAdvance(m);
-  drake_haptics::BindForce(m);
+  drake_haptics::BindClustering(m);
+  drake_haptics::BindPenaltyForce(m);
   drake_haptics::BindTool(m);
   drake_haptics::BindJacobian(m);
   drake_haptics::BindAutoDiffContact(m);

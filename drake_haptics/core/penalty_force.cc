@@ -95,6 +95,20 @@ Mat6Of<T> Stiffness(const ClusterSetOf<T>& set, const Wrenches<T>& G,
 
 }  // namespace
 
+void RequireMaterial(const ContactMaterial& material) {
+  RequireGain(material.stiffness, "stiffness");
+  RequireGain(material.damping, "damping");
+}
+
+template <typename T>
+std::vector<Vec6Of<T>> PenaltyWrenchOf<T>::SumByObject() const {
+  std::vector<Vec6Of<T>> F_objects_W(num_objects, Vec6Of<T>::Zero());
+  for (std::size_t i = 0; i < object.size(); ++i) {
+    F_objects_W[object[i]] += F_cluster_W[i];
+  }
+  return F_objects_W;
+}
+
 template <typename T>
 PenaltyWrenchOf<T> ComputePenaltyWrench(
     const ClusterSetOf<T>& clusters, const MovingFrameOf<T>& tool,
@@ -103,17 +117,17 @@ PenaltyWrenchOf<T> ComputePenaltyWrench(
   if (materials.size() != objects.size()) {
     throw std::invalid_argument("there must be one material for each object");
   }
-  for (const ContactMaterial& material : materials) {
-    RequireGain(material.stiffness, "stiffness");
-    RequireGain(material.damping, "damping");
-  }
   PenaltyWrenchOf<T> result;
-  result.F_objects_W.assign(objects.size(), Vec6Of<T>::Zero());
+  result.num_objects = static_cast<int>(objects.size());
+  result.f_cluster_W.reserve(clusters.clusters.size());
+  result.F_cluster_W.reserve(clusters.clusters.size());
+  result.object.reserve(clusters.clusters.size());
   Wrenches<T> wrenches(6, clusters.clusters.size());
   Eigen::Index next = 0;
   for (const ClusterOf<T>& cluster : clusters.clusters) {
     const MovingFrameOf<T>& object = objects.at(cluster.object);
     const ContactMaterial& material = materials[cluster.object];
+    RequireMaterial(material);
     const Vec6Of<T> G = Wrench(cluster.p_WC, cluster.nhat_BA_W, tool);
     const Vec6Of<T> G_object = Wrench(cluster.p_WC, cluster.nhat_BA_W, object);
     // Eq. 8, as power of a unit force: n·v at the contact, of either body.
@@ -125,13 +139,16 @@ PenaltyWrenchOf<T> ComputePenaltyWrench(
     result.tool.B += approach.engaged * damping * G * G.transpose();
     wrenches.col(next++) = G;
     result.tool.F += magnitude * G;
-    result.F_objects_W[cluster.object] -= magnitude * G_object;
+    result.F_cluster_W.push_back(T(-magnitude) * G_object);
+    result.object.push_back(cluster.object);
     result.f_cluster_W.push_back(magnitude * cluster.nhat_BA_W);
   }
   if (next > 0) result.tool.K = Stiffness(clusters, wrenches, materials);
   return result;
 }
 
+template struct PenaltyWrenchOf<double>;
+template struct PenaltyWrenchOf<AutoDiff>;
 template PenaltyWrench ComputePenaltyWrench(
     const ClusterSet&, const MovingFrame&, const std::vector<MovingFrame>&,
     const std::vector<ContactMaterial>&);

@@ -14,6 +14,9 @@ struct ContactMaterial {
   double damping = 0;    ///< k_v, N·s/m
 };
 
+/// @throws std::invalid_argument for a gain below zero or not finite.
+void RequireMaterial(const ContactMaterial& material);
+
 /// A moving frame in the world: origin (m) and spatial velocity
 /// [angular (rad/s); linear (m/s)].
 template <typename T>
@@ -23,13 +26,19 @@ struct MovingFrameOf {
 };
 using MovingFrame = MovingFrameOf<double>;
 
-/// The wrenches of all clusters.
+/// The wrenches of all clusters. What objects that are not touched feel is not
+/// written down: a scene can have many.
 template <typename T>
 struct PenaltyWrenchOf {
-  WrenchModelOf<T> tool;  ///< on the tool at To
-  /// On each object at its origin (Eq. 7, 10).
-  std::vector<Vec6Of<T>> F_objects_W;
+  WrenchModelOf<T> tool;               ///< on the tool at To
   std::vector<Vec3Of<T>> f_cluster_W;  ///< force on the tool of each cluster, N
+  /// On its object at the object's origin, of each cluster (Eq. 7, 10).
+  std::vector<Vec6Of<T>> F_cluster_W;
+  std::vector<int> object;  ///< of each cluster
+  int num_objects = 0;      ///< touched or not
+
+  /// The wrench on each object at its origin.
+  std::vector<Vec6Of<T>> SumByObject() const;
 };
 using PenaltyWrench = PenaltyWrenchOf<double>;
 
@@ -42,9 +51,10 @@ using PenaltyWrench = PenaltyWrenchOf<double>;
 /// turn with the normal are left out, which keeps K positive semidefinite.
 /// @param objects one frame for each object that the clusters name.
 /// @param materials one for each object.
-/// @throws std::invalid_argument for a gain below zero or not finite, or where
-///         there are not as many materials as objects; std::out_of_range for a
-///         cluster on an object that is not given.
+/// @throws std::invalid_argument for a gain below zero or not finite of an
+///         object that is touched, or where there are not as many materials as
+///         objects; std::out_of_range for a cluster on an object that is not
+///         given.
 template <typename T>
 PenaltyWrenchOf<T> ComputePenaltyWrench(
     const ClusterSetOf<T>& clusters, const MovingFrameOf<T>& tool,
