@@ -125,26 +125,26 @@ class _ImplicitStep(DifferentiableSystem):
         self._wrenches = [
             self.DeclareVectorInputPort(name, 78) for name in wrench_names
         ]
+        self._eval_wrenches = [port.Eval for port in self._wrenches]
         state = self.DeclareDiscreteState(
             np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
         )
-        self.DeclareStateOutputPort("state", state)
+        self._eval_state = self.DeclareStateOutputPort("state", state).Eval
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
-        wrench_model = np.zeros(78)
-        for port in self._wrenches:
-            try:
-                wrench_model += port.Eval(context)
-            except RuntimeError:
-                # To ask first would take as long as to read, at every tick.
-                if port.HasValue(context):
-                    raise
+        try:
+            wrench_models = [
+                eval_wrench(context) for eval_wrench in self._eval_wrenches
+            ]
+        except RuntimeError:
+            # To ask first would take as long as to read, at every tick.
+            wrench_models = [
+                port.Eval(context) for port in self._wrenches if port.HasValue(context)
+            ]
         next_state.set_value(
             self._dynamics.step(
-                context.get_discrete_state_vector().value(),
-                wrench_model,
-                self._period_s,
+                self._eval_state(context), wrench_models, self._period_s
             )
         )
 

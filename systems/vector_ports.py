@@ -28,7 +28,10 @@ def export_parts(
 
 
 def import_parts(
-    builder: DiagramBuilder, vector: InputPort, sizes: Mapping[str, int]
+    builder: DiagramBuilder,
+    vector: InputPort,
+    sizes: Mapping[str, int],
+    own: OutputPort | None = None,
 ) -> None:
     """Exports consecutive parts of a vector input as inputs of the diagram.
 
@@ -38,8 +41,12 @@ def import_parts(
         builder: Of the diagram.
         vector: Of a system in it.
         sizes: Size of each part by the name of its port, in order.
+        own: The last part, of a system in the diagram; no input.
     """
-    joint = builder.AddNamedSystem("joint", Multiplexer(list(sizes.values())))
+    all_sizes = [*sizes.values(), *([] if own is None else [own.size()])]
+    joint = builder.AddNamedSystem("joint", Multiplexer(all_sizes))
     builder.Connect(joint.get_output_port(), vector)
     for i, name in enumerate(sizes):
         builder.ExportInput(joint.get_input_port(i), name)
+    if own is not None:
+        builder.Connect(own, joint.get_input_port(len(sizes)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pydrake.common.value import Value
+import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
     BasicVector,
@@ -12,8 +12,9 @@ from pydrake.systems.framework import (
     InputPort,
     OutputPort,
 )
+from pydrake.systems.primitives import ConstantVectorSource
 
-from drake_haptics._core import AutoDiffVector, CouplingGains, coupling_wrench
+from drake_haptics._core import AutoDiffVector, CouplingGains, joined_coupling_wrench
 from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems.differentiable_system import (
     AutoDiffPoint,
@@ -53,8 +54,9 @@ class VirtualCoupling(Diagram):
     * `F_display` (6) is the wrench [τ; f] on the handle at its origin in the world,
       N·m and N.
 
-    The gains are an abstract parameter of the Context, of type
-    `drake_haptics._core.CouplingGains`; see `set_gains`.
+    The gains are a numeric parameter (6) of the Context, in the order of
+    `drake_haptics._core.CouplingGains`; see `set_gains`. Outputs have no derivatives
+    by them.
     """
 
     def __init__(self, gains: CouplingGains, X_HT: RigidTransform):
@@ -67,9 +69,18 @@ class VirtualCoupling(Diagram):
         super().__init__()
         self._X_HT = X_HT
         builder = DiagramBuilder()
-        spring = builder.AddNamedSystem("spring", _SpringAndDamper(gains, X_HT))
-        self._spring = spring
-        import_parts(builder, spring.get_input_port(), _MOTIONS)
+        spring = builder.AddNamedSystem("spring", _SpringAndDamper(X_HT))
+        # Drake's own system has them among its parameters, and hands them on with
+        # the motions: for Python to read a parameter takes longer than the law.
+        self._gains = builder.AddNamedSystem(
+            "gains", ConstantVectorSource(_to_vector(gains))
+        )
+        import_parts(
+            builder,
+            spring.get_input_port(),
+            _MOTIONS,
+            self._gains.get_output_port(),
+        )
         export_parts(
             builder, spring.get_output_port(), {"wrench_model": 78, "F_display": 6}
         )
@@ -81,7 +92,8 @@ class VirtualCoupling(Diagram):
         Args:
             context: Of this system.
         """
-        return self._spring.get_gains(self.GetSubsystemContext(self._spring, context))
+        own = self.GetSubsystemContext(self._gains, context)
+        return CouplingGains(*self._gains.get_source_value(own).value())
 
     def set_gains(self, context: Context, gains: CouplingGains) -> None:
         """Changes the gains, from now on.
@@ -90,9 +102,10 @@ class VirtualCoupling(Diagram):
             context: Of this system.
             gains: Of the spring and the damper.
         """
-        self._spring.set_gains(
-            self.GetMutableSubsystemContext(self._spring, context), gains
-        )
+        if not isinstance(gains, CouplingGains):
+            raise TypeError(f"gains must be CouplingGains, is {type(gains).__name__}")
+        own = self.GetMutableSubsystemContext(self._gains, context)
+        self._gains.get_mutable_source_value(own).SetFromVector(_to_vector(gains))
 
     @property
     def X_HT(self) -> RigidTransform:
@@ -124,55 +137,41 @@ class VirtualCoupling(Diagram):
         return self.GetOutputPort("F_display")
 
 
-# Parts of what the spring and damper are given, and where each is in it.
+# What the spring and damper are given, with the gains after it.
 _MOTIONS = {"X_WH": 7, "V_WH": 6, "X_WTool": 7, "V_WTool": 6}
-_X_WH, _V_WH, _X_WTOOL, _V_WTOOL = map(slice, (0, 7, 13, 20), (7, 13, 20, 26))
+
+
+def _to_vector(gains: CouplingGains) -> np.ndarray:
+    """Returns gains (6,) in the order in which they are constructed."""
+    return np.array(
+        [
+            gains.stiffness_N_per_m,
+            gains.damping_Ns_per_m,
+            gains.rotational_stiffness_Nm_per_rad,
+            gains.rotational_damping_Nms_per_rad,
+            gains.max_force_N,
+            gains.max_torque_Nm,
+        ]
+    )
 
 
 class _SpringAndDamper(DifferentiableSystem):
     """Both wrenches of a `VirtualCoupling` from one call of the core."""
 
-    def __init__(self, gains: CouplingGains, X_HT: RigidTransform):
+    def __init__(self, X_HT: RigidTransform):
         super().__init__()
         self._q_HT = pose_to_vector(X_HT)
-        self._gains = self.DeclareAbstractParameter(Value[object](gains))
-        self._motions = self.DeclareVectorInputPort("motions", 26)
+        # Bound once: to look a method up at each tick takes as long as to add vectors.
+        self._eval_joined = self.DeclareVectorInputPort("motions_and_gains", 32).Eval
         self.DeclareVectorOutputPort(
-            "wrenches",
-            84,
-            self._calc_wrenches,
-            {self.all_input_ports_ticket(), self.pa_ticket()},
+            "wrenches", 84, self._calc_wrenches, {self.all_input_ports_ticket()}
         )
 
-    def get_gains(self, context: Context) -> CouplingGains:
-        """Returns the gains."""
-        return context.get_abstract_parameter(self._gains).get_value()
-
-    def set_gains(self, context: Context, gains: CouplingGains) -> None:
-        """Changes the gains."""
-        if not isinstance(gains, CouplingGains):
-            raise TypeError(f"gains must be CouplingGains, is {type(gains).__name__}")
-        context.get_mutable_abstract_parameter(self._gains).set_value(gains)
-
     def _calc_wrenches(self, context: Context, wrenches: BasicVector) -> None:
-        motions = self._motions.Eval(context)
-        wrenches.SetFromVector(
-            coupling_wrench(
-                motions[_X_WH],
-                motions[_V_WH],
-                self._q_HT,
-                motions[_X_WTOOL],
-                motions[_V_WTOOL],
-                context.get_abstract_parameter(self._gains).get_value(),
-            )
+        wrenches.set_value(
+            joined_coupling_wrench(self._eval_joined(context), self._q_HT)
         )
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrenches with their derivatives."""
-        motions = at["motions"]
-        X_WH, V_WH, X_WTool, V_WTool = (
-            AutoDiffVector(motions.value[part], motions.gradient[part])
-            for part in (_X_WH, _V_WH, _X_WTOOL, _V_WTOOL)
-        )
-        gains = at.parameters[self._gains]
-        return coupling_wrench(X_WH, V_WH, self._q_HT, X_WTool, V_WTool, gains)
+        return joined_coupling_wrench(at["motions_and_gains"], self._q_HT)

@@ -106,3 +106,14 @@ def test_bodies_that_cannot_be_are_refused() -> None:
     for inertia in (np.zeros((3, 3)), -INERTIA, np.full((3, 3), np.nan)):
         with pytest.raises(ValueError, match="inertia"):
             _core.RigidToolDynamics(MASS, np.zeros(3), inertia)
+
+
+def test_several_wrenches_move_the_tool_as_their_sum() -> None:
+    tool = _core.RigidToolDynamics(MASS, np.array([0.01, 0.0, 0.0]), INERTIA)
+    rng = np.random.default_rng(0)
+    parts = [rng.normal(size=78) for _ in range(3)]
+    together = tool.step(at_rest(), sum(parts), H)
+    np.testing.assert_allclose(tool.step(at_rest(), parts, H), together, rtol=1e-12)
+    np.testing.assert_array_equal(
+        tool.step(at_rest(), [], H), tool.step(at_rest(), model(), H)
+    )

@@ -122,3 +122,49 @@ def test_gains_below_zero_or_not_finite_are_refused(bad: float) -> None:
         gains[k] = bad
         with pytest.raises(ValueError, match="gains"):
             _core.CouplingGains(*gains)
+
+
+GAINS_OF_FULL = [900.0, 2.0, 1.5, 0.004, np.inf, np.inf]
+
+
+def joined_of(seed: int) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+    """Returns a vector (32,) as a multiplexer joins it, and the case it is of."""
+    case = random_case(seed)
+    q_WH, _, q_WT, V_WH, V_WT = case
+    return np.concatenate([q_WH, V_WH, q_WT, V_WT, GAINS_OF_FULL]), case
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_one_joined_vector_has_the_wrenches_of_its_parts(seed: int) -> None:
+    joined, (q_WH, q_HT, q_WT, V_WH, V_WT) = joined_of(seed)
+    np.testing.assert_array_equal(
+        _core.joined_coupling_wrench(joined, q_HT),
+        _core.coupling_wrench(q_WH, V_WH, q_HT, q_WT, V_WT, FULL),
+    )
+
+
+@pytest.mark.parametrize(
+    ("at", "bad", "said"),
+    [
+        (26, -1.0, "coupling gains"),
+        (29, np.nan, "coupling gains"),
+        (30, 0.0, "max_force_N"),
+        (31, np.nan, "max_torque_Nm"),
+        # What an order of x y z first makes of a pose.
+        (slice(0, 7), [0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0], "X_WH must be a pose"),
+    ],
+)
+def test_a_joined_vector_is_checked(at: object, bad: object, said: str) -> None:
+    joined, (_, q_HT, *_) = joined_of(0)
+    joined[at] = bad
+    with pytest.raises(ValueError, match=said):
+        _core.joined_coupling_wrench(joined, q_HT)
+
+
+def test_derivatives_by_gains_are_refused_not_left_out() -> None:
+    joined, (_, q_HT, *_) = joined_of(0)
+    gradient = np.zeros((32, 1))
+    _core.joined_coupling_wrench(_core.AutoDiffVector(joined, gradient), q_HT)
+    gradient[27] = 1.0
+    with pytest.raises(ValueError, match="no derivatives of the gains"):
+        _core.joined_coupling_wrench(_core.AutoDiffVector(joined, gradient), q_HT)

@@ -1,9 +1,11 @@
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <cmath>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 #include "autodiff.h"
 #include "bind.h"
@@ -45,6 +47,82 @@ void RequireLimit(double limit, const char* name) {
   }
 }
 
+CouplingGains MakeGains(double k, double b, double kr, double br,
+                        double max_force, double max_torque) {
+  for (const double gain : {k, b, kr, br}) {
+    if (!std::isfinite(gain) || gain < 0) {
+      throw std::invalid_argument(
+          "coupling gains must be finite and at least 0");
+    }
+  }
+  RequireLimit(max_force, "max_force_N");
+  RequireLimit(max_torque, "max_torque_Nm");
+  return {k, b, kr, br, max_force, max_torque};
+}
+
+// A handle is handed in by whoever drives it, and some put x y z first. What is
+// not finite is told of by who holds the tool's state.
+void RequireTurn(const PoseVector& q_WH) {
+  if (std::abs(q_WH.head<4>().squaredNorm() - 1.0) > 1e-2) {
+    std::ostringstream text;
+    text << "X_WH must be a pose [qw qx qy qz x y z] with a quaternion of "
+            "length 1, is ["
+         << q_WH.transpose() << "]";
+    throw std::invalid_argument(text.str());
+  }
+}
+
+// Poses and velocities of handle and tool, and the gains.
+template <typename T>
+using JoinedVector = Eigen::Matrix<T, 32, 1>;
+
+template <typename T>
+auto CoupleJoined(const JoinedVector<T>& in, const PoseVector& q_HT,
+                  const CouplingGains& gains) {
+  return ToVector(ComputeCoupling<T>(
+      in.template head<7>(), in.template segment<6>(7), q_HT,
+      in.template segment<7>(13), in.template segment<6>(20), gains));
+}
+
+CouplingGains GainsOf(const JoinedVector<double>& in) {
+  return MakeGains(in[26], in[27], in[28], in[29], in[30], in[31]);
+}
+
+void BindJoinedCoupling(nb::module_& m) {
+  m.def(
+      "joined_coupling_wrench",
+      [](const JoinedVector<double>& joined, const PoseVector& q_HT) {
+        RequireTurn(joined.head<7>());
+        return CoupleJoined<double>(joined, q_HT, GainsOf(joined));
+      },
+      nb::arg("joined"), nb::arg("q_HT"),
+      "`coupling_wrench` of one vector, as a multiplexer joins it: an array "
+      "that crosses takes as long as the law.\n\n"
+      "Args:\n"
+      "    joined: (32,) [q_WH; V_WH; q_WTool; V_WTool; gains], the gains (6) "
+      "in the order of `CouplingGains`.\n"
+      "    q_HT: (7,) the tool's place in the handle.\n\n"
+      "Raises:\n"
+      "    ValueError: a gain is out of range, or the handle's quaternion is "
+      "far "
+      "from length 1.");
+  m.def(
+      "joined_coupling_wrench",
+      [](const AutoDiffVector& joined, const PoseVector& q_HT) {
+        const auto in = ToScalars<32>(joined, "joined");
+        if (!joined.gradient.bottomRows<6>().isZero(0.0)) {
+          throw std::invalid_argument(
+              "joined must have no derivatives of the gains: the coupling has "
+              "none by them");
+        }
+        return ToAutoDiffVector(
+            CoupleJoined<AutoDiff>(in, q_HT, GainsOf(joined.value)),
+            joined.num_derivatives());
+      },
+      nb::arg("joined"), nb::arg("q_HT"),
+      "The same with derivatives, but by the gains.");
+}
+
 void BindCoupling(nb::module_& m) {
   nb::class_<CouplingGains> gains(
       m, "CouplingGains",
@@ -56,15 +134,8 @@ void BindCoupling(nb::module_& m) {
           "__init__",
           [](CouplingGains* self, double k, double b, double kr, double br,
              double max_force, double max_torque) {
-            for (const double gain : {k, b, kr, br}) {
-              if (!std::isfinite(gain) || gain < 0) {
-                throw std::invalid_argument(
-                    "coupling gains must be finite and at least 0");
-              }
-            }
-            RequireLimit(max_force, "max_force_N");
-            RequireLimit(max_torque, "max_torque_Nm");
-            new (self) CouplingGains{k, b, kr, br, max_force, max_torque};
+            new (self)
+                CouplingGains(MakeGains(k, b, kr, br, max_force, max_torque));
           },
           nb::arg("stiffness_N_per_m"), nb::arg("damping_Ns_per_m"),
           nb::arg("rotational_stiffness_Nm_per_rad"),
@@ -148,15 +219,26 @@ void BindRigidTool(nb::module_& m) {
       .def_prop_ro(
           "p_TTcm", [](const ToolInertia& self) { return self.p_TTcm; },
           "Centre of mass (3,) in the tool's frame, m.")
+      // First what each tick calls: to try another takes as long as the step.
+      .def(
+          "step",
+          [](const ToolInertia& self, const Eigen::Matrix<double, 13, 1>& state,
+             const std::vector<WrenchModelVector>& wrenches, double h) {
+            WrenchModelVector sum = WrenchModelVector::Zero();
+            for (const WrenchModelVector& wrench : wrenches) sum += wrench;
+            return Step(self, state, sum, h);
+          },
+          nb::arg("state"), nb::arg("wrench_models"), nb::arg("h"),
+          "Advances the state (13,) = [pose (7); spatial velocity (6)] by one "
+          "linearized backward Euler step of h seconds under the sum of wrench "
+          "models (78,).")
       .def(
           "step",
           [](const ToolInertia& self, const Eigen::Matrix<double, 13, 1>& state,
              const WrenchModelVector& wrench,
              double h) { return Step(self, state, wrench, h); },
           nb::arg("state"), nb::arg("wrench_model"), nb::arg("h"),
-          "Advances the state (13,) = [pose (7); spatial velocity (6)] by one "
-          "linearized backward Euler step of h seconds under a wrench model "
-          "(78,).")
+          "The same under one wrench model (78,).")
       .def(
           "step",
           [](const ToolInertia& self, const AutoDiffVector& state,
@@ -197,6 +279,7 @@ void BindLimit(nb::module_& m) {
 
 void BindTool(nb::module_& m) {
   BindCoupling(m);
+  BindJoinedCoupling(m);
   BindLimit(m);
   BindRigidTool(m);
 }
