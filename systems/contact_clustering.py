@@ -122,6 +122,7 @@ class ContactClustering(DifferentiableSystem):
         rule = ClusteringRule(method, tolerance_m, delta_m)
         self._rule = self.DeclareAbstractParameter(Value[object](rule))
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
+        self._eval_contacts = self._contacts.Eval
         self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
         self._clusters = self.DeclareAbstractOutputPort(
             "clusters",
@@ -171,9 +172,9 @@ class ContactClustering(DifferentiableSystem):
         return _cluster_fewer(at["contacts"], rule, at["relief"].value)
 
     def _calc_clusters(self, context: Context, clusters: AbstractValue) -> None:
-        rule = self.get_rule(context)
+        rule = context.get_abstract_parameter(self._rule).get_value()
         clusters.set_value(
-            _cluster(self._contacts.Eval(context), rule.tolerance_m, rule.delta_m)
+            _cluster(self._eval_contacts(context), rule.tolerance_m, rule.delta_m)
         )
 
     def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:

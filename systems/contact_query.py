@@ -129,6 +129,7 @@ class ContactQuery(DifferentiableSystem):
         self._depth: DepthSearch = depth
         self._max_walk_steps = max_walk_steps
         self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._eval_X_WTool = self._X_WTool.Eval
         self._X_WO = {
             i: self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
             for i, item in enumerate(objects)
@@ -149,6 +150,7 @@ class ContactQuery(DifferentiableSystem):
             ),
             prerequisites_of_calc={from_tolerance},
         )
+        self._eval_tracker = self._tracker.Eval
         self._contacts = self.DeclareAbstractOutputPort(
             "contacts",
             Value[object],
@@ -281,10 +283,10 @@ class ContactQuery(DifferentiableSystem):
             value.set_value(self._make_tracker(hint, tolerance_m))
 
     def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
-        tracker: SceneTracker = self._tracker.Eval(context)
+        tracker: SceneTracker = self._eval_tracker(context)
         for i, port in self._X_WO.items():
             tracker.set_object_pose(i, port.Eval(context))
-        X_WTool = self._X_WTool.Eval(context)
+        X_WTool = self._eval_X_WTool(context)
         if self._relief is None:
             contacts.set_value(tracker.query(X_WTool))
             return

@@ -102,14 +102,14 @@ class _LimitedSample(DifferentiableSystem):
         super().__init__()
         self._max_force_N = max_force_N
         self._max_torque_Nm = max_torque_Nm
-        self._F_display = self.DeclareVectorInputPort("F_display", 6)
+        self._eval_F_display = self.DeclareVectorInputPort("F_display", 6).Eval
         self.DeclareStateOutputPort("shown", self.DeclareDiscreteState(7))
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         next_state.set_value(
             limit_wrench(
-                self._F_display.Eval(context), self._max_torque_Nm, self._max_force_N
+                self._eval_F_display(context), self._max_torque_Nm, self._max_force_N
             )
         )
 

@@ -80,6 +80,8 @@ class HandImpedance(DifferentiableSystem):
         self._arm = make_held_arm(plant, handle, path, X_PH, gains)
         self._arm_state = self.DeclareVectorInputPort("arm_state", 2 * _NUM_JOINTS)
         self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
+        self._eval_arm_state = self._arm_state.Eval
+        self._eval_F_applied = self._F_applied.Eval
         from_arm = {self._arm_state.ticket()}
         self._generalized_force = self.DeclareVectorOutputPort(
             "generalized_force",
@@ -108,16 +110,16 @@ class HandImpedance(DifferentiableSystem):
         return self._handle_state
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(
+        output.set_value(
             self._arm.calc_joint_torques(
                 context.get_time(),
-                self._arm_state.Eval(context),
-                self._F_applied.Eval(context),
+                self._eval_arm_state(context),
+                self._eval_F_applied(context),
             )
         )
 
     def _calc_handle_state(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._arm.calc_handle_state(self._arm_state.Eval(context)))
+        output.set_value(self._arm.calc_handle_state(self._eval_arm_state(context)))
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns an output with its derivatives."""
