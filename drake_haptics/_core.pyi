@@ -1033,7 +1033,7 @@ def penalty_force(clusters: AutoDiffClusterSet, p_WTo: AutoDiffVector, V_WTool: 
 
 class CouplingGains:
     """
-    Spring and damper of the virtual coupling, and the most they pull with together, force and torque each by its norm. Immutable.
+    Spring and damper of the virtual coupling, and the most they pull with together, force and torque each by its norm. Immutable, and equal where all numbers are.
     """
 
     def __init__(self, stiffness_N_per_m: float, damping_Ns_per_m: float, rotational_stiffness_Nm_per_rad: float, rotational_damping_Nms_per_rad: float, max_force_N: float = float('inf'), max_torque_Nm: float = float('inf')) -> None: ...
@@ -1059,6 +1059,10 @@ class CouplingGains:
 
     @property
     def max_torque_Nm(self) -> float: ...
+
+    def __eq__(self, arg: CouplingGains, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
 
     def __repr__(self) -> str: ...
 

@@ -150,11 +150,9 @@ def test_one_joined_vector_has_the_wrenches_of_its_parts(seed: int) -> None:
         (29, np.nan, "coupling gains"),
         (30, 0.0, "max_force_N"),
         (31, np.nan, "max_torque_Nm"),
-        # What an order of x y z first makes of a pose.
-        (slice(0, 7), [0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0], "X_WH must be a pose"),
     ],
 )
-def test_a_joined_vector_is_checked(at: object, bad: object, said: str) -> None:
+def test_a_joined_vector_is_checked(at: int, bad: float, said: str) -> None:
     joined, (_, q_HT, *_) = joined_of(0)
     joined[at] = bad
     with pytest.raises(ValueError, match=said):
@@ -168,3 +166,13 @@ def test_derivatives_by_gains_are_refused_not_left_out() -> None:
     gradient[27] = 1.0
     with pytest.raises(ValueError, match="no derivatives of the gains"):
         _core.joined_coupling_wrench(_core.AutoDiffVector(joined, gradient), q_HT)
+
+
+def test_gains_are_equal_where_all_numbers_are() -> None:
+    assert _core.CouplingGains(*GAINS_OF_FULL) == FULL
+    assert hash(_core.CouplingGains(*GAINS_OF_FULL)) == hash(FULL)
+    for i in range(6):
+        other = _core.CouplingGains(
+            *(7.0 if i == k else x for k, x in enumerate(GAINS_OF_FULL))
+        )
+        assert other != FULL

@@ -60,18 +60,6 @@ CouplingGains MakeGains(double k, double b, double kr, double br,
   return {k, b, kr, br, max_force, max_torque};
 }
 
-// A handle is handed in by whoever drives it, and some put x y z first. What is
-// not finite is told of by who holds the tool's state.
-void RequireTurn(const PoseVector& q_WH) {
-  if (std::abs(q_WH.head<4>().squaredNorm() - 1.0) > 1e-2) {
-    std::ostringstream text;
-    text << "X_WH must be a pose [qw qx qy qz x y z] with a quaternion of "
-            "length 1, is ["
-         << q_WH.transpose() << "]";
-    throw std::invalid_argument(text.str());
-  }
-}
-
 // Poses and velocities of handle and tool, and the gains.
 template <typename T>
 using JoinedVector = Eigen::Matrix<T, 32, 1>;
@@ -92,7 +80,6 @@ void BindJoinedCoupling(nb::module_& m) {
   m.def(
       "joined_coupling_wrench",
       [](const JoinedVector<double>& joined, const PoseVector& q_HT) {
-        RequireTurn(joined.head<7>());
         return CoupleJoined<double>(joined, q_HT, GainsOf(joined));
       },
       nb::arg("joined"), nb::arg("q_HT"),
@@ -102,10 +89,7 @@ void BindJoinedCoupling(nb::module_& m) {
       "    joined: (32,) [q_WH; V_WH; q_WTool; V_WTool; gains], the gains (6) "
       "in the order of `CouplingGains`.\n"
       "    q_HT: (7,) the tool's place in the handle.\n\n"
-      "Raises:\n"
-      "    ValueError: a gain is out of range, or the handle's quaternion is "
-      "far "
-      "from length 1.");
+      "Raises:\n    ValueError: a gain is out of range.");
   m.def(
       "joined_coupling_wrench",
       [](const AutoDiffVector& joined, const PoseVector& q_HT) {
@@ -123,11 +107,18 @@ void BindJoinedCoupling(nb::module_& m) {
       "The same with derivatives, but by the gains.");
 }
 
+nb::tuple ToTuple(const CouplingGains& gains) {
+  return nb::make_tuple(gains.stiffness, gains.damping,
+                        gains.rotational_stiffness, gains.rotational_damping,
+                        gains.max_force, gains.max_torque);
+}
+
 void BindCoupling(nb::module_& m) {
   nb::class_<CouplingGains> gains(
       m, "CouplingGains",
       "Spring and damper of the virtual coupling, and the most they pull with "
-      "together, force and torque each by its norm. Immutable.");
+      "together, force and torque each by its norm. Immutable, and equal where "
+      "all numbers are.");
   DefFrozenCopy(&gains);
   gains
       .def(
@@ -150,6 +141,15 @@ void BindCoupling(nb::module_& m) {
               &CouplingGains::rotational_damping)
       .def_ro("max_force_N", &CouplingGains::max_force)
       .def_ro("max_torque_Nm", &CouplingGains::max_torque)
+      .def(
+          "__eq__",
+          [](const CouplingGains& self, const CouplingGains& other) {
+            return ToTuple(self).equal(ToTuple(other));
+          },
+          nb::is_operator(),
+          nb::sig("def __eq__(self, arg: object, /) -> bool"))
+      .def("__hash__",
+           [](const CouplingGains& self) { return nb::hash(ToTuple(self)); })
       .def("__repr__", [](const CouplingGains& self) {
         std::ostringstream text;
         text << "CouplingGains(" << self.stiffness << " N/m, " << self.damping
