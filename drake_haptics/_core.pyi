@@ -1060,7 +1060,7 @@ class CouplingGains:
     @property
     def max_torque_Nm(self) -> float: ...
 
-    def __eq__(self, arg: CouplingGains, /) -> bool: ...
+    def __eq__(self, arg: object, /) -> bool: ...
 
     def __hash__(self) -> int: ...
 
@@ -1093,7 +1093,7 @@ def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=
         q_HT: (7,) the tool's place in the handle.
 
     Raises:
-        ValueError: a gain is out of range, or the handle's quaternion is far from length 1.
+        ValueError: a gain is out of range.
     """
 
 @overload
