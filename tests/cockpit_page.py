@@ -34,6 +34,18 @@ hand:
       - {{time_s: 0.4, position_m: [0, 0, {TOP_M + BALL_RADIUS_M - DEEP_M}]}}
 """
 
+# Columns of pixels in which the force's line is, below the words above it.
+TRACE = """(() => {
+  const canvas = document.getElementById('force-trace');
+  const [w, h] = [canvas.width, canvas.height];
+  const {data} = canvas.getContext('2d').getImageData(0, 0, w, h);
+  const columns = new Set();
+  for (let i = 4 * w * Math.ceil(h / 6); i < data.length; i += 4)
+    if (data[i] > 130 && data[i + 2] < 60 && data[i + 3] > 120)
+      columns.add((i / 4) % w);
+  return columns.size;
+})()"""
+
 
 def calc_pressed_force(K_coupling):
     """Force, N, of springs in series, however stiff the coupling is, N/m."""
@@ -154,14 +166,5 @@ class Page:
             self.browser.call("Input.dispatchKeyEvent", type=kind, **options)
 
     def trace(self):
-        """Columns of pixels in which the force's line is, below the words above it."""
-        return self.evaluate("""(() => {
-          const canvas = document.getElementById('force-trace');
-          const [w, h] = [canvas.width, canvas.height];
-          const {data} = canvas.getContext('2d').getImageData(0, 0, w, h);
-          const columns = new Set();
-          for (let i = 4 * w * Math.ceil(h / 6); i < data.length; i += 4)
-            if (data[i] > 130 && data[i + 2] < 60 && data[i + 3] > 120)
-              columns.add((i / 4) % w);
-          return columns.size;
-        })()""")
+        """How long the force's line is; see TRACE."""
+        return self.evaluate(TRACE)

@@ -81,9 +81,9 @@ def soak(options, injections, watch, hosts, console):
         after which the device did not come back.
     """
     made, came, stayed = Counter(), defaultdict(Counter), Counter()
-    start_s = time.monotonic()
     if not watch.wait_until_active(RECOVERY_S):
         raise SystemExit("the host never enabled the device")
+    start_s = time.monotonic()
     with console.status("") as line:
         while (passed_s := time.monotonic() - start_s) < 60.0 * options.minutes:
             name = NAMES[made.total() % len(NAMES)]
