@@ -60,7 +60,7 @@ def decompose_body(
 ) -> _core.Decomposition:
     """Returns all shapes of a body as one set of convex pieces in the body's frame.
 
-    A `Mesh` keeps its true, possibly non-convex shape, where Drake's own contact
+    A `Mesh` keeps its true, possibly non-convex shape, where Drake's point contact
     takes its convex hull; it is cut into pieces by `decompose`. `Box` is exact,
     `Convex` the hull of its points, and `Sphere`, `Cylinder`, `Capsule` and
     `Ellipsoid` are convex polytopes (`drake_haptics.shape_polytopes`): one piece each.

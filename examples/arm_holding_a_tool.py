@@ -2,7 +2,7 @@
 
     python examples/arm_holding_a_tool.py [--meshcat]
 
-Drake's own contact takes the convex hull of a mesh: the ring would have no hole. Here
+Drake's point contact takes the convex hull of a mesh: the ring would have no hole. Here
 `AddHapticRendering` gives pen and ring their true shapes. The diagram is linearized
 where the arm comes to rest, free and against the ring, to tell what contact changes.
 """
