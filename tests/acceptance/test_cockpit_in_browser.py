@@ -156,6 +156,14 @@ def test_what_is_no_number_of_the_range_is_refused_and_changes_nothing(page):
         assert not page.evaluate(f"{refusal}.hidden")
         number = page.evaluate(f"document.getElementById('{STIFFNESS}').value")
         assert float(number) == K_COUPLING
+    number = f"document.getElementById('{STIFFNESS}')"
+    page.evaluate(f"{number}.focus(); {number}.select()")
+    page.browser.call("Input.insertText", text="none")
+    page.press("Escape", "Escape")
+    page.wait_for(f"document.activeElement !== {number}")
+    assert page.evaluate(f"{refusal}.hidden && {number}.value") == str(int(K_COUPLING))
+    type_value(page, STIFFNESS, "two")
+    page.wait_for(f"!{refusal}.hidden")
     type_value(page, STIFFNESS, str(K_COUPLING + 1))
     page.wait_for(f"{refusal}.hidden")
     type_value(page, STIFFNESS, str(K_COUPLING))

@@ -65,6 +65,7 @@ class Slider {
     this.range.addEventListener("input", () => this._ask(rounded(this._value(this.range.value / STEPS))));
     this.number.addEventListener("change", () => this._take());
     this.number.addEventListener("input", () => this._refuse(""));
+    this.number.addEventListener("keydown", event => { if (event.key === "Escape") this._forget(); });
     this.range.addEventListener("dblclick", () => this._reset());
     this.undo.addEventListener("click", () => this._reset());
   }
@@ -113,6 +114,12 @@ class Slider {
       this._ask(value);
     }
     this.number.value = this._text(this.shown);
+  }
+
+  /** Takes back what was typed and not sent. */
+  _forget() {
+    this.number.value = this._text(this.shown);
+    this._refuse("");
   }
 
   /** Says why a number was not taken; an empty text takes that back. */
