@@ -136,9 +136,14 @@ def AddHapticRendering(
     inspector = scene_graph.model_inspector()
     tool = find_body(plant, tool_body, "tool_body")
     if environment is None:
-        bodies = find_environment(plant, inspector, tool, role)
+        bodies = [
+            body
+            for body in find_environment(plant, inspector, tool, role)
+            if not _find_rendering(builder, tool, body)
+        ]
     else:
         bodies = [find_body(plant, body, "environment") for body in environment]
+        _check_rendered_once(builder, tool, bodies)
     rendered_tool, objects = make_rendered_bodies(
         plant,
         inspector,
@@ -179,6 +184,30 @@ def AddHapticRendering(
     ]:
         warnings.warn(sentence, SceneWarning, stacklevel=2)
     return rendering
+
+
+def _find_rendering(builder: DiagramBuilder, tool: RigidBody, body: RigidBody) -> str:
+    """Returns the name of the rendering in which two bodies meet already, or none."""
+    for system in builder.GetSystems():
+        if not isinstance(system, HapticRendering):
+            continue
+        objects = [item.body for item in system.objects]
+        for one, other in [(tool, body), (body, tool)]:
+            if system.tool.body is one and any(item is other for item in objects):
+                return system.get_name()
+    return ""
+
+
+def _check_rendered_once(
+    builder: DiagramBuilder, tool: RigidBody, bodies: Sequence[RigidBody]
+) -> None:
+    """Refuses bodies that the tool meets in an earlier rendering."""
+    for body in bodies:
+        if name := _find_rendering(builder, tool, body):
+            raise ValueError(
+                f"environment: {body.name()!r} and {tool.name()!r} meet in the"
+                f" rendering {name!r} already; their contact would count twice"
+            )
 
 
 def _check_builder(

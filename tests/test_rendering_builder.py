@@ -357,6 +357,20 @@ def test_a_name_that_is_taken_is_refused():
         render(scene)
 
 
+def test_contact_of_two_bodies_counts_once():
+    scene = PlantScene(PLANTS["sampled"])
+    scene.add("tool", CUBE, mass=MASS)
+    scene.add("other", CUBE, mass=MASS)
+    scene.add_slab()
+    scene.finalize()
+    render(scene)
+    for tool, environment in [("tool", ["slab"]), ("other", ["slab", "tool"])]:
+        with pytest.raises(ValueError, match="'haptic_rendering' already"):
+            render(scene, tool, environment=environment, name="second")
+    second = render(scene, "other", name="second")
+    assert [item.name for item in second.objects] == ["slab"]
+
+
 def test_one_name_is_no_list_of_bodies():
     with pytest.raises(ValueError, match=r"environment: is a list .* \['slab'\]"):
         over_a_slab(environment="slab")
