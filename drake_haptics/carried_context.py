@@ -8,6 +8,7 @@ from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, Diagram, System
 
+from drake_haptics.argument_kinds import require_kinds
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.device_preset import load_device_preset
 from drake_haptics.pose_vector import vector_to_pose
@@ -38,6 +39,12 @@ def carry_on(old: HapticDiagram, old_context: Context, new: HapticDiagram) -> Co
     Returns:
         A context of `new`, for `drake_haptics.simulation.run`.
     """
+    require_kinds(
+        "carry_on(old, old_context, new) is their order",
+        old=(old, HapticDiagram),
+        old_context=(old_context, Context),
+        new=(new, HapticDiagram),
+    )
     context = new.diagram.CreateDefaultContext()
     context.SetTime(old_context.get_time())
     begins_anew: list[System] = []

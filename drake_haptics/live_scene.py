@@ -7,6 +7,7 @@ from typing import cast
 
 from pydrake.systems.framework import Context
 
+from drake_haptics.argument_kinds import require_kinds
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.contact_systems import find_contact_gains, find_query_tolerance
 from drake_haptics.coupling_gains import make_coupling_gains
@@ -30,6 +31,12 @@ def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> Non
         ValueError: It differs in more, and the diagram must be built anew; or a value
             is out of range. The context is as it was.
     """
+    require_kinds(
+        "write_live_values(haptic, root, scene) is their order",
+        haptic=(haptic, HapticDiagram),
+        root=(root, Context),
+        scene=(scene, Scene),
+    )
     if not is_live_change(haptic.scene, scene):
         raise ValueError(
             "scene differs from what was built in more than its live keys: build its"

@@ -22,6 +22,8 @@ from drake_haptics.realtime_priority import realtime_priority
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.tick_clock import TickClock
 
+_MADE_BY = "BuildHapticDiagram(scene) makes it of a scene"
+
 
 class RunError(RuntimeError):
     """A run was stopped because a value was no longer finite.
@@ -45,6 +47,7 @@ def make_simulator(haptic: HapticDiagram, context: Context | None = None) -> Sim
         haptic: What `BuildHapticDiagram` returned.
         context: Where to start; becomes the simulator's. At time 0 if not given.
     """
+    require_kinds(_MADE_BY, haptic=(haptic, HapticDiagram))
     simulator = Simulator(haptic.diagram, context)
     ResetIntegratorFromFlags(simulator, "runge_kutta2", haptic.period_s)
     simulator.get_mutable_integrator().set_fixed_step_mode(True)
@@ -93,9 +96,7 @@ def run(
         RunError: The tool or the arm has a pose or velocity that is not finite.
         TypeError: An argument is of another kind; the message names it.
     """
-    require_kinds(
-        "BuildHapticDiagram(scene) makes it of a scene", haptic=(haptic, HapticDiagram)
-    )
+    require_kinds(_MADE_BY, haptic=(haptic, HapticDiagram))
     require_kinds(
         duration_s=(duration_s, float | None),
         pace=(pace, TickClock | None),

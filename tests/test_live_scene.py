@@ -109,6 +109,14 @@ def test_a_material_keeps_the_gains_that_it_gives(haptic):
     assert gains.damping_Ns_per_m.tolist() == [8.0]
 
 
+def test_another_order_is_refused_by_name(haptic):
+    root = haptic.diagram.CreateDefaultContext()
+    with pytest.raises(TypeError, match=r"^haptic must be .* is their order"):
+        write_live_values(haptic.scene, root, haptic)
+    with pytest.raises(TypeError, match=r"^old_context must be .* is their order"):
+        carry_on(haptic, haptic, root)
+
+
 def test_what_needs_a_diagram_of_its_own_is_not_live(haptic):
     scene = haptic.scene
     for other in (

@@ -95,6 +95,11 @@ def test_energy_is_not_booked_of_a_part(haptic):
         run(haptic, 0.01, energy=True, statistics=run(haptic, 0.01))
 
 
+def test_a_simulator_is_made_of_what_the_builder_gave(haptic):
+    with pytest.raises(TypeError, match=r"^haptic must be .*HapticDiagram, is of"):
+        make_simulator(haptic.diagram)
+
+
 @pytest.mark.parametrize("duration_s", [-1.0, float("nan")])
 def test_a_time_before_now_is_refused_and_does_not_end_python(haptic, duration_s):
     with pytest.raises(ValueError, match=r"^duration_s must not be negative, is"):
