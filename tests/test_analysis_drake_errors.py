@@ -143,6 +143,26 @@ def test_point_contact_of_a_continuous_plant_is_said():
             twin.EvalTimeDerivatives(_start_touching(twin))
 
 
+def test_contact_of_drakes_without_derivatives_is_said():
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlantSceneGraph(builder, 1e-3)
+    Parser(builder).AddModelsFromString(
+        "<mujoco model='m'><worldbody><geom type='box' size='1 1 0.1'/>"
+        "<body name='b' pos='0 0 0.19'><freejoint/>"
+        "<geom type='box' size='0.1 0.1 0.1' mass='1'/></body></worldbody></mujoco>",
+        "xml",
+    )
+    plant.Finalize()
+    twin = builder.Build().ToAutoDiffXd()
+    with pytest.raises(ValueError, match=r"looking: .*AddHapticRendering render"):
+        with explain_drake_errors("looking"):
+            shapes = twin.GetSubsystemByName("scene_graph")
+            found = shapes.get_query_output_port().Eval(
+                shapes.GetMyContextFromRoot(_start_touching(twin))
+            )
+            found.ComputePointPairPenetration()
+
+
 def _start_touching(diagram):
     context = diagram.CreateDefaultContext()
     plant = diagram.GetSubsystemByName("plant")

@@ -51,6 +51,12 @@ _REASONS = (
         " remove the proximity role, or use a discrete plant",
     ),
     (
+        "Penetration queries between shapes",
+        "Drake's own point contact acts between two bodies and has no derivatives for"
+        " their shapes: let AddHapticRendering render them too, give them hydroelastic"
+        " properties, or part them by a collision filter",
+    ),
+    (
         "is not connected",
         "an input is open: connect it, or fix its value in the context",
     ),
