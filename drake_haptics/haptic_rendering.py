@@ -47,11 +47,14 @@ class HapticRendering(Diagram):
 
     * `body_poses`, `body_spatial_velocities` and `applied_spatial_force` belong to the
       plant's ports of these names.
-    * `X_WTool`, `V_WTool`, `X_WO_<name>` and `V_WO_<name>` are those of `BodyMotions`.
+    * `X_WTool` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
+      frames in the world, m; `V_WTool` and `V_WO_<name>` (6) their spatial velocities
+      [ω; v] at the frame's origin in the world, rad/s and m/s.
     * `contacts` is a `drake_haptics.ContactSet`, shaded if the effects say so,
       `clusters` a `drake_haptics._core.ClusterSet`.
-    * `contact_wrench`, `F_Tool_W` and `F_O_W` are those of `PenaltyForce`: without
-      coupling and effects.
+    * `F_Tool_W` (6) is the wrench [τ; f] of contact on the tool at its origin in the
+      world, N·m and N, without coupling and effects; `F_O_W` (6 for each body that
+      moves) are those on the bodies. `contact_wrench` is that of `PenaltyForce`.
     * `F_display` (6) is the wrench [τ; f] to show on the handle at its origin in the
       world, N·m and N; `X_WH`, `V_WH`, `F_applied` and `status` are those of
       `HapticDevice`, `friction_force` that of `StickSlipFriction`, `energy_J` that of
