@@ -137,6 +137,7 @@ class ContactClustering(DifferentiableSystem):
         Args:
             context: Of this system.
         """
+        self.ValidateContext(context)
         return context.get_abstract_parameter(self._rule).get_value()
 
     def set_rule(self, context: Context, rule: ClusteringRule) -> None:
@@ -148,8 +149,13 @@ class ContactClustering(DifferentiableSystem):
         Args:
             context: Of this system.
             rule: The new one.
+
+        Raises:
+            TypeError: It is no `ClusteringRule`.
         """
         self.ValidateContext(context)
+        if not isinstance(rule, ClusteringRule):
+            raise TypeError(f"rule must be a ClusteringRule, is {type(rule).__name__}")
         context.get_mutable_abstract_parameter(self._rule).set_value(rule)
 
     def get_contacts_input_port(self) -> InputPort:

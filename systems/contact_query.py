@@ -180,6 +180,7 @@ class ContactQuery(DifferentiableSystem):
         Args:
             context: Of this system.
         """
+        self.ValidateContext(context)
         return context.get_abstract_parameter(self._tolerance).get_value()
 
     def set_tolerance(self, context: Context, tolerance_m: float) -> None:

@@ -185,6 +185,7 @@ class PenaltyForce(DifferentiableSystem):
         Args:
             context: Of this system.
         """
+        self.ValidateContext(context)
         return context.get_abstract_parameter(self._gains).get_value()
 
     def set_gains(self, context: Context, gains: ContactGains) -> None:
@@ -195,9 +196,12 @@ class PenaltyForce(DifferentiableSystem):
             gains: One of each kind for each object, in their order.
 
         Raises:
+            TypeError: They are no `ContactGains`.
             ValueError: There is not one for each object.
         """
         self.ValidateContext(context)
+        if not isinstance(gains, ContactGains):
+            raise TypeError(f"gains must be ContactGains, is {type(gains).__name__}")
         self._check_number(gains)
         context.get_mutable_abstract_parameter(self._gains).set_value(gains)
 

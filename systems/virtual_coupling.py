@@ -101,6 +101,9 @@ class VirtualCoupling(Diagram):
         Args:
             context: Of this system.
             gains: Of the spring and the damper.
+
+        Raises:
+            TypeError: They are no `CouplingGains`.
         """
         if not isinstance(gains, CouplingGains):
             raise TypeError(f"gains must be CouplingGains, is {type(gains).__name__}")

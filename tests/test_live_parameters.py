@@ -243,6 +243,17 @@ def test_there_is_one_gain_for_each_object():
     assert force.get_gains(context).damping_Ns_per_m.tolist() == [2.0]
 
 
+def test_gains_and_rules_of_another_kind_are_refused():
+    """They would be found in the next tick only, deep in the core."""
+    plate = ContactObject("plate", box_core(0.1, 0.1, 0.1), RigidTransform())
+    force = PenaltyForce([plate], [1.0], [2.0])
+    with pytest.raises(TypeError, match="gains must be ContactGains, is tuple"):
+        force.set_gains(force.CreateDefaultContext(), (1e3, 20.0))
+    clustering = ContactClustering("shared", 1e-3)
+    with pytest.raises(TypeError, match="rule must be a ClusteringRule, is str"):
+        clustering.set_rule(clustering.CreateDefaultContext(), "octree")
+
+
 def test_gains_that_were_written_cannot_be_changed_behind_the_back_of_a_context():
     values = np.array([100.0])
     gains = ContactGains(values, values)
@@ -269,6 +280,12 @@ def test_the_context_of_another_system_is_refused_by_name():
         query: lambda context: query.set_tolerance(context, 2e-3),
         coupling: lambda context: coupling.set_gains(context, OTHER),
     }
+    reads = {
+        force: force.get_gains,
+        clustering: clustering.get_rule,
+        query: query.get_tolerance,
+        coupling: coupling.get_gains,
+    }
     builder = DiagramBuilder()
     for system in writes:
         builder.AddSystem(system)
@@ -276,4 +293,6 @@ def test_the_context_of_another_system_is_refused_by_name():
     for system, write in writes.items():
         with pytest.raises(RuntimeError, match=r"GetMyContextFromRoot|not.*subsystem"):
             write(root)
+        with pytest.raises(RuntimeError, match=r"GetMyContextFromRoot|not.*subsystem"):
+            reads[system](root)
         write(system.GetMyMutableContextFromRoot(root))
