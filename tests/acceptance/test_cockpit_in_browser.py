@@ -172,6 +172,16 @@ def test_what_is_no_number_of_the_range_is_refused_and_changes_nothing(page):
     assert f_W[2] == pytest.approx(calc_pressed_force(K_COUPLING), abs=TOLERANCE_N)
 
 
+def test_no_row_moves_under_the_pointer_when_its_value_changes(page):
+    heights = "[...document.querySelectorAll('.slider')].map(row => row.offsetHeight)"
+    before = page.evaluate(heights)
+    type_value(page, "coupling.rotational_stiffness_Nm_per_rad", "1.2345")
+    page.wait_for("document.querySelector('.slider.changed') != null")
+    assert page.evaluate(heights) == before
+    page.click(".slider.changed .undo")
+    page.wait_for("!document.querySelector('.slider.changed')")
+
+
 def test_a_coupling_that_may_shake_is_warned_of_at_its_slider(page):
     """The hand damps by 15 N·s/m: more than that cannot be passive."""
     type_value(page, DAMPING, "18")
