@@ -24,7 +24,7 @@ from drake_haptics.rendered_bodies import (
 from drake_haptics.rendering_sizes import question_rendered_sizes
 from drake_haptics.rendering_stiffness import check_rendering_stiffness
 from drake_haptics.scene import Contact, Coupling, Effects, Material
-from drake_haptics.scene_check import SceneWarning
+from drake_haptics.scene_check import SceneWarning, check_rendering
 from drake_haptics.systems.haptic_device import HapticDevice
 
 # The tick of effects with a memory in a plant without a time step, s.
@@ -132,7 +132,11 @@ def AddHapticRendering(
     _check_builder(builder, plant, scene_graph, name)
     if period_s is not None and not period_s > 0.0:
         raise ValueError(f"period_s must be positive, is {period_s}")
+    if not chord_error_m > 0.0:
+        raise ValueError(f"chord_error_m must be positive, is {chord_error_m}")
     contact, effects = contact or Contact(), effects or Effects()
+    materials = materials or {}
+    check_rendering(contact, materials, effects, coupling)
     inspector = scene_graph.model_inspector()
     tool = find_body(plant, tool_body, "tool_body")
     if environment is None:
@@ -153,7 +157,7 @@ def AddHapticRendering(
         chord_error_m=chord_error_m,
         progress=progress,
     )
-    ordered = _order_materials(materials or {}, objects, effects)
+    ordered = _order_materials(materials, objects)
     rendering = HapticRendering(
         rendered_tool,
         objects,
@@ -177,7 +181,7 @@ def AddHapticRendering(
     touching = exclude_own_contact(plant, scene_graph, tool, bodies)
     for sentence in [
         *_describe_own_contact(tool, touching),
-        *question_rendered_sizes(rendered_tool, objects),
+        *question_rendered_sizes(rendered_tool, objects, contact.tolerance_m),
         *check_rendering_stiffness(
             plant, rendered_tool, objects, contact, ordered, coupling
         ),
@@ -236,26 +240,15 @@ def _check_builder(
 
 
 def _order_materials(
-    materials: Mapping[str, Material],
-    objects: Sequence[RenderedBody],
-    effects: Effects,
+    materials: Mapping[str, Material], objects: Sequence[RenderedBody]
 ) -> list[Material]:
     """Returns one material for each object."""
     names = [item.name for item in objects]
-    for name, material in materials.items():
+    for name in materials:
         if name not in names:
             raise ValueError(
                 f"materials: there is no {name!r} in the environment; there are"
                 f" {', '.join(names)}"
-            )
-        if material.friction_coefficient is not None and effects.friction is None:
-            raise ValueError(
-                f"materials[{name!r}].friction_coefficient: means nothing without"
-                " effects.friction"
-            )
-        if material.shading is not None and effects.shading is None:
-            raise ValueError(
-                f"materials[{name!r}].shading: means nothing without effects.shading"
             )
     return [materials.get(item, Material()) for item in names]
 

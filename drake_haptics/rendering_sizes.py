@@ -13,7 +13,7 @@ from drake_haptics.units import METRES_PER_UNIT, guess_unit
 
 
 def question_rendered_sizes(
-    tool: RenderedBody, objects: Sequence[RenderedBody]
+    tool: RenderedBody, objects: Sequence[RenderedBody], tolerance_m: float
 ) -> list[str]:
     """Asks for the unit of bodies that are unlike anything that a hand touches.
 
@@ -23,17 +23,30 @@ def question_rendered_sizes(
     Args:
         tool: The body that is moved.
         objects: What it meets.
+        tolerance_m: Distance at which contact begins, m.
 
     Returns:
-        A sentence for each body that is probably in another unit.
+        A sentence for each body that is probably in another unit, and one for a
+        tolerance that probably is.
     """
     asked = [_question_size("tool_body", tool, LARGEST_USUAL_EXTENT_M)]
     asked += [_question_size("environment", item, np.inf) for item in objects]
+    extent_m = _calc_extent(tool)
+    if tolerance_m > extent_m:
+        asked.append(
+            f"contact.tolerance_m: is {length(tolerance_m)}, more than {tool.name!r} is"
+            f" wide ({length(extent_m)}): is it in metres?"
+        )
     return [sentence for sentence in asked if sentence]
 
 
+def _calc_extent(item: RenderedBody) -> float:
+    """Returns the largest side of a body's box, m."""
+    return float(np.ptp(np.asarray(item.pieces.vertices), axis=0).max())
+
+
 def _question_size(argument: str, item: RenderedBody, largest_m: float) -> str:
-    extent_m = float(np.ptp(np.asarray(item.pieces.vertices), axis=0).max())
+    extent_m = _calc_extent(item)
     if SMALLEST_USUAL_EXTENT_M <= extent_m <= largest_m:
         return ""
     sentence = f"{argument}: {item.name!r} is {length(extent_m)} wide"

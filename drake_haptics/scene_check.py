@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from drake_haptics.decomposition import METHODS
@@ -13,6 +14,7 @@ from drake_haptics.yaml_keys import join_key, make_hint
 if TYPE_CHECKING:
     from drake_haptics.scene import (
         Contact,
+        Coupling,
         Device,
         EnvironmentObject,
         HandPath,
@@ -68,6 +70,32 @@ def check_values(scene: Scene) -> None:
         _check_pose(scene.device.base, "device.base")
     _check_twin(scene.device.twin)
     _check_path(scene.hand.path)
+
+
+def check_rendering(
+    contact: Contact,
+    materials: Mapping[str, Material],
+    effects: Effects,
+    coupling: Coupling | None,
+) -> None:
+    """Checks the parts of a scene that a body of a plant is rendered with.
+
+    Args:
+        contact: As in a scene.
+        materials: Of bodies, by their names.
+        effects: As in a scene.
+        coupling: As in a scene, if there is a handle.
+
+    Raises:
+        SceneError: A value out of its range.
+    """
+    _check_contact(contact)
+    _check_effects(effects)
+    for name, material in materials.items():
+        _check_material(material, f"materials[{name!r}]", effects)
+    if coupling is not None:
+        keys = [f.name for f in dataclasses.fields(coupling)]
+        require_none_negative(coupling, "coupling", keys)
 
 
 def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:

@@ -387,16 +387,32 @@ def test_materials_that_mean_nothing_are_refused():
         (
             {"slab": Material(friction_coefficient=1.0)},
             Effects(shading=Shading()),
-            "friction_coefficient: means nothing without effects.friction",
+            r"\['slab'\]\.friction_coefficient means nothing without effects.friction",
         ),
         (
             {"slab": Material(shading=False)},
             Effects(friction=Friction()),
-            "shading: means nothing without effects.shading",
+            r"\['slab'\]\.shading means nothing without effects.shading",
         ),
     ]:
         with pytest.raises(ValueError, match=message):
             over_a_slab(materials=materials, effects=effects)
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"contact": Contact(clustering="octre")}, r"contact\.clustering .*'octree'"),
+        ({"contact": Contact(clustering="octree")}, r"contact\.cluster_size_m is miss"),
+        ({"coupling": Coupling(damping_Ns_per_m=-1.0)}, r"coupling\.damping_Ns_per_m"),
+        ({"effects": Effects(friction=Friction(-0.3))}, r"friction\.coefficient must"),
+        ({"materials": {"slab": Material(-1.0)}}, r"materials\['slab'\]\.stiffness"),
+        ({"chord_error_m": 0.0}, "chord_error_m must be positive"),
+    ],
+)
+def test_a_value_out_of_its_range_is_refused_by_the_name_it_was_given(options, message):
+    with pytest.raises(ValueError, match=message):
+        over_a_slab(**options)
 
 
 def test_what_was_refused_leaves_the_builder_as_it_was():

@@ -13,7 +13,7 @@ from drake_haptics.scene_check import SceneWarning
 SOFT = Contact(stiffness_N_per_m=10.0, damping_Ns_per_m=0.0)
 
 
-def render(tool_m, object_m):
+def render(tool_m, object_m, contact=SOFT):
     """Returns what is asked about a cube that meets another, by their sides in m."""
     scene = PlantScene()
     scene.add("tool", Box(tool_m, tool_m, tool_m))
@@ -22,7 +22,7 @@ def render(tool_m, object_m):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", SceneWarning)
         AddHapticRendering(
-            scene.builder, scene.plant, scene.scene_graph, "tool", contact=SOFT
+            scene.builder, scene.plant, scene.scene_graph, "tool", contact=contact
         )
     return [str(item.message) for item in caught if " wide" in str(item.message)]
 
@@ -34,6 +34,11 @@ def test_a_tool_in_another_unit_is_asked_about(tool_m, unit, factor):
     (sentence,) = render(tool_m, 0.1)
     for part in ("tool_body: 'tool'", f"{tool_m:g} m wide", f"in {unit}", factor):
         assert part in sentence
+
+
+def test_a_tolerance_in_millimetres_is_asked_about():
+    (sentence,) = render(0.04, 0.1, Contact(tolerance_m=2.0, stiffness_N_per_m=10.0))
+    assert sentence.startswith("contact.tolerance_m: is 2 m, more than 'tool'")
 
 
 def test_what_was_scaled_twice_is_asked_about():
