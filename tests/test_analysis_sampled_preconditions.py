@@ -6,6 +6,7 @@ from pydrake.autodiffutils import AutoDiffXd
 from pydrake.common.value import Value
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import SpatialInertia
+from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import (
     BasicVector_,
     DiagramBuilder,
@@ -17,7 +18,12 @@ from pydrake.systems.primitives import Linearize, LinearSystem
 from pydrake.systems.scalar_conversion import TemplateSystem
 from wall_loop import PERIOD, make_loop, make_mass
 
-from drake_haptics.analysis import linearize_sampled
+from drake_haptics.analysis import (
+    find_equilibrium,
+    find_modes,
+    linearize_sampled,
+    monodromy,
+)
 
 
 @TemplateSystem.define("Eventful_", T_list=(float, AutoDiffXd))
@@ -264,3 +270,20 @@ def test_an_input_must_have_a_value():
 def test_an_open_input_elsewhere_is_said():
     with pytest.raises(ValueError, match="an input is open"):
         linearize(make(make_mass(), Eventful()))
+
+
+@pytest.mark.parametrize("analyse", [find_equilibrium, linearize_sampled, monodromy])
+def test_what_is_no_system_or_no_context_of_it_is_refused(analyse):
+    loop, other = make_loop(900.0), make_loop(900.0)
+    context = loop.CreateDefaultContext()
+    with pytest.raises(TypeError, match=r"^diagram must be .* it is \.diagram"):
+        analyse(context, loop)
+    with pytest.raises(TypeError, match=r"^context must be .*Simulator\.get_context"):
+        analyse(loop, Simulator(loop))
+    with pytest.raises(RuntimeError, match="was passed the Context of"):
+        analyse(loop, other.CreateDefaultContext())
+
+
+def test_modes_are_of_a_linear_map():
+    with pytest.raises(TypeError, match=r"^linear must be .* make one"):
+        find_modes(make_loop(900.0))

@@ -21,6 +21,7 @@ from drake_haptics.analysis.sampled_preconditions import (
     check_abstract_state,
     check_conversion,
     check_positive,
+    check_system_and_context,
 )
 from drake_haptics.analysis.state_layout import StateLayout, find_state_layout
 
@@ -84,6 +85,7 @@ def find_equilibrium(
             system has abstract state or no AutoDiffXd twin; `settle_s` is given and
             the system depends on time; an argument is out of its bounds.
     """
+    check_system_and_context(diagram, context)
     if period_s is not None:
         check_positive("period_s", period_s)
     check_positive("tolerance", tolerance)

@@ -13,6 +13,7 @@ from scipy.linalg import block_diag, eig
 from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.motion_words import list_parts, shorten_path
 from drake_haptics.analysis.period_map import PeriodMap
+from drake_haptics.argument_kinds import require_kinds
 from drake_haptics.one_line import one_line
 
 # An eigenvalue this near to 1 moves too slowly to be told from one that stays; the
@@ -154,6 +155,9 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
         those that are neutral, memories, and lengths of quaternions. A conjugate pair
         is one mode.
     """
+    require_kinds(
+        "linearize_sampled and monodromy make one", linear=(linear, PeriodMap)
+    )
     basis, lengths = _split_quaternions(linear)
     values, left, right = eig(basis.T @ linear.A @ basis, left=True, right=True)
     modes = []

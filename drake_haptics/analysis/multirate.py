@@ -35,6 +35,7 @@ from drake_haptics.analysis.sampled_preconditions import (
     check_abstract_state,
     check_conversion,
     check_positive,
+    check_system_and_context,
 )
 from drake_haptics.analysis.state_layout import find_state_layout
 
@@ -85,6 +86,7 @@ def monodromy(
             there is none and H is not given; a system has abstract state, does not
             convert, or loses derivatives; Drake refuses otherwise.
     """
+    check_system_and_context(diagram, context)
     check_positive("tolerance", tolerance)
     if not all(_is_sampled_plant(leaf) for leaf in _list_abstract(diagram)):
         check_abstract_state(diagram)

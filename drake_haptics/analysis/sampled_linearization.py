@@ -36,6 +36,7 @@ from drake_haptics.analysis.sampled_preconditions import (
     check_abstract_state,
     check_conversion,
     check_events,
+    check_system_and_context,
     find_period,
 )
 from drake_haptics.analysis.state_layout import find_state_layout
@@ -111,6 +112,7 @@ def linearize_sampled(
             or per-step updates; a system does not convert, or loses derivatives; a
             port is not there, abstract or open; Drake refuses otherwise.
     """
+    check_system_and_context(diagram, context)
     if not 0.0 < tolerance < 1.0:
         raise ValueError(f"tolerance must be between 0 and 1, is {tolerance}")
     check_abstract_state(diagram)

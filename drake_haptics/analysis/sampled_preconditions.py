@@ -19,6 +19,24 @@ from drake_haptics.analysis.diagram_systems import (
     calc_path,
     walk_leaves,
 )
+from drake_haptics.argument_kinds import require_kinds
+
+
+def check_system_and_context(diagram: System, context: Context) -> None:
+    """Raises unless they are a system and a context of it.
+
+    Raises:
+        TypeError: One of them is of another kind.
+        RuntimeError: The context is of another system.
+    """
+    require_kinds(
+        "of what BuildHapticDiagram gives it is .diagram", diagram=(diagram, System)
+    )
+    require_kinds(
+        "Simulator.get_context() is one, as is diagram.CreateDefaultContext()",
+        context=(context, Context),
+    )
+    diagram.ValidateContext(context)
 
 
 def check_abstract_state(system: System) -> None:
