@@ -22,6 +22,8 @@ from drake_haptics.units import METRES_PER_UNIT, guess_unit
 
 # A tool is held in one hand.
 _LARGEST_USUAL_TOOL_M = 1.0
+# Of the tool's diagonal: so far beside its box a mesh's origin is by chance.
+_FAR_ORIGIN = 0.1
 # So many places of the hand's path, and vertices of the tool, are looked at.
 _PLACES = 100
 _VERTICES = 16
@@ -35,6 +37,7 @@ def question_scene(haptic: HapticDiagram) -> list[str]:
     """
     return [
         *_question_sizes(haptic),
+        *_question_origin(haptic),
         *_question_reach(haptic),
         *_question_device(haptic),
         *question_start(haptic),
@@ -75,6 +78,25 @@ def _question_size(
         f"{size}; if the file is in {unit}: {key}.scale: {factor:g} in a scene file,"
         f" --{option}-scale {factor:g} on the command line"
     )
+
+
+def _question_origin(haptic: HapticDiagram) -> list[str]:
+    """Asks about a tool that is not where its mesh has its origin.
+
+    The coupling pulls at the origin: with a long lever to the hand its force is mostly
+    torque, and what it pulls at is light.
+    """
+    low, high = _find_box(haptic.tool.mesh.vertices)
+    beside_m = float(np.linalg.norm(np.maximum(np.maximum(low, -high), 0.0)))
+    if beside_m <= _FAR_ORIGIN * float(np.linalg.norm(high - low)):
+        return []
+    middle = ", ".join(f"{x:.4g}" for x in (low + high) / 2.0 / haptic.scene.tool.scale)
+    return [
+        f"tool: the origin of {Path(haptic.scene.tool.mesh).name} is"
+        f" {length(beside_m)} beside the mesh, and the coupling pulls there: force on"
+        " the hand becomes torque, and may shake. Move it so that its middle, now at"
+        f" ({middle}) of the file, is at the origin"
+    ]
 
 
 def _question_reach(haptic: HapticDiagram) -> list[str]:

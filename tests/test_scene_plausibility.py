@@ -47,6 +47,21 @@ def test_a_scale_too_small_is_asked_for(tmp_path):
     assert "20 µm wide" in question and "tool.scale: 1 in" in question
 
 
+def test_a_mesh_far_from_its_origin_is_asked_for(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    cube = trimesh.load(scene.tool.mesh)
+    middle = cube.bounds.mean(axis=0)
+    # A handle that begins at its end is as meant.
+    for name, away_m, is_asked in [("end", 0.01, False), ("far", 0.3, True)]:
+        moved = cube.copy()
+        moved.apply_translation(np.array([away_m, 0.0, 0.0]) - middle)
+        scene.tool.mesh = write(tmp_path, name, moved)
+        asked = [question for question in ask(scene) if "origin" in question]
+        assert bool(asked) == is_asked
+    assert "far.obj is 290 mm beside the mesh" in asked[0]
+    assert "(0.3, 0, 0) of the file" in asked[0]
+
+
 def test_a_path_that_passes_all_objects_is_asked_for(tmp_path):
     # The cube's lower face comes down to 0.5 mm above the plate, and to 3 mm,
     # which is more than the tolerance of 2 mm.
