@@ -314,6 +314,22 @@ def test_the_mouse_takes_the_handle_and_drags_it_over_what_is_rough(page):
     assert np.hypot(*f_W[:2]) < 0.36 * f_W[2] + TOLERANCE_N
 
 
+def test_who_gives_the_handle_back_gives_it_to_who_held_it(page):
+    for press, holder in [
+        ("#handle-sliders", "sliders"),
+        ("#take-handle", "mouse"),
+        ("#take-handle", "sliders"),
+        ("#take-handle", "mouse"),
+    ]:
+        page.click(press)
+        page.wait_for(f"document.getElementById('handle-{holder}').checked")
+        is_mouse = json.dumps(holder == "mouse")
+        page.wait_for(
+            "(document.getElementById('take-words').textContent == 'Give it back')"
+            f" == {is_mouse}"
+        )
+
+
 def drag_aside(page):
     """Drags the handle slowly along the block; returns what is felt at rest."""
     ring = "['cx', 'cy'].map(a => +document.getElementById('ring').getAttribute(a))"

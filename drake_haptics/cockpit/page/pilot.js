@@ -6,6 +6,7 @@ import {layOut} from "./stage.js";
 
 let holder = "";
 let giveBackTo = "";
+let heldBefore = "";
 let isOffered = false;
 let drives = false;
 let isCamera = false;
@@ -23,7 +24,9 @@ export function setDriving(is) {
 export function setHandle(name, offered) {
   const names = offered.map(handle => handle.name);
   const others = names.filter(other => other !== "mouse");
-  giveBackTo = others.includes("hand") ? "hand" : others[0] ?? "";
+  if (name !== "mouse") heldBefore = name;
+  // A page that is opened later does not know, but whoever names a device means that.
+  giveBackTo = [heldBefore, "device", "hand"].find(other => others.includes(other)) ?? others[0] ?? "";
   // Meshcat's sliders have keys of their own, which its page hears.
   if (name === "sliders" && holder !== name) find("view").focus();
   holder = name;
