@@ -11,6 +11,7 @@ from rich.console import Console
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cli.status_line import StatusLine, make_summary
+from drake_haptics.cockpit.taken_device import TakenDevice
 from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene import load_scene
@@ -42,10 +43,10 @@ def test_a_terminal_sees_time_contacts_and_force(haptic):
     assert "-0.00" not in text
 
 
-def follow_device(script, duration_s=0.05, width=200):
+def follow_device(script, duration_s=0.05, width=200, wrap=lambda device: device):
     """Returns what a terminal sees of a run on a device, 0.1 s of clock per tick."""
     scene = load_scene(find_scene("sphere_pen"))
-    haptic = BuildHapticDiagram(scene, device=ScriptedDevice(script))
+    haptic = BuildHapticDiagram(scene, device=wrap(ScriptedDevice(script)))
     text = io.StringIO()
     console = Console(file=text, force_terminal=True, width=width, color_system=None)
     clock = itertools.count(0.0, 0.1)
@@ -61,6 +62,20 @@ def test_a_force_that_the_device_does_not_show_is_said_to_be_none(gate):
     assert f"{gate.name}" in text
     assert ("(not shown)" in text) == (gate != GateState.ACTIVE)
     assert "silent" not in text
+
+
+def test_a_device_that_is_taken_says_what_it_waits_for():
+    def take(device):
+        return TakenDevice(device, max_force_N=8.5, max_torque_Nm=0.2, period_s=1e-3)
+
+    def script(call):
+        return replace(make_reading(call), gate=GateState.ACTIVE)
+
+    # Force sets in after 0.1 s in which it was gentle.
+    text = follow_device(script, duration_s=0.05, wrap=take)
+    assert "WAITING: lead the handle" in text and "(not shown)" in text
+    assert "ACTIVE" not in text and "IDLE" not in text
+    assert "ACTIVE" in follow_device(script, duration_s=0.3, wrap=take)
 
 
 def test_eighty_columns_show_the_touch_and_leave_out_how_late_ticks_are():

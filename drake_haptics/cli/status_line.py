@@ -19,6 +19,7 @@ from drake_haptics.cli.device_words import (
     describe_link,
 )
 from drake_haptics.cli.live_line import LiveLine
+from drake_haptics.cockpit.taken_device import TakenDevice
 from drake_haptics.device.backend import DeviceReading, GateState
 from drake_haptics.device_watch import SILENT_S, DriverSilence
 from drake_haptics.one_line import count
@@ -104,6 +105,12 @@ class StatusLine(LiveLine):
         """Returns whether the device shows force, and whether its driver is there."""
         silent_s = self._silence.add(reading, passed_s)
         if silent_s < SILENT_S:
+            backend = self._haptic.backend
+            waits = isinstance(backend, TakenDevice) and backend.waits
+            if waits and reading is not None and reading.gate == GateState.IDLE:
+                return (
+                    "[yellow]WAITING: lead the handle to where the tool can follow[/]"
+                )
             return describe_gate(reading)
         silence = f"silent for {silent_s:.0f} s, is its driver running?"
         return describe_gate(reading, silence)
