@@ -3,6 +3,7 @@
 import io
 import itertools
 import re
+import time
 from dataclasses import replace
 
 import pytest
@@ -111,13 +112,23 @@ def test_the_force_of_the_line_is_within_the_limits_of_the_device():
 def test_what_a_slow_loop_leaves_out_is_said():
     scene = load_scene(find_scene("sphere_pen"))
     scene.device.tick_budget_us = 1e-3
+    words = "leaves out drawing, far near-contacts"
     haptic = BuildHapticDiagram(scene)
     text = io.StringIO()
     console = Console(file=text, force_terminal=True, width=200, color_system=None)
     clock = itertools.count(0.0, 0.1)
     with StatusLine(console, haptic, clock=lambda: next(clock)) as status:
-        figures = run(haptic, 0.07, on_tick=status.end_tick).to_dict()
-    assert "leaves out drawing, far near-contacts" in text.getvalue()
+
+        def end_tick(context):
+            status.end_tick(context)
+            # The line has a thread of its own, which a busy machine may keep waiting.
+            deadline_s = time.monotonic() + 120.0
+            while context.get_time() > 0.06 and words not in text.getvalue():
+                assert time.monotonic() < deadline_s
+                time.sleep(1e-3)
+                status.end_tick(context)
+
+        figures = run(haptic, 0.07, on_tick=end_tick).to_dict()
     assert "fine clusters" not in text.getvalue()
     console = Console(file=io.StringIO(), width=200)
     console.print(make_summary(figures))
