@@ -12,6 +12,7 @@ from drake_haptics.model_file import is_model_file
 from drake_haptics.yaml_keys import join_key, make_hint
 
 if TYPE_CHECKING:
+    import drake_haptics.scene
     from drake_haptics.scene import (
         Contact,
         Coupling,
@@ -73,7 +74,7 @@ def check_values(scene: Scene) -> None:
 
 
 def check_rendering(
-    contact: Contact,
+    contact: drake_haptics.scene.Contact,
     materials: Mapping[str, Material],
     effects: Effects,
     coupling: Coupling | None,
