@@ -26,9 +26,9 @@ namespace drake_haptics {
 /// - λ is the solution of a convex problem: it is unique, never pulls, changes
 ///   with w by at most k / ρ per metre, and is the gradient of a potential
 ///   ½ λᵀw, so that it makes no energy while normals and shares stay.
-/// Of directions that are nearly alike a billionth of c is left out (low_rank.h):
-/// the time grows with the contacts, and with the square of the directions that
-/// differ.
+/// Of directions that are nearly alike a billionth of c is left out
+/// (low_rank.h): the time grows with the contacts, and with the square of the
+/// directions that differ.
 /// @param tolerance the distance t below which contacts push, m.
 /// @throws std::invalid_argument unless tolerance >= 0 and finite.
 template <typename T>
