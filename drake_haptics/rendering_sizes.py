@@ -9,6 +9,7 @@ import numpy as np
 from drake_haptics.mesh_checks import LARGEST_USUAL_EXTENT_M, SMALLEST_USUAL_EXTENT_M
 from drake_haptics.mesh_report import length
 from drake_haptics.rendered_bodies import RenderedBody
+from drake_haptics.tolerance_question import question_tolerance
 from drake_haptics.units import METRES_PER_UNIT, guess_unit
 
 
@@ -31,12 +32,7 @@ def question_rendered_sizes(
     """
     asked = [_question_size("tool_body", tool, LARGEST_USUAL_EXTENT_M)]
     asked += [_question_size("environment", item, np.inf) for item in objects]
-    extent_m = _calc_extent(tool)
-    if tolerance_m > extent_m:
-        asked.append(
-            f"contact.tolerance_m: is {length(tolerance_m)}, more than {tool.name!r} is"
-            f" wide ({length(extent_m)}): is it in metres?"
-        )
+    asked += question_tolerance(tolerance_m, repr(tool.name), _calc_extent(tool))
     return [sentence for sentence in asked if sentence]
 
 

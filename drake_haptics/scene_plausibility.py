@@ -18,6 +18,7 @@ from drake_haptics.mesh_topology import winding_numbers
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.scene import EnvironmentObject, Tool
 from drake_haptics.simulated_device import make_hand_path
+from drake_haptics.tolerance_question import question_tolerance
 from drake_haptics.units import METRES_PER_UNIT, guess_unit
 
 # A tool is held in one hand.
@@ -37,6 +38,11 @@ def question_scene(haptic: HapticDiagram) -> list[str]:
     """
     return [
         *_question_sizes(haptic),
+        *question_tolerance(
+            haptic.scene.contact.tolerance_m,
+            "the tool",
+            max(haptic.tool.mesh.report.extent),
+        ),
         *_question_origin(haptic),
         *_question_reach(haptic),
         *_question_device(haptic),

@@ -47,6 +47,12 @@ def test_a_scale_too_small_is_asked_for(tmp_path):
     assert "20 µm wide" in question and "tool.scale: 1 in" in question
 
 
+def test_a_tolerance_in_millimetres_is_asked_for(tmp_path):
+    scene = over_a_plate(tmp_path, PRESS)
+    scene.contact.tolerance_m = 2.0
+    assert [q for q in ask(scene) if q.startswith("contact.tolerance_m: is 2 m")]
+
+
 def test_a_mesh_far_from_its_origin_is_asked_for(tmp_path):
     scene = over_a_plate(tmp_path, PRESS)
     cube = trimesh.load(scene.tool.mesh)
