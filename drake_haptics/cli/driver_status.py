@@ -52,7 +52,8 @@ class DriverStatusLine(LiveLine):
                 f"[bold]{math.hypot(*reading.F_BH[3:]):4.1f} N[/]"
                 f" {1e3 * math.hypot(*reading.F_BH[:3]):4.0f} mN·m",
                 f"{math.hypot(*reading.V_BH[3:]):.2f} m/s",
-                f"{rate:.0f} Hz, late p50/p99/p99.9"
+                f"{rate:.0f} Hz",
+                "late p50/p99/p99.9"
                 f" {describe_lateness(driver.pace.calc_lateness(_LATEST))}",
                 f"{taken} commands, {sum(packets.values())} refused",
             ]

@@ -95,8 +95,8 @@ class StatusLine(LiveLine):
                 depth,
                 *relief,
                 contacts,
-                f"{ticks / passed_s:.0f} Hz, late p50/p99/p99.9"
-                f" {describe_lateness(late_s)}",
+                f"{ticks / passed_s:.0f} Hz",
+                f"late p50/p99/p99.9 {describe_lateness(late_s)}",
                 describe_link(backend.get_link_status()),
             ]
         return " · ".join([f"[bold]{time_s:7.1f} s[/]", *parts])
