@@ -148,7 +148,9 @@ def test_a_small_device_is_not_refused_for_a_path_that_nobody_follows(scene):
 
 
 def test_an_address_is_no_device_yet(scene):
-    with pytest.raises(TypeError, match=r"is the str .*; `open_device` opens an address"):
+    with pytest.raises(
+        TypeError, match=r"is the str .*; `open_device` opens an address"
+    ):
         BuildHapticDiagram(scene, device="udp://127.0.0.1:7400")
 
 
