@@ -71,7 +71,7 @@ class HapticPicture:
         # Friction of a loop that was drawn here before is no matter of this one.
         meshcat.Delete(f"{_ROOT}/friction")
         self._wanted = set(SHOWN_AT_FIRST)
-        self._shown = set(SHOWN_AT_FIRST)
+        self._shown = SHOWN_AT_FIRST
         self._pieces = {"tool": DrawnPieces(meshcat, f"{_ROOT}/tool", tool.pieces, 1.0)}
         self._pieces_are_sent = False
         self._X_HT = X_HT
@@ -121,26 +121,28 @@ class HapticPicture:
 
     def draw_views(self) -> Iterator[None]:
         """Shows and hides the views that are not yet as they were asked for."""
-        changed = self._wanted ^ self._shown
-        if not changed:
+        if self._wanted == self._shown:
             return
         if not self._pieces_are_sent and self._wanted & {"pieces", "virtual"}:
             for pieces in self._pieces.values():
                 yield from pieces.send()
             self._pieces_are_sent = True
-        self._shown = set(self._wanted)
+        # Only now: more may have been asked for while pieces were sent.
+        wanted = frozenset(self._wanted)
+        changed = wanted ^ self._shown
         for view in sorted(changed & _FOLDERS.keys()):
             for folder in _FOLDERS[view]:
-                self._set_visible(folder, view in self._shown)
+                self._set_visible(folder, view in wanted)
             yield
         if changed & {"pieces", "virtual"}:
             for path in self._pieces:
-                self._show_facets(path)
+                self._show_facets(path, wanted)
                 yield
+        self._shown = wanted
 
-    def _show_facets(self, path: str) -> None:
+    def _show_facets(self, path: str, wanted: frozenset[str]) -> None:
         """Shows of a mesh its surface or its pieces, and virtual facets or none."""
-        has_pieces, has_virtual = ("pieces" in self._shown, "virtual" in self._shown)
+        has_pieces, has_virtual = "pieces" in wanted, "virtual" in wanted
         self._set_visible(f"{path}/<object>", not has_pieces)
         self._set_visible(f"{path}/pieces", has_pieces)
         self._set_visible(f"{path}/virtual", has_virtual)

@@ -25,6 +25,7 @@ from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems import haptic_visualizer
 from drake_haptics.systems.arrow_pool import ArrowPool
 from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.haptic_picture import HapticPicture
 from drake_haptics.systems.haptic_visualizer import HapticVisualizer
 
 
@@ -245,6 +246,30 @@ def test_views_are_sent_once_and_then_only_shown_and_hidden(monkeypatch):
     assert see("forces", True) == dict.fromkeys(("force", "clusters", "friction"), True)
     assert see("forces", True) == {}
     assert not meshcat.objects
+
+
+def test_a_view_that_is_hidden_while_pieces_are_sent_is_hidden():
+    meshcat = FakeMeshcat()
+    picture = HapticPicture(meshcat, make_mesh(), [], RigidTransform(), False)
+    picture.show("pieces", True)
+    drawing = picture.draw_views()
+    next(drawing)
+    picture.show("ghost", False)
+    list(drawing)
+    list(picture.draw_views())
+    assert meshcat.properties["/haptics/handle", "visible"] is False
+    assert meshcat.properties["/haptics/tool/pieces", "visible"] is True
+
+
+def test_views_of_a_frame_that_is_broken_off_are_drawn_in_the_next_one():
+    meshcat = FakeMeshcat()
+    picture = HapticPicture(meshcat, make_mesh(), [], RigidTransform(), False)
+    for view in ("contacts", "ghost"):
+        picture.show(view, False)
+    next(picture.draw_views())
+    list(picture.draw_views())
+    assert meshcat.properties["/haptics/handle", "visible"] is False
+    assert meshcat.properties["/haptics/contacts", "visible"] is False
 
 
 def test_a_view_that_there_is_not_is_refused():
