@@ -124,7 +124,10 @@ class HapticPicture:
         if self._wanted == self._shown:
             return
         if not self._pieces_are_sent and self._wanted & {"pieces", "virtual"}:
-            for pieces in self._pieces.values():
+            for path, pieces in self._pieces.items():
+                # Hidden until all is there, and if it is no longer wanted then.
+                self._set_visible(f"{path}/pieces", False)
+                self._set_visible(f"{path}/virtual", False)
                 yield from pieces.send()
             self._pieces_are_sent = True
         # Only now: more may have been asked for while pieces were sent.

@@ -261,6 +261,20 @@ def test_a_view_that_is_hidden_while_pieces_are_sent_is_hidden():
     assert meshcat.properties["/haptics/tool/pieces", "visible"] is True
 
 
+def test_pieces_that_are_hidden_while_they_are_sent_are_hidden():
+    meshcat = FakeMeshcat()
+    picture = HapticPicture(meshcat, make_mesh(), [], RigidTransform(), False)
+    picture.show("pieces", True)
+    drawing = picture.draw_views()
+    next(drawing)
+    picture.show("pieces", False)
+    list(drawing)
+    list(picture.draw_views())
+    assert "/haptics/tool/pieces/0" in meshcat.objects
+    assert meshcat.properties["/haptics/tool/pieces", "visible"] is False
+    assert meshcat.properties.get(("/haptics/tool/<object>", "visible"), True)
+
+
 def test_views_of_a_frame_that_is_broken_off_are_drawn_in_the_next_one():
     meshcat = FakeMeshcat()
     picture = HapticPicture(meshcat, make_mesh(), [], RigidTransform(), False)
