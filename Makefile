@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.drake_haptics
 CORE := $(wildcard drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h) drake_haptics/core/CMakeLists.txt
 
-.PHONY: demo tutorials test lint unit docs format build fuzz clean
+.PHONY: demo tutorials test test-newest lint unit docs format build fuzz clean
 .DEFAULT_GOAL := demo
 
 demo: $(STAMP)
@@ -22,8 +22,21 @@ test: lint unit
 
 # Tests of one file stay together and in order: they share what they have set up, and
 # some go on from one another. The longest files come first: see tests/conftest.py.
+TESTS ?= tests
 unit: $(STAMP)-test
-	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder tests
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder $(TESTS)
+
+# What depends on Python and Drake themselves (calls of the core, loop, AutoDiff, device,
+# command line), on the newest CPython of this machine that Drake has a wheel for.
+NEWEST_TESTS := $(filter-out tests/test_core_cpp.py, \
+  $(foreach part,core autodiff haptic device udp builder,$(wildcard tests/test_$(part)_*.py))) \
+  tests/test_convex_pair.py tests/test_contact_query.py tests/test_rendering_gradients.py \
+  $(foreach part,cli_run cli_help closed_loop_two_processes,tests/acceptance/test_$(part).py)
+test-newest:
+	@newest=$$(.ci/newest-python $(PYTHON)) || exit 1; \
+	if [ -z "$$newest" ]; then echo "Skipped: the tests on a newer Python."; exit 0; fi; \
+	echo "The tests on $$newest:"; \
+	$(MAKE) unit VENV=.venv-newest PYTHON="$$newest" TESTS="$(NEWEST_TESTS)"
 
 lint: $(STAMP)-test
 	$(BIN)/ruff check .
@@ -33,6 +46,7 @@ lint: $(STAMP)-test
 
 # The pages of docs/ with the reference that is made of the code, as a site.
 docs: $(STAMP)-test
+	@echo "Building the site takes some two minutes. Notebooks are shown as saved, not run."
 	$(BIN)/python -m sphinx --builder html --jobs auto --quiet --nitpicky \
 	  --fail-on-warning --keep-going docs build/docs
 	@echo "The front page is $(CURDIR)/build/docs/index.html"
@@ -46,7 +60,7 @@ format: $(STAMP)-test
 # Rebuilds the C++ core after an edit, without a fresh build environment.
 build:
 	@test -e $(STAMP)-test || $(MAKE) $(STAMP)-test
-	$(BIN)/pip install --quiet "scikit-build-core>=0.11" "nanobind>=2.7" "cmeel-eigen>=3.4"
+	$(BIN)/pip install --quiet "scikit-build-core>=0.11" "nanobind>=2.7,<3" "cmeel-eigen>=3.4"
 	$(BIN)/pip install --quiet --no-build-isolation --no-deps -e .
 	$(BIN)/python -m nanobind.stubgen -q -m drake_haptics._core -o drake_haptics/_core.pyi
 	@touch $(STAMP) $(STAMP)-test
@@ -93,4 +107,4 @@ fuzz: $(STAMP)-test
 	  -artifact_prefix=build/fuzz/found/ build/fuzz/found tests/fuzz/corpus/$(FUZZ)
 
 clean:
-	rm -rf $(VENV) build
+	rm -rf $(VENV) .venv-newest build

@@ -4,6 +4,8 @@ import os
 import signal
 from pathlib import Path
 
+from skip_summary import skip_summary
+
 # Matrices here are small, and several workers share the cores: threads of linear
 # algebra would wait for one another, a hundred times longer than the work takes.
 # Before anything imports NumPy; programs that tests start inherit it.
@@ -41,3 +43,12 @@ def pytest_collection_modifyitems(items):
     """Puts the longest files first, as `LONGEST` has them; within a file as it is."""
     ranks = {name: rank for rank, name in enumerate(LONGEST)}
     items.sort(key=lambda item: ranks.get(Path(item.path).name, len(ranks)))
+
+
+def pytest_unconfigure(config):
+    """Ends the run with a line that says what was not checked."""
+    reporter = config.pluginmanager.get_plugin("terminalreporter")
+    if reporter is None or hasattr(config, "workerinput"):
+        return
+    skipped = reporter.stats.get("skipped", [])
+    reporter.write_line(skip_summary(report.longrepr[2] for report in skipped))

@@ -7,6 +7,21 @@
 
 #include "bind_real_array.h"
 
+namespace drake_haptics {
+
+/// What NumPy is called for, looked up as the module is loaded: an import can
+/// fail, and can run any code, which a conversion must not.
+struct NumpyFunctions {
+  PyObject* asarray = nullptr;
+  PyObject* empty = nullptr;
+};
+inline NumpyFunctions numpy_functions;
+
+/// @throws nanobind::python_error if there is no NumPy.
+void ImportNumpy();
+
+}  // namespace drake_haptics
+
 /// Vectors and matrices of doubles to and from NumPy. bind.h includes this for
 /// all bindings: with nanobind/eigen/dense.h alone two of them would disagree.
 ///
@@ -80,13 +95,10 @@ struct type_caster<T, enable_if_t<is_eigen_plain_v<T> &&
     kOther
   };
 
-  static PyObject* OfNumpy(const char* name) {
-    return object(module_::import_("numpy").attr(name)).release().ptr();
-  }
-
   static object AsArray(PyObject* source) noexcept {
-    static PyObject* const asarray = OfNumpy("asarray");
-    object array = steal(PyObject_CallOneArg(asarray, source));
+    PyObject* const asarray = drake_haptics::numpy_functions.asarray;
+    // Of the calls that take one argument, this is in the stable ABI of 3.12.
+    object array = steal(PyObject_Vectorcall(asarray, &source, 1, nullptr));
     if (!array.is_valid()) PyErr_Clear();
     return array;
   }
@@ -102,8 +114,7 @@ struct type_caster<T, enable_if_t<is_eigen_plain_v<T> &&
   }
 
   static PyObject* NewArray(Py_ssize_t num_rows, Py_ssize_t num_columns) {
-    // Looked up once: Python's search for a module takes longer than the call.
-    static PyObject* const empty = OfNumpy("empty");
+    PyObject* const empty = drake_haptics::numpy_functions.empty;
     PyObject* const shape = kDimensions == 1
                                 ? PyLong_FromSsize_t(num_rows * num_columns)
                                 : Py_BuildValue("(nn)", num_rows, num_columns);

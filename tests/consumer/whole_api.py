@@ -101,7 +101,8 @@ def use_geometry(path: Path) -> float:
     assert_type(mesh.report.extent, tuple[float, float, float])
     pair = ConvexPair(cup.pieces[0], ConvexPolytope([[0.0, 0.0, 0.0]]), "global")
     contact: Contact = pair.query(np.eye(4), [1.0, 0, 0, 0, 0, 0, 0])
-    feature: Feature = contact.feature_A
+    feature: Feature | None = contact.feature_A
+    assert feature is not None
     assert_type(feature.kind, FeatureKind)
     assert_type(contact.status, ContactStatus)
     motion: PairTrajectory = pair.query_trajectory(np.eye(4)[None], np.eye(4))
