@@ -251,7 +251,11 @@ class Feature:
     A vertex, edge or facet of a `ConvexPolytope`. Equal if kind and index are. Immutable.
     """
 
-    def __init__(self, kind: FeatureKind, index: int) -> None: ...
+    def __init__(self, kind: FeatureKind, index: int) -> None:
+        """
+        Raises:
+            ValueError: the index is negative or too large.
+        """
 
     @property
     def kind(self) -> FeatureKind:
@@ -320,12 +324,12 @@ class Contact:
         """Share of the contact, 0 to 1, in flush faces or edges."""
 
     @property
-    def feature_A(self) -> Feature:
-        """`Feature` of A in contact."""
+    def feature_A(self) -> Feature | None:
+        """`Feature` of A in contact; None where another library found it."""
 
     @property
-    def feature_B(self) -> Feature:
-        """`Feature` of B in contact."""
+    def feature_B(self) -> Feature | None:
+        """`Feature` of B in contact; None where another library found it."""
 
     @property
     def status(self) -> ContactStatus:
@@ -404,11 +408,15 @@ class ContactSet:
 
     @property
     def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
-        """(n, 2) int32, feature of A in contact: [FeatureKind, index]."""
+        """
+        (n, 2) int32, feature of A in contact: [FeatureKind, index], -1 where another library found the contact.
+        """
 
     @property
     def feature_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
-        """(n, 2) int32, feature of B in contact: [FeatureKind, index]."""
+        """
+        (n, 2) int32, feature of B in contact: [FeatureKind, index], -1 where another library found the contact.
+        """
 
     @property
     def status(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
@@ -477,11 +485,15 @@ class PairTrajectory:
 
     @property
     def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
-        """(n, 2) int32, feature of A in contact: [FeatureKind, index]."""
+        """
+        (n, 2) int32, feature of A in contact: [FeatureKind, index], -1 where another library found the contact.
+        """
 
     @property
     def feature_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
-        """(n, 2) int32, feature of B in contact: [FeatureKind, index]."""
+        """
+        (n, 2) int32, feature of B in contact: [FeatureKind, index], -1 where another library found the contact.
+        """
 
     @property
     def status(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
@@ -599,11 +611,15 @@ class ContactTrajectory:
 
     @property
     def feature_A(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
-        """(n, 2) int32, feature of A in contact: [FeatureKind, index]."""
+        """
+        (n, 2) int32, feature of A in contact: [FeatureKind, index], -1 where another library found the contact.
+        """
 
     @property
     def feature_B(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 2), writable=False)]:
-        """(n, 2) int32, feature of B in contact: [FeatureKind, index]."""
+        """
+        (n, 2) int32, feature of B in contact: [FeatureKind, index], -1 where another library found the contact.
+        """
 
     @property
     def status(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
@@ -807,7 +823,7 @@ class ContactCarrier:
             now: (7 + 7 m,) their poses now.
 
         Raises:
-            ValueError: not poses, or not one for each body.
+            ValueError: not poses, or not one for each body, or a contact names no features, see `contact_set`.
             IndexError: a contact names what is not there.
         """
 
@@ -1250,7 +1266,7 @@ def differentiate_contacts(contacts: ContactSet, tolerance: float, tool: Decompo
         X_WO: a (7,) pose for each object.
 
     Raises:
-        ValueError: a pose is not one, or numbers of objects or of variables differ.
+        ValueError: a pose is not one, or numbers of objects or of variables differ, or a contact names no features, see `contact_set`.
         IndexError: a contact names an object, a piece or a feature that is not given.
     """
 
@@ -1385,7 +1401,7 @@ class ContactShading:
             q_WO: (m, 7) poses of the objects.
 
         Raises:
-            ValueError: not a pose, or not one for each object.
+            ValueError: not a pose, or not one for each object, or a contact names no features, see `contact_set`.
             IndexError: a contact names an object, piece or feature that does not exist.
         """
 
@@ -2250,7 +2266,7 @@ def run_tool_loop(tool: Decomposition, objects: Sequence[Decomposition], q_WO: A
 
 def contact_set(distance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], nhat_BA_W: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], p_WCa: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], p_WCb: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], object_index: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')]) -> ContactSet:
     """
-    Contacts that another library found, for the laws of this one. They have no extent and no features.
+    Contacts that another library found, for the laws of this one. They have no extent and no features: what needs to know how a contact moves (derivatives, force shading, ticks without a query) refuses them with a ValueError.
 
     Args:
         distance: (n,) signed distances, m.

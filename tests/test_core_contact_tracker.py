@@ -349,3 +349,93 @@ def test_a_query_reaches_no_farther_than_its_tracker(bad: float) -> None:
     tracker = _core.SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], T)
     with pytest.raises(ValueError, match="tolerance must be from 0 m to the tracker's"):
         tracker.query(IDENTITY, bad)
+
+
+def slab(half_m: list[float], center_m: list[float]) -> _core.Decomposition:
+    mesh = trimesh.creation.box(2.0 * np.array(half_m))
+    mesh.apply_translation(center_m)
+    return pieces_of(mesh)
+
+
+@pytest.mark.parametrize("resets", [False, True])
+@pytest.mark.parametrize("far_m", [1e3, 1e10, 1e12, 1e50, 9e99])
+@pytest.mark.parametrize("mover", ["tool", "object"])
+def test_after_a_far_pose_no_contact_is_missed(
+    mover: str, far_m: float, resets: bool
+) -> None:
+    """In steps of 20 um, which vanish beside the length of that way."""
+    tolerance = 2e-3
+    tool = slab([0.01] * 3, [0.0] * 3)
+    tracker = _core.SceneTracker(tool, [slab([0.05] * 3, [0.0] * 3)], tolerance)
+    for z in np.linspace(0.08, 0.3, 20):
+        tracker.query(pose([0.0, 0.0, z]))
+    away = pose([far_m, 0.0, 0.0])
+    if mover == "tool":
+        tracker.query(away)
+    else:
+        tracker.set_object_pose(0, away)
+        tracker.query(pose([0.0, 0.0, 0.08]))
+        tracker.set_object_pose(0, IDENTITY)
+    tracker.query(pose([0.0, 0.0, 0.08]))
+    if resets:
+        tracker.reset()
+    for z in np.arange(0.065, 0.0615, -2e-5):
+        gap = z - 0.06
+        contacts = tracker.query(pose([0.0, 0.0, z]))
+        assert len(contacts) == (gap <= tolerance)
+        if len(contacts):
+            assert contacts.distance[0] == pytest.approx(gap, abs=1e-12)
+
+
+@pytest.mark.parametrize("offset_m", [0.0, 1.0, 100.0])
+def test_a_tool_put_elsewhere_starts_there_as_at_first(offset_m: float) -> None:
+    """Wherever its frame is: the same tool over the same way."""
+    offset = np.array([0.0, 0.0, offset_m])
+    tool = slab([0.01] * 3, list(offset))
+    plate = slab([0.1, 0.1, 0.005], [0.0] * 3)
+    tracker = _core.SceneTracker(tool, [plate], 2e-3)
+    for z in np.arange(0.0180, 0.0139, -2e-4):
+        pressed = tracker.query(pose(np.array([0.0, 0.0, z]) - offset))
+    assert pressed.distance[0] == pytest.approx(-1e-3, abs=1e-9)
+    # It is 1 mm deep from below.
+    elsewhere = pose(np.array([0.06, 0.0, -0.014]) - offset)
+    found = tracker.query(elsewhere)
+    fresh = _core.SceneTracker(tool, [plate], 2e-3).query(elsewhere)
+    np.testing.assert_array_equal(found.distance, fresh.distance)
+    np.testing.assert_array_equal(found.nhat_BA_W, fresh.nhat_BA_W)
+    assert found.distance.min() == pytest.approx(-1e-3, abs=1e-9)
+
+
+@pytest.mark.parametrize("offset_m", [0.0, 1.0])
+@pytest.mark.parametrize("speed", [0.1, 0.25, 0.5, 1.0])
+def test_a_small_fast_tool_is_kept_on_its_side(speed: float, offset_m: float) -> None:
+    """At 1 kHz it passes the middle of a plate, and is still pushed the way it came."""
+    radius_m, thickness_m, tolerance = 0.8e-3, 1e-3, 1e-3
+    half = radius_m / np.sqrt(3.0)
+    offset = np.array([0.0, 0.0, offset_m])
+    tool = slab([half] * 3, list(offset))
+    plate = slab([0.02, 0.02, thickness_m / 2], [0.0, 0.0, -thickness_m / 2])
+    tracker = _core.SceneTracker(tool, [plate], tolerance)
+    for bottom in np.arange(1.5e-3, -1.6e-3, -1e-3 * speed):
+        contacts = tracker.query(pose(np.array([0.0, 0.0, bottom + half]) - offset))
+    # From below it is nearer now.
+    assert bottom < -(thickness_m + 2 * half) / 2
+    least = contacts.distance.argmin()
+    np.testing.assert_allclose(contacts.nhat_BA_W[least], [0, 0, 1], atol=1e-9)
+    assert contacts.distance[least] == pytest.approx(bottom, abs=1e-9)
+
+
+def test_what_moves_with_the_tool_keeps_its_contact() -> None:
+    """Both ride by 1 m a tick: against each other the tool creeps."""
+    tool = slab([0.01] * 3, [0.0] * 3)
+    plate = slab([0.1, 0.1, 0.002], [0.0, 0.0, -0.002])
+    tracker = _core.SceneTracker(tool, [plate, plate], 2e-3)
+    tracker.set_object_pose(1, pose([0.0, 0.0, 5.0]))
+    for k in range(60):
+        ride = np.array([1.0 * k, 0.0, 0.0])
+        depth = 1e-4 * (k - 20)
+        tracker.set_object_pose(0, pose(ride))
+        contacts = tracker.query(pose(ride + np.array([0.0, 0.0, 0.01 - depth])))
+        assert len(contacts) >= 1
+        assert contacts.distance.min() == pytest.approx(-depth, abs=1e-9)
+        np.testing.assert_allclose(contacts.nhat_BA_W[0], [0, 0, 1], atol=1e-9)

@@ -27,8 +27,7 @@ def run(*command):
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-def test_the_cpp_tests_pass_without_python():
-    """Under the address and undefined behaviour sanitizers, and Eigen's checks."""
+def configure():
     BUILD.mkdir(parents=True, exist_ok=True)
     run(
         tool("cmake"),
@@ -39,8 +38,25 @@ def test_the_cpp_tests_pass_without_python():
         "-DDRAKE_HAPTICS_BINDINGS=OFF",
         f"-DCMAKE_PREFIX_PATH={sysconfig.get_path('purelib')}",
     )
-    run(tool("cmake"), "--build", BUILD, "--target", "core_tests")
+
+
+def build_and_run(target, *chosen):
+    configure()
+    run(tool("cmake"), "--build", BUILD, "--target", target)
     run(
-        *(tool("ctest"), "--output-on-failure", "--no-tests=error"),
+        *(tool("ctest"), "--output-on-failure", "--no-tests=error", *chosen),
         *("--parallel", str(os.cpu_count())),
     )
+
+
+def test_the_cpp_tests_pass_without_python():
+    """Under the address and undefined behaviour sanitizers, and all assertions."""
+    build_and_run("core_tests", "--label-exclude", "threads")
+
+
+def test_threads_do_not_race():
+    """Trackers on one decomposition, and the servo, under the thread sanitizer."""
+    configure()
+    if "HAS_THREAD_SANITIZER:INTERNAL=1" not in (BUILD / "CMakeCache.txt").read_text():
+        pytest.skip("the thread sanitizer is not installed")
+    build_and_run("thread_tests", "--label-regex", "threads")

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from drake_haptics import _core
 
@@ -82,3 +83,53 @@ def test_what_would_give_no_force_is_refused(
     columns[name] = np.full_like(columns[name], bad)
     with pytest.raises(ValueError, match=complaint):
         _core.contact_set(**columns)
+
+
+_AT_REST = np.array([1.0, 0, 0, 0, 0, 0, 0])
+
+
+def _cube() -> _core.Decomposition:
+    corners = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    hull = ConvexHull(corners)
+    return _core.decompose_surface(
+        np.array(corners, dtype=float),
+        np.array(hull.simplices, dtype=np.int32),
+        np.zeros(12, dtype=np.uint8),
+    )
+
+
+def _foreign() -> _core.ContactSet:
+    return _core.contact_set(**_columns([-1e-4], [[0, 0, 1]]))
+
+
+def test_they_name_no_features() -> None:
+    contacts = _foreign()
+    np.testing.assert_array_equal(contacts.feature_A, [[-1, -1]])
+    np.testing.assert_array_equal(contacts.feature_B, [[-1, -1]])
+    assert contacts[0].feature_A is None
+    assert contacts[0].feature_B is None
+    assert "no features" in repr(contacts[0])
+
+
+def test_what_needs_their_features_refuses_them() -> None:
+    """As if they were of vertex 0, they would have a wrong gradient, and silently."""
+    contacts, cube = _foreign(), _cube()
+    moving = _core.AutoDiffVector(_AT_REST, np.eye(7))
+    with pytest.raises(ValueError, match="names no features"):
+        _core.differentiate_contacts(
+            contacts, _TOLERANCE_M, cube, moving, [cube], [moving]
+        )
+    carrier = _core.ContactCarrier(cube, [cube], [_AT_REST])
+    with pytest.raises(ValueError, match="names no features"):
+        carrier.advance(contacts, _AT_REST, _AT_REST)
+    surface = _core.SurfaceShading(cube, 0.5)
+    shading = _core.ContactShading(surface, [surface])
+    with pytest.raises(ValueError, match="names no features"):
+        shading.shade(contacts, _AT_REST, _AT_REST[None])
+
+
+@pytest.mark.parametrize("index", [-1, 2**29, 2**30])
+def test_a_feature_has_an_index_that_a_piece_can_have(index: int) -> None:
+    with pytest.raises(ValueError, match="index must be"):
+        _core.Feature(_core.FeatureKind.FACET, index)
+    assert _core.Feature(_core.FeatureKind.FACET, 2**29 - 1).index == 2**29 - 1

@@ -107,7 +107,8 @@ void BindAdvance(nb::module_& m) {
            "then of the m objects that move.\n"
            "    now: (7 + 7 m,) their poses now.\n\n"
            "Raises:\n"
-           "    ValueError: not poses, or not one for each body.\n"
+           "    ValueError: not poses, or not one for each body, or "
+           "a contact names no features, see `contact_set`.\n"
            "    IndexError: a contact names what is not there.")
       .def("advance", &DifferentiateAdvance, nb::arg("contacts"),
            nb::arg("found"), nb::arg("now"), "The same with derivatives.");

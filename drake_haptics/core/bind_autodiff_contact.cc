@@ -70,7 +70,8 @@ void BindAutoDiffContact(nb::module_& m) {
         "    X_WO: a (7,) pose for each object.\n\n"
         "Raises:\n"
         "    ValueError: a pose is not one, or numbers of objects or of "
-        "variables differ.\n"
+        "variables differ, or "
+        "a contact names no features, see `contact_set`.\n"
         "    IndexError: a contact names an object, a piece or a feature that "
         "is not given.");
 }

@@ -1,5 +1,6 @@
 #include "bind_contact.h"
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
@@ -28,8 +29,12 @@ void DefVector(nb::class_<Contact>* contact, const char* name,
       doc);
 }
 
-Feature ToFeature(const std::array<std::int32_t, 2>& kind_and_index) {
-  return {static_cast<FeatureKind>(kind_and_index[0]), kind_and_index[1]};
+using OptionalFeature = std::optional<Feature>;
+
+OptionalFeature ToFeature(const std::array<std::int32_t, 2>& kind_and_index) {
+  const auto [kind, index] = kind_and_index;
+  if (index < 0) return std::nullopt;
+  return Feature(static_cast<FeatureKind>(kind), index);
 }
 
 std::string Text(const Feature& feature) {
@@ -40,13 +45,23 @@ std::string Text(const Feature& feature) {
 
 nb::object Text(const Contact& contact) {
   const Vec3& n = contact.nhat_BA_W;
-  return nb::str(
-             "Contact({:.6g} m, {}, normal [{:.4g}, {:.4g}, {:.4g}], {} of A "
-             "on {} of B)")
+  const OptionalFeature a = ToFeature(contact.feature_A);
+  const OptionalFeature b = ToFeature(contact.feature_B);
+  const std::string features =
+      a && b ? Text(*a) + " of A on " + Text(*b) + " of B" : "no features";
+  return nb::str("Contact({:.6g} m, {}, normal [{:.4g}, {:.4g}, {:.4g}], {})")
       .format(contact.distance,
               nb::cast(static_cast<ContactStatus>(contact.status)).attr("name"),
-              n.x(), n.y(), n.z(), Text(ToFeature(contact.feature_A)),
-              Text(ToFeature(contact.feature_B)));
+              n.x(), n.y(), n.z(), features);
+}
+
+Feature MakeFeature(FeatureKind kind, int index) {
+  if (index < 0 || index > Feature::kMaxIndex) {
+    throw std::invalid_argument("index must be from 0 to " +
+                                std::to_string(Feature::kMaxIndex) + ", is " +
+                                std::to_string(index));
+  }
+  return {kind, index};
 }
 
 void BindFeature(nb::module_& m) {
@@ -60,7 +75,8 @@ void BindFeature(nb::module_& m) {
   nb::class_<Feature>(m, "Feature",
                       "A vertex, edge or facet of a `ConvexPolytope`. Equal if "
                       "kind and index are. Immutable.")
-      .def(nb::init<FeatureKind, int>(), nb::arg("kind"), nb::arg("index"))
+      .def(nb::new_(&MakeFeature), nb::arg("kind"), nb::arg("index"),
+           "Raises:\n    ValueError: the index is negative or too large.")
       .def_prop_ro("kind", &Feature::kind, "Which list the index counts in.")
       .def_prop_ro("index", &Feature::index,
                    "Place in `vertices`, `edges` or `facets`, from 0.")
@@ -116,10 +132,10 @@ void BindOneContact(nb::module_& m) {
               "Share of the contact, 0 to 1, in flush faces or edges.")
       .def_prop_ro(
           "feature_A", [](const Contact& c) { return ToFeature(c.feature_A); },
-          "`Feature` of A in contact.")
+          "`Feature` of A in contact; None where another library found it.")
       .def_prop_ro(
           "feature_B", [](const Contact& c) { return ToFeature(c.feature_B); },
-          "`Feature` of B in contact.")
+          "`Feature` of B in contact; None where another library found it.")
       .def_prop_ro(
           "status",
           [](const Contact& c) { return static_cast<ContactStatus>(c.status); },

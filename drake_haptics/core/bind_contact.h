@@ -40,10 +40,12 @@ void DefContactColumns(Binding* set) {
       "(n,) share of the contact, 0 to 1, that lies in flush faces or edges.");
   DefColumn<items, &Contact::feature_A>(
       set, "feature_A",
-      "(n, 2) int32, feature of A in contact: [FeatureKind, index].");
+      "(n, 2) int32, feature of A in contact: [FeatureKind, index], -1 where "
+      "another library found the contact.");
   DefColumn<items, &Contact::feature_B>(
       set, "feature_B",
-      "(n, 2) int32, feature of B in contact: [FeatureKind, index].");
+      "(n, 2) int32, feature of B in contact: [FeatureKind, index], -1 where "
+      "another library found the contact.");
   DefColumn<items, &Contact::status>(set, "status",
                                      "(n,) int32, ContactStatus.");
 }

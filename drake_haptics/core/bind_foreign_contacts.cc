@@ -59,7 +59,9 @@ void BindForeignContacts(nb::module_& m) {
   m.def("contact_set", &ToContactSet, nb::arg("distance"), nb::arg("nhat_BA_W"),
         nb::arg("p_WCa"), nb::arg("p_WCb"), nb::arg("object_index"),
         "Contacts that another library found, for the laws of this one. They "
-        "have no extent and no features.\n\n"
+        "have no extent and no features: what needs to know how a contact "
+        "moves (derivatives, force shading, ticks without a query) refuses "
+        "them with a ValueError.\n\n"
         "Args:\n"
         "    distance: (n,) signed distances, m.\n"
         "    nhat_BA_W: (n, 3) unit normals out of the object into the tool.\n"

@@ -1,4 +1,16 @@
+#include <cstdlib>
+
 #include "bind.h"
+#include "bind_eigen.h"
+
+void drake_haptics::ImportNumpy() {
+  // They live as long as the process.
+  const auto numpy = nanobind::module_::import_("numpy");
+  numpy_functions = {
+      nanobind::object(numpy.attr("asarray")).release().ptr(),
+      nanobind::object(numpy.attr("empty")).release().ptr(),
+  };
+}
 
 NB_MODULE(_core, m) {
   m.doc() =
@@ -7,7 +19,10 @@ NB_MODULE(_core, m) {
       "drake_haptics; the rest is the engine behind it.";
   // Drake keeps the Python systems of a Diagram alive until the interpreter is
   // gone, and with them what they hold of ours: no leak, but reported as one.
-  nanobind::set_leak_warnings(false);
+  // Whoever looks for leaks of ours asks for reports.
+  nanobind::set_leak_warnings(std::getenv("DRAKE_HAPTICS_LEAK_WARNINGS") !=
+                              nullptr);
+  drake_haptics::ImportNumpy();
   drake_haptics::BindAutoDiff(m);
   drake_haptics::BindPolytope(m);
   drake_haptics::BindDecomposition(m);

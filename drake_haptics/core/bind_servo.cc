@@ -18,6 +18,16 @@ namespace {
 
 using OptionalSlope = std::optional<Mat6>;
 
+// Other Python threads run while a name is looked up, and while the servo ends.
+class PythonUdpServo : public UdpServo {
+ public:
+  using UdpServo::UdpServo;
+  ~PythonUdpServo() {
+    const nb::gil_scoped_release release;
+    Close();
+  }
+};
+
 LocalWrench ToLocalWrench(const Vec6& F, const PoseVector& X, const Vec6& V,
                           const OptionalSlope& K, const OptionalSlope& B,
                           double published_at) {
@@ -150,7 +160,7 @@ void BindStatus(nb::module_& m) {
 
 void BindUdpServo(nb::module_& m) {
   const UdpServoOptions defaults;
-  nb::class_<UdpServo>(
+  nb::class_<PythonUdpServo>(
       m, "UdpServo",
       "A thread that answers every state of a device's driver with the wrench "
       "of a `ServoLaw`. It runs without Python; no method but `close` waits "
@@ -158,17 +168,18 @@ void BindUdpServo(nb::module_& m) {
       "it. One thread of the program may use it.")
       .def(
           "__init__",
-          [](UdpServo* self, const std::string& host, std::uint16_t port,
+          [](PythonUdpServo* self, const std::string& host, std::uint16_t port,
              double ttl, double max_rate, double max_force, double max_torque,
              double hold, double release, double engage) {
-            new (self) UdpServo(host, port,
-                                {ttl,
-                                 max_rate,
-                                 max_force,
-                                 max_torque,
-                                 {hold, release, engage}});
+            new (self) PythonUdpServo(host, port,
+                                      {ttl,
+                                       max_rate,
+                                       max_force,
+                                       max_torque,
+                                       {hold, release, engage}});
           },
-          nb::arg("host"), nb::arg("port"), nb::kw_only(),
+          nb::call_guard<nb::gil_scoped_release>(), nb::arg("host"),
+          nb::arg("port"), nb::kw_only(),
           nb::arg("ttl_s") = defaults.time_to_live,
           nb::arg("max_rate_hz") = defaults.max_rate,
           nb::arg("max_force_N") = defaults.max_force,
@@ -194,7 +205,7 @@ void BindUdpServo(nb::module_& m) {
           "    RuntimeError: there is no such host, or no socket to be had.")
       .def(
           "read",
-          [](UdpServo& self) -> std::optional<HandleState> {
+          [](PythonUdpServo& self) -> std::optional<HandleState> {
             const HandleState state = self.Read();
             if (state.number == 0) return std::nullopt;
             return state;
@@ -202,8 +213,8 @@ void BindUdpServo(nb::module_& m) {
           "Returns the newest `HandleState`; None before the first.")
       .def(
           "publish",
-          [](UdpServo& self, const Vec6& F, const PoseVector& X, const Vec6& V,
-             const OptionalSlope& K, const OptionalSlope& B) {
+          [](PythonUdpServo& self, const Vec6& F, const PoseVector& X,
+             const Vec6& V, const OptionalSlope& K, const OptionalSlope& B) {
             self.Publish(ToLocalWrench(F, X, V, K, B, 0));
           },
           nb::arg("F_BH"), nb::arg("X_BH"), nb::arg("V_BH"),
@@ -211,16 +222,17 @@ void BindUdpServo(nb::module_& m) {
           nb::arg("B_B").none() = nb::none(),
           "Shows a local wrench from now on, as `ServoLaw.adopt` does; the "
           "first one enables the device.")
-      .def("recover", &UdpServo::Recover,
+      .def("recover", &PythonUdpServo::Recover,
            "Takes up again after a fault: disabled until the device is idle, "
            "then enabled.")
-      .def("close", &UdpServo::Close, nb::call_guard<nb::gil_scoped_release>(),
+      .def("close", &PythonUdpServo::Close,
+           nb::call_guard<nb::gil_scoped_release>(),
            "Disables the device and ends the thread, in some 30 ms. May be "
            "called again.")
-      .def("status", &UdpServo::status, "Returns a `UdpServoStatus`.")
+      .def("status", &PythonUdpServo::status, "Returns a `UdpServoStatus`.")
       .def(
           "lateness_s",
-          [](const UdpServo& self) {
+          [](const PythonUdpServo& self) {
             const LatenessHistogram& lateness = self.lateness();
             return std::tuple(lateness.Quantile(0.5), lateness.Quantile(0.99),
                               lateness.Quantile(0.999));
@@ -229,7 +241,8 @@ void BindUdpServo(nb::module_& m) {
           "of the last 10 s each state was answered, s, rounded up by at most "
           "a "
           "fifth.")
-      .def_prop_ro("local_port", &UdpServo::local_port, "Our own UDP port.");
+      .def_prop_ro("local_port", &PythonUdpServo::local_port,
+                   "Our own UDP port.");
 }
 
 }  // namespace

@@ -99,7 +99,8 @@ void BindShading(nb::module_& m) {
            "    q_WTool: (7,) pose of the tool [qw qx qy qz x y z].\n"
            "    q_WO: (m, 7) poses of the objects.\n\n"
            "Raises:\n"
-           "    ValueError: not a pose, or not one for each object.\n"
+           "    ValueError: not a pose, or not one for each object, or "
+           "a contact names no features, see `contact_set`.\n"
            "    IndexError: a contact names an object, piece or feature that "
            "does not exist.")
       .def("shade", &DifferentiateShade, nb::arg("contacts"),

@@ -155,7 +155,7 @@ class PairTracker : public SharedTracker {
     const Pose X_WA = ToPose(X_WA_value, "X_WA");
     const Pose X_WB = ToPose(X_WB_value, "X_WB");
     ContactSet contacts;
-    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    const Turn turn(&mutex_, Turn::Gil::kHold);
     tracker_.SetObjectPose(0, X_WB);
     tracker_.Query(X_WA, &contacts);
     return contacts;
@@ -202,7 +202,7 @@ class SceneTracker : public SharedTracker {
       tolerance = ToReal(tolerance_value, "tolerance");
     }
     ContactSet contacts;
-    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    const Turn turn(&mutex_, Turn::Gil::kHold);
     tracker_.Query(X_WTool, tolerance.value_or(tracker_.tolerance()),
                    &contacts);
     return contacts;

@@ -15,7 +15,9 @@ class Turn {
  public:
   enum class Gil {
     kRelease,  ///< other threads run meanwhile
-    kHold      ///< for calls that take less time than releasing it
+    /// For calls that last a tick at most: a busy Python thread takes the GIL
+    /// that is let go, and keeps it for Python's switch interval, 5 ms.
+    kHold
   };
 
   Turn(std::mutex* mutex, Gil gil) : lock_(*mutex, std::defer_lock) {

@@ -16,6 +16,11 @@ constexpr double kLoose = 1e-6;
 // How far an edge carries beyond the normals beside it; a little more than
 // counts.
 constexpr double kArcSlack = 1.01 * kSurfaceSlack;
+// 1 + the cosine between normals that are beside a knife's edge: with the slack
+// at both ends, they would be half a turn apart or more.
+constexpr double kKnife = 2.1 * kArcSlack * kArcSlack;
+// By how much the arc of a knife's edge is shorter at each end, rad.
+constexpr double kShort = 1e-6;
 // Between two corners a boundary bulges by the slack at most, and round-off.
 constexpr double kBulge = 2 * kSurfaceSlack;
 // Cosine of the widest cone that is worth asking; any narrower than a right
@@ -119,13 +124,17 @@ void FillCarryingArcs(Polytope* piece) {
                            .stableNormalized();
     const Vec3 normals[2] = {along.cross(left), right.cross(along)};
     // A concave edge carries nothing. A rim carries from its face's normal to
-    // the direction away from the face, and is not quite flush with either.
+    // the direction away from the face, and is not quite flush with either. A
+    // knife's, beside faces that lie back to back, ends short of their normals:
+    // an arc of half a turn or more would lead through the knife.
     if (!is_rim && normals[0].dot(right) > 2 * kArcSlack) continue;
+    const bool is_knife = !is_rim && normals[0].dot(normals[1]) < -1 + kKnife;
+    const double slack = is_knife ? -kShort : kArcSlack;
     for (int k = 0; k < 2; ++k) {
       const Vec3& wing = edge.wings[k];
       edge.carrying[k] =
           wing.isZero(0) ? Vec3(-edge.wings[1 - k] - kArcSlack * normals[1 - k])
-                         : Vec3(normals[k] + kArcSlack * wing);
+                         : Vec3(normals[k] + slack * wing);
     }
   }
 }

@@ -1,5 +1,7 @@
 #include "contact.h"
 
+#include <stdexcept>
+
 namespace drake_haptics {
 namespace {
 
@@ -8,6 +10,17 @@ std::array<std::int32_t, 2> KindAndIndex(const Feature& feature) {
 }
 
 }  // namespace
+
+template <typename T>
+void RequireFeatures(const ContactOf<T>& contact) {
+  if (contact.feature_A[1] >= 0 && contact.feature_B[1] >= 0) return;
+  throw std::invalid_argument(
+      "a contact of contact_set() names no features of convex pieces: it has "
+      "no derivatives, is not shaded and is not carried along");
+}
+
+template void RequireFeatures(const Contact&);
+template void RequireFeatures(const ContactOf<AutoDiff>&);
 
 Contact InWorld(const PairContact& pair, const Pose& X_WA) {
   Contact contact;

@@ -27,11 +27,18 @@ struct ContactOf {
   std::int32_t object = 0;
   std::int32_t piece_A = 0;
   std::int32_t piece_B = 0;
-  std::array<std::int32_t, 2> feature_A{};  ///< FeatureKind, index
-  std::array<std::int32_t, 2> feature_B{};
+  /// FeatureKind, index; -1 where none is known.
+  std::array<std::int32_t, 2> feature_A{-1, -1};
+  std::array<std::int32_t, 2> feature_B{-1, -1};
   std::int32_t status = 0;  ///< ContactStatus
 };
 using Contact = ContactOf<double>;
+
+/// Refuses a contact of no features, as of who finds contacts without convex
+/// pieces: it gives a force, but nothing tells how it moves or bends.
+/// @throws std::invalid_argument.
+template <typename T>
+void RequireFeatures(const ContactOf<T>& contact);
 
 /// The contact of a pair as seen in the world, object and pieces left at zero.
 Contact InWorld(const PairContact& pair, const Pose& X_WA);

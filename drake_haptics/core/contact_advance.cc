@@ -123,6 +123,7 @@ void ContactCarrier::Advance(const MovedBodyOf<T>& tool,
   }
   const Mat3Of<T> turn_A = TurnOf(tool);
   for (ContactOf<T>& contact : contacts->contacts) {
+    RequireFeatures(contact);
     const Decomposition& object = *objects_.at(contact.object);
     const auto& rest = X_WO_[contact.object];
     MovedBodyOf<T> at_rest;

@@ -44,7 +44,8 @@ class ContactCarrier {
 
   /// @param moving the objects that move, in their order.
   /// @param contacts as a query found them, not shaded.
-  /// @throws std::invalid_argument unless `moving` has one entry for each,
+  /// @throws std::invalid_argument unless `moving` has one entry for each
+  ///         and each contact names its features,
   ///         std::out_of_range for a contact on an object, piece, vertex or
   ///         edge that does not exist.
   template <typename T>

@@ -1,8 +1,6 @@
 #include "contact_tracker.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -18,20 +16,6 @@ void RequireFinite(const Pose& X, const char* what) {
     throw std::invalid_argument(std::string(what) +
                                 " holds a value that is not finite");
   }
-}
-
-// A tool that moves by more than this share of its radius between two queries
-// was put somewhere else.
-constexpr double kTeleportShare = 0.25;
-
-double RadiusAboutOrigin(const Decomposition& decomposition) {
-  double squared = 0;
-  for (const Polytope& piece : decomposition.pieces) {
-    for (const Vec3& v : piece.vertices) {
-      squared = std::max(squared, v.squaredNorm());
-    }
-  }
-  return std::sqrt(squared);
 }
 
 }  // namespace
@@ -58,7 +42,6 @@ ContactTracker::ContactTracker(
     }
     return shape;
   };
-  teleport_ = kTeleportShare * RadiusAboutOrigin(*tool);
   tool_ = shape_of(std::move(tool));
   const Box box = tool_.tree->bounds();
   middle_ = box.center;
@@ -104,37 +87,77 @@ void ContactTracker::Query(const Pose& X_WTool, double tolerance,
   }
   const auto start = std::chrono::steady_clock::now();
   out->contacts.clear();
-  if (is_first_) last_X_WTool_ = X_WTool;
-  is_first_ = false;
-  const Motion motion(last_X_WTool_, X_WTool);
-  odometer_ += motion.Bound(middle_, radius_);
-  wake_times_.Collect(odometer_, &awake_);
-  for (const int i : awake_) QueryObject(i, X_WTool, motion, tolerance, out);
-  last_X_WTool_ = X_WTool;
+  try {
+    QueryAll(X_WTool, tolerance, out);
+  } catch (...) {
+    // There was no memory: what is half learnt must not be trusted.
+    out->contacts.clear();
+    Reset();
+    throw;
+  }
   const std::chrono::duration<double> elapsed =
       std::chrono::steady_clock::now() - start;
   out->query_seconds = elapsed.count();
 }
 
+void ContactTracker::QueryAll(const Pose& X_WTool, double tolerance,
+                              ContactSet* out) {
+  if (is_first_) last_X_WTool_ = X_WTool;
+  is_first_ = false;
+  const Motion motion(last_X_WTool_, X_WTool);
+  double step = motion.Bound(middle_, radius_);
+  if (IsPutElsewhere(motion, step)) {
+    StartOver();
+    step = 0;
+  }
+  odometer_ += step;
+  wake_times_.Collect(odometer_, &awake_);
+  for (const int i : awake_) {
+    QueryObject(i, X_WTool, motion, step, tolerance, out);
+  }
+  last_X_WTool_ = X_WTool;
+}
+
+// Starts the tool's odometer from zero: after one far pose it would be too
+// large to count a step of a hand. What has been learnt of objects that rest is
+// forgotten; one that moves too is judged by how the tool moves against it.
+void ContactTracker::StartOver() {
+  for (int i = 0; i < num_objects(); ++i) {
+    if (objects_[i].has_moved) {
+      objects_[i].ahead += odometer_;
+    } else {
+      Forget(i);
+    }
+  }
+  odometer_ = 0;
+}
+
+void ContactTracker::Forget(int i) {
+  objects_[i].tracked.Reset();
+  objects_[i].ahead = 0;
+  wake_times_.Wake(i);
+}
+
 void ContactTracker::QueryObject(int i, const Pose& X_WTool,
-                                 const Motion& tool_motion, double tolerance,
-                                 ContactSet* out) {
+                                 const Motion& tool_motion, double tool_step,
+                                 double tolerance, ContactSet* out) {
   Object& object = objects_[i];
   const Pose X_AB = RelativePose(X_WTool, object.X_WO);
   const Pose last_X_AB = RelativePose(last_X_WTool_, object.last_X_WO);
   // Seen from an object at rest the tool moves as in the world.
   Motion motion = tool_motion;
-  double step = motion.Bound(middle_, radius_);
+  double step = tool_step;
   if (object.has_moved) {
     motion = Motion(last_X_AB.inverse(), X_AB.inverse());
-    object.ahead -= step;
     step = motion.Bound(middle_, radius_);
-    object.ahead += step;
+    object.ahead += step - tool_step;
+    if (IsPutElsewhere(motion, step)) {
+      object.tracked.Reset();
+      object.ahead = step = 0;
+    }
     object.last_X_WO = object.X_WO;
     object.has_moved = false;
   }
-  // After a teleport what was learnt means nothing.
-  if (step > teleport_) object.tracked.ForgetContacts();
   const std::size_t first = out->contacts.size();
   object.tracked.Query({tool_, tolerance_, tolerance, depth_, X_WTool, X_AB,
                         last_X_AB, motion, step, odometer_ + object.ahead},
@@ -146,10 +169,9 @@ void ContactTracker::QueryObject(int i, const Pose& X_WTool,
 }
 
 void ContactTracker::Reset() {
-  for (int i = 0; i < num_objects(); ++i) {
-    objects_[i].tracked.Reset();
-    wake_times_.Wake(i);
-  }
+  for (int i = 0; i < num_objects(); ++i) Forget(i);
+  odometer_ = 0;
+  is_first_ = true;
 }
 
 }  // namespace drake_haptics

@@ -16,6 +16,11 @@ namespace drake_haptics {
 /// An object costs nothing while the motion since it was last looked at cannot
 /// have brought it within reach. Copies are independent and keep what was
 /// learnt.
+///
+/// What a tool presses into keeps it on the side on which it came in. That is
+/// known as long as the tool is followed: a tool that has moved by more than
+/// the diameter of the ball around it, so that it meets nothing of where it was
+/// at the last query, was put elsewhere, and starts there as at first.
 class ContactTracker {
  public:
   /// Objects that share a decomposition share its tree.
@@ -42,7 +47,8 @@ class ContactTracker {
 
   /// Writes the contacts at the tool's pose to `out`, reusing its memory.
   /// @throws std::invalid_argument for a pose that is not finite, before any
-  ///         remembered state is touched.
+  ///         remembered state is touched; std::bad_alloc, after which nothing
+  ///         is remembered.
   void Query(const Pose& X_WTool, ContactSet* out) {
     Query(X_WTool, tolerance_, out);
   }
@@ -65,14 +71,21 @@ class ContactTracker {
     double ahead = 0;
   };
 
+  void QueryAll(const Pose& X_WTool, double tolerance, ContactSet* out);
+  // Beyond the ball around it, or turned by more than a contact that goes on
+  // may turn, 60°: of a side on which it came in then nothing is left.
+  bool IsPutElsewhere(const Motion& motion, double step) const {
+    return step > 2 * radius_ || motion.turn() > 1;
+  }
+  void StartOver();
+  void Forget(int i);
   void QueryObject(int i, const Pose& X_WTool, const Motion& tool_motion,
-                   double tolerance, ContactSet* out);
+                   double tool_step, double tolerance, ContactSet* out);
 
   TreedShape tool_;
   std::vector<Object> objects_;
   double tolerance_;
   DepthSearch depth_;
-  double teleport_;    // m; longer motions forget the contacts
   Vec3 middle_;        // of the tool, in its frame, m
   double radius_;      // of the tool about its middle, m
   Pose last_X_WTool_;  // at the last query

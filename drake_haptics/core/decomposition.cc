@@ -35,12 +35,12 @@ namespace {
 
 std::vector<std::vector<int>> TrianglesOfPieces(
     std::span<const int> piece_of_triangle) {
-  const int num_pieces =
-      1 + *std::max_element(piece_of_triangle.begin(), piece_of_triangle.end());
-  if (num_pieces > static_cast<int>(piece_of_triangle.size())) {
+  const int last =
+      *std::max_element(piece_of_triangle.begin(), piece_of_triangle.end());
+  if (last >= static_cast<int>(piece_of_triangle.size())) {
     throw std::invalid_argument("piece numbers must not skip");
   }
-  std::vector<std::vector<int>> members(num_pieces);
+  std::vector<std::vector<int>> members(last + 1);
   for (std::size_t t = 0; t < piece_of_triangle.size(); ++t) {
     if (piece_of_triangle[t] < 0) {
       throw std::invalid_argument("each triangle must have a piece");

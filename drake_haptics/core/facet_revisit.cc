@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -158,6 +159,7 @@ Revisit VisitEdges(const PosedPair& pair, SurfaceRule rule, Feature a,
 
 Revisit RevisitFacet(const PosedPair& pair, SurfaceRule rule, Feature feature_A,
                      Feature feature_B, const Vec3& n_last) {
+  assert(!feature_A.is_none() && !feature_B.is_none());
   if (feature_A.kind() == FeatureKind::kFacet) {
     return VisitFacetOfA(pair, rule, feature_A, feature_B);
   }

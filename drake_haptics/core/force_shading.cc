@@ -181,6 +181,7 @@ void ContactShading::Shade(const PoseOf<T>& X_WTool,
                                 std::to_string(objects_.size()) + " objects");
   }
   for (ContactOf<T>& contact : contacts->contacts) {
+    RequireFeatures(contact);
     const Mat3Of<T> R_WC = MakeFrame<T>(contact.nhat_BA_W);
     const Side<T> B =
         FindSide<T>(*objects_.at(contact.object), X_WO[contact.object],

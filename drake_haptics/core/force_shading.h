@@ -43,7 +43,8 @@ class ContactShading {
                  std::vector<std::shared_ptr<const SurfaceShading>> objects);
 
   /// @param X_WTool, X_WO poses at which the contacts were found.
-  /// @throws std::invalid_argument unless there is one pose for each object,
+  /// @throws std::invalid_argument unless there is one pose for each object
+  ///         and each contact names its features,
   ///         std::out_of_range for a contact on an object, piece or feature
   ///         that does not exist.
   template <typename T>

@@ -1,17 +1,29 @@
 #include "friction_state.h"
 
+#include <limits>
+
 namespace drake_haptics {
+namespace {
+
+// The index that a number of the state stands for, which who differentiates may
+// have moved a little; -1 if there is no such one.
+int ToObject(double number) {
+  const bool is_index =
+      number > -1 && number <= std::numeric_limits<int>::max();
+  return is_index ? static_cast<int>(number) : -1;
+}
+
+}  // namespace
 
 template <typename T>
 AdhesiveContactsOf<T> AdhesiveContactsOf<T>::Read(const T* slots) {
   AdhesiveContactsOf contacts;
   for (int i = 0; i < kCapacity; ++i, slots += kSlotSize) {
     if (!(ValueOf(slots[10]) > 0)) break;
-    contacts.push_back({static_cast<int>(ValueOf(slots[0])),
-                        Eigen::Map<const Vec3Of<T>>(slots + 1),
-                        Eigen::Map<const Vec3Of<T>>(slots + 4),
-                        Eigen::Map<const Vec3Of<T>>(slots + 7), slots[10],
-                        slots[11]});
+    contacts.push_back(
+        {ToObject(ValueOf(slots[0])), Eigen::Map<const Vec3Of<T>>(slots + 1),
+         Eigen::Map<const Vec3Of<T>>(slots + 4),
+         Eigen::Map<const Vec3Of<T>>(slots + 7), slots[10], slots[11]});
   }
   return contacts;
 }

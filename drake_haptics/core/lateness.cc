@@ -13,8 +13,10 @@ constexpr double kWindow = 10;      // s
 
 void LatenessHistogram::Record(double lateness) {
   const double octaves = std::log2(std::max(lateness, kSmallest) / kSmallest);
+  // What is not a number counts as the latest.
+  const bool is_within = kPerOctave * octaves < kBuckets - 1;
   const int bucket =
-      static_cast<int>(std::min<double>(kPerOctave * octaves, kBuckets - 1));
+      is_within ? static_cast<int>(kPerOctave * octaves) : kBuckets - 1;
   counts_[bucket].fetch_add(1, std::memory_order_relaxed);
 }
 

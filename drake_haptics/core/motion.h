@@ -25,6 +25,9 @@ class Motion {
     return (change_ * center).norm() + radius * turn_;
   }
 
+  /// 2 sin(θ/2) of the rotation by θ: 1 for 60°.
+  double turn() const { return turn_; }
+
  private:
   Pose change_{Mat3::Zero(), Vec3::Zero()};
   double turn_ = 0;

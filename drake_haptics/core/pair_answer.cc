@@ -40,13 +40,14 @@ bool AreBothWanted(const PosedPair& pair, const Separation& separation) {
 PairContact ContactApart(const PosedPair& pair, const Separation& separation) {
   const Vec3& n = separation.n;
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
-  return {separation.distance,
-          n,
-          separation.p_a,
-          separation.p_b,
-          SimplexFeature(pair.A, separation.simplex, &Hub::a, -n),
-          SimplexFeature(pair.B, separation.simplex, &Hub::b, n_B),
-          ContactStatus::kNear};
+  return {
+      separation.distance,
+      n,
+      separation.p_a,
+      separation.p_b,
+      SimplexFeature(pair.A, separation.simplex, &Hub::a, -n),
+      SimplexFeature(pair.B, separation.simplex, &Hub::b, n_B),
+      separation.is_bounded ? ContactStatus::kBounded : ContactStatus::kNear};
 }
 
 PairContact ContactAtFacet(const PosedPair& pair, const DepthCandidate& facet,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace drake_haptics {
 namespace {
@@ -12,6 +13,8 @@ using Node = PieceTree::Node;
 
 // How many neighbours on the space-filling curve compete to be merged.
 constexpr int kSearchRadius = 16;
+// One node in so many is merged in a round, at least.
+constexpr int kLeastMergedShare = 8;
 
 Node Leaf(const Polytope& piece, int index) {
   Vec3 low = piece.vertices[0], high = low;
@@ -82,19 +85,23 @@ std::vector<int> CurveOrder(const std::vector<Node>& leaves) {
   return order;
 }
 
-// For each active node the one nearby on the curve that it fits best with.
+// For each active node the one nearby on the curve that it fits best with. The
+// best pair of all chose each other: of ties each takes the one whose place
+// differs from its own by the lowest bits, which no two of them share.
 std::vector<int> BestPartners(const std::vector<Node>& nodes,
                               const std::vector<int>& active) {
   const int count = static_cast<int>(active.size());
   std::vector<int> partner(count, -1);
   for (int i = 0; i < count; ++i) {
-    double best = std::numeric_limits<double>::infinity();
+    std::pair best{std::numeric_limits<double>::infinity(),
+                   std::numeric_limits<int>::max()};
     for (int j = std::max(0, i - kSearchRadius);
          j <= std::min(count - 1, i + kSearchRadius); ++j) {
       if (j == i) continue;
-      const double area = MergedArea(nodes[active[i]], nodes[active[j]]);
-      if (area < best) {
-        best = area;
+      const std::pair fit{MergedArea(nodes[active[i]], nodes[active[j]]),
+                          i ^ j};
+      if (fit < best) {
+        best = fit;
         partner[i] = j;
       }
     }
@@ -102,32 +109,30 @@ std::vector<int> BestPartners(const std::vector<Node>& nodes,
   return partner;
 }
 
-// One round of merging: pairs that chose each other become one node. The
-// closest pair of all always does, so each round makes progress; where a tie
-// keeps every pair from being mutual, the first two are merged.
+// One round of merging: pairs that chose each other become one node. Where
+// these are few, as in a row with ever wider gaps, neighbours on the curve are
+// merged instead: so the depth is bounded by the logarithm of the number.
 std::vector<int> MergeRound(const std::vector<int>& active,
                             std::vector<Node>* nodes) {
-  const std::vector<int> partner = BestPartners(*nodes, active);
+  const int count = static_cast<int>(active.size());
+  std::vector<int> partner = BestPartners(*nodes, active);
+  int mutual = 0;
+  for (int i = 0; i < count; ++i) mutual += partner[partner[i]] == i;
+  if (mutual * kLeastMergedShare < count) {
+    for (int i = 0; i < count; ++i) partner[i] = std::min(i ^ 1, count - 1);
+  }
   std::vector<int> next;
-  const auto merge = [&](int i, int j) {
-    Node node = Merge((*nodes)[active[i]], (*nodes)[active[j]]);
-    node.left = active[i];
-    node.right = active[j];
-    nodes->push_back(node);
-    next.push_back(static_cast<int>(nodes->size()) - 1);
-  };
-  for (int i = 0; i < static_cast<int>(active.size()); ++i) {
+  for (int i = 0; i < count; ++i) {
     const int j = partner[i];
-    if (partner[j] != i) {
+    if (j == i || partner[j] != i) {
       next.push_back(active[i]);
     } else if (i < j) {
-      merge(i, j);
+      Node node = Merge((*nodes)[active[i]], (*nodes)[active[j]]);
+      node.left = active[i];
+      node.right = active[j];
+      nodes->push_back(node);
+      next.push_back(static_cast<int>(nodes->size()) - 1);
     }
-  }
-  if (next.size() == active.size()) {
-    next.clear();
-    merge(0, 1);
-    next.insert(next.end(), active.begin() + 2, active.end());
   }
   return next;
 }

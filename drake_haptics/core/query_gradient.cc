@@ -42,6 +42,7 @@ void RequireFeature(const Polytope& piece,
 ContactOf<AutoDiff> Differentiate(const Contact& contact, double tolerance,
                                   const DisplacedShape& tool,
                                   const DisplacedShape& object) {
+  RequireFeatures(contact);
   const Polytope& A = tool.shape->pieces.at(contact.piece_A);
   const Polytope& B = object.shape->pieces.at(contact.piece_B);
   RequireFeature(A, contact.feature_A, contact.support[0]);

@@ -2,13 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 
 namespace drake_haptics {
 namespace {
 
-constexpr int kMaxRounds = 128;
 // The gap that ends the search, relative to the size of the pair.
 constexpr double kRelativeGap = 4e-16;
 // The gap, relative to the same size, up to which an answer counts as proven.
@@ -74,14 +74,14 @@ void SetClosestPoints(const PosedPair& pair, Separation* result) {
   result->p_b = result->p_a - result->distance * result->n;
 }
 
-Separation Search(const PosedPair& pair, const SimplexHubs& start,
-                  double limit) {
+Separation Search(const PosedPair& pair, const SimplexHubs& start, double limit,
+                  int max_rounds) {
   Separation result;
   Simplex& simplex = result.simplex;
   Start(pair, start, &simplex);
   const double scale = pair.scale() + simplex.points[0].norm();
   Hub hub = simplex.hubs[0];
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0;; ++round) {
     const Vec3 v = simplex.Closest();
     const double length = v.norm();
     if (simplex.size == 4 || !(length > kTouchingShare * scale)) {
@@ -107,11 +107,14 @@ Separation Search(const PosedPair& pair, const SimplexHubs& start,
     if (next.size < 4 && !(next.Closest().squaredNorm() < length * length)) {
       break;
     }
+    result.is_bounded = round + 1 == max_rounds;
+    if (result.is_bounded) break;
     simplex = next;
   }
   if (result.status == SeparationStatus::kApart && !result.is_proven) {
     Straighten(pair, scale, &result);
   }
+  result.is_bounded &= !result.is_proven;
   SetClosestPoints(pair, &result);
   return result;
 }
@@ -137,13 +140,14 @@ bool HoldsOrigin(const PosedPair& pair, const SimplexHubs& simplex) {
 }
 
 Separation ComputeSeparation(const PosedPair& pair, const SimplexHubs& start,
-                             double limit) {
-  const Separation result = Search(pair, start, limit);
+                             double limit, int max_rounds) {
+  assert(max_rounds > 0);
+  const Separation result = Search(pair, start, limit, max_rounds);
   if (result.status != SeparationStatus::kApart || result.is_proven ||
       start.size == 0) {
     return result;
   }
-  const Separation again = Search(pair, {}, limit);
+  const Separation again = Search(pair, {}, limit, max_rounds);
   return again.status != SeparationStatus::kApart || again.is_proven ? again
                                                                      : result;
 }

@@ -6,6 +6,9 @@
 
 namespace drake_haptics {
 
+/// Far more than polytopes have been seen to need.
+inline constexpr int kMaxSeparationRounds = 128;
+
 /// How a separation query ended.
 enum class SeparationStatus {
   kApart,    ///< the closest points are exact to round-off
@@ -23,6 +26,9 @@ struct Separation {
   /// Where kApart: whether the supports along n prove the distance. Round-off
   /// can end the search before.
   bool is_proven = false;
+  /// The search met the bound on its rounds before it was proven: the distance
+  /// may be too large, never too small.
+  bool is_bounded = false;
   Simplex simplex;  ///< the features; also the next query's start
 };
 
@@ -38,6 +44,7 @@ bool HoldsOrigin(const PosedPair& pair, const SimplexHubs& simplex);
 /// made again from nothing.
 /// @param limit distance (m) beyond which the exact answer is not wanted.
 Separation ComputeSeparation(const PosedPair& pair, const SimplexHubs& start,
-                             double limit);
+                             double limit,
+                             int max_rounds = kMaxSeparationRounds);
 
 }  // namespace drake_haptics

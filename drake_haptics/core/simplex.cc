@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -132,6 +133,7 @@ bool SimplexHubs::operator==(const SimplexHubs& other) const {
 }
 
 void ReduceToClosest(Simplex* simplex) {
+  assert(simplex->size >= 1 && simplex->size <= 4);
   switch (simplex->size) {
     case 1:
       simplex->weights[0] = 1.0;

@@ -1,5 +1,7 @@
 #include "support.h"
 
+#include <cassert>
+
 namespace drake_haptics {
 namespace {
 
@@ -16,6 +18,7 @@ bool IsGain(double gain, const Vec3& direction, const Vec3& along) {
 int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
   // Every vertex is extreme, so a vertex that no neighbour beats is the
   // farthest one. The bound ends a walk in circles that round-off allows.
+  assert(start >= 0 && start < polytope.num_vertices());
   int best = start;
   for (int left = polytope.num_vertices(); left > 0; --left) {
     double most = 0;

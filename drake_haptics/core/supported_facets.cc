@@ -11,14 +11,10 @@
 namespace drake_haptics {
 namespace {
 
-// Bound on the features gone through, facets and edges of both pieces. A walk
-// costs less than more of them.
-constexpr int kMaxFeatures = 1024;
-// Bound on the edges of one piece that the arc of one edge of the other meets.
-constexpr int kMaxCrossings = 64;
 // How far a direction may miss the supports, as a share of the radius: what a
 // walk takes for a corner of a Gauss region, and round-off.
 constexpr double kSlack = 10 * kRegionSlack;
+
 class Listing {
  public:
   Listing(const PosedPair& pair, const Hub& near,
@@ -41,12 +37,15 @@ class Listing {
     facets_.clear();
   }
 
-  bool Run() {
-    if (!IsAnyInReach()) return true;
+  void Run() {
+    if (!IsAnyInReach()) return;
     AddFacetsOfA();
     AddFacetsOfB();
-    return pair_.A.edges.size() <= pair_.B.edges.size() ? AddArcsOfA()
-                                                        : AddArcsOfB();
+    if (pair_.A.edges.size() <= pair_.B.edges.size()) {
+      AddArcsOfA();
+    } else {
+      AddArcsOfB();
+    }
   }
 
  private:
@@ -145,7 +144,7 @@ class Listing {
     });
   }
 
-  bool AddArcsOfA() {
+  void AddArcsOfA() {
     int hint = near_.b;
     for (int i = 0; i < static_cast<int>(pair_.A.edges.size()); ++i) {
       const Polytope::Edge& edge = pair_.A.edges[i];
@@ -161,14 +160,11 @@ class Listing {
         if (!IsSupport(pair_.A, edge.v0, -n)) return;
         Append(n, {FeatureKind::kEdge, i}, {FeatureKind::kEdge, j});
       };
-      if (!CrossRegions(pair_.B, R_BA_ * from, R_BA_ * to, &hint, append)) {
-        return false;
-      }
+      CrossRegions(pair_.B, R_BA_ * from, R_BA_ * to, &hint, append);
     }
-    return true;
   }
 
-  bool AddArcsOfB() {
+  void AddArcsOfB() {
     int hint = near_.a;
     for (int j = 0; j < static_cast<int>(pair_.B.edges.size()); ++j) {
       const Polytope::Edge& edge = pair_.B.edges[j];
@@ -185,33 +181,33 @@ class Listing {
         if (!IsSupport(pair_.B, edge.v0, R_BA_ * -outward_A)) return;
         Append(-outward_A, {FeatureKind::kEdge, i}, {FeatureKind::kEdge, j});
       };
-      if (!CrossRegions(pair_.A, -from, -to, &hint, append)) return false;
+      CrossRegions(pair_.A, -from, -to, &hint, append);
     }
-    return true;
   }
 
   // Follows the support of P along an arc of directions from vertex to vertex
-  // and calls cross(direction, edge) for each original edge on the way; false
-  // where the bound stopped it.
+  // and calls cross(direction, edge) for each original edge on the way.
   template <typename Cross>
-  static bool CrossRegions(const Polytope& P, const Vec3& from, const Vec3& to,
+  static void CrossRegions(const Polytope& P, const Vec3& from, const Vec3& to,
                            int* hint, const Cross& cross) {
     if (from.dot(to) < 0.1) {
       const Vec3 middle = (from.normalized() + to.normalized()).normalized();
-      return CrossPart(P, from, middle, hint, cross) &&
-             CrossPart(P, middle, to, hint, cross);
+      CrossPart(P, from, middle, hint, cross);
+      CrossPart(P, middle, to, hint, cross);
+      return;
     }
-    return CrossPart(P, from, to, hint, cross);
+    CrossPart(P, from, to, hint, cross);
   }
 
-  // Along from + x · side, for x from 0 to 1.
+  // Along from + x · side, for x from 0 to 1. No vertex supports two parts of
+  // it, so that there are fewer crossings than vertices.
   template <typename Cross>
-  static bool CrossPart(const Polytope& P, const Vec3& from, const Vec3& to,
+  static void CrossPart(const Polytope& P, const Vec3& from, const Vec3& to,
                         int* hint, const Cross& cross) {
     int v = *hint = SupportVertex(P, from, *hint);
     const Vec3 side = to - from;
     double x = 0;
-    for (int crossings = 0; crossings < kMaxCrossings; ++crossings) {
+    for (int crossings = 0; crossings < P.num_vertices(); ++crossings) {
       const Polytope::Spoke* next = nullptr;
       double first = 1;
       for (const Polytope::Spoke& spoke : P.fan_of(v)) {
@@ -223,14 +219,13 @@ class Listing {
           next = &spoke;
         }
       }
-      if (next == nullptr) return true;
+      if (next == nullptr) return;
       x = std::max(x, first);
       if (next->edge >= 0 && P.edges[next->edge].original) {
         cross((from + x * side).normalized(), next->edge);
       }
       v = next->neighbor;
     }
-    return false;
   }
 
   void Append(const Vec3& n, Feature a, Feature b) {
@@ -255,16 +250,10 @@ class Listing {
 
 }  // namespace
 
-bool ListSupportedFacets(const PosedPair& pair, const Hub& near,
+void ListSupportedFacets(const PosedPair& pair, const Hub& near,
                          std::span<const WantedFacets> wanted,
                          std::vector<DepthCandidate>* facets) {
-  const Polytope &A = pair.A, &B = pair.B;
-  if (A.dimension < 2 || B.dimension < 2 ||
-      A.facets.size() + A.edges.size() + B.facets.size() + B.edges.size() >
-          kMaxFeatures) {
-    return false;
-  }
-  return Listing(pair, near, wanted, facets).Run();
+  Listing(pair, near, wanted, facets).Run();
 }
 
 }  // namespace drake_haptics

@@ -28,8 +28,8 @@ struct WantedFacets {
 /// All of them for bodies in general position. Where edges are parallel to
 /// facets, of the facets along one normal one at least.
 /// @param near vertices near which the bodies overlap, for speed alone.
-/// @return false where the pieces were too large to go through, or segments.
-bool ListSupportedFacets(const PosedPair& pair, const Hub& near,
+/// @pre Both pieces have facets: dimensions of 2 or 3.
+void ListSupportedFacets(const PosedPair& pair, const Hub& near,
                          std::span<const WantedFacets> wanted,
                          std::vector<DepthCandidate>* facets);
 

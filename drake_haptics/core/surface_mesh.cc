@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "flat_hull.h"
@@ -126,6 +127,11 @@ void AddRegions(SurfaceMesh* mesh) {
   }
 }
 
+bool IsSinglePrecision(const Vec3& v) {
+  return v.cwiseAbs().maxCoeff() <= std::numeric_limits<float>::max() &&
+         v.cast<float>().cast<double>() == v;
+}
+
 }  // namespace
 
 double SurfaceTolerance(std::span<const Vec3> vertices,
@@ -135,8 +141,7 @@ double SurfaceTolerance(std::span<const Vec3> vertices,
   for (const Triangle& t : triangles) {
     for (const int v : t) {
       box.extend(vertices[v]);
-      single =
-          single && vertices[v].cast<float>().cast<double>() == vertices[v];
+      single = single && IsSinglePrecision(vertices[v]);
     }
   }
   const double size = box.sizes().norm();

@@ -15,6 +15,7 @@
 #include "near_promotion.h"
 #include "pair_answer.h"
 #include "separation.h"
+#include "surface_entry.h"
 #include "surface_support.h"
 #include "witness.h"
 
@@ -145,13 +146,15 @@ class Query {
 
   std::optional<PairContact> Overlapping() {
     const bool is_new = !state_.in_contact && !WasRefused();
-    if (is_new && !MayBegin()) {
+    const std::optional<Depth> entry = is_new ? Entry() : std::nullopt;
+    if (is_new && !entry && !MayBegin()) {
       is_refused_ = true;
       return TakenOver();
     }
-    const Depth depth = state_.in_contact ? WarmDepth()
-                        : is_new          ? EntryDepth()
-                                          : RefusedDepth();
+    const Depth depth = entry               ? *entry
+                        : state_.in_contact ? WarmDepth()
+                        : is_new            ? EntryDepth()
+                                            : RefusedDepth();
     const bool apart = separation_.status == SeparationStatus::kApart;
     Hub hub = separation_.simplex.hubs[0];
     if (apart && (depth.status == DepthStatus::kNoFacet ||
@@ -163,11 +166,15 @@ class Query {
     if (depth.status == DepthStatus::kNoFacet) {
       return ContactGrazing(pair_, separation_, state_.n);
     }
-    if (global_ != nullptr) {
+    if (global_ != nullptr && !entry) {
       const auto least = LeastDepth(depth);
       if (least) return AtDepth(*least);
     }
-    if (!IsPlausible(depth)) {
+    if (!entry && !IsPlausible(depth)) {
+      if (state_.in_contact) {
+        const auto begun = Entry();
+        if (begun) return AtDepth(*begun);
+      }
       Refuse(depth.best.n, depth.hub);
       const auto contact = GoneOn();
       return contact ? contact : TakenOver();
@@ -216,8 +223,7 @@ class Query {
   // Of a pair that overlaps: false is a proof that a search for a plausible
   // facet would be in vain.
   bool MayBegin() {
-    if (request_.is_first || global_ != nullptr ||
-        separation_.status == SeparationStatus::kApart) {
+    if (global_ != nullptr || separation_.status == SeparationStatus::kApart) {
       return true;
     }
     WantedFacets wanted{
@@ -240,6 +246,18 @@ class Query {
   bool MayFind(const WantedFacets* own) {
     return MayFindFacet(pair_, request_, passage_, state_.hub, own,
                         &workspace_);
+  }
+
+  // Where the overlap of a pair that was apart began.
+  std::optional<Depth> Entry() {
+    const bool is_walked = global_ != nullptr && !request_.is_any_way_out;
+    if (is_walked || pair_.A.dimension < 2 || pair_.B.dimension < 2) {
+      return std::nullopt;
+    }
+    const auto facet = FindEntry(pair_, request_, state_.hub, &workspace_);
+    if (!facet) return std::nullopt;
+    return Depth{DepthStatus::kLocalMinimum, *facet, facet->h,
+                 HubOf(pair_, *facet)};
   }
 
   // Of a pair that was not in contact.
@@ -278,10 +296,10 @@ class Query {
   }
 
   // Whether the facet found can be the way on which the overlap came about: it
-  // goes on from the last contact, or it is near the shallowest way there is.
-  // A piece of a thin wall is also met from behind, through its virtual side:
-  // its own surface is far then, and the pieces on the near side carry the
-  // contact.
+  // goes on from the last contact, A lay in front of it at the last pose, or it
+  // is near the shallowest way there is. A piece of a thin wall is also met
+  // from behind, through its virtual side: its own surface is far then, and the
+  // pieces on the near side carry the contact.
   bool IsPlausible(const Depth& depth) {
     if (depth.best.support == SurfaceSupport::kVirtual) return false;
     // What goes on may reach beyond its features: a face wider than the pieces
@@ -293,7 +311,8 @@ class Query {
         !IsWithinFeatures(depth.best)) {
       return false;
     }
-    return request_.is_first || passage_.IsHandedOver(depth.best) ||
+    return passage_.IsHandedOver(depth.best) ||
+           LayInFront(pair_, depth.best, request_.last_X_AB) ||
            (depth.best.n.dot(state_.n) >= kComingFrom &&
             depth.best.h >=
                 depth.shallowest - kEntryShare * request_.tolerance);

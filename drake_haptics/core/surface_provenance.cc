@@ -166,7 +166,8 @@ void MarkEdgesFromFacets(Polytope* piece) {
     const bool left = piece->facets[edge.left].original;
     const bool right = piece->facets[edge.right].original;
     edge.original = left || right;
-    if (!edge.original) edge.wings = {Vec3::Zero(), Vec3::Zero()};
+    if (edge.original) continue;
+    edge.wings = edge.carrying = {Vec3::Zero(), Vec3::Zero()};
   }
 }
 

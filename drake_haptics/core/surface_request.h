@@ -40,9 +40,10 @@ struct PressedContact {
 /// What is asked of a pair of pieces.
 struct SurfaceRequest {
   double tolerance = 0;  ///< contacts farther apart than this (m) are none
-  /// Nothing is known of how the bodies came here: any way out will do.
-  bool is_first = false;
-  /// The pose at the last query, by which the motion of a contact is known.
+  /// The surfaces cross and no other contact was found: any way out will do.
+  bool is_any_way_out = false;
+  /// The pose at the last query, by which the motion of a contact is known, and
+  /// the side from which the bodies came together.
   Pose last_X_AB;
   /// Where the tool presses already. A pair that was not in contact may take
   /// over there.

@@ -33,15 +33,23 @@ bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
          leaves(edge.wings[1], edge.wings[1].cross(along));
 }
 
-// The same at a vertex, by the faces that the piece has there.
+// The same at a vertex, by the faces that the piece has there: along its faces
+// a direction leaves nothing, but at the rim of an open mesh.
 bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
   bool has_surface = false;
+  bool is_rim = false;
+  double most = -1;
   for (const Polytope::Spoke& spoke : polytope.fan_of(vertex)) {
+    if (spoke.edge >= 0) {
+      const Polytope::Edge& edge = polytope.edges[spoke.edge];
+      is_rim |=
+          edge.original && (edge.wings[0].isZero(0) || edge.wings[1].isZero(0));
+    }
     if (spoke.facet < 0 || !polytope.facets[spoke.facet].original) continue;
-    if (n.dot(spoke.normal) > -kSurfaceSlack) return true;
+    most = std::max(most, n.dot(spoke.normal));
     has_surface = true;
   }
-  return !has_surface;
+  return !has_surface || most > (is_rim ? -kSurfaceSlack : kSurfaceSlack);
 }
 
 // Support of one side; n points out of the polytope, in its frame.

@@ -2,17 +2,43 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <tuple>
+
+#include "surface_entry.h"
 
 namespace drake_haptics {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
+// Bound on the ways out of walls that are gone, one after the other, to find a
+// pose from which the tool may have come.
+constexpr int kMaxWaysOut = 16;
+// How far beyond the touch each leads, as a share of the size.
+constexpr double kBeyondTouch = 1e-6;
+
+// Where a pair may have come from, of which no earlier pose is known: it counts
+// by the pose before that all pairs share, and then leaves by its own shortest
+// way.
+Pose PoseBeforeOf(const PosedPair& pair, double tolerance, const Pose& shared,
+                  PairWorkspace* workspace) {
+  const auto way = FindWayOut(pair, tolerance, workspace);
+  if (!way) return shared;
+  SurfaceRequest request;
+  request.tolerance = tolerance;
+  request.last_X_AB = shared;
+  if (!FindEntry(pair, request, {}, workspace)) return shared;
+  Pose X_AB = pair.X_AB;
+  X_AB.p += (way->h - kBeyondTouch * pair.scale()) * way->n;
+  return X_AB;
+}
 
 }  // namespace
 
 void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
                           std::vector<Contact>* out) {
+  // Who begins has missed nothing, whatever the odometer stood at before.
+  if (is_first_) odometer_ = tick.odometer - tick.step;
   double deepest = 0;
   for (PressedContact& last : pressed_) {
     last.Advance(tick.X_AB, tick.last_X_AB);
@@ -28,9 +54,79 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
   front_.Advance(front_tick, &workspace->entered);
   if (!workspace->entered.empty()) Admit(tick.watched, &workspace->entered);
 
+  const std::size_t first = out->size();
+  if (is_first_) {
+    const Pose before = FindPoseBefore(tick, workspace);
+    AskAll({tick.tool, tick.watched, tick.tolerance, tick.depth, tick.X_WA,
+            tick.X_AB, before, tick.motion, tick.step, tick.odometer},
+           front_tick, workspace, out);
+    if (out->size() == first) AskForAnyWayOut(tick, workspace, out);
+  } else {
+    AskAll(tick, front_tick, workspace, out);
+  }
+  std::sort(out->begin() + static_cast<std::ptrdiff_t>(first), out->end(),
+            [](const Contact& p, const Contact& q) {
+              return std::tie(p.piece_A, p.piece_B) <
+                     std::tie(q.piece_A, q.piece_B);
+            });
+  is_first_ = false;
+  // Copied, so that each object keeps the memory that it has needed.
+  pressed_.assign(workspace->pressed.begin(), workspace->pressed.end());
+}
+
+// Where the tool may have come from, of which nothing is known: out of all that
+// it overlaps with, each time by the shortest way there is.
+Pose TrackedObject::FindPoseBefore(const Tick& tick,
+                                   TrackerWorkspace* workspace) const {
+  Pose X_AB = tick.X_AB;
+  for (int k = 0; k < kMaxWaysOut; ++k) {
+    std::optional<DepthCandidate> least;
+    double beyond = 0;
+    for (const WatchedPair& watched : watched_) {
+      PosedPair pair = Posed(tick, watched.pieces);
+      pair.X_AB = X_AB;
+      const auto way = FindWayOut(pair, tick.tolerance, &workspace->pair);
+      if (way && (!least || way->h > least->h)) {
+        least = way;
+        beyond = kBeyondTouch * pair.scale();
+      }
+    }
+    if (!least) break;
+    X_AB.p += (least->h - beyond) * least->n;
+  }
+  return X_AB;
+}
+
+// Of the pairs whose surfaces cross, the contact of the one with the shallowest
+// way out, wherever on its features: a tool that stands through a wall has no
+// way out on the features where it is.
+void TrackedObject::AskForAnyWayOut(const Tick& tick,
+                                    TrackerWorkspace* workspace,
+                                    std::vector<Contact>* out) {
+  SurfaceRequest any;
+  any.is_any_way_out = true;
+  WatchedPair* shallowest = nullptr;
+  double largest = -kForever;
+  for (WatchedPair& watched : watched_) {
+    const PosedPair pair = Posed(tick, watched.pieces);
+    if (pair.A.dimension < 2 || pair.B.dimension < 2 || !DoSurfacesCross(pair))
+      continue;
+    const auto way = FindEntry(pair, any, {}, &workspace->pair);
+    if (way && way->h > largest) {
+      largest = way->h;
+      shallowest = &watched;
+    }
+  }
+  if (shallowest == nullptr) return;
+  states_[shallowest->state] = {};
+  Ask(tick, workspace, shallowest, out, true);
+}
+
+void TrackedObject::AskAll(const Tick& tick, const PairFront::Tick& front_tick,
+                           TrackerWorkspace* workspace,
+                           std::vector<Contact>* out) {
   workspace->pressed.clear();
   workspace->ways_out.clear();
-  const std::size_t first = out->size();
   AskPairsInContact(tick, workspace, out);
   is_any_left_ =
       std::any_of(pressed_.begin(), pressed_.end(),
@@ -49,14 +145,6 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
   }
   watched_.erase(kept, watched_.end());
   AskPairsBeside(tick, workspace, out);
-  std::sort(out->begin() + static_cast<std::ptrdiff_t>(first), out->end(),
-            [](const Contact& p, const Contact& q) {
-              return std::tie(p.piece_A, p.piece_B) <
-                     std::tie(q.piece_A, q.piece_B);
-            });
-  is_first_ = false;
-  // Copied, so that each object keeps the memory that it has needed.
-  pressed_.assign(workspace->pressed.begin(), workspace->pressed.end());
   quiet_until_ = least_slack > 0 ? std::min(tick.odometer + least_slack,
                                             front_.mark() - tick.watched)
                                  : -kForever;
@@ -170,7 +258,8 @@ bool TrackedObject::Tend(const Tick& tick, const PairFront::Tick& front_tick,
 }
 
 void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
-                        WatchedPair* pair, std::vector<Contact>* out) {
+                        WatchedPair* pair, std::vector<Contact>* out,
+                        bool is_any_way_out) {
   PairState& state = states_[pair->state];
   const int last_press = state.press;
   GlobalDepthState* global = nullptr;
@@ -178,9 +267,14 @@ void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
     global_states_.resize(states_.size());
     global = &global_states_[pair->state];
   }
+  const PosedPair posed = Posed(tick, pair->pieces);
+  const Pose last_X_AB = is_first_
+                             ? PoseBeforeOf(posed, tick.tolerance,
+                                            tick.last_X_AB, &workspace->pair)
+                             : tick.last_X_AB;
   const auto answer =
-      QuerySurfacePair(Posed(tick, pair->pieces),
-                       {tick.tolerance, is_first_, tick.last_X_AB, pressed_,
+      QuerySurfacePair(posed,
+                       {tick.tolerance, is_any_way_out, last_X_AB, pressed_,
                         workspace->ways_out, tick.depth.max_walk_steps},
                        &state, &workspace->pair, global);
   pair->slack = 0;
@@ -211,16 +305,6 @@ PosedPair TrackedObject::Posed(const Tick& tick,
 
 void TrackedObject::WatchFarther(double growth) {
   for (WatchedPair& pair : watched_) pair.slack -= growth;
-}
-
-void TrackedObject::ForgetContacts() {
-  for (WatchedPair& pair : watched_) {
-    states_[pair.state] = {};
-    pair.slack = 0;
-  }
-  for (GlobalDepthState& state : global_states_) state.Reset();
-  pressed_.clear();
-  is_first_ = true;
 }
 
 void TrackedObject::Reset() {

@@ -66,9 +66,6 @@ class TrackedObject {
   /// To be called where the watched distance grows, by so much (m).
   void WatchFarther(double growth);
 
-  /// Forgets contacts and what is known of pairs, but not where they are.
-  void ForgetContacts();
-
   /// Forgets everything.
   void Reset();
 
@@ -84,6 +81,11 @@ class TrackedObject {
     bool was_in_contact = false;
   };
 
+  void AskAll(const Tick& tick, const PairFront::Tick& front_tick,
+              TrackerWorkspace* workspace, std::vector<Contact>* out);
+  Pose FindPoseBefore(const Tick& tick, TrackerWorkspace* workspace) const;
+  void AskForAnyWayOut(const Tick& tick, TrackerWorkspace* workspace,
+                       std::vector<Contact>* out);
   void Admit(double watched, std::vector<EnteredPair>* entered);
   bool Tend(const Tick& tick, const PairFront::Tick& front_tick,
             TrackerWorkspace* workspace, WatchedPair* pair,
@@ -95,7 +97,7 @@ class TrackedObject {
   bool MayTakeOver(const Tick& tick, const PiecePair& pieces) const;
   int NewState();
   void Ask(const Tick& tick, TrackerWorkspace* workspace, WatchedPair* pair,
-           std::vector<Contact>* out);
+           std::vector<Contact>* out, bool is_any_way_out = false);
   PosedPair Posed(const Tick& tick, const PiecePair& pieces) const;
 
   TreedShape shape_;

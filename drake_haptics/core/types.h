@@ -42,6 +42,8 @@ enum class FeatureKind : std::int32_t { kVertex = 0, kEdge = 1, kFacet = 2 };
 /// Negative means none.
 class Feature {
  public:
+  static constexpr int kMaxIndex = (1 << 29) - 1;
+
   Feature() = default;
   Feature(FeatureKind kind, int index)
       : code_(index * 4 + static_cast<std::int32_t>(kind)) {}

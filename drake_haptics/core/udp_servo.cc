@@ -76,13 +76,14 @@ UdpServo::~UdpServo() { Close(); }
 
 void UdpServo::Close() {
   closing_.store(true);
-  if (!thread_.joinable()) return;
-  if (getpid() == process_) {
-    thread_.join();
-  } else {
-    // A fork has our memory, but not the thread, and the device is not its own.
-    thread_.detach();
+  if (getpid() != process_) {
+    // A fork has our memory, but not the thread, nor who may hold the lock; and
+    // the device is not its own.
+    if (thread_.joinable()) thread_.detach();
+    return;
   }
+  const std::lock_guard lock(joining_);
+  if (thread_.joinable()) thread_.join();
 }
 
 HandleState UdpServo::Read() {

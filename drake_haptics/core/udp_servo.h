@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -68,7 +69,7 @@ class UdpServo {
   void Recover();
 
   /// Disables the device and ends the thread, in about 20 ms; later calls do
-  /// nothing.
+  /// nothing. Any thread.
   void Close();
 
   /// One thread only.
@@ -124,6 +125,7 @@ class UdpServo {
   double allowed_at_ = 0;
   UdpServoStatus report_;
 
+  std::mutex joining_;
   std::thread thread_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <limits>
 
 namespace drake_haptics {
@@ -18,6 +19,7 @@ WakeTimes::WakeTimes(int count)
 }
 
 void WakeTimes::Set(int item, double time) {
+  assert(item >= 0 && item < leaves_);
   int node = leaves_ + item;
   if (times_[node] == time) return;
   times_[node] = time;

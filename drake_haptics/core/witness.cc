@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "flush_features.h"
@@ -80,6 +81,7 @@ double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point) {
 
 Witness WitnessOfFeatures(const PosedPair& pair, Feature feature_A,
                           Feature feature_B, const Vec3& n, double h) {
+  assert(!feature_A.is_none() && !feature_B.is_none());
   if (feature_A.kind() == FeatureKind::kVertex) {
     const Vec3 p_a = pair.a(feature_A.index());
     return {p_a, p_a - h * n};

@@ -14,9 +14,12 @@
 #include "check.h"
 
 static long allocations = 0;
+static long last_allocation = -1;  // the one before memory is full; -1: none
 
 void* operator new(std::size_t size) {
-  ++allocations;
+  if (++allocations > last_allocation && last_allocation >= 0) {
+    throw std::bad_alloc();
+  }
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
@@ -252,6 +255,54 @@ void TestNoAllocationWhenWarm() {
   CHECK(allocations == before);
 }
 
+// Whether memory ran out, which it does after `most` more allocations.
+template <typename Act>
+bool RunsOutOfMemory(long most, const Act& act) {
+  bool ran_out = false;
+  last_allocation = allocations + most;
+  try {
+    act();
+  } catch (const std::bad_alloc&) {
+    ran_out = true;
+  }
+  last_allocation = -1;
+  return ran_out;
+}
+
+// Whichever allocation of a query fails, the next queries find what a tracker
+// finds that begins there.
+void TestFullMemoryIsForgotten() {
+  const Shape tool = Swarm(12), shape = Swarm(15);
+  const ContactTracker fresh(tool, {shape, shape}, 2e-3);
+  ContactTracker warm = fresh;
+  const auto ask = [](ContactTracker* tracker, int k, ContactSet* found) {
+    tracker->SetObjectPose(1, {Mat3::Identity(), Vec3(0.03, 0, 1e-4 * k)});
+    tracker->Query(Way(k), found);
+  };
+  int failures = 0, contacts = 0, wrong = 0;
+  ContactSet found, wanted;
+  for (int begin = 0; begin < 900; begin += 90) {
+    for (long most = 0;; ++most) {
+      ContactTracker tracker = warm;  // with room for what it holds, no more
+      ContactSet none;
+      if (!RunsOutOfMemory(most, [&] { ask(&tracker, begin, &none); })) break;
+      ++failures;
+      CHECK(none.contacts.empty());
+      ContactTracker other = fresh;
+      for (int k = begin; k < begin + 60; k += 15) {
+        ask(&tracker, k, &found);
+        ask(&other, k, &wanted);
+        wrong += !AreEqual(found.contacts, wanted.contacts);
+        contacts += static_cast<int>(wanted.contacts.size());
+      }
+    }
+    ask(&warm, begin, &found);
+  }
+  CHECK(wrong == 0);
+  CHECK(failures > 50);
+  CHECK(contacts > 100);
+}
+
 }  // namespace
 
 int main() {
@@ -260,5 +311,6 @@ int main() {
   TestAgainstAllPairs(0, true);
   TestAgainstAllPairs(0.02, false);
   TestNoAllocationWhenWarm();
+  TestFullMemoryIsForgotten();
   return FailedChecks() > 0;
 }

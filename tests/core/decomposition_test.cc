@@ -37,6 +37,32 @@ Mesh LPrism() {
   return mesh;
 }
 
+// What is not on the mesh carries no contact: neither in pieces that another
+// library made.
+void AdoptedEdgesOffTheMeshCarryNothing() {
+  const Mesh mesh = LPrism();
+  std::vector<std::vector<Vec3>> pieces(2);
+  for (const Vec3& v : mesh.vertices) {
+    if (v.y() <= 1) pieces[0].push_back(v);
+    if (v.y() >= 1 && v.x() <= 1) pieces[1].push_back(v);
+  }
+  pieces[1].emplace_back(0, 1, 0);
+  pieces[1].emplace_back(0, 1, 1);
+  // Inside the solid an edge of no face that is on the mesh.
+  pieces.push_back({Vec3(0.2, 0.2, 0.2), Vec3(0.4, 0.2, 0.2),
+                    Vec3(0.2, 0.4, 0.2), Vec3(0.2, 0.2, 0.4)});
+  int num_virtual = 0;
+  for (const Polytope& P :
+       AdoptConvexPieces(mesh.vertices, mesh.triangles, pieces, 1e-9).pieces) {
+    for (const Polytope::Edge& edge : P.edges) {
+      if (edge.original) continue;
+      ++num_virtual;
+      CHECK(edge.carrying[0].isZero(0) && edge.carrying[1].isZero(0));
+    }
+  }
+  CHECK(num_virtual >= 6);
+}
+
 Decomposition Decompose(const Mesh& mesh, const Progress& progress = {}) {
   const std::vector<std::uint8_t> solid(mesh.triangles.size(), 1);
   return DecomposeSurface(mesh.vertices, mesh.triangles, solid, progress);
@@ -129,6 +155,7 @@ void BadInput() {
 }  // namespace drake_haptics
 
 int main() {
+  drake_haptics::AdoptedEdgesOffTheMeshCarryNothing();
   drake_haptics::WingsAtTheConcaveEdge();
   drake_haptics::RingAtTheConcaveVertex();
   drake_haptics::WingsWhereTheMeshEnds();

@@ -1,5 +1,5 @@
 // One writer and two readers: nothing torn, nothing old, the last one seen.
-// tests/test_seqlock.py runs this under the thread sanitizer too.
+// Also runs under the thread sanitizer.
 #include "seqlock.h"
 
 #include <array>

@@ -11,6 +11,7 @@
 #include "carried_facets.h"
 #include "check.h"
 #include "decomposition.h"
+#include "surface_support.h"
 
 namespace drake_haptics {
 namespace {
@@ -63,10 +64,10 @@ int CompareAt(const PosedPair& pair) {
   std::vector<DepthCandidate> all, listed, some;
   ListCarriedFacets(pair, -1.0, &all);
   const WantedFacets anything{{Vec3::UnitX(), -1.0}, -1.0};
-  CHECK(ListSupportedFacets(pair, {0, 0}, {&anything, 1}, &listed));
+  ListSupportedFacets(pair, {0, 0}, {&anything, 1}, &listed);
   const WantedFacets wanted{{RandomDirection(), Uniform(-0.5, 0.9)},
                             -Uniform(0, 0.01)};
-  CHECK(ListSupportedFacets(pair, {0, 0}, {&wanted, 1}, &some));
+  ListSupportedFacets(pair, {0, 0}, {&wanted, 1}, &some);
   for (const DepthCandidate& facet : all) {
     CHECK(IsListed(facet, listed));
     const bool is_wanted = wanted.Hold(facet.n, facet.h);
@@ -104,14 +105,58 @@ void TestConesAreNarrow() {
   CHECK(narrow > 0.5 * static_cast<double>(body.pieces.size()));
 }
 
-void TestLargePiecesAreLeftOut() {
+// Nothing is left out however many features there are.
+void TestLargePieces() {
   std::vector<Vec3> points;
-  for (int k = 0; k < 1000; ++k) points.push_back(RandomDirection());
+  for (int k = 0; k < 300; ++k) points.push_back(RandomDirection());
   const Polytope ball = MakePolytope(points);
-  const WantedFacets anything{{Vec3::UnitX(), -1.0}, -10.0};
-  std::vector<DepthCandidate> facets;
-  CHECK(
-      !ListSupportedFacets({ball, ball, {}}, {0, 0}, {&anything, 1}, &facets));
+  Pose X_AB;
+  X_AB.R = Eigen::AngleAxisd(0.3, RandomDirection()).toRotationMatrix();
+  X_AB.p = 1.99 * RandomDirection();
+  CHECK(CompareAt({ball, ball, X_AB}) > 300);
+}
+
+// A solid so thin that its piece is flat carries by its edges, outward.
+void TestBlades() {
+  std::vector<Vec3> vertices;
+  for (int i = 0; i < 8; ++i) {
+    vertices.emplace_back(i & 1 ? 0.02 : -0.02, i & 2 ? 0.01 : -0.01,
+                          i & 4 ? 1e-10 : 0);
+  }
+  const std::vector<Triangle> triangles{
+      {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  const std::vector<std::uint8_t> solid(triangles.size(), 1);
+  const Decomposition blade = DecomposeSurface(vertices, triangles, solid);
+  CHECK(blade.pieces.size() == 1 && blade.pieces[0].dimension == 2);
+  int found = 0;
+  for (int k = 0; k < 200; ++k) {
+    Pose X_AB;
+    X_AB.R = Eigen::AngleAxisd(Uniform(0, M_PI), RandomDirection())
+                 .toRotationMatrix();
+    X_AB.p = Uniform(0, 0.01) * RandomDirection();
+    const PosedPair pair{blade.pieces[0], blade.pieces[0], X_AB};
+    std::vector<DepthCandidate> all, listed;
+    ListCarriedFacets(pair, -1.0, &all);
+    const WantedFacets anything{{Vec3::UnitX(), -1.0}, -1.0};
+    ListSupportedFacets(pair, {0, 0}, {&anything, 1}, &listed);
+    for (const DepthCandidate& facet : all) {
+      // An edge nearly flush with a side is met by that side.
+      const double flush =
+          std::max(std::abs(facet.n.z()), std::abs(facet.n.dot(X_AB.R.col(2))));
+      const bool is_edges = facet.feature_A.kind() == FeatureKind::kEdge;
+      if (is_edges && flush > std::cos(2 * kSurfaceSlack)) continue;
+      CHECK(IsListed(facet, listed));
+      ++found;
+    }
+  }
+  CHECK(found > 200);
+}
+
+// An axis and its opposite are in a cone of all directions, round-off or not.
+void TestAllDirections() {
+  const DirectionCone all;
+  CHECK(all.Holds(Vec3(-1 - 2e-16, 0, 0)));
 }
 
 }  // namespace
@@ -120,6 +165,8 @@ void TestLargePiecesAreLeftOut() {
 int main() {
   drake_haptics::TestAllPairsOfFeatures();
   drake_haptics::TestConesAreNarrow();
-  drake_haptics::TestLargePiecesAreLeftOut();
+  drake_haptics::TestLargePieces();
+  drake_haptics::TestBlades();
+  drake_haptics::TestAllDirections();
   return drake_haptics::FailedChecks() > 0;
 }

@@ -141,6 +141,22 @@ DrawnMesh DrawMesh(ByteSource* source) {
   return mesh;
 }
 
+DrawnMesh DrawSolid(ByteSource* source) {
+  DrawnMesh mesh;
+  if (source->Flag()) {
+    try {
+      const Polytope P = MakePolytope(DrawPoints(source));
+      if (P.dimension == 3) {
+        AddHull(P, &mesh);
+        return mesh;
+      }
+    } catch (const std::invalid_argument&) {
+    }
+  }
+  AddBentWall(source, &mesh);
+  return mesh;
+}
+
 DrawnMesh DrawDamagedMesh(ByteSource* source) {
   DrawnMesh mesh = DrawMesh(source);
   for (int i = source->Choice(4); i > 0; --i) Damage(source, &mesh);

@@ -19,6 +19,9 @@ struct DrawnMesh {
 /// notched or bent, hulls of drawn points, sheets with and without holes.
 DrawnMesh DrawMesh(ByteSource* source);
 
+/// One solid: the hull of drawn points or a bent wall.
+DrawnMesh DrawSolid(ByteSource* source);
+
 /// The same with damage at times: corners moved onto each other, triangles
 /// turned, doubled or taken away, indices and coordinates of any value.
 DrawnMesh DrawDamagedMesh(ByteSource* source);

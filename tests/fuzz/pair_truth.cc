@@ -86,21 +86,33 @@ bool PairTruth::is_small() const {
   return A_.edges.size() * B_.edges.size() <= kFewEdgePairs;
 }
 
-Real PairTruth::LargestGap(const RealVec3& shift) const {
-  Real largest = -kFar;
-  const auto look = [&](const RealVec3& n) {
-    largest = std::max(largest, SupportGap(n, shift));
-  };
-  for (const RealVec3& n : A_.normals) look(-n);
-  for (const RealVec3& n : B_.normals) look(n);
+template <typename Visitor>
+void PairTruth::VisitNormals(const Visitor& visit) const {
+  for (const RealVec3& n : A_.normals) visit(RealVec3(-n));
+  for (const RealVec3& n : B_.normals) visit(n);
   for (const RealVec3& d : A_.edges) {
     for (const RealVec3& e : B_.edges) {
       const RealVec3 cross = d.cross(e);
       if (!(cross.norm() > 1e-12L * d.norm() * e.norm())) continue;
-      look(UnitOf(cross));
-      look(-UnitOf(cross));
+      visit(UnitOf(cross));
+      visit(RealVec3(-UnitOf(cross)));
     }
   }
+}
+
+Real PairTruth::LargestGap(const RealVec3& shift) const {
+  Real largest = -kFar;
+  VisitNormals([&](const RealVec3& n) {
+    largest = std::max(largest, SupportGap(n, shift));
+  });
+  return largest;
+}
+
+Real PairTruth::LargestGapBeside(const RealVec3& n, Real cosine) const {
+  Real largest = -kFar;
+  VisitNormals([&](const RealVec3& other) {
+    if (other.dot(n) < cosine) largest = std::max(largest, SupportGap(other));
+  });
   return largest;
 }
 

@@ -30,6 +30,10 @@ class PairTruth {
   /// difference is flat.
   Real LargestGap(const RealVec3& shift) const;
 
+  /// The same of the pair as it is, of normals that are not within
+  /// arccos(cosine) of n.
+  Real LargestGapBeside(const RealVec3& n, Real cosine) const;
+
   /// Distance of the nearest points by pairs of features; right if apart.
   Real Distance() const;
 
@@ -47,6 +51,8 @@ class PairTruth {
   static Body Place(const Polytope& polytope, const Pose& X);
   static Real VertexFacetDistance(const Body& vertices, const Body& facets);
   Real EdgeEdgeDistance() const;
+  template <typename Visitor>
+  void VisitNormals(const Visitor& visit) const;
 
   Body A_, B_;
   Real magnitude_ = 0;

@@ -1,5 +1,5 @@
 // A tool on any way among decomposed objects: each contact, cluster and wrench
-// is held against its definition.
+// is held against its definition. Or two solids that overlap after one step.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <memory>
@@ -9,6 +9,7 @@
 #include "contact_tracker.h"
 #include "draw.h"
 #include "draw_mesh.h"
+#include "landing.h"
 #include "pair_truth.h"
 #include "penalty_force.h"
 #include "shared_stiffness.h"
@@ -175,10 +176,25 @@ void CheckForce(const Scene& scene, const ContactSet& contacts,
   CheckClusters(clusters, contacts, scene, V_WTool, tally);
 }
 
+void RunLanding(ByteSource* source, Tally* tally) {
+  Landing landing;
+  try {
+    landing = DrawLanding(source);
+  } catch (const std::invalid_argument&) {
+    ++tally->refusals;
+    return;
+  }
+  CheckLanding(landing, tally);
+}
+
 }  // namespace
 
 void RunInput(std::span<const std::uint8_t> bytes, Tally* tally) try {
   ByteSource source(bytes);
+  if (source.Flag()) {
+    RunLanding(&source, tally);
+    return;
+  }
   Scene scene;
   try {
     scene = DrawScene(&source);
