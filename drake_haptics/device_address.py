@@ -14,6 +14,11 @@ from drake_haptics.scene import Scene
 
 _HAPLY_PORT = 10001
 
+
+class NoPageError(DeviceError):
+    """A device that is moved on a page, where there is none."""
+
+
 # Opens a device by the parts of its address.
 _Opener = Callable[[SplitResult, DeviceSite, Meshcat | None], DeviceBackend]
 
@@ -35,7 +40,7 @@ def open_device(
     Args:
         address: One of these.
         scene: Says where its device stands and within which limits.
-        meshcat: The page that `meshcat:` and `mouse:` need.
+        meshcat: The page that `meshcat:` and `mouse:` need; a `NoPageError` says so.
 
     Returns:
         The device, open; it is the caller's to close.
@@ -133,9 +138,8 @@ def _open_mouse(
 
 def _require_page(parts: SplitResult, meshcat: Meshcat | None) -> Meshcat:
     if meshcat is None:
-        raise DeviceError(
-            f"device {parts.geturl()!r} is moved on a page, and a run without one has"
-            " none: leave --headless out"
+        raise NoPageError(
+            f"device {parts.geturl()!r} is moved on a page, and there is none"
         )
     return meshcat
 

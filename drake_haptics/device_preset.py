@@ -140,8 +140,8 @@ def load_device_preset(name_or_path: str) -> DevicePreset:
     presets = list_device_presets()
     if name_or_path not in presets:
         raise SceneError(
-            f"device.preset: '{name_or_path}' is none of those that come along, nor a"
-            f" preset file (.yaml); {make_hint(name_or_path, presets)}"
+            f"device.preset: '{name_or_path}' is not one of those that are shipped, nor"
+            f" a preset file (.yaml); {make_hint(name_or_path, presets)}"
         )
     return _read_once(presets[name_or_path])
 

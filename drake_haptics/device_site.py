@@ -10,6 +10,7 @@ from pydrake.math import RigidTransform
 
 from drake_haptics.device.backend import DeviceBackend, DeviceError, DeviceReading
 from drake_haptics.device_preset import load_device_preset
+from drake_haptics.one_line import count
 from drake_haptics.pose_vector import vector_to_pose
 from drake_haptics.scene import Scene
 from drake_haptics.simulated_device import find_base, make_hand_path
@@ -76,11 +77,12 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
     while (reading := backend.read()) is None:
         if time.monotonic() > end_s:
             rejected = backend.get_link_status().rejected
+            was = "was" if rejected == 1 else "were"
             raise DeviceError(
                 f"the device has said nothing that can be used for {timeout_s:g} s:"
-                f" {rejected} packets came and were refused. Is each state packed as"
-                " docs/device-protocol.md says, all of it finite, the quaternion of"
-                " the pose of length 1?"
+                f" {count(rejected, 'packet')} came and {was} refused. Is each state"
+                " packed as docs/device-protocol.md says, all of it finite, the"
+                " quaternion of the pose of length 1?"
                 if rejected
                 else f"the device has said nothing for {timeout_s:g} s: is its driver"
                 " running at the address given, and does it serve no other host?"

@@ -92,7 +92,8 @@ class DeviceWatch:
     def to_dict(self) -> dict[str, object]:
         """Returns the figures for a report, ready for JSON.
 
-        Keys: `gate` (the last state), `faults` (how often, by kind), `recoveries`,
+        Keys: `gate` (the last state), `fault` (that it ended at, `NONE` if at none),
+        `faults` (how often, by kind), `recoveries`,
         `max_force_N` and `max_torque_Nm` (that the device said it showed), `received`,
         `lost` and `rejected` (readings), `servo_lateness_us` (of the backend's own
         thread, `p50`, `p99`, `p99_9`; empty where it has none).
@@ -101,6 +102,7 @@ class DeviceWatch:
         late_us = [1e6 * late_s for late_s in link.lateness_s or ()]
         return {
             "gate": None if reading is None else reading.gate.name,
+            "fault": self._fault.name,
             "faults": dict(self._faults),
             "recoveries": self._recoveries,
             "max_force_N": self._max_force_N,

@@ -1,17 +1,23 @@
-"""What a simulated arm in a hand is at its handle."""
+"""What an arm in a hand is at its handle, and a scene's coupling on it."""
 
 from __future__ import annotations
 
 import numpy as np
+from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
 from pydrake.systems.framework import Context
 
-from drake_haptics.coupling_check import HeldHandle, check_coupling
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.scene import Scene
-from drake_haptics.systems.hand_grip import HAND_GRIPS, HandGrip
+from drake_haptics.coupling_check import (
+    HeldHandle,
+    check_coupling,
+    find_exceeded_ratings,
+)
+from drake_haptics.device_preset import DevicePreset, load_device_preset
+from drake_haptics.scene import Scene, SceneError
+from drake_haptics.systems.hand_grip import HAND_GRIPS, LOOSEST_GRIP, HandGrip
 from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.systems.simulated_arm import make_arm_plant, weld_hand
 
 
 def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
@@ -27,6 +33,55 @@ def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
     held = calc_scene_handle(scene, device)
     period_s = 1.0 / scene.device.rate_hz
     return check_coupling(scene.coupling, held, period_s, calc_force_delay(scene))
+
+
+def check_real_coupling(scene: Scene) -> list[str]:
+    """Checks a scene's coupling on a real device of the scene's preset.
+
+    It is held to what the device is rated for and, where the preset has a model, to
+    the bounds on its twin. Nobody knows how firmly a real device is held: the bounds
+    are those in the loosest grip.
+
+    Args:
+        scene: Gains, preset and rate.
+
+    Returns:
+        A sentence for each rating that is exceeded, then as `check_scene_coupling`.
+
+    Raises:
+        SceneError: There is no such preset, or its model is no arm.
+    """
+    preset = load_device_preset(scene.device.preset)
+    ratings = find_exceeded_ratings(scene.coupling, preset)
+    found = [rating.sentence for rating in ratings]
+    if preset.has_model:
+        held = _calc_loosely_held(scene, preset)
+        period_s = 1.0 / scene.device.rate_hz
+        found += [
+            f"{sentence} (in a {LOOSEST_GRIP} grip)"
+            for sentence in check_coupling(
+                scene.coupling, held, period_s, calc_force_delay(scene)
+            )
+        ]
+    return found
+
+
+def _calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle:
+    """Returns what a preset's arm at its default angles is in the loosest grip."""
+    grip = HAND_GRIPS[LOOSEST_GRIP]
+    assert grip is not None
+    try:
+        plant = make_arm_plant(preset.model_path, RigidTransform())
+        handle = plant.GetBodyByName(preset.handle_link)
+        weld_hand(plant, handle, grip)
+        plant.Finalize()
+    except RuntimeError as error:  # Of Drake's parser, or there is no such link.
+        raise SceneError(
+            f"device.preset '{scene.device.preset}', with handle_link"
+            f" '{preset.handle_link}' of the model {preset.model_path}: {error}"
+        ) from error
+    p_HQ = np.array(scene.tool.grasp.position_m)
+    return calc_held_handle(plant, handle, grip, p_HQ=p_HQ)
 
 
 def calc_force_delay(scene: Scene) -> float:

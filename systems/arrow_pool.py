@@ -10,8 +10,20 @@ from pydrake.geometry import Meshcat, Rgba
 from pydrake.math import RigidTransform, RotationMatrix
 
 _SIDES = 12
-# (radius, height) of an arrow of length 1 along z, from its tail to its tip.
-_PROFILE = ((0.0, 0.0), (0.075, 0.0), (0.075, 0.60), (0.20, 0.60), (0.0, 1.0))
+Profile = tuple[tuple[float, float], ...]
+"""(radius, height) of an arrow of length 1 along z, from its tail to its tip."""
+
+SHORT_ARROW: Profile = ((0.0, 0.0), (0.075, 0.0), (0.075, 0.6), (0.2, 0.6), (0.0, 1.0))
+"""An arrow that says where and which way."""
+
+LONG_ARROW: Profile = ((0.0, 0.0), (0.05, 0.0), (0.05, 0.7), (0.14, 0.7), (0.0, 1.0))
+"""An arrow whose length says how much: no wider than it needs to be."""
+
+DOUBLE_ARROW: Profile = (
+    *((0.0, 0.0), (0.04, 0.0), (0.04, 0.48), (0.11, 0.48)),
+    *((0.03, 0.74), (0.11, 0.74), (0.0, 1.0)),
+)
+"""An arrow with two heads, as torques are drawn."""
 
 
 class ArrowPool:
@@ -29,7 +41,12 @@ class ArrowPool:
     """
 
     def __init__(
-        self, meshcat: Meshcat, path: str, capacity: int, colors: Sequence[Rgba]
+        self,
+        meshcat: Meshcat,
+        path: str,
+        capacity: int,
+        colors: Sequence[Rgba],
+        profile: Profile = SHORT_ARROW,
     ):
         """Sends the arrows to Meshcat, hidden.
 
@@ -38,6 +55,7 @@ class ArrowPool:
             path: Folder of the arrows in the scene tree.
             capacity: How many arrows can be seen at once.
             colors: What an arrow can be coloured.
+            profile: Of an arrow.
         """
         self._meshcat = meshcat
         self._num_colors = len(colors)
@@ -46,7 +64,7 @@ class ArrowPool:
         # Colour shown in each slot; None where hidden.
         self._shown: list[int | None] = [None] * capacity
         self._lengths = [1.0] * capacity
-        vertices, triangles = _make_arrow()
+        vertices, triangles = _make_arrow(profile)
         for slot in self._slots:
             for color, rgba in enumerate(colors):
                 arrow = f"{slot}/arrow/{color}"
@@ -118,15 +136,15 @@ class ArrowPool:
         self._shown[slot] = color
 
 
-def _make_arrow() -> tuple[np.ndarray, np.ndarray]:
+def _make_arrow(profile: Profile) -> tuple[np.ndarray, np.ndarray]:
     """Returns vertices (3, n) and triangles (3, m) of an arrow of length 1 along z."""
     angle = 2 * np.pi * np.arange(_SIDES) / _SIDES
     rings = [
         np.column_stack([r * np.cos(angle), r * np.sin(angle), np.full(_SIDES, z)])
-        for r, z in _PROFILE
+        for r, z in profile
     ]
     triangles = []
-    for ring in range(len(_PROFILE) - 1):
+    for ring in range(len(profile) - 1):
         for i in range(_SIDES):
             a, b = ring * _SIDES + i, ring * _SIDES + (i + 1) % _SIDES
             triangles += [(a, b, b + _SIDES), (a, b + _SIDES, a + _SIDES)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import Literal, get_args, overload
 
@@ -19,6 +20,8 @@ from drake_haptics._core import (
     share_stiffness,
     thin_contacts,
 )
+from drake_haptics.scene_check import SceneWarning
+from drake_haptics.skin import question_depth
 from drake_haptics.systems.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -103,6 +106,7 @@ class ContactClustering(DifferentiableSystem):
         delta_m: float | None = None,
         *,
         sheds_load: bool = False,
+        warns_deep: bool = False,
     ):
         """Constructs the system.
 
@@ -113,12 +117,16 @@ class ContactClustering(DifferentiableSystem):
             tolerance_m: The distance t below which contacts push, m.
             delta_m: Cluster size δ of the octree, m.
             sheds_load: Whether the loop sheds load, and there is a port for that.
+            warns_deep: Whether the first contact that is deeper than ten tolerances
+                is warned of, where `run` does not: it waits for the end, since to
+                write may keep a loop waiting that a hand holds.
 
         Raises:
             ValueError: There is no such method, the tolerance is negative, or δ is
                 not positive, missing, or given where there is no octree.
         """
         super().__init__()
+        self._warns_deep = warns_deep
         rule = ClusteringRule(method, tolerance_m, delta_m)
         self._rule = self.DeclareAbstractParameter(Value[object](rule))
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
@@ -179,9 +187,17 @@ class ContactClustering(DifferentiableSystem):
 
     def _calc_clusters(self, context: Context, clusters: AbstractValue) -> None:
         rule = context.get_abstract_parameter(self._rule).get_value()
-        clusters.set_value(
-            _cluster(self._eval_contacts(context), rule.tolerance_m, rule.delta_m)
-        )
+        contacts = self._eval_contacts(context)
+        if self._warns_deep:
+            self._warn_of_depth(contacts, rule.tolerance_m)
+        clusters.set_value(_cluster(contacts, rule.tolerance_m, rule.delta_m))
+
+    def _warn_of_depth(self, contacts: ContactSet, tolerance_m: float) -> None:
+        """Warns of a deep contact, the first time."""
+        if question := question_depth(-contacts.least_distance, tolerance_m):
+            self._warns_deep = False
+            # Drake calls this: which of the user's lines it was is not known.
+            warnings.warn(question, SceneWarning, stacklevel=1)
 
     def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:
         assert self._relief is not None

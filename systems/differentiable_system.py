@@ -108,9 +108,11 @@ def _Convertible_(T: type) -> type:
                 LeafSystem.__init__(self, converter=converter)
 
             def _construct_copy(self, other: Any, converter: Any = None) -> None:
+                # Drake clones a system by converting it to another scalar and back.
                 raise TypeError(
-                    f"{other.GetSystemPathname()} does not convert back to doubles:"
-                    " keep the system that it was made from"
+                    f"{other.GetSystemPathname()} cannot be cloned, and does not"
+                    " convert back to doubles: build it once more, or keep the system"
+                    " that it was made from"
                 )
 
     else:

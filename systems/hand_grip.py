@@ -48,3 +48,5 @@ HAND_GRIPS: dict[str, HandGrip | None] = {
     "nominal": NOMINAL_GRIP,
     "firm": HandGrip(0.3, 1e-3, 1000.0, 15.0, 3.0, 0.05),
 }
+# Who holds a real device may hold it no more firmly than this.
+LOOSEST_GRIP = "light"

@@ -10,7 +10,7 @@ from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_haptics import colors
 from drake_haptics._core import ClusterSet, ContactSet, Decomposition, FrictionStep
-from drake_haptics.systems.arrow_pool import ArrowPool
+from drake_haptics.systems.arrow_pool import DOUBLE_ARROW, LONG_ARROW, ArrowPool
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.drawn_pieces import DrawnPieces
 from drake_haptics.systems.picture_views import SHOWN_AT_FIRST, check_view
@@ -23,9 +23,10 @@ _ENVIRONMENT_ALPHA = 0.45
 # Lengths as shares of the tool's size (the diagonal of its box), so that tools of any
 # size give a readable picture.
 _CONTACT_ARROW = 0.06
-_ARROW_OF_ONE_NEWTON = 0.10
-_SHORTEST_FORCE_ARROW = 0.07
-_LONGEST_FORCE_ARROW = 0.45
+# Of the device's largest force or torque: where all of the tool is in the picture this
+# is at most a third of it.
+_LONGEST_ARROW = 1 / 3
+_SHORTEST_ARROW = 0.05
 _GRIP_RADIUS = 0.022
 _LINE_RADIUS = 0.006
 # Of the tool while virtual facets are shown, which are inside of it.
@@ -34,8 +35,10 @@ _TOOL_SEEN_THROUGH = 0.35
 _FOLDERS = {
     "ghost": ("handle", "grip", "coupling"),
     "contacts": ("contacts",),
-    "forces": ("force", "clusters", "friction"),
+    "forces": ("force", "torque", "clusters", "friction"),
 }
+# A force, N, or torque, N·m, that is smaller has no direction.
+_NO_SIZE = 1e-6
 # A line that is shorter has no direction.
 _NO_LENGTH_M = 1e-9
 
@@ -44,7 +47,8 @@ class HapticPicture:
     """The objects of the picture: made once, then moved, scaled, shown and hidden.
 
     All of them are below "/haptics" in the scene tree: `tool`, `handle`, `grip`,
-    `coupling`, `force`, `contacts`, `clusters`, `friction` and `objects/<name>`.
+    `coupling`, `force`, `torque`, `contacts`, `clusters`, `friction` and
+    `objects/<name>`.
 
     What moves things works as it is iterated over, so that a frame can be drawn a
     little at a time.
@@ -56,6 +60,9 @@ class HapticPicture:
         tool: Decomposition,
         objects: Sequence[ContactObject],
         X_HT: RigidTransform,
+        *,
+        max_force_N: float,
+        max_torque_Nm: float,
         has_friction: bool,
     ):
         """Sends the geometry.
@@ -65,6 +72,8 @@ class HapticPicture:
             tool: The tool, in its frame T.
             objects: What it meets; those that never move are placed.
             X_HT: Pose of the tool in the handle at rest.
+            max_force_N: Of the longest arrow of a force, N.
+            max_torque_Nm: Of the longest arrow of a torque, N·m.
             has_friction: Whether there is friction to draw.
         """
         self._meshcat = meshcat
@@ -98,13 +107,19 @@ class HapticPicture:
         )
         # Not to be seen, where handle and tool are never apart.
         meshcat.SetProperty(f"{_ROOT}/coupling/line", "scale", [1.0, 1.0, _NO_LENGTH_M])
-        self._force = ArrowPool(meshcat, f"{_ROOT}/force", 1, [line])
+        self._max_force_N, self._max_torque_Nm = max_force_N, max_torque_Nm
+        self._force = ArrowPool(meshcat, f"{_ROOT}/force", 1, [line], LONG_ARROW)
+        self._torque = ArrowPool(
+            meshcat, f"{_ROOT}/torque", 1, [Rgba(*colors.TORQUE)], DOUBLE_ARROW
+        )
         pair = [Rgba(*colors.NEAR_CONTACT), Rgba(*colors.PENETRATING_CONTACT)]
         self._contacts = ArrowPool(meshcat, f"{_ROOT}/contacts", _MAX_CONTACTS, pair)
-        self._clusters = ArrowPool(meshcat, f"{_ROOT}/clusters", _MAX_CLUSTERS, pair)
+        self._clusters = ArrowPool(
+            meshcat, f"{_ROOT}/clusters", _MAX_CLUSTERS, pair, LONG_ARROW
+        )
         pair = [Rgba(*colors.STICKING_CONTACT), Rgba(*colors.SLIDING_CONTACT)]
         most = _MAX_CLUSTERS if has_friction else 0
-        self._friction = ArrowPool(meshcat, f"{_ROOT}/friction", most, pair)
+        self._friction = ArrowPool(meshcat, f"{_ROOT}/friction", most, pair, LONG_ARROW)
 
     def show(self, view: str, visible: bool) -> None:
         """Shows or hides a view; `draw_views` does it.
@@ -185,12 +200,28 @@ class HapticPicture:
             path = f"{_ROOT}/coupling/line"
             self._meshcat.SetProperty(path, "scale", [1.0, 1.0, length], time_s)
 
-    def draw_display_force(
-        self, p_WH: np.ndarray, f_H_W: np.ndarray, time_s: float
+    def draw_display_wrench(
+        self, p_WH: np.ndarray, F_H_W: np.ndarray, time_s: float
     ) -> Iterator[None]:
-        """Draws the force (3,) N that the hand feels, pushing at the handle (3,) m."""
+        """Draws what the hand feels at the handle.
+
+        Args:
+            p_WH: (3,) the handle, m: the force pushes at it, the torque begins there.
+            F_H_W: (6,) the wrench [τ; f], N·m and N.
+            time_s: Time in the recording, s.
+        """
+        tau_W, f_W = F_H_W[None, :3], F_H_W[None, 3:]
         yield from self._draw_forces(
-            self._force, ["force"], p_WH[None], f_H_W[None], [0], time_s
+            self._force, ["force"], p_WH[None], f_W, [0], time_s
+        )
+        vector = self._scale_arrows(tau_W, self._max_torque_Nm)
+        shown = np.flatnonzero(vector.any(axis=1))
+        yield from self._torque.draw(
+            ["torque"][: len(shown)],
+            p_WH + vector[shown],
+            vector[shown],
+            [0] * len(shown),
+            time_s,
         )
 
     def draw_contacts(self, contacts: ContactSet, time_s: float) -> Iterator[None]:
@@ -245,7 +276,8 @@ class HapticPicture:
 
     def write_visibility(self, time_s: float) -> None:
         """Sends again what is visible, for the first frame of a recording."""
-        for pool in (self._force, self._contacts, self._clusters, self._friction):
+        pools = (self._force, self._torque, self._contacts)
+        for pool in (*pools, self._clusters, self._friction):
             pool.write_visibility(time_s)
 
     def _draw_forces(
@@ -258,22 +290,25 @@ class HapticPicture:
         time_s: float,
     ) -> Iterator[None]:
         """Draws forces as arrows; those too small to have a direction are left out."""
-        force = np.linalg.norm(f_W, axis=1)
-        felt = np.flatnonzero(force > 1e-6)
-        length = np.clip(
-            _ARROW_OF_ONE_NEWTON * force[felt],
-            _SHORTEST_FORCE_ARROW,
-            _LONGEST_FORCE_ARROW,
-        )
-        scale = self._size_m * length / force[felt]
+        vectors = self._scale_arrows(f_W, self._max_force_N)
+        felt = np.flatnonzero(vectors.any(axis=1))
         yield
         yield from pool.draw(
             [keys[i] for i in felt.tolist()],
             p_W[felt],
-            scale[:, None] * f_W[felt],
+            vectors[felt],
             np.asarray(colors_of)[felt],
             time_s,
         )
+
+    def _scale_arrows(self, v_W: np.ndarray, largest: float) -> np.ndarray:
+        """Returns arrows (n, 3), m, for vectors (n, 3); 0 for what has no direction."""
+        size = np.linalg.norm(v_W, axis=1, keepdims=True)
+        # A device without motors for torques shows none.
+        share = np.divide(size, largest, out=np.zeros_like(size), where=largest > 0.0)
+        share = np.clip(_LONGEST_ARROW * share, _SHORTEST_ARROW, _LONGEST_ARROW)
+        scale = np.divide(share, size, out=np.zeros_like(size), where=size > _NO_SIZE)
+        return self._size_m * scale * v_W
 
     def _send_mesh(self, name: str, mesh: Decomposition, rgba: Rgba) -> None:
         """Sends the surface of a decomposition."""

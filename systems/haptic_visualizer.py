@@ -38,11 +38,13 @@ class HapticVisualizer(DifferentiableSystem):
     """Tool, objects, handle, contacts and forces in Meshcat, live or recorded.
 
     * The tool, and as a ghost where the handle wants it: X_WH X_HT.
-    * The coupling: a line from the handle to the place in the tool that it holds,
-      and an arrow of the force on the hand.
+    * The coupling: a line from the handle to the place in the tool that it holds.
+    * On the hand: an arrow of the force, its tip at the handle, and one with two heads
+      of the torque, which begins there.
     * Each contact: a small arrow along the normal, from the object into the tool,
       its tip at the contact's point; green near, red penetrating.
-    * Each cluster: a larger arrow, as long as its force is large.
+    * Each cluster: a larger arrow, as long as its force is large. Of the device's
+      limits arrows are a third of the tool's size long, and no arrow is longer.
     * Its friction, if there is any: violet, dark where it sticks, light where it
       slides.
 
@@ -82,6 +84,8 @@ class HapticVisualizer(DifferentiableSystem):
         X_HT: RigidTransform,
         tick_s: float,
         *,
+        max_force_N: float,
+        max_torque_Nm: float,
         has_friction: bool = False,
         sheds_load: bool = False,
     ):
@@ -93,6 +97,8 @@ class HapticVisualizer(DifferentiableSystem):
             objects: Those of the `ContactQuery`.
             X_HT: Pose of the tool in the handle at rest.
             tick_s: Period of the loop, s.
+            max_force_N: The device's largest force, N.
+            max_torque_Nm: The device's largest torque, N·m.
             has_friction: Whether there is friction to draw, and a port for it.
             sheds_load: Whether the loop sheds load, and there is a port for that.
         """
@@ -102,9 +108,18 @@ class HapticVisualizer(DifferentiableSystem):
         ticks = 2.0 ** math.floor(math.log2(max(_LONGEST_PERIOD_S / tick_s, 1.0)))
         self._period_s = ticks * tick_s
         self._meshcat = meshcat
-        self._picture = HapticPicture(meshcat, tool, objects, X_HT, has_friction)
+        self._picture = HapticPicture(
+            meshcat,
+            tool,
+            objects,
+            X_HT,
+            max_force_N=max_force_N,
+            max_torque_Nm=max_torque_Nm,
+            has_friction=has_friction,
+        )
         self._recording = False
         self._first_frame = False
+        self._recorded_sizes: list[tuple[float, float, float]] = []
         self._not_before_s = 0.0
         # The frame that is being drawn, and what it has taken so far.
         self._frame: Iterator[None] | None = None
@@ -184,11 +199,20 @@ class HapticVisualizer(DifferentiableSystem):
         """
         self._picture.show(view, visible)
 
+    @property
+    def recorded_sizes(self) -> np.ndarray:
+        """What was felt while it recorded: (n, 3) time, s, force, N, torque, N·m.
+
+        Of two ticks one is there; frames, of which there are fewer, lose peaks.
+        """
+        return np.array(self._recorded_sizes).reshape(-1, 3)
+
     def StartRecording(self) -> None:
         """Records every frame from now on into Meshcat's animation."""
         self._meshcat.StartRecording(frames_per_second=1 / self._period_s)
         self._recording = True
         self._first_frame = True
+        self._recorded_sizes = []
 
     def StopRecording(self) -> None:
         """Stops recording; what was recorded stays."""
@@ -209,6 +233,9 @@ class HapticVisualizer(DifferentiableSystem):
     def _publish_slice(self, context: Context) -> None:
         """Goes on with a frame, or begins one where that is due."""
         if self._recording:
+            tau_x, tau_y, tau_z, *f_W = self._F_display.Eval(context).tolist()
+            sizes = math.hypot(*f_W), math.hypot(tau_x, tau_y, tau_z)
+            self._recorded_sizes.append((context.get_time(), *sizes))
             if self._is_due(context.get_time()):
                 self._record(context)
         elif not self._must_save(context) and (
@@ -265,7 +292,7 @@ class HapticVisualizer(DifferentiableSystem):
             vector_to_pose(self._X_WH.Eval(context)),
             vector_to_pose(self._X_WTool.Eval(context)),
             {n: vector_to_pose(port.Eval(context)) for n, port in self._X_WO.items()},
-            self._F_display.Eval(context)[3:],
+            self._F_display.Eval(context),
             self._contacts.Eval(context),
             self._clusters.Eval(context),
             self._contact_wrench.Eval(context),
@@ -280,7 +307,7 @@ class HapticVisualizer(DifferentiableSystem):
         X_WH: RigidTransform,
         X_WTool: RigidTransform,
         X_WO: dict[str, RigidTransform],
-        f_H_W: np.ndarray,
+        F_H_W: np.ndarray,
         contacts: ContactSet,
         clusters: ClusterSet,
         wrench: PenaltyWrench,
@@ -293,7 +320,7 @@ class HapticVisualizer(DifferentiableSystem):
         for name, X in X_WO.items():
             picture.place_object(name, X, time_s)
             yield
-        yield from picture.draw_display_force(X_WH.translation(), f_H_W, time_s)
+        yield from picture.draw_display_wrench(X_WH.translation(), F_H_W, time_s)
         yield from picture.draw_contacts(contacts, time_s)
         yield from picture.draw_clusters(clusters, wrench.f_cluster_W, time_s)
         if friction is not None:

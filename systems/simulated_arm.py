@@ -8,7 +8,7 @@ import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import SpatialInertia, UnitInertia
+from pydrake.multibody.tree import RigidBody, SpatialInertia, UnitInertia
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from drake_haptics.systems.arm_inverse_kinematics import solve_arm_positions
@@ -73,16 +73,7 @@ class SimulatedArm(Diagram):
         plant = builder.AddNamedSystem("arm", make_arm_plant(model, X_WB))
         handle = plant.GetBodyByName(handle_link)
         if grip is not None:
-            hand = plant.AddRigidBody(
-                "hand",
-                handle.model_instance(),
-                SpatialInertia(
-                    grip.mass_kg,
-                    np.zeros(3),
-                    UnitInertia(*[grip.inertia_kgm2 / grip.mass_kg] * 3),
-                ),
-            )
-            plant.WeldFrames(handle.body_frame(), hand.body_frame())
+            weld_hand(plant, handle, grip)
         plant.Finalize()
         X_WH = path.start @ X_PH
         q_rest = np.zeros(plant.num_positions())
@@ -108,6 +99,26 @@ class SimulatedArm(Diagram):
         builder.ExportInput(wrench, "F_applied")
         export_parts(builder, handle_state, {"X_WH": 7, "V_WH": 6})
         builder.BuildInto(self)
+
+
+def weld_hand(plant: MultibodyPlant, handle: RigidBody, grip: HandGrip) -> None:
+    """Adds the mass of a hand to a handle.
+
+    Args:
+        plant: Not finalized.
+        handle: Its body that is held.
+        grip: How it is held.
+    """
+    hand = plant.AddRigidBody(
+        "hand",
+        handle.model_instance(),
+        SpatialInertia(
+            grip.mass_kg,
+            np.zeros(3),
+            UnitInertia(*[grip.inertia_kgm2 / grip.mass_kg] * 3),
+        ),
+    )
+    plant.WeldFrames(handle.body_frame(), hand.body_frame())
 
 
 def make_arm_plant(model: Path, X_WB: RigidTransform) -> MultibodyPlant:

@@ -239,7 +239,7 @@ def test_the_plot_shows_both_limits_and_the_choice():
         ({"rate_hz": math.nan}, "rate_hz must be positive, is nan"),
         ({"delay_s": -1.0}, "delay_s must be at least 0, is -1"),
         ({"margin": 1.0}, "margin must be above 1, is 1"),
-        ({"hand": "iron"}, "hand: 'iron' is none of none, light, nominal, firm"),
+        ({"hand": "iron"}, "hand: 'iron' is not one of none, light, nominal, firm"),
         ({"device": HeldHandle(0.0, 0.5, 5e-5, 1e-4)}, "mass must be positive"),
         ({"device": HeldHandle(0.1, -0.5, 5e-5, 1e-4)}, "damping must be at least 0"),
         ({"device": HeldHandle(0.1, 0.0, 5e-5, 1e-4), "hand": "none"}, "no stiffness"),
@@ -251,5 +251,5 @@ def test_what_cannot_be_is_refused(arguments, message):
 
 
 def test_a_device_that_is_not_known_is_refused():
-    with pytest.raises(SceneError, match=r"device\.preset: 'flacon' is none of"):
+    with pytest.raises(SceneError, match=r"device\.preset: 'flacon' is not one of"):
         suggest_coupling("flacon", 1000.0)

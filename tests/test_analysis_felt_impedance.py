@@ -7,10 +7,13 @@ import pytest
 from held_samples import load_held
 from pydrake.math import RotationMatrix
 
+from drake_haptics.analysis.delay_margin import find_shown_wrench
 from drake_haptics.analysis.felt_impedance import calc_felt_impedance
 from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.analysis.passivity import calc_passivity
 from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.scene import ForceDelay, Twin
 
 # Ticks in which the tool comes to rest while the handle stands still.
 TICKS = 3000
@@ -154,3 +157,30 @@ def test_the_damping_is_the_hands_and_the_joints(pen):
         felt.handle_damping - of_arm, np.diag([0.05] * 3 + [15.0] * 3), atol=1e-12
     )
     assert np.linalg.eigvalsh(of_arm).min() > 0.0
+
+
+def respond(felt, z):
+    """Returns H(z) of the translation (3, 3)."""
+    states = np.linalg.solve(z * np.eye(len(felt.A)) - felt.A, felt.B)
+    return (felt.C @ states + felt.D)[3:, 3:]
+
+
+@pytest.mark.parametrize("samples", [1, 2])
+def test_a_late_wrench_is_felt_so_many_ticks_later(pen, samples):
+    held = load_held("sphere_pen")
+    device = replace(held.scene.device, twin=Twin(delay=ForceDelay(samples)))
+    late = hold_scene(replace(held.scene, device=device), held.time_s)
+    loop = analyse_held_scene(late)
+    at_once, later = calc_felt_impedance(pen), calc_felt_impedance(loop)
+    for z in np.exp(1j * np.array([0.01, 0.3, 1.0, 2.5])):
+        expected = z**-samples * respond(at_once, z)
+        size = np.abs(expected).max()
+        np.testing.assert_allclose(respond(later, z), expected, atol=1e-3 * size)
+    # Of all wrenches that wait, the arm is moved by the one that is shown, alone.
+    names = loop.linearization.state_names
+    waiting = [i for i, name in enumerate(names) if "force_delay" in name]
+    assert len(waiting) == 6 * samples
+    moves = np.abs(loop.linearization.rates).max(axis=0) > 0.0
+    np.testing.assert_array_equal(
+        [i for i in waiting if moves[i]], find_shown_wrench(names)
+    )

@@ -32,7 +32,7 @@ def test_every_pole_is_drawn_where_it_is(linear):
     drawn = np.sort_complex(np.concatenate(list(points.values())))
     np.testing.assert_allclose(drawn, np.sort_complex(linear.eigenvalues()), atol=1e-12)
     assert np.all(np.abs(points["unstable"]) > 1.0)
-    assert len(points["neutral, memory, quaternion length"]) == 2
+    assert len(points["neither: memory, quaternion length"]) == 2
     pyplot.close(axes.figure)
 
 

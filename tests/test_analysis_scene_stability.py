@@ -1,11 +1,16 @@
 """The analysis of a scene: its parts are those of the held loop."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from held_samples import load_held, make_limits
+from matplotlib.collections import PathCollection
+from matplotlib.colors import to_rgba_array
+from matplotlib.container import BarContainer
+from matplotlib.patches import Patch
 
 from drake_haptics.analysis import scene_stability
 from drake_haptics.analysis.delay_margin import calc_delay_margin
@@ -91,7 +96,8 @@ def test_the_map_has_the_limits_edge_and_the_scenes_gains(found):
 
 def test_progress_names_what_is_done(found, reports):
     names = {what for what, _ in reports}
-    assert "looking for the firmest contact" in names and "map" in names
+    assert "looking for the firmest contact" in names
+    assert "map of 9 points" in names
     assert "limit of rotation against a rigid wall" in names
     assert all(0.0 <= share <= 1.0 for _, share in reports)
 
@@ -111,9 +117,54 @@ def test_it_draws_four_panels_with_a_map_and_three_without(found):
     assert len(replace(found, map=None).plot().axes) == 3
 
 
+def read_meanings(figure):
+    """Returns pairs of a color and what it means in a panel's legend."""
+    pairs = set()
+    for axes in figure.axes:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            artist = handle.patches[0] if isinstance(handle, BarContainer) else handle
+            color = (
+                artist.get_facecolor()
+                if isinstance(artist, Patch | PathCollection)
+                else artist.get_color()
+            )
+            if len(color := to_rgba_array(color)):  # hollow markers have none
+                meaning = label.partition(":")[0].partition(",")[0]
+                meaning = re.sub("^the scene's.*", "the scene's", meaning)
+                pairs.add((tuple(np.round(color[0, :3], 6)), meaning))
+    return pairs
+
+
+def test_each_color_means_one_thing_in_all_panels(found):
+    pairs = read_meanings(found.plot())
+    colors, meanings = zip(*pairs, strict=True)
+    assert len(pairs) == len(set(colors)) == len(set(meanings))
+    assert set(meanings) >= {
+        "stable",
+        "unstable",
+        "eigenvalue",
+        "simulation",
+        "one axis",
+        "formula",
+        "passivity",
+        "the scene's",
+    }
+
+
+def test_every_legend_is_as_large_as_it_can_be_read_and_within_the_sheet(found):
+    figure = found.plot()
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        assert min(text.get_fontsize() for text in legend.get_texts()) >= 10
+        extent = legend.get_window_extent()
+        assert figure.bbox.x0 <= extent.x0 and extent.x1 <= figure.bbox.x1
+        assert figure.bbox.y0 <= extent.y0 and extent.y1 <= figure.bbox.y1
+
+
 def test_no_label_is_cut(found):
     figure = found.plot()
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     box = figure.bbox
     limits = figure.axes[-1]
     for text in [*limits.texts, *limits.get_yticklabels()]:
@@ -141,15 +192,21 @@ def test_a_map_of_one_point_is_refused(scene, size):
 
 def test_a_store_keeps_the_map(scene, quick_limits, tmp_path):
     done = []
+    names = set()
 
     def note(what, share):
-        if what == "map":
+        if what.startswith("map"):
             done.append(share)
+            names.add(what)
 
     settings = {"map_size": 2, "store": tmp_path / "map.jsonl", "progress": note}
     first = analyse_scene(scene, 0.35, executor=SerialExecutor(), **settings)
     assert done[0] == 0.0 and done[-1] == 1.0
     done.clear()
+    names.clear()
     again = analyse_scene(scene, 0.35, executor=None, **settings)
     assert set(done) == {1.0}
+    # Of a pool of all cores it is known how long the map takes.
+    (words,) = names
+    assert re.fullmatch(r"map of 4 points, about \d+ s", words)
     np.testing.assert_array_equal(first.map.spectral_radius, again.map.spectral_radius)

@@ -15,6 +15,7 @@ from drake_haptics.analysis.modes import Mode, ModeKind
 from drake_haptics.analysis.motion_words import describe_motion
 from drake_haptics.analysis.stability_page import (
     describe_delay,
+    describe_restless,
     describe_situation,
     describe_verdict,
     write_stability_page,
@@ -47,8 +48,9 @@ def write(stability, folder, name="a_scene"):
 
 def test_a_stable_and_passive_scene(sample):
     assert describe_verdict(sample) == (
-        "Stable; the coupling's stiffness of translation could be 20.9 times as large,"
-        " against a rigid wall. Passive: no hand can be driven into vibration."
+        "Stable; the coupling's stiffness of translation, 800 N/m, could be 20.9 times"
+        " as large, 16744 N/m, against a rigid wall. Passive: no hand can be driven"
+        " into vibration."
     )
 
 
@@ -78,7 +80,9 @@ def test_limits_that_do_not_exist_are_not_counted(sample, limits):
 def test_a_limit_below_the_scenes_stiffness_is_a_warning(sample):
     words = describe_verdict(replace(sample, limits=(make_limits(400.0),)))
     assert words.startswith("Stable in this contact; but against a rigid wall")
-    assert "only at less than 0.5 of what it is" in words
+    assert (
+        "of translation, 800 N/m, would be stable only below 400 N/m, 0.5 of" in words
+    )
 
 
 def test_the_situation_is_told(sample):
@@ -96,13 +100,21 @@ def test_the_situation_is_told(sample):
 
 
 def test_firmer_contacts_that_do_not_rest_are_told(sample):
-    assert "come to rest" not in describe_situation(sample)
-    words = describe_situation(replace(sample, restless_s=(1.557,)))
-    assert "at 1.557 s, the tool does not come to rest" in words
-    restless = replace(sample, restless_s=(1.557, 1.6, 2.0))
-    assert "at 1.557, 1.600 and 2.000 s, the tool" in describe_situation(restless)
-    unstable = replace(restless, growth=1.01)
-    assert "come to rest" not in describe_situation(unstable)
+    assert describe_restless(sample) == ""
+    words = describe_restless(replace(sample, restless_s=(1.557,)))
+    assert words.startswith("At 1.56 s of the path, where the tool is pressed more, it")
+    assert "A hand that stops there may feel a small tremor" in words
+    # The firmest is first; people read times in order.
+    restless = replace(sample, restless_s=(1.557, 3.427, 1.629))
+    assert describe_restless(restless).startswith("At 1.56, 1.63 and 3.43 s of")
+    assert describe_restless(replace(restless, growth=1.01)) == ""
+
+
+def test_what_does_not_rest_stands_below_the_picture(sample, tmp_path):
+    page = write(replace(sample, restless_s=(1.557,)), tmp_path)
+    order = ["could be 20.9 times as large, 16744 N/m", "<img", "does not come to"]
+    places = [html.unescape(page).index(words) for words in order]
+    assert places == sorted(places)
 
 
 @pytest.mark.parametrize(

@@ -218,11 +218,12 @@ def test_the_picture_has_region_lines_and_gains():
     assert shown is axes
     assert labels(axes) == {
         "stable",
-        "spectral radius 1",
-        "stability, (b + B)/(T/2 + t_d)",
-        "passivity, (b - |B|)/(T/2 + t_d)",
-        "passive with what the loop feels like",
-        "own gains",
+        "unstable",
+        "eigenvalue: one reaches 1",
+        "formula: (b + B)/(T/2 + t_d)",
+        "passivity: (b - |B|)/(T/2 + t_d)",
+        "passivity: of what the loop feels like",
+        "the scene's gains",
     }
     assert axes.get_xlim() == (100.0, 5000.0)
     assert axes.get_xscale() == "linear"
@@ -257,7 +258,7 @@ def test_a_map_that_is_nowhere_stable_can_be_drawn():
     axes = make_map([[1.5, 2.0, 3.0], [1.2, 1.4, 1.8]]).plot(
         Figure().add_subplot(), gains=(1.0, 1.0)
     )
-    assert labels(axes) == {"own gains"}
+    assert labels(axes) == {"unstable", "the scene's gains"}
 
 
 def test_a_row_cannot_be_drawn():

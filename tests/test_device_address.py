@@ -47,7 +47,7 @@ def test_a_replay_needs_a_file(scene):
 
 @pytest.mark.parametrize("address", ["meshcat:", "mouse:"])
 def test_what_is_moved_on_a_page_needs_one(scene, address):
-    with pytest.raises(DeviceError, match="leave --headless out"):
+    with pytest.raises(DeviceError, match="is moved on a page"):
         open_device(address, scene)
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
+from chai3d_specifications import find_specification
 from other_arm import PRESET, write_preset
 
 from drake_haptics.analysis.coupling_design import suggest_coupling
@@ -16,39 +17,35 @@ from drake_haptics.scene import Encoder, SceneError, Twin, load_scene
 from drake_haptics.simulation import run
 
 PREMIUM = "phantom_premium_1_5_6dof"
-# F, τ, K, K_r, B, B_r, radius: of cPhantomDevice and cDeltaDevice in CHAI3D.
-CHAI3D = {
-    PREMIUM: (8.5, 0.188, 800, 0.3, 5, 0.004, 0.12),
-    "phantom_premium_3_0_6dof": (22, 0.188, 1000, 0.3, 5, 0.004, 0.25),
-    "phantom_desktop": (7.9, 0, 1000, None, 5, None, 0.10),
-    "omni": (3.3, 0, 700, None, 5, None, 0.10),
-    "touch": (3.3, 0, 400, None, 4, None, 0.075),
-    "omega_6": (12, 0, 5000, None, 30, None, 0.075),
-    "delta_6": (20, 0.2, 5000, 1, 30, None, 0.15),
-    "sigma_7": (12, 0.2, 4000, 1, 30, 0.07, 0.09),
-    "falcon": (8, 0, 3000, None, 20, None, 0.04),
-}
 
 
-def test_every_shipped_preset_is_checked_here():
-    assert set(list_device_presets()) == set(CHAI3D)
-
-
-@pytest.mark.parametrize("name", CHAI3D)
-def test_the_limits_are_those_of_the_source(name):
+@pytest.mark.parametrize("name", list_device_presets())
+def test_the_figures_are_those_of_the_source_for_the_device_of_that_name(name):
     preset = load_device_preset(name)
-    assert (
-        preset.max_force_N,
-        preset.max_torque_Nm,
-        preset.max_stiffness_N_per_m,
-        preset.max_rotational_stiffness_Nm_per_rad,
-        preset.max_damping_Ns_per_m,
-        preset.max_rotational_damping_Nms_per_rad,
-        preset.workspace_radius_m,
-    ) == CHAI3D[name]
-    assert preset.actuated_axes == (6 if preset.max_torque_Nm > 0.0 else 3)
-    assert preset.description and "CHAI3D" in preset.source
+    row = find_specification(preset.description)
+    assert f"CHAI3D 3.2.0, {row['file']} (revision {row['revision']})" in preset.source
+    for key, field, may_be_unknown in [
+        ("max_force_N", "maxLinearForce", False),
+        ("max_torque_Nm", "maxAngularTorque", False),
+        ("max_stiffness_N_per_m", "maxLinearStiffness", True),
+        ("max_rotational_stiffness_Nm_per_rad", "maxAngularStiffness", True),
+        ("max_damping_Ns_per_m", "maxLinearDamping", True),
+        ("max_rotational_damping_Nms_per_rad", "maxAngularDamping", True),
+        ("workspace_radius_m", "workspaceRadius", False),
+    ]:
+        figure = float(row[field])
+        expected = None if may_be_unknown and figure == 0.0 else figure
+        assert getattr(preset, key) == expected, key
+    assert preset.actuated_axes == (6 if row["actuatedRotation"] == "true" else 3)
     assert preset.has_model == (name == PREMIUM)
+
+
+def test_no_two_presets_are_one_device():
+    descriptions = [
+        load_device_preset(name).description for name in list_device_presets()
+    ]
+    models = [find_specification(words)["modelName"] for words in descriptions]
+    assert len(set(models)) == len(models)
 
 
 def test_the_motors_of_the_premium_are_those_of_its_public_model():

@@ -43,4 +43,4 @@ def test_faults_are_counted_by_name_and_a_link_only_where_there_is_one():
     figures["faults"] = {"STALE": 2, "OVERSPEED": 1}
     assert describe_device(figures).endswith("; faults: 2 stale, 1 overspeed")
     figures["received"] = 1000
-    assert describe_device(figures).startswith("1000 readings, 0 lost, 0 refused; ")
+    assert describe_device(figures).startswith("1,000 readings, 0 lost, 0 refused; ")

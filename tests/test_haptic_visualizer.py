@@ -11,6 +11,8 @@ from pydrake.geometry import Rgba
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.analysis import Simulator_
 from visualizer_rig import (
+    MAX_FORCE_N,
+    MAX_TORQUE_NM,
     X_HT,
     X_WH,
     FakeMeshcat,
@@ -18,6 +20,7 @@ from visualizer_rig import (
     make_contacts,
     make_context,
     make_mesh,
+    make_picture,
     make_visualizer,
 )
 
@@ -25,8 +28,6 @@ from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.systems import haptic_visualizer
 from drake_haptics.systems.arrow_pool import ArrowPool
 from drake_haptics.systems.contact_query import ContactObject
-from drake_haptics.systems.haptic_picture import HapticPicture
-from drake_haptics.systems.haptic_visualizer import HapticVisualizer
 
 
 def test_ports_have_drakes_names_and_sizes():
@@ -168,11 +169,45 @@ def test_the_force_on_the_hand_is_drawn_at_the_handle():
     )
 
 
+def test_the_torque_on_the_hand_begins_at_the_handle_along_its_axis():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    visualizer.ForcedPublish(make_context(visualizer, tau_H_W=(0.12, 0, -0.16)))
+    X_WArrow = meshcat.transforms["/haptics/torque/0"]
+    np.testing.assert_allclose(X_WArrow.translation(), X_WH.translation())
+    axis = X_WArrow.rotation().matrix()[:, 2]
+    np.testing.assert_allclose(axis, [0.6, 0, -0.8], atol=1e-9)
+    assert meshcat.visible("/haptics/torque") == ["/haptics/torque/0/arrow/0"]
+    assert meshcat.visible("/haptics/force") == []
+
+
+@pytest.mark.parametrize("share", [0.5, 1.0, 30.0])
+def test_an_arrow_is_as_long_as_its_share_of_the_devices_limit(share):
+    """At the limit a third of the tool's size, and never more."""
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat)
+    size_m = np.linalg.norm(np.ptp(make_mesh().vertices, axis=0))
+    wrench = {
+        "f_H_W": (0, share * MAX_FORCE_N, 0),
+        "tau_H_W": (0, 0, share * MAX_TORQUE_NM),
+    }
+    visualizer.ForcedPublish(make_context(visualizer, **wrench))
+    for name in ("force", "torque"):
+        length = meshcat.properties[f"/haptics/{name}/0/arrow", "scale"][0]
+        assert length == pytest.approx(min(share, 1.0) * size_m / 3)
+
+
+def test_a_device_without_torque_has_no_arrow_of_it():
+    meshcat = FakeMeshcat()
+    visualizer = make_visualizer(meshcat, max_torque_Nm=0.0)
+    visualizer.ForcedPublish(make_context(visualizer, f_H_W=(0, 1.0, 0)))
+    assert meshcat.visible("/haptics/torque") == []
+    assert len(meshcat.visible("/haptics/force")) == 1
+
+
 def test_friction_is_drawn_dark_where_it_sticks_and_light_where_it_slides():
     meshcat = FakeMeshcat()
-    visualizer = HapticVisualizer(
-        meshcat, make_mesh(), [], X_HT, tick_s=1 / 1024, has_friction=True
-    )
+    visualizer = make_visualizer(meshcat, has_friction=True)
     context = make_context(visualizer, [-1e-3] * 3)
     # The third cluster has none.
     force = np.array([[0.3, 0, 0], [0, -0.3, 0], [0, 0, 0]])
@@ -241,16 +276,18 @@ def test_views_are_sent_once_and_then_only_shown_and_hidden(monkeypatch):
     assert see("ghost", False) == {"handle": False, "grip": False, "coupling": False}
     assert see("contacts", False) == {"contacts": False}
     assert see("forces", False) == dict.fromkeys(
-        ("force", "clusters", "friction"), False
+        ("force", "torque", "clusters", "friction"), False
     )
-    assert see("forces", True) == dict.fromkeys(("force", "clusters", "friction"), True)
+    assert see("forces", True) == dict.fromkeys(
+        ("force", "torque", "clusters", "friction"), True
+    )
     assert see("forces", True) == {}
     assert not meshcat.objects
 
 
 def test_a_view_that_is_hidden_while_pieces_are_sent_is_hidden():
     meshcat = FakeMeshcat()
-    picture = HapticPicture(meshcat, make_mesh(), [], RigidTransform(), False)
+    picture = make_picture(meshcat)
     picture.show("pieces", True)
     drawing = picture.draw_views()
     next(drawing)
@@ -263,7 +300,7 @@ def test_a_view_that_is_hidden_while_pieces_are_sent_is_hidden():
 
 def test_pieces_that_are_hidden_while_they_are_sent_are_hidden():
     meshcat = FakeMeshcat()
-    picture = HapticPicture(meshcat, make_mesh(), [], RigidTransform(), False)
+    picture = make_picture(meshcat)
     picture.show("pieces", True)
     drawing = picture.draw_views()
     next(drawing)
@@ -277,7 +314,7 @@ def test_pieces_that_are_hidden_while_they_are_sent_are_hidden():
 
 def test_views_of_a_frame_that_is_broken_off_are_drawn_in_the_next_one():
     meshcat = FakeMeshcat()
-    picture = HapticPicture(meshcat, make_mesh(), [], RigidTransform(), False)
+    picture = make_picture(meshcat)
     for view in ("contacts", "ghost"):
         picture.show(view, False)
     next(picture.draw_views())

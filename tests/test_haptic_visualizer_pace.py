@@ -6,15 +6,12 @@ import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
 from visualizer_rig import (
-    X_HT,
     FakeMeshcat,
     make_context,
-    make_mesh,
     make_visualizer,
 )
 
 from drake_haptics.systems import haptic_visualizer
-from drake_haptics.systems.haptic_visualizer import HapticVisualizer
 
 
 def test_nothing_is_drawn_while_nobody_looks():
@@ -123,7 +120,7 @@ def test_the_first_recorded_frame_says_of_every_arrow_whether_it_is_seen():
 @pytest.mark.parametrize("tick_s", [1e-3, 1 / 1024, 2.5e-4, 3e-3, 0.1])
 def test_frames_fall_on_ticks_to_the_last_bit(tick_s):
     meshcat = FakeMeshcat()
-    visualizer = HapticVisualizer(meshcat, make_mesh(), [], X_HT, tick_s)
+    visualizer = make_visualizer(meshcat, tick_s=tick_s)
     visualizer.StartRecording()
     Simulator(visualizer, make_context(visualizer)).AdvanceTo(3.0)
     times = [time for time, path, *_ in meshcat.frames if path == "/haptics/tool"]

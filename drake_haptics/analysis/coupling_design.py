@@ -204,7 +204,7 @@ def _check(rate_hz: float, delay_s: float, margin: float, hand: str | None) -> N
     if not (margin > 1.0 and np.isfinite(margin)):
         raise ValueError(f"margin must be above 1, is {margin}")
     if hand is not None and hand not in HAND_GRIPS:
-        raise ValueError(f"hand: '{hand}' is none of {', '.join(HAND_GRIPS)}")
+        raise ValueError(f"hand: '{hand}' is not one of {', '.join(HAND_GRIPS)}")
 
 
 def _translation_of(grip: HandGrip | None) -> AxisHand:

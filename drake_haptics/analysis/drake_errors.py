@@ -29,7 +29,8 @@ _REASONS = (
     ),
     (
         "no periodic discrete update events",
-        "no state is updated periodically: give period_s",
+        "no state is updated periodically: linearize a continuous system with Drake's"
+        " Linearize(system, context), or give period_s for the map over that time",
     ),
     (
         "wrong value type",

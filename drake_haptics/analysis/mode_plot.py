@@ -8,17 +8,19 @@ import numpy as np
 
 from drake_haptics.analysis.modes import Mode, ModeKind, find_modes
 from drake_haptics.analysis.period_map import PeriodMap
+from drake_haptics.colors import STABLE, UNSTABLE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _DAMPING_RATIOS = np.arange(0.1, 1.0, 0.1)
 _FREQUENCIES = np.arange(0.1, 1.01, 0.1)  # of half the sampling rate
+_SMALL, _LEGEND_SIZE = 8, 10
 _GRID: dict[str, Any] = {"color": "0.8", "linewidth": 0.6, "zorder": 0}
 _LOOKS: dict[str, dict[str, Any]] = {
-    "unstable": {"marker": "x", "color": "tab:red", "zorder": 4},
-    "stable": {"marker": "x", "color": "tab:blue", "zorder": 3},
-    "neutral, memory, quaternion length": {
+    "unstable": {"marker": "x", "color": UNSTABLE, "zorder": 4},
+    "stable": {"marker": "x", "color": STABLE, "zorder": 3},
+    "neither: memory, quaternion length": {
         "marker": "o",
         "facecolors": "none",
         "edgecolors": "0.5",
@@ -52,7 +54,7 @@ def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
             pairs = np.concatenate([values, values[values.imag > 0.0].conj()])
             axes.scatter(pairs.real, pairs.imag, label=label, **look)
     axes.set_aspect("equal")
-    axes.set_xlim(-1.3, 1.3)
+    axes.set_xlim(-1.5, 1.5)
     axes.set_ylim(-1.3, 1.3)
     axes.set_xlabel("Re z")
     axes.set_ylabel("Im z")
@@ -60,13 +62,13 @@ def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
         f"poles over {1e3 * linear.period_s:g} ms, largest |z| ="
         f" {linear.spectral_radius():.6f}"
     )
-    axes.legend(loc="lower left", fontsize="small")
+    axes.legend(loc="lower left", fontsize=_LEGEND_SIZE)
     return axes
 
 
 def _tell_look(mode: Mode) -> str:
     if mode.kind is not ModeKind.MOTION:
-        return "neutral, memory, quaternion length"
+        return "neither: memory, quaternion length"
     return "unstable" if mode.growth_per_period > 0.0 else "stable"
 
 
@@ -79,7 +81,9 @@ def _draw_grid(axes: Axes, period_s: float) -> None:
         z = np.exp(swing * (1j - ratio / np.sqrt(1.0 - ratio**2)))
         _draw_line(axes, z)
         label = z[60]
-        axes.annotate(f"{ratio:.1f}", (label.real, label.imag), fontsize=6, color="0.5")
+        axes.annotate(
+            f"{ratio:.1f}", (label.real, label.imag), fontsize=_SMALL, color="0.4"
+        )
     for share in _FREQUENCIES:
         angle = np.linspace(np.pi / 2.0, np.pi, 100)
         z = np.exp(share * np.pi * np.exp(1j * angle))
@@ -88,8 +92,8 @@ def _draw_grid(axes: Axes, period_s: float) -> None:
         axes.annotate(
             f"{share / (2.0 * period_s):.3g} Hz",
             (label.real, label.imag),
-            fontsize=6,
-            color="0.5",
+            fontsize=_SMALL,
+            color="0.4",
             ha="left" if label.real > 0.0 else "right",
         )
 

@@ -100,7 +100,11 @@ def find_period(timings: Sequence[Timing], period_s: float | None) -> float:
         check_positive("period_s", period_s)
     if not timings:
         if period_s is None:
-            raise ValueError("period_s must be given: no state is updated periodically")
+            raise ValueError(
+                "no state is updated periodically: linearize a continuous system with"
+                " Drake's Linearize(system, context), or give period_s for the map"
+                " over that time"
+            )
         return period_s
     if len({timing.period_s for timing in timings}) > 1:
         raise ValueError(

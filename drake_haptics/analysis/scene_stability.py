@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass
@@ -166,20 +167,28 @@ def analyse_scene(
     if map_size < 0 or map_size == 1:
         raise ValueError(f"map_size must be 0 or at least 2, is {map_size}")
     report = progress or (lambda what, share: None)
+    began_s = time.perf_counter()
     held = hold_scene(scene, time_s, progress=progress)
+    held_s = time.perf_counter()
     loop = analyse_held_scene(held)
+    point_s = time.perf_counter() - held_s
     felt = calc_felt_impedance(loop)
     passivity = calc_passivity(felt, felt.period_s)
     limits = _find_limits(held, report)
     delay_margin_s = calc_delay_margin(loop)
     map_ = None
     if map_size > 0:
+        what = f"map of {map_size**2} points"
+        if executor is None:
+            # On all cores, each of which holds the scene first.
+            map_s = held_s - began_s + map_size**2 * point_s / (os.cpu_count() or 1)
+            what += f", about {map_s:.0f} s"
         map_ = z_width(
             CouplingGrowth(scene, held.time_s),
             *_choose_grid(held.scene, limits, map_size),
             executor=executor,
             store=store,
-            progress=lambda done, total: report("map", done / total),
+            progress=lambda done, total: report(what, done / total),
         )
     device = loop.haptic.loop.device
     contacts, force_N = _read_contact(loop)

@@ -47,6 +47,7 @@ def write_stability_page(stability: SceneStability, name: str, path: Path) -> No
         verdict_class=_choose_class(stability),
         situation=html.escape(describe_situation(stability)),
         sheet=base64.b64encode(picture.getvalue()).decode(),
+        restless=_make_restless(stability),
         limits=_make_limits(stability),
         margins=_make_margins(stability),
         gains=_make_gains(stability),
@@ -79,15 +80,19 @@ def _describe_room(limits: tuple[StiffnessLimits, ...]) -> str:
     nearest = min(limits, key=lambda limit: limit.gain_margin, default=None)
     if nearest is None or math.isinf(nearest.gain_margin):
         return ""
-    which = f"the coupling's stiffness of {nearest.kind}"
+    which = (
+        f"the coupling's stiffness of {nearest.kind},"
+        f" {format_limit(nearest.stiffness)} {nearest.unit},"
+    )
+    limit = f"{format_limit(nearest.eigenvalue)} {nearest.unit}"
     if nearest.gain_margin >= 1.0:
         return (
-            f"; {which} could be {nearest.gain_margin:.3g} times as large, against"
-            f" {nearest.against}"
+            f"; {which} could be {nearest.gain_margin:.3g} times as large, {limit},"
+            f" against {nearest.against}"
         )
     return (
         f" in this contact; but against {nearest.against} {which} would be stable only"
-        f" at less than {nearest.gain_margin:.3g} of what it is"
+        f" below {limit}, {nearest.gain_margin:.3g} of what it is"
     )
 
 
@@ -109,20 +114,20 @@ def describe_situation(stability: SceneStability) -> str:
         f" {1e6 * handle.inertia_kgm2:.0f} kg·mm² at least, and are damped by"
         f" {handle.damping_Ns_per_m:.3g} N·s/m and"
         f" {1e3 * handle.rotational_damping_Nms_per_rad:.3g} mN·m·s/rad at least."
-        + _describe_restless(stability)
     )
 
 
-def _describe_restless(stability: SceneStability) -> str:
+def describe_restless(stability: SceneStability) -> str:
     """Says where the tool is pressed more and does not rest; nothing if nowhere."""
     # An unstable coupling rests nowhere, which is said elsewhere.
     if not stability.restless_s or not stability.is_stable:
         return ""
-    *others, last = (f"{time_s:.3f}" for time_s in stability.restless_s)
+    *others, last = (f"{time_s:.2f}" for time_s in sorted(stability.restless_s))
     times = f"{', '.join(others)} and {last} s" if others else f"{last} s"
     return (
-        f" Where it is pressed more, at {times}, the tool does not come to rest: it"
-        " goes from one facet to another and back."
+        f"At {times} of the path, where the tool is pressed more, it does not come to"
+        " rest: it goes from one facet to another and back. A hand that stops there"
+        " may feel a small tremor, and the figures of this page do not hold for it."
     )
 
 
@@ -138,6 +143,11 @@ def _choose_class(stability: SceneStability) -> str:
     if not stability.is_stable:
         return "bad"
     return "good" if stability.is_passive else "fair"
+
+
+def _make_restless(stability: SceneStability) -> str:
+    words = describe_restless(stability)
+    return f"<p>{html.escape(words)}</p>" if words else ""
 
 
 def _make_limits(stability: SceneStability) -> str:

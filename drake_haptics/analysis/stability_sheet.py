@@ -10,12 +10,14 @@ from drake_haptics.analysis.mode_plot import plot_poles
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
 from drake_haptics.analysis.z_width_plot import HeldBounds
+from drake_haptics.colors import EIGENVALUE, FORMULA, ONE_AXIS, PASSIVITY, SIMULATION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SIZE_INCH = (13.0, 10.0)
+_SIZE_INCH = (13.0, 11.0)
+_LEGEND_SIZE = 10
 # Bars begin here, as a multiple of the scene's stiffness.
 _LEAST_SHOWN = 0.3
 
@@ -52,42 +54,46 @@ def draw_sheet(stability: SceneStability) -> Figure:
 
 def _plot_usage(stability: SceneStability, axes: Axes) -> None:
     """Draws how much damping passivity needs of what there is, over frequency."""
-    axes.plot(stability.felt.frequencies_Hz, stability.damping_usage, label="needed")
-    axes.axhline(1.0, color="C3", ls="--", label="device and hand have")
+    axes.plot(
+        stability.felt.frequencies_Hz,
+        stability.damping_usage,
+        color=PASSIVITY,
+        label="passivity: damping that it needs",
+    )
+    axes.axhline(1.0, color="black", ls=":", label="the scene's: what there is")
     axes.set_xlim(0.0, stability.felt.frequencies_Hz[-1])
     most = max(1.0, float(stability.damping_usage.max()))
     axes.set_ylim(min(0.0, float(stability.damping_usage.min())), 1.2 * most)
     axes.set_xlabel("frequency, Hz")
     axes.set_ylabel("damping, as a share of what there is")
     axes.set_title("passive with every hand: needed below what there is")
-    # Above the higher of the two lines there is always room.
-    axes.legend(loc="upper left", ncols=2)
+    _put_legend_below(axes)
 
 
 def _plot_limits(limits: tuple[StiffnessLimits, ...], axes: Axes) -> None:
     """Draws the limits found in each way, as multiples of the scene's stiffness."""
     ways = {
-        "eigenvalue": "eigenvalue",
-        "simulated": "simulation",
-        "one_axis": "one axis, rigid wall, exact",
-        "formula": "one axis, rigid wall, (b + B) / (T/2)",
+        "eigenvalue": (EIGENVALUE, "eigenvalue: one reaches 1"),
+        "simulated": (SIMULATION, "simulation"),
+        "one_axis": (ONE_AXIS, "one axis, rigid wall, exact"),
+        "formula": (FORMULA, "formula: (b + B) / (T/2), rigid wall"),
     }
     height = 0.8 / len(ways)
     rows = np.arange(len(limits))
     longest = 1.0
-    for i, (field, label) in enumerate(ways.items()):
+    for i, (field, (color, label)) in enumerate(ways.items()):
         values = [getattr(limit, field) for limit in limits]
         shown = [
             value / limit.stiffness if np.isfinite(value) else np.nan
             for value, limit in zip(values, limits, strict=True)
         ]
         longest = max([longest, *(share for share in shown if np.isfinite(share))])
-        bars = axes.barh(rows + i * height, shown, height, label=label)
+        bars = axes.barh(rows + i * height, shown, height, color=color, label=label)
         numbers = [
             f" {format_limit(value)} {limit.unit if np.isfinite(value) else ''}"
             for value, limit in zip(values, limits, strict=True)
         ]
-        axes.bar_label(bars, numbers, fontsize=8)
+        axes.bar_label(bars, numbers, fontsize=_LEGEND_SIZE)
     axes.axvline(1.0, color="black", ls=":", label="the scene's stiffness")
     axes.set_yticks(
         rows + height * (len(ways) - 1) / 2.0,
@@ -104,4 +110,6 @@ def _plot_limits(limits: tuple[StiffnessLimits, ...], axes: Axes) -> None:
 
 def _put_legend_below(axes: Axes) -> None:
     """Puts it where no data are."""
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, fontsize=8)
+    axes.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, fontsize=_LEGEND_SIZE
+    )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from drake_haptics.colors import EIGENVALUE, FORMULA, PASSIVITY, STABLE, UNSTABLE
 from drake_haptics.passivity_bounds import (
     calc_passive_stiffness,
     calc_stable_stiffness,
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 
 # Points of a line of theory.
 _FINE = 200
+# How much of the color a region has.
+_PALE = 0.25
 
 
 @dataclass(frozen=True)
@@ -89,7 +92,7 @@ def plot_z_width(
     if bounds is not None:
         _plot_bounds(z_width, axes, bounds)
     if gains is not None:
-        axes.plot(*gains, "*", ms=12, color="black", label="own gains")
+        axes.plot(*gains, "*", ms=12, color="black", label="the scene's gains")
     _scale_axes(z_width, axes, gains)
     axes.set_xlabel("stiffness K, N/m or N·m/rad")
     axes.set_ylabel("damping B, N·s/m or N·m·s/rad")
@@ -100,12 +103,17 @@ def plot_z_width(
 def _plot_region(z_width: ZWidth, axes: Axes) -> None:
     K, B = z_width.stiffness, z_width.damping
     radius = np.ma.masked_invalid(z_width.spectral_radius)
-    if (radius < 1.0).any():
-        axes.contourf(K, B, radius, levels=[0.0, 1.0], colors=["C2"], alpha=0.25)
-        axes.fill([], [], color="C2", alpha=0.25, label="stable")
+    most = max(2.0, 2.0 * float(radius.max()))
+    for name, color, levels, region in (
+        ("stable", STABLE, [0.0, 1.0], radius < 1.0),
+        ("unstable", UNSTABLE, [1.0, most], radius >= 1.0),
+    ):
+        if region.any():
+            axes.contourf(K, B, radius, levels=levels, colors=[color], alpha=_PALE)
+            axes.fill([], [], color=color, alpha=_PALE, label=name)
     if (radius < 1.0).any() and (radius >= 1.0).any():
-        axes.contour(K, B, radius, levels=[1.0], colors=["C2"])
-        axes.plot([], [], color="C2", label="spectral radius 1")
+        axes.contour(K, B, radius, levels=[1.0], colors=[EIGENVALUE])
+        axes.plot([], [], color=EIGENVALUE, label="eigenvalue: one reaches 1")
     if z_width.reasons:
         rows, columns = np.array(list(z_width.reasons)).T
         axes.plot(
@@ -120,21 +128,22 @@ def _plot_bounds(z_width: ZWidth, axes: Axes, bounds: HeldBounds) -> None:
         [bounds.calc_stable_stiffness(b) for b in fine],
         fine,
         "--",
-        color="C0",
-        label="stability, (b + B)/(T/2 + t_d)",
+        color=FORMULA,
+        label="formula: (b + B)/(T/2 + t_d)",
     )
     axes.plot(
         [bounds.calc_passive_stiffness(b) for b in fine],
         fine,
         "--",
-        color="C3",
-        label="passivity, (b - |B|)/(T/2 + t_d)",
+        color=PASSIVITY,
+        label="passivity: (b - |B|)/(T/2 + t_d)",
     )
     # The required damping crosses what there is.
     missing = np.ma.masked_invalid(z_width.passive_damping - bounds.held_damping)
     if (missing <= 0.0).any() and (missing > 0.0).any():
-        axes.contour(K, B, missing, levels=[0.0], colors=["C3"])
-        axes.plot([], [], color="C3", label="passive with what the loop feels like")
+        axes.contour(K, B, missing, levels=[0.0], colors=[PASSIVITY])
+        label = "passivity: of what the loop feels like"
+        axes.plot([], [], color=PASSIVITY, label=label)
 
 
 def _scale_axes(z_width: ZWidth, axes: Axes, gains: tuple[float, float] | None) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_haptics.errors import UserError
-from drake_haptics.one_line import one_line
+from drake_haptics.one_line import count, one_line
 
 _Backend = TypeVar("_Backend", bound="DeviceBackend")
 
@@ -139,8 +139,9 @@ class DeviceBackend(ABC):
 
     def __repr__(self) -> str:
         link = self.get_link_status()
-        counts = f"{link.received} samples, {link.lost} lost, {link.rejected} refused"
-        return f"{type(self).__name__}({counts})"
+        received = count(link.received, "sample")
+        lost = f"{link.lost} lost, {link.rejected} refused"
+        return f"{type(self).__name__}({received}, {lost})"
 
     @property
     def url(self) -> str | None:
@@ -151,6 +152,11 @@ class DeviceBackend(ABC):
     def is_placed(self) -> bool:
         """Whether it was told where its base stands in the world, and relies on it."""
         return False
+
+    @property
+    def shows_force(self) -> bool:
+        """Whether it can show any; a mouse cannot."""
+        return True
 
     @abstractmethod
     def read(self) -> DeviceReading | None:

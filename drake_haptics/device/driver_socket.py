@@ -26,7 +26,7 @@ class DriverSocket:
 
     def __init__(self, host: str, port: int):
         if not host:  # which would be every address that this machine has
-            raise UserError("--bind is empty: give an address, such as 127.0.0.1")
+            raise UserError("bind is empty: give an address, such as 127.0.0.1")
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         try:
@@ -72,11 +72,11 @@ def _explain(error: OSError, host: str, port: int) -> str:
     if error.errno == errno.EADDRINUSE:
         return (
             f"port {port} is taken, perhaps by another `drake-haptics device`:"
-            " end that, or choose another with --port (0: any free one)"
+            " end that, or choose another (0: any free one)"
         )
     if error.errno == errno.EACCES:
         return f"port {port} needs rights that you lack: choose one from 1024 on"
     return (
-        f"--bind {host}: {error.strerror or error}; give an address of this machine,"
+        f"bind {host}: {error.strerror or error}; give an address of this machine,"
         " such as 127.0.0.1"
     )

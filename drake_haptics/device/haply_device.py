@@ -132,7 +132,7 @@ class HaplyDevice(DeviceBackend):
         try:
             for name, value in parse_qsl(options, keep_blank_values=True):
                 if name not in _OPTIONS:
-                    raise ValueError(f"{name} is none of {', '.join(_OPTIONS)}")
+                    raise ValueError(f"{name} is not one of {', '.join(_OPTIONS)}")
                 arguments[name] = _read_option(name, value)
             return HaplyDevice(uri, **arguments)
         except DeviceError:

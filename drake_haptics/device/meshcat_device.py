@@ -106,6 +106,11 @@ class MeshcatDevice(DeviceBackend):
         """True."""
         return True
 
+    @property
+    def shows_force(self) -> bool:
+        """False."""
+        return False
+
     def read(self) -> DeviceReading:
         """Returns where the handle is now."""
         now_s = monotonic()

@@ -55,6 +55,11 @@ class ReplayDevice(DeviceBackend):
         """True."""
         return True
 
+    @property
+    def shows_force(self) -> bool:
+        """False."""
+        return False
+
     def read(self) -> DeviceReading:
         """Returns the recorded handle at the present tick."""
         tick = self._tick

@@ -11,6 +11,8 @@ import struct
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, TypeVar
 
+from drake_haptics.one_line import count
+
 _STRUCT_CODES = {
     "int8_t": "b",
     "int32_t": "i",
@@ -86,7 +88,8 @@ class FixedMessage:
         layout = cls.layout
         if len(data) != layout.packer.size:
             raise ValueError(
-                f"{cls.__name__}: {len(data)} bytes, must be {layout.packer.size}"
+                f"{cls.__name__}: must have {count(layout.packer.size, 'byte')}, has"
+                f" {len(data)}"
             )
         fingerprint, *values = layout.packer.unpack(data)
         if fingerprint != layout.fingerprint:
