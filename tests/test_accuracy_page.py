@@ -45,6 +45,16 @@ def test_sentences_come_before_the_picture_and_it_before_the_table(page):
     assert not re.findall(r"\$\w+", page)
 
 
+def test_heads_say_what_two_figures_in_a_cell_are(page):
+    heads = re.findall(r"<th[^>]*>(\w+)<small>(.*?)</small>", page)
+    parts = dict(heads[: len(get_columns(STUDY))])
+    row = make_cells(STUDY.rows[0], get_columns(STUDY))
+    for column, cell in zip(get_columns(STUDY), row, strict=True):
+        assert ("/" in parts[column.head].partition("<br>")[2]) == ("/" in cell)
+    assert parts["tick"] == "µs<br>median / p99"
+    assert parts["force"] == "N<br>rms / largest"
+
+
 def read_rows(page):
     """The cells of each row of the price list that has a command."""
     table = page.split("<table>")[1].split("</table>")[0]

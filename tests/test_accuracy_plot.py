@@ -1,5 +1,7 @@
 """The picture shows every row, and its words neither meet nor are cut off."""
 
+import math
+from dataclasses import replace
 from itertools import combinations
 
 import pytest
@@ -9,13 +11,63 @@ from matplotlib.text import Text
 
 from drake_haptics.accuracy.pareto import ERROR_FLOOR_N
 from drake_haptics.accuracy.plot import draw_study
-from drake_haptics.accuracy.plot_labels import label_points
+from drake_haptics.accuracy.plot_labels import Label, label_points
+from drake_haptics.accuracy.setting import Setting
+from drake_haptics.accuracy.table import group_rows
+from drake_haptics.colors import FRONT
 
 STUDY = make_study(peers=make_peers())
 
 
+def make_crowded_study():
+    """More knobs than there are markers, and all but one of them near the scene."""
+    scene = make_row("scene", "as it is", 150.0, 24.0, 0.0, is_scene=True)
+    rows = [scene]
+    for i in range(17):
+        knob, key = f"contact.one_of_many_{i}", f"contact__key_{i}"
+        rows.append(replace(scene, setting=Setting(knob, "as it is")))
+        for share in (0.2, 0.6, 1.0):
+            x = 1.0 + share * (0.5 if i else 20.0) * math.sin(i + 1.0)
+            error_N = 0.002 * 10.0 ** (share * (i % 4))
+            row = make_row(knob, f"{share}", 150.0 * abs(x), 24.0 * abs(x), error_N,
+                           **{key: share})  # fmt: skip
+            rows.append(row)
+    return make_study(*rows, peers=make_peers())
+
+
+STUDIES = {"usual": STUDY, "crowded": make_crowded_study()}
+
+
 def lines_of(axes):
     return {line.get_label(): line for line in axes.get_lines()}
+
+
+def knobs_of(study):
+    """Each knob that has another setting than the scene's, with its measured rows."""
+    for knob, rows in group_rows(study):
+        measured = [row for row in rows if row.cost and row.errors]
+        if measured and not all(row.is_scene for row in measured):
+            yield knob, measured
+
+
+def find_line(axes, rows, kind):
+    """The one line that has all points of a knob, and no other."""
+    points = sorted(
+        [
+            getattr(row.cost, kind).median_us,
+            max(row.errors.force_rms_N, ERROR_FLOOR_N),
+        ]
+        for row in rows
+    )
+    lines = [line for line in axes.get_lines() if line.get_linestyle() == ":"]
+    (line,) = (x for x in lines if x.get_xydata().tolist() == points)
+    return line
+
+
+def note_boxes_of(figure, axes):
+    """Where labels are, in pixels, without their lines."""
+    figure.draw_without_rendering()
+    return [Text.get_window_extent(note) for note in axes.texts]
 
 
 @pytest.fixture(scope="module")
@@ -26,21 +78,44 @@ def figure():
 def test_every_row_is_where_its_figures_are(figure):
     left, right = figure.axes
     for axes, kind in ((left, "native"), (right, "tick")):
-        lines = lines_of(axes)
-        for row in STUDY.rows[1:-1]:
-            time_us = getattr(row.cost, kind).median_us
-            error_N = max(row.errors.force_rms_N, ERROR_FLOOR_N)
-            points = lines[row.setting.knob].get_xydata().tolist()
-            assert [time_us, error_N] in points
-        ((x, y),) = lines["the scene as it is"].get_xydata()
+        for _, rows in knobs_of(STUDY):
+            assert find_line(axes, rows, kind)
+        ((x, y),) = lines_of(axes)["the scene as it is"].get_xydata()
         assert (x, y) == ({"native": 24.0, "tick": 150.0}[kind], 0.004)
 
 
 def test_every_knob_looks_different(figure):
-    knobs = {row.setting.knob for row in STUDY.rows} - {"scene"}
-    lines = lines_of(figure.axes[0])
-    looks = {(lines[knob].get_marker(), lines[knob].get_color()) for knob in knobs}
-    assert len(looks) == len(knobs)
+    lines = [find_line(figure.axes[0], rows, "native") for _, rows in knobs_of(STUDY)]
+    looks = {(line.get_marker(), line.get_color()) for line in lines}
+    assert len(looks) == len(lines)
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_every_knob_is_named_at_a_point_of_its_own(name):
+    figure = draw_study(STUDIES[name])
+    for axes, kind in zip(figure.axes, ("native", "tick"), strict=True):
+        notes = {note.get_text().partition("\n")[0]: note for note in axes.texts}
+        for knob, rows in knobs_of(STUDIES[name]):
+            note = notes.get(f"knee: {knob}") or notes[knob]
+            line = find_line(axes, rows, kind)
+            assert list(note.xy) in line.get_xydata().tolist()
+            if note.get_text() == knob:
+                assert note.get_color() == line.get_color()
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_no_name_meets_another_or_hides_a_point(name):
+    figure = draw_study(STUDIES[name])
+    for axes in figure.axes:
+        boxes, frame = note_boxes_of(figure, axes), axes.get_window_extent()
+        for box in boxes:
+            assert frame.x0 <= box.x0 and box.x1 <= frame.x1
+            assert frame.y0 <= box.y0 and box.y1 <= frame.y1
+        assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+        for line in axes.get_lines():
+            if line.get_marker() != "None":
+                for x, y in axes.transData.transform(line.get_xydata()):
+                    assert not any(box.contains(x, y) for box in boxes)
 
 
 def test_peers_are_hollow_and_only_beside_the_core(figure):
@@ -74,7 +149,7 @@ def test_no_words_are_cut_off_or_meet(figure):
 
 
 def test_knees_are_named_by_the_words_of_their_settings(figure):
-    (note,) = figure.axes[0].texts
+    note = figure.axes[0].texts[0]
     assert note.get_text() == "knee: tool.max_triangles\n200: 0.050 N"
     assert note.xy == (8.0, 0.05)
 
@@ -92,14 +167,15 @@ def test_labels_neither_meet_nor_leave_the_axes(name):
     axes = figure.subplots()
     axes.set(xlim=(0.0, 1.2), ylim=(0.0, 1.2))
     figure.draw_without_rendering()
-    notes = label_points(
-        axes, [(x, y, f"a long name of it\n{x:.2f}") for x, y in POINTS[name]]
+    label_points(
+        axes,
+        [
+            Label(x, y, f"a long name of it\n{x:.2f}", FRONT, True)
+            for x, y in POINTS[name]
+        ],
     )
-    frame = axes.get_window_extent()
-    boxes = []
-    for note in notes:
-        note.get_window_extent()
-        boxes.append(Text.get_window_extent(note))
+    assert len(axes.texts) == len(POINTS[name])
+    frame, boxes = axes.get_window_extent(), note_boxes_of(figure, axes)
     for box in boxes:
         assert frame.x0 <= box.x0 and box.x1 <= frame.x1
         assert frame.y0 <= box.y0 and box.y1 <= frame.y1

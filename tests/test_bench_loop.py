@@ -6,6 +6,7 @@ import json
 import math
 import re
 import sys
+import time
 from dataclasses import asdict
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from drake_haptics.bench.loop.names import MUJOCO, NATIVE, OURS, STOCK
 from drake_haptics.bench.loop.problem import Loop, LoopCourse, LoopProblem, make_problem
 from drake_haptics.bench.loop.runs import make_loops, run_loops
 from drake_haptics.bench.loop.table import loop_tables
+from drake_haptics.bench.loop.this_package import ThisLoop
 from drake_haptics.bench.report import make_tables
 
 sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
@@ -98,6 +100,18 @@ def test_every_loop_starts_anew_each_time(loops: dict[str, Loop]) -> None:
         first = loop.observe()
         assert len(loop.time()) == len(first.X_WTool)
         np.testing.assert_array_equal(loop.observe().X_WTool, first.X_WTool)
+
+
+def test_a_paced_loop_waits_for_the_clock_and_waiting_belongs_to_no_tick() -> None:
+    problem = make_problem(duration_s=0.1)
+    start_s = time.perf_counter()
+    seconds = ThisLoop(problem, paced=True).time()
+    elapsed_s = time.perf_counter() - start_s
+    assert len(seconds) == len(problem.motion)
+    # The first tick, the first of the clock and the last wait for nothing.
+    assert elapsed_s > (len(seconds) - 3) * problem.motion.period_s
+    assert np.median(seconds) < 0.99 * problem.motion.period_s
+    assert seconds.min() > 0.0
 
 
 def test_figures_are_those_of_the_ticks_that_all_touch_in(

@@ -48,6 +48,8 @@ def test_statements_are_counted():
     text = summarize(sections)
     numbers = list(map(int, re.findall(r"\d+", text)))
     assert numbers[0] == total == sum(numbers[1:])
+    for words in ("agree with the paper", "differ from it", "were not measured"):
+        assert words in text
 
 
 def test_the_page_is_one_file_with_pictures_beside_it(tmp_path):

@@ -1,4 +1,4 @@
-"""Table 1's rows are what `decompose` itself reports, and lacks are told."""
+"""Table 1's rows are what `decompose` itself reports, and what is missing is told."""
 
 import numpy as np
 import pytest

@@ -68,7 +68,7 @@ def describe_help(choice: BudgetChoice) -> list[str]:
     return [
         "Most of such a tick is Drake and Python round the core: `drake-haptics run"
         " SCENE --explain` shows the parts. The simulated arm alone is about half; a"
-        " device of one's own (--device) takes its place.",
+        " real device takes its place.",
         "p99 is also a matter of the machine: other programs, power saving, virtual"
         " machines. A budget somewhat above"
         f" {format_us(choice.trial.middle_us)} µs can be held here.",

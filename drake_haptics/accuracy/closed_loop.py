@@ -6,12 +6,11 @@ import math
 from dataclasses import dataclass, replace
 
 from drake_haptics.accuracy.built_scenes import build_once
-from drake_haptics.accuracy.whole_run import run_whole
 from drake_haptics.analysis.held_loop import analyse_held_scene
 from drake_haptics.analysis.held_scene import HeldScene, hold_scene
 from drake_haptics.analysis.stability_limit import find_stability_limit
 from drake_haptics.scene import Scene
-from drake_haptics.simulation import RunError
+from drake_haptics.simulation import RunError, run
 
 # The whole; all other accounts are its parts.
 _WHOLE = "device"
@@ -73,7 +72,7 @@ def measure_created_energy(scene: Scene, duration_s: float) -> float:
         KeyboardInterrupt: At Ctrl-C.
     """
     try:
-        statistics = run_whole(build_once(scene), duration_s, energy=True)
+        statistics = run(build_once(scene), duration_s, energy=True)
     except RunError:
         return math.inf
     books = statistics.to_dict()["energy_J"]

@@ -32,7 +32,7 @@ class Cost:
     """What a setting costs.
 
     Attributes:
-        tick: Whole ticks of the loop, as `drake-haptics run --headless` takes them.
+        tick: Whole ticks of the loop, paced by the clock.
         native: The contacts' part inside the core: query, clusters, wrench.
         instructions: Of that part, mean per tick; None where they were not counted.
     """

@@ -1,4 +1,4 @@
-"""Runs a scene in a process of its own, as `drake-haptics run --headless` does."""
+"""Runs a scene in a process of its own, paced by the clock as for a device."""
 
 from __future__ import annotations
 

@@ -36,10 +36,10 @@ def parse_setting(words: Sequence[str], known: Iterable[Setting] = ()) -> Settin
         key, sign, text = word.partition("=")
         if not sign or not key:
             raise UserError(
-                f"--only: '{word}' is not KEY=VALUE, as in contact.tolerance_m=0.0005"
+                f"'{word}' is not KEY=VALUE, as in contact.tolerance_m=0.0005"
             )
         if key in changes:
-            raise UserError(f"--only: {key} is given twice")
+            raise UserError(f"{key} is given twice")
         changes[key] = _parse_value(text)
     for setting in known:
         if dict(setting.changes) == changes:
@@ -69,19 +69,19 @@ def apply_checked(setting: Setting, scene: Scene) -> Scene:
         if not any(name == key or name.startswith(f"{key}.") for name in known):
             near = difflib.get_close_matches(key, known, n=1)
             hint = f"; did you mean '{near[0]}'?" if near else ""
-            raise UserError(f"--only: {key} is no key of a scene{hint}")
+            raise UserError(f"{key} is no key of a scene{hint}")
     try:
         changed = setting.apply(scene)
     except AttributeError as error:  # Of a part that the scene leaves out.
         keys = [key for key in setting.changes if key.startswith("effects.")]
         names = ", ".join(dict.fromkeys(key.rpartition(".")[0] for key in keys))
         raise UserError(
-            f"--only: the scene has no {names or 'such part'}; give the part as a"
+            f"the scene has no {names or 'such part'}; give the part as a"
             " whole, like effects.friction='{\"coefficient\": 0.3}'"
         ) from error
     except TypeError as error:
         names = " and ".join(setting.changes)
-        raise UserError(f"--only: {names}: {error}") from error
+        raise UserError(f"{names}: {error}") from error
     check_keys(Scene, _without_none(dataclasses.asdict(changed)))
     check_values(changed)
     return changed

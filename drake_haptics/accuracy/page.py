@@ -47,7 +47,7 @@ _DPI = 110
 _PEER_COLUMNS = (
     Column("library", "", "With its version."),
     Column("asked for", "", "What it was asked for."),
-    Column("core", "µs", "Time inside the library: median / 99th percentile."),
+    Column("core", "µs", "Time inside the library.", "median / p99"),
     *COLUMNS[2:5],
 )
 
@@ -164,14 +164,17 @@ def _make_peers(peers: Sequence[PeerRow]) -> str:
     return (
         "<h2>Other libraries on the same motion</h2><p class='note'>Against the same"
         " reference, without the scene's effects; what differs is their contact model"
-        " as well as their exactness."
+        " as well as their exactness. Of the same pieces they also report contacts on"
+        " facets where pieces were cut apart, which are not on the mesh; this package"
+        " and its reference leave those out, so that they count as errors here."
         f"</p><div class='wide'><table><tr>{heads}</tr>{''.join(rows)}</table></div>"
     )
 
 
 def _make_head(column: Column) -> str:
     kind = "" if column.unit else " class='words'"
-    return f"<th{kind}>{column.head}<small>{column.unit}</small></th>"
+    small = "<br>".join(filter(None, (column.unit, column.parts)))
+    return f"<th{kind}>{column.head}<small>{small}</small></th>"
 
 
 def _make_meanings(columns: tuple[Column, ...]) -> str:

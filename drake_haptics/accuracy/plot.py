@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 from drake_haptics.accuracy.figures import AccuracyStudy, PeerRow, Row
@@ -14,9 +17,15 @@ from drake_haptics.accuracy.pareto import (
     get_native_us,
     get_tick_us,
 )
-from drake_haptics.accuracy.plot_labels import add_legends, label_points, scale_times
+from drake_haptics.accuracy.plot_labels import (
+    Label,
+    add_legends,
+    label_points,
+    scale_times,
+)
 from drake_haptics.accuracy.table import format_N, group_rows
 from drake_haptics.accuracy.words import describe_machine
+from drake_haptics.colors import FRONT, INKS, OTHER_MODEL, Color
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +33,7 @@ if TYPE_CHECKING:
 
 _SIZE_INCH = (13.0, 9.0)
 _MARKERS = "osD^vP<>Xhpd8"
+_PALE = 0.5
 # The axis of errors ends this factor beyond what it shows: labels have room.
 _MARGIN_ERROR = 2.0
 
@@ -54,26 +64,81 @@ def draw_study(study: AccuracyStudy) -> Figure:
         figure,
         left,
         [_name_peer(peer) for peer in study.peers],
-        f"Error against {study.reference.label}, at the same {study.ticks} poses. Pale,"
+        f"Error against {study.reference.label}, at the same {study.ticks} poses. Gray,"
         " and left out of the front: no error, but another model or loop."
         f" {describe_machine(study)}",
     )
     figure.draw_without_rendering()  # settles where everything is
     for axes, get_time_us in ((left, get_native_us), (right, get_tick_us)):
         front = find_front(study, get_time_us)
+        marked = [
+            row
+            for row in front.knees or [front.bend]
+            if row is not None and not row.is_scene
+        ]
+        named = {row.setting.knob for row in marked}
+        knobs = [knob for knob in _find_knobs(study) if knob.name not in named]
         label_points(
             axes,
             [
-                (
-                    get_time_us(row),
-                    get_force_error_N(row),
-                    _describe_setting(row, row in front.knees),
-                )
-                for row in front.knees or [front.bend]
-                if row is not None and not row.is_scene
+                *(
+                    _label_setting(row, row in front.knees, get_time_us)
+                    for row in marked
+                ),
+                *(_label_knob(knob, axes, get_time_us) for knob in knobs),
             ],
         )
     return figure
+
+
+def _label_setting(
+    row: Row, is_knee: bool, get_time_us: Callable[[Row], float]
+) -> Label:
+    """Returns the label of a setting that is worth a look."""
+    words = _describe_setting(row, is_knee)
+    error_N = get_force_error_N(row)
+    return Label(get_time_us(row), error_N, words, FRONT, is_framed=True)
+
+
+def _label_knob(knob: _Knob, axes: Axes, get_time_us: Callable[[Row], float]) -> Label:
+    """Returns the label of a knob, where its line is farthest from the scene."""
+    points = [(get_time_us(row), get_force_error_N(row)) for row in knob.rows]
+    pixels = axes.transData.transform(points)
+    own = [pixels[i] for i, row in enumerate(knob.rows) if row.is_scene]
+    far = [min((math.dist(x, scene) for scene in own), default=0.0) for x in pixels]
+    return Label(*points[far.index(max(far))], knob.name, knob.color)
+
+
+@dataclass(frozen=True)
+class _Knob:
+    """What of a knob is drawn.
+
+    Attributes:
+        name: Of the knob.
+        rows: Those that were measured; one at least is not the scene as it is.
+        marker: As Matplotlib has it.
+        color: The same of all knobs whose figures are no errors.
+        alpha: Those are paler too.
+    """
+
+    name: str
+    rows: Sequence[Row]
+    marker: str
+    color: Color
+    alpha: float
+
+
+def _find_knobs(study: AccuracyStudy) -> list[_Knob]:
+    """Returns the knobs that are drawn."""
+    inks = cycle(INKS)
+    knobs = []
+    for marker, (name, group) in zip(cycle(_MARKERS), group_rows(study), strict=False):
+        rows = [row for row in group if row.cost and row.errors]
+        if rows and not all(row.is_scene for row in group):
+            is_error = all(map(_is_on_a_par, group))
+            look = (next(inks), 1.0) if is_error else (OTHER_MODEL, _PALE)
+            knobs.append(_Knob(name, rows, marker, *look))
+    return knobs
 
 
 def _draw_rows(
@@ -81,30 +146,23 @@ def _draw_rows(
 ) -> None:
     """Draws every row, the front behind them and the scene's own star above them."""
     axes.set_yscale("log")
-    for i, (knob, rows) in enumerate(group_rows(study)):
-        points = [
-            (get_time_us(row), get_force_error_N(row))
-            for row in rows
-            if row.cost is not None and row.errors is not None
-        ]
-        if points and not all(row.is_scene for row in rows):
-            axes.plot(
-                *zip(*sorted(points), strict=True),
-                _MARKERS[i % len(_MARKERS)] + ":",
-                color=f"C{i % 10}",
-                # What is no error is paler.
-                alpha=1.0 if all(map(_is_on_a_par, rows)) else 0.35,
-                linewidth=0.8,
-                markersize=7,
-                label=knob,
-                zorder=3,
-            )
+    for knob in _find_knobs(study):
+        points = [(get_time_us(row), get_force_error_N(row)) for row in knob.rows]
+        axes.plot(
+            *zip(*sorted(points), strict=True),
+            knob.marker + ":",
+            color=knob.color,
+            alpha=knob.alpha,
+            linewidth=0.8,
+            markersize=7,
+            zorder=3,
+        )
     front = find_front(study, get_time_us)
     axes.step(
         [get_time_us(row) for row in front.rows],
         [get_force_error_N(row) for row in front.rows],
         where="post",
-        color="0.2",
+        color=FRONT,
         linewidth=1.8,
         label="front: no other is better in both",
         zorder=2,
@@ -120,7 +178,7 @@ def _draw_rows(
             get_force_error_N(row),
             "*",
             markersize=20,
-            markerfacecolor="gold",
+            markerfacecolor="black",
             markeredgecolor="black",
             label=f"the scene as it is{', as exact as the reference' * is_exact}",
             zorder=4,

@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from drake_haptics.colors import Color
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.path import Path
     from matplotlib.text import Annotation
     from matplotlib.transforms import Bbox
 
 _SIZE = 9
-# Where a label's upper right corner is, from its point, in points.
-_OFFSET = (-26.0, -20.0)
-_STEP = 4.0
-_MOST_STEPS = 200
-# Of the frame round the words and of the room round it, in pixels.
-_PADDING = 8.0
+# How far a label may be from its point, and how far apart two tries are, in pixels.
+_FARTHEST, _STEP = 300, 6
+# Directions that are tried, the first below and left.
+_DIRECTIONS = tuple(math.radians(225.0 + 15.0 * i) for i in range(24))
+# Of the room round words, in pixels; and of the frame round framed ones.
+_PADDING, _FRAMED_PADDING = 2.0, 8.0
+_RING_SIZE = 15.0
 # From this ratio of the largest to the least on, times are logarithmic.
 _WIDE = 4.0
 # Letters in a line of the legends.
@@ -26,71 +35,194 @@ _TITLE_WIDTH, _LABEL_WIDTH = 112, 80
 _LEGEND_SIZE = 8
 
 
-def label_points(
-    axes: Axes, labels: Sequence[tuple[float, float, str]]
-) -> list[Annotation]:
-    """Rings points and writes words below and left of them, each with an arrow.
+@dataclass(frozen=True)
+class Label:
+    """Words at a point.
 
-    There is nothing below and left of a front. A label that would leave the axes is
-    moved in; one that would meet another is moved down, or up where there is no room.
+    Attributes:
+        x: Of the point, in the axes' coordinates.
+        y: The same.
+        words: What is said of it.
+        color: Of the words and of the line to the point.
+        is_framed: Whether the point has a ring and the words a frame.
+    """
+
+    x: float
+    y: float
+    words: str
+    color: Color
+    is_framed: bool = False
+
+
+def label_points(axes: Axes, labels: Sequence[Label]) -> None:
+    """Writes words near points, each with a line to its point.
+
+    Each label is as near as it can be without leaving the axes or meeting markers,
+    lines or earlier labels; below and left of its point if there is a choice: nothing
+    is there of a front. Where there is no such place it meets the least of them.
 
     Args:
         axes: In a figure whose layout is settled.
-        labels: Coordinates and words of each point.
+        labels: The most important first.
     """
-    notes: list[Annotation] = []
-    for x, y, words in labels:
-        axes.plot(x, y, "o", markersize=15, markerfacecolor="none",
-                  markeredgecolor="crimson", markeredgewidth=1.8, zorder=5)  # fmt: skip
-        note = axes.annotate(
-            words,
-            (x, y),
-            xytext=_OFFSET,
-            textcoords="offset points",
-            ha="right",
-            va="top",
-            fontsize=_SIZE,
-            bbox={"boxstyle": "round", "facecolor": "white", "edgecolor": "crimson"},
-            arrowprops={"arrowstyle": "-", "color": "crimson", "shrinkB": 8},
-            zorder=6,
-        )
-        _move_in(axes, note)
-        _move_apart(axes, note, notes)
-        notes.append(note)
-    return notes
+    for label in labels:
+        if label.is_framed:
+            axes.plot(label.x, label.y, "o", markersize=_RING_SIZE,
+                      markerfacecolor="none", markeredgecolor=label.color,
+                      markeredgewidth=1.8, zorder=5)  # fmt: skip
+    markers, lines = _find_markers(axes), _find_lines(axes)
+    boxes: list[Bbox] = []
+    leaders: list[Path] = []
+    for label in labels:
+        note = _write(axes, label)
+        places = _list_places(axes, label, note)
+        place = _choose_place(places, boxes, leaders, markers, lines)
+        note.xyann = place.offset
+        boxes.append(place.box)
+        leaders.append(place.leader)
 
 
-def _move_in(axes: Axes, note: Annotation) -> None:
-    """Moves a label to the right, and up, until it is within the axes."""
-    box, frame = _get_box(note), axes.get_window_extent()
-    pixels = axes.figure.dpi / 72.0
-    x, y = note.xyann
-    right = max(0.0, frame.x0 - box.x0 + _PADDING) / pixels
-    up = max(0.0, frame.y0 - box.y0 + _PADDING) / pixels
-    note.xyann = (x + right, y + up)
+@dataclass(frozen=True)
+class _Place:
+    """Where a label may be, in pixels.
+
+    Attributes:
+        offset: Of the middle of its words, from the point, in points.
+        box: Of the words, with room round them.
+        leader: From the point to the middle.
+    """
+
+    offset: tuple[float, float]
+    box: Bbox
+    leader: Path
+
+    def crosses(self, boxes: Sequence[Bbox]) -> bool:
+        """Whether the line to the point runs over one of the boxes."""
+        return any(self.leader.intersects_bbox(box, filled=False) for box in boxes)
+
+    def is_crossed(self, lines: Sequence[Path]) -> bool:
+        """Whether one of the lines runs through the words."""
+        return any(line.intersects_bbox(self.box, filled=False) for line in lines)
 
 
-def _move_apart(axes: Axes, note: Annotation, others: Sequence[Annotation]) -> None:
-    """Moves a label down, or up at the axes' foot, until it meets no other."""
-    boxes = [_get_box(other) for other in others]
-    foot = axes.get_window_extent().y0
-    x, start = note.xyann
-    for sign in (-1.0, 1.0):
-        for step in range(_MOST_STEPS):
-            note.xyann = (x, start + sign * step * _STEP)
-            box = _get_box(note)
-            if box.y0 < foot:
-                break
-            if not any(box.overlaps(other) for other in boxes):
-                return
+def _choose_place(
+    places: Iterator[_Place],
+    boxes: Sequence[Bbox],
+    leaders: Sequence[Path],
+    markers: Sequence[Bbox],
+    lines: Sequence[Path],
+) -> _Place:
+    """Returns the first place that meets no label, and the least of the rest.
+
+    To hide what is drawn is worse than lines across a label.
+
+    Args:
+        places: In order; the last one if each meets a label.
+        boxes: Of labels.
+        leaders: Of the same labels.
+        markers: Where points are.
+        lines: What is drawn through.
+    """
+    chosen: _Place | None = None
+    least = math.inf
+    for place in places:
+        last = place
+        if place.box.count_overlaps(boxes):
+            continue
+        hides = place.box.count_overlaps(markers) > 0 or place.is_crossed(lines)
+        meets = 2 * hides + (place.is_crossed(leaders) or place.crosses(boxes))
+        if meets < least:
+            chosen, least = place, meets
+        if meets == 0:
+            break
+    return chosen or last
 
 
-def _get_box(note: Annotation) -> Bbox:
-    """Returns where a label is, in pixels, without its arrow."""
+def _write(axes: Axes, label: Label) -> Annotation:
+    """Writes a label, which has no place yet."""
+    frame: dict[str, Any] = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none"}
+    if label.is_framed:
+        frame = {"boxstyle": "round", "fc": "white", "ec": label.color}
+    return axes.annotate(
+        label.words,
+        (label.x, label.y),
+        xytext=(0.0, 0.0),
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        fontsize=_SIZE,
+        color="black" if label.is_framed else label.color,
+        bbox=frame,
+        arrowprops={
+            "arrowstyle": "-",
+            "color": label.color,
+            "linewidth": 0.8,
+            "shrinkB": 0.5 * _RING_SIZE if label.is_framed else 4.0,
+        },
+        zorder=6,
+    )
+
+
+def _list_places(axes: Axes, label: Label, note: Annotation) -> Iterator[_Place]:
+    """Yields places of a label within the axes, the nearest first.
+
+    The last of all is on the point, whether the words fit there or not.
+    """
+    from matplotlib.path import Path
     from matplotlib.text import Text
+    from matplotlib.transforms import Bbox
 
+    x, y = axes.transData.transform((label.x, label.y))
     note.get_window_extent()  # puts the words where they belong now
-    return Text.get_window_extent(note).padded(_PADDING)
+    padding = _FRAMED_PADDING if label.is_framed else _PADDING
+    size = Text.get_window_extent(note).padded(padding)
+    frame = axes.get_window_extent()
+    to_points = 72.0 / axes.figure.dpi
+    ways = [
+        (
+            (distance + 0.5 * size.width) * math.cos(angle),
+            (distance + 0.5 * size.height) * math.sin(angle),
+        )
+        for distance, angle in product(range(_STEP, _FARTHEST, _STEP), _DIRECTIONS)
+    ]
+    for dx, dy in (*ways, (0.0, 0.0)):
+        low = (x + dx - 0.5 * size.width, y + dy - 0.5 * size.height)
+        box = Bbox.from_bounds(*low, size.width, size.height)
+        is_inside = (frame.x0 <= box.x0 and box.x1 <= frame.x1) and (
+            frame.y0 <= box.y0 and box.y1 <= frame.y1
+        )
+        if is_inside or dx == dy == 0.0:
+            leader = Path([(x, y), (x + dx, y + dy)])
+            yield _Place((dx * to_points, dy * to_points), box, leader)
+
+
+def _find_markers(axes: Axes) -> list[Bbox]:
+    """Returns where markers are, in pixels."""
+    from matplotlib.transforms import Bbox
+
+    boxes = []
+    for line in axes.get_lines():
+        if line.get_marker() in ("None", "", None):
+            continue
+        half = 0.5 * line.get_markersize() * axes.figure.dpi / 72.0
+        for x, y in axes.transData.transform(line.get_xydata()):
+            boxes.append(Bbox([(x - half, y - half), (x + half, y + half)]))
+    return boxes
+
+
+def _find_lines(axes: Axes) -> list[Path]:
+    """Returns the lines that are drawn through, in pixels; dotted ones may be met."""
+    from matplotlib.cbook import STEP_LOOKUP_MAP
+    from matplotlib.path import Path
+
+    paths = []
+    for line in axes.get_lines():
+        x, y = np.asarray(line.get_data())
+        if line.get_linestyle() == "-" and len(x) > 1:
+            steps = STEP_LOOKUP_MAP[line.get_drawstyle()](x, y)
+            corners = list(zip(*steps, strict=True))
+            paths.append(Path(axes.transData.transform(corners)))
+    return paths
 
 
 def scale_times(axes: Axes) -> None:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from pydrake.systems.framework import Context
 
-from drake_haptics.accuracy.whole_run import run_whole
 from drake_haptics.analysis.held_scene import build_quietly
 from drake_haptics.scene import Scene
 from drake_haptics.simulated_device import make_hand_path
+from drake_haptics.simulation import run
 
 # Ticks at the same time differ by round-off of their numbers.
 _SAME_TICK = 1e-6
@@ -112,6 +112,6 @@ def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMoti
     def note(root: Context) -> None:
         rows.append(np.concatenate([port.Eval(find(root)) for port, find in readers]))
 
-    run_whole(haptic, duration_s, on_tick=note)
+    run(haptic, duration_s, on_tick=note)
     X_WTool, V_WTool, X_WH, V_WH = np.split(np.array(rows), [7, 13, 20], axis=1)
     return RecordedMotion(haptic.period_s, X_WTool, V_WTool, X_WH, V_WH)

@@ -30,20 +30,22 @@ class Column:
         head: What is in it, short.
         unit: Of its figures.
         meaning: A sentence for people.
+        parts: What the figures of one cell are, where it has two.
     """
 
     head: str
     unit: str
     meaning: str
+    parts: str = ""
 
 
 COLUMNS = (
-    Column("tick", "µs", "The whole tick through the Simulator, as drake-haptics run"
-           " --headless takes it: median / 99th percentile."),
+    Column("tick", "µs", "The whole tick through the Simulator, paced by the clock as"
+           " for a device: median / 99th percentile.", "median / p99"),
     Column("core", "µs", "Of that, what finds and answers the contacts inside the"
            " compiled core: query, clusters, wrench; median."),
     Column("force", "N", "Difference of the force on the tool from the reference's at"
-           " the same poses: root mean square / largest."),
+           " the same poses: root mean square / largest.", "rms / largest"),
     Column("depth", "µm", "Largest difference of the deepest contact's distance from"
            " the exact one."),
     Column("jump", "°", "Largest turn of the force from one tick to the next, beyond"

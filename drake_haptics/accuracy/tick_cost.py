@@ -1,4 +1,4 @@
-"""What the whole ticks of a scene take, as `drake-haptics run --headless` has them."""
+"""What the whole ticks of a scene take, paced by the clock as a device needs it."""
 
 from __future__ import annotations
 
@@ -8,18 +8,24 @@ import numpy as np
 
 from drake_haptics.accuracy.built_scenes import build_once
 from drake_haptics.accuracy.figures import TickTimes
-from drake_haptics.accuracy.whole_run import run_whole
 from drake_haptics.scene import Scene
+from drake_haptics.simulation import run
+from drake_haptics.tick_clock import TickClock
 
 
 def time_ticks(scene: Scene, duration_s: float) -> TickTimes:
-    """Runs a scene once and returns what its ticks took.
+    """Runs a scene once in real time and returns what its ticks took.
+
+    Between two ticks the processor rests and others use its caches, so that a tick
+    takes longer than in a loop that never waits.
 
     Raises:
         RunError: The loop diverges.
         KeyboardInterrupt: At Ctrl-C.
     """
-    times = run_whole(build_once(scene), duration_s).to_dict()["tick_us"]
+    haptic = build_once(scene)
+    pace = TickClock(haptic.period_s)
+    times = run(haptic, duration_s, pace=pace).to_dict()["tick_us"]
     assert isinstance(times, dict)
     return TickTimes(times["median"], times["p99"], times["p99_9"])
 

@@ -70,16 +70,16 @@ def render(picture: Picture, dpi: int = _DPI) -> bytes:
 
 
 def summarize(sections: Sequence[Section]) -> str:
-    """Says how many statements agree, pass and differ."""
+    """Says how many statements there are of each verdict."""
     counts = Counter(
         statement.verdict for section in sections for statement in section.statements
     )
     parts = [
-        f"{counts[verdict]} {meaning} ({verdict})"
+        f"{counts[verdict]} {meaning}"
         for verdict, meaning in MEANING.items()
         if counts[verdict]
     ]
-    return f"Of {counts.total()} statements {'; '.join(parts)}."
+    return f"Of {counts.total()} statements {', '.join(parts)}."
 
 
 def _make_section(section: Section, pictures: dict[str, bytes]) -> str:
@@ -105,7 +105,7 @@ def _make_block(block: Block, pictures: dict[str, bytes]) -> str:
 def _make_statement(statement: Statement) -> str:
     verdict = statement.verdict
     return (
-        f'<li><span class="mark {verdict}">{verdict}</span>'
+        f'<li><span class="mark {verdict.replace(" ", "-")}">{verdict}</span>'
         f"{html.escape(statement.text)}</li>"
     )
 

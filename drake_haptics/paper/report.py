@@ -126,7 +126,8 @@ def describe_machine_line(evaluation: PaperEvaluation) -> str:
     return (
         f"{machine['processor']}, {machine['cores']} cores, {machine['system']}, Python"
         f" {machine['python']}, drake_haptics {machine['drake_haptics']}; one thread."
-        f" The paper: {MACHINE}." + (_CUT_SHORT if evaluation.is_cut_short else "")
+        f" The paper: {MACHINE}; all times compare processors two decades apart."
+        + (_CUT_SHORT if evaluation.is_cut_short else "")
     )
 
 

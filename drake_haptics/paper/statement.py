@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-Verdict = Literal["agrees", "passes", "differs", "lacks"]
+Verdict = Literal["agrees", "better", "differs", "not measured"]
+# What statements of each verdict do, as the end of a sentence that counts them.
 MEANING: dict[Verdict, str] = {
-    "agrees": "as the paper says",
-    "passes": "better than the paper says",
-    "differs": "not as the paper says, or worse",
-    "lacks": "could not be measured",
+    "agrees": "agree with the paper",
+    "better": "are better than the paper says",
+    "differs": "differ from it, or are worse",
+    "not measured": "were not measured",
 }
 
 

@@ -24,11 +24,12 @@ from drake_haptics.paper.table1 import ModelFigures
 
 # Powers that are "roughly proportional"; with a smaller one contacts cost less.
 _PROPORTIONAL = (0.7, 1.3)
-# "Five to fifty times the paper's rate" is a pass.
-_PASSING_RATE = 5.0
+# A rate is better from this many times the paper's on: a newer processor alone makes
+# some of it. It is the rate with all that disturbs it, as the paper's own is.
+_BETTER_RATE = 5.0
 # So much more for depth is "a very small amount of overhead".
 _SMALL_OVERHEAD = 1.25
-# A power below this is "almost constant" over more than two decades.
+# A power below this is "almost constant".
 _CONSTANT_EXPONENT = 0.2
 _LINEAR_R_SQUARED = 0.95
 # Counts this near to each other are the same.
@@ -45,7 +46,7 @@ def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:
     statements = []
     if fewer:
         statements.append(
-            Statement("passes", f"No more pieces than the paper: {_list_rows(fewer)}.")
+            Statement("better", f"No more pieces than the paper: {_list_rows(fewer)}.")
         )
     if more:
         statements.append(
@@ -54,7 +55,7 @@ def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:
     for row in rows:
         if not row.source:
             text = f"{row.model}: there is no such shape; --meshes FOLDER names one."
-            statements.append(Statement("lacks", text))
+            statements.append(Statement("not measured", text))
     return statements
 
 
@@ -72,43 +73,49 @@ def judge_run(
 
     Args:
         figures: Of the run.
-        is_cut_short: Whether only the beginning of the path was run: nothing but the
-            rate is judged then.
+        is_cut_short: Whether only the beginning of the path was run: what happens at
+            most on the whole of it is not measured then.
     """
-    statements = [*_judge_overhead(figures), *_judge_growth(figures)]
+    at_most = []
     if figures.figure == "11-(c)":
-        statements.insert(0, _judge_room(figures))
+        at_most.append(_judge_room(figures))
     if figures.figure == "11-(a)":
-        statements.insert(0, _judge_contacts(figures))
+        at_most.append(_judge_contacts(figures))
     if is_cut_short:
-        statements = [_leave_open(statement) for statement in statements]
-    return [_judge_rate(figures), *statements]
+        at_most = [_leave_open(statement) for statement in at_most]
+    return [
+        _judge_rate(figures),
+        *at_most,
+        *_judge_overhead(figures),
+        *_judge_growth(figures),
+    ]
 
 
 def _leave_open(statement: Statement) -> Statement:
     """Returns a statement that the beginning of a path cannot decide."""
-    return Statement("lacks", f"{statement.text} (So far: the path was cut short.)")
+    text = f"{statement.text} (So far: the path was cut short.)"
+    return Statement("not measured", text)
 
 
 def _judge_rate(figures: ProfileFigures) -> Statement:
     is_cup = figures.figure == "11-(a)"
     paper_Hz = CUP_SPOON_RATE_HZ if is_cup else FEW_CONTACTS_RATE_HZ
-    times = figures.rate_Hz / paper_Hz
-    tick = figures.all_ticks.tick
+    tick, disturbed = figures.all_ticks.tick, figures.disturbed
+    times = 1e6 / disturbed.p99_us / paper_Hz
     said = (
         "the paper's 500 Hz"
         if is_cup
         else "the kilohertz that the paper reaches with few contacts"
     )
-    verdict: Verdict = "passes" if times >= _PASSING_RATE else "agrees"
+    verdict: Verdict = "better" if times >= _BETTER_RATE else "agrees"
     if times < 1.0:
         verdict = "differs"
     return Statement(
         verdict,
-        f"Half of the ticks take less than {tick.median_us:,.0f} µs, 99 of 100 less"
-        f" than {tick.p99_us:,.0f} µs, which is {figures.rate_Hz:,.0f} Hz,"
-        f" {times:.1f} times {said}. With all that disturbed it, 99 of 100 took less"
-        f" than {figures.disturbed.p99_us:,.0f} µs, and"
+        f"Undisturbed, half of the ticks take less than {tick.median_us:,.0f} µs, 99 of"
+        f" 100 less than {tick.p99_us:,.0f} µs, which is {figures.rate_Hz:,.0f} Hz."
+        f" With all that disturbed it, 99 of 100 took less than"
+        f" {disturbed.p99_us:,.0f} µs, {times:.1f} times {said}, and"
         f" {100.0 * figures.in_time:.2f} % of the ticks held 1 kHz.",
     )
 
@@ -161,7 +168,7 @@ def _judge_growth(figures: ProfileFigures) -> list[Statement]:
     )
     if exponent > _PROPORTIONAL[1]:
         return [Statement("differs", text)]
-    return [Statement("agrees" if exponent >= _PROPORTIONAL[0] else "passes", text)]
+    return [Statement("agrees" if exponent >= _PROPORTIONAL[0] else "better", text)]
 
 
 def judge_figure12(passes: Sequence[PenPass]) -> list[Statement]:
@@ -202,7 +209,7 @@ def _judge_peer(passed: PenPass, name: str) -> Statement:
     ours, theirs = passed.smoothness[OURS], passed.smoothness[name]
     verdict: Verdict = "agrees"
     if ours.normal_step_deg * _SAME < theirs.normal_step_deg:
-        verdict = "passes"
+        verdict = "better"
     elif ours.normal_step_deg > _SAME * theirs.normal_step_deg:
         verdict = "differs"
     return Statement(
@@ -234,9 +241,9 @@ def judge_analysis(analysis: Analysis) -> list[Statement]:
             " almost constant.",
         ),
         Statement(
-            "passes" if times > 1.0 else "differs",
+            "better" if times > 1.0 else "differs",
             f"One depth: {depths.typical_us:.2f} µs, {times:,.0f} times less than the"
-            " paper's 0.1 ms. Two decades of processors are in that.",
+            " paper's 0.1 ms.",
         ),
         Statement(
             "agrees" if line.r_squared >= _LINEAR_R_SQUARED else "differs",

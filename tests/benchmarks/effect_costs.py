@@ -17,12 +17,15 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
 from effect_child import CORE_CALLS, EFFECTS, TICKS, WARM_UP, make_scene
 from effect_rows import make_rows
+from page_stamp import write_page
 
 from drake_haptics.bench.valgrind import count_instructions
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.simulation import make_simulator
+from drake_haptics.tick_clock import TickClock
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "effects.md"
 _BEGIN = "<!-- figures: written by tests/benchmarks/effect_costs.py -->\n"
@@ -82,15 +85,20 @@ def count_core(name: str, switching: int) -> float:
 
 
 def time_loops(effects: Sequence[str]) -> dict[str, float]:
-    """Returns the least of several medians of a tick, the loops taken in turn, µs."""
+    """Returns the least of several medians of a tick, the loops taken in turn, µs.
+
+    They are paced by the clock, as for a device.
+    """
     haptics = {effect: BuildHapticDiagram(make_scene(effect)) for effect in effects}
     medians: dict[str, list[float]] = {effect: [] for effect in effects}
     for _ in range(_TIMED_ROUNDS):
         for effect, haptic in haptics.items():
             simulator = make_simulator(haptic)
             simulator.AdvanceTo(WARM_UP * haptic.period_s)
+            pace = TickClock(haptic.period_s)
             times = []
             for tick in range(WARM_UP + 1, WARM_UP + TICKS):
+                pace.wait()
                 start_s = time.perf_counter()
                 simulator.AdvanceTo(tick * haptic.period_s)
                 times.append(time.perf_counter() - start_s)
@@ -185,7 +193,7 @@ def main() -> None:
     print(make_table(costs), make_proof(costs), costs.tick_us, sep="\n\n")
     if "--write" in sys.argv[1:]:
         page = PAGE.read_text(encoding="utf-8")
-        PAGE.write_text(with_figures(page, costs), encoding="utf-8")
+        write_page(PAGE, with_figures(page, costs), __file__)
 
 
 if __name__ == "__main__":

@@ -11,10 +11,12 @@ import json
 import signal
 import sys
 import time
+from contextlib import suppress
 
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.device_address import open_device
 from drake_haptics.device_watch import DeviceWatch
+from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.simulation import run
@@ -50,7 +52,9 @@ def main():
         haptic = BuildHapticDiagram(scene, device=backend)
         watch = DeviceWatch(backend, Person().wants_it_back)
         pace = TickClock(haptic.period_s)
-        statistics = run(haptic, pace=pace, on_tick=watch.end_tick)
+        statistics = RunStatistics(haptic.period_s, pace=pace)
+        with suppress(KeyboardInterrupt):
+            run(haptic, pace=pace, on_tick=watch.end_tick, statistics=statistics)
         figures = {**statistics.to_dict(), "device": watch.to_dict()}
     print(json.dumps(figures))
 

@@ -16,6 +16,9 @@ import time
 from contextlib import ExitStack
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from page_stamp import write_page
+
 from drake_haptics.bench.valgrind import count_instructions, counted
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.scene import load_scene
@@ -133,7 +136,7 @@ def main() -> None:
         page = PAGE.read_text(encoding="utf-8")
         start, end = page.index(_BEGIN) + len(_BEGIN), page.index(_END)
         page = f"{page[:start]}\n{table}\n\n{page[end:]}"
-        PAGE.write_text(page, encoding="utf-8")
+        write_page(PAGE, page, __file__)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,9 @@ import json
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from page_stamp import write_page
+
 from drake_haptics.bench.benchmark import BenchFigures
 from drake_haptics.bench.report import machine_line, make_tables, missing_lines
 
@@ -43,7 +46,7 @@ def main() -> None:
     """Reads the figures from the file named on the command line."""
     data = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
     page = PAGE.read_text(encoding="utf-8")
-    PAGE.write_text(with_figures(page, BenchFigures.from_dict(data)), encoding="utf-8")
+    write_page(PAGE, with_figures(page, BenchFigures.from_dict(data)), __file__)
 
 
 if __name__ == "__main__":

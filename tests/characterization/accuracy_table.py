@@ -10,7 +10,11 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from page_stamp import write_page
 
 from drake_haptics.accuracy.add_peers import add_peers
 from drake_haptics.accuracy.budget import BudgetChoice, choose_setting
@@ -192,7 +196,7 @@ def main() -> None:
     print("\n".join(parts.values()))
     if arguments.write:
         page = PAGE.read_text(encoding="utf-8")
-        PAGE.write_text(with_parts(page, parts), encoding="utf-8")
+        write_page(PAGE, with_parts(page, parts), __file__)
         draw_study(studies[SCENES[0]]).savefig(PICTURE, dpi=_DPI)
 
 

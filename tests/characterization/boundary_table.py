@@ -13,6 +13,7 @@ from pathlib import Path
 import matplotlib
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+from page_stamp import write_page
 from wall_motion import HAND, NO_HAND, TABLE, find_simulated_limit, make_wall
 
 from drake_haptics.analysis.exact_boundary import (
@@ -160,7 +161,7 @@ def main() -> None:
     write = parser.parse_args().write
     page = with_tables(PAGE.read_text(encoding="utf-8"))
     if write:
-        PAGE.write_text(page, encoding="utf-8")
+        write_page(PAGE, page, __file__)
         draw()
 
 

@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from continuity_rig import CAUSES, JUMP, Steps, measure
 from continuity_scenes import SCENES, make_scene
 from continuity_walk import EPISODE_STEPS
+from page_stamp import write_page
 from press_rig import GAINS, LARGEST_FORCE_N
 from wrench_chain import METHODS
 
@@ -113,7 +114,8 @@ def main() -> None:
                 print(lines[-1], flush=True)
     if args.write:
         used = {name: GAINS[name] for name in ("default", "sinking", "soft")}
-        PAGE.write_text(
+        write_page(
+            PAGE,
             _TEXT.format(
                 steps=args.steps,
                 episodes=-(-args.steps // EPISODE_STEPS),
@@ -126,7 +128,7 @@ def main() -> None:
                     for name, g in used.items()
                 ),
             ),
-            encoding="utf-8",
+            __file__,
         )
 
 

@@ -23,6 +23,7 @@ TESTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS))
 from hull_truth import deepest_outside, deepest_surface, lost_share  # noqa: E402
 from mesh_samples import REAL_MESHES  # noqa: E402
+from page_stamp import write_page  # noqa: E402
 
 from drake_haptics import Mesh, decompose, load_mesh  # noqa: E402
 from drake_haptics.mesh_decimation import decimate  # noqa: E402
@@ -175,14 +176,14 @@ def row(result: dict[str, Any]) -> list[str]:
     ]
 
 
-def write_page(rows: Sequence[Sequence[str]]) -> None:
+def write_table(rows: Sequence[Sequence[str]]) -> None:
     """Puts the table into the page, between its heading and the text after it."""
     lines = ["| " + " | ".join(TITLES) + " |"]
     lines.append("|---" + "|--:" * (len(TITLES) - 1) + "|")
     lines += ["| " + " | ".join(cells) + " |" for cells in rows]
     before, _, rest = PAGE.read_text(encoding="utf-8").partition("\n| mesh |")
     after = rest.partition("\n\n")[2]
-    PAGE.write_text(before + "\n" + "\n".join(lines) + "\n\n" + after, encoding="utf-8")
+    write_page(PAGE, before + "\n" + "\n".join(lines) + "\n\n" + after, __file__)
 
 
 def main() -> None:
@@ -210,7 +211,7 @@ def main() -> None:
         rows.append(row(json.loads(answer.stdout)))
         print("  ".join(rows[-1]), flush=True)
     if args.write:
-        write_page(rows)
+        write_table(rows)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from cell_mesh import cell_mesh
 from contact_chain_diagram import ContactChain
 from contact_samples import box, pose
 from contact_state import METHODS, State, T, keeps_features, random_states
+from page_stamp import write_page
 from press_tools import MODELS
 from touching_poses import touching_pose
 
@@ -237,7 +238,7 @@ def main() -> None:
         page = PAGE.read_text(encoding="utf-8")
         start, end = page.index(BEGIN) + len(BEGIN), page.index(END)
         table = "\n".join(["", *lines, "", ""])
-        PAGE.write_text(page[:start] + table + page[end:], encoding="utf-8")
+        write_page(PAGE, page[:start] + table + page[end:], __file__)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from hard_cases import HARD_CASES
+from page_stamp import write_page
 from pair_peers import ours, with_coal, with_drake
 from pair_score import Library, Score, score_case
 
@@ -70,7 +71,7 @@ def main() -> None:
                 print(f"  {depth}: {complaint}", file=sys.stderr)
     if args.write:
         before, rest = DOCS.read_text().split(START)
-        DOCS.write_text(before + START + table + END + rest.split(END)[1])
+        write_page(DOCS, before + START + table + END + rest.split(END)[1], __file__)
 
 
 if __name__ == "__main__":

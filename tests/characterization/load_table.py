@@ -15,6 +15,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 from boundary_table import to_markdown
+from page_stamp import write_page
 
 from drake_haptics import SceneTracker
 from drake_haptics._core import penalty_force, share_stiffness, thin_contacts
@@ -108,9 +109,8 @@ def main() -> None:
     if write:
         page = PAGE.read_text(encoding="utf-8")
         span = span_of(page)
-        PAGE.write_text(
-            page[: span.start] + "\n" + table + "\n" + page[span.stop :],
-            encoding="utf-8",
+        write_page(
+            PAGE, page[: span.start] + "\n" + table + "\n" + page[span.stop :], __file__
         )
 
 

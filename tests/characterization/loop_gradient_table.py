@@ -14,6 +14,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from loop_gradients import LoopGradients, build_scene, calc_gradients, contact_states
+from page_stamp import write_page
 
 from drake_haptics.analysis.diagram_systems import walk_leaves
 
@@ -100,7 +101,7 @@ def main() -> None:
     write = parser.parse_args().write
     page = with_table(PAGE.read_text(encoding="utf-8"))
     if write:
-        PAGE.write_text(page, encoding="utf-8")
+        write_page(PAGE, page, __file__)
 
 
 if __name__ == "__main__":

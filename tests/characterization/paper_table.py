@@ -14,6 +14,9 @@ from pathlib import Path
 
 from PIL import Image
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from page_stamp import write_page
+
 from drake_haptics.paper.evaluation import QUICK, PaperEvaluation, evaluate_paper
 from drake_haptics.paper.page import render, summarize
 from drake_haptics.paper.report import (
@@ -95,7 +98,7 @@ def main() -> None:
     if not arguments.write:
         print(figures_of(page))
         return
-    PAGE.write_text(page, encoding="utf-8")
+    write_page(PAGE, page, __file__)
     write_pictures(evaluation)
 
 

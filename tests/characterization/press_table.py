@@ -24,7 +24,7 @@ from press_cells import (
     row,
     run_points,
 )
-from press_page import write_page
+from press_page import write_presses
 from press_rig import GAINS, MOTIONS
 from press_tools import make_tools
 from press_verdict import Verdict
@@ -51,9 +51,7 @@ def main() -> None:
     parser.add_argument(
         "--motions", nargs="*", default=["press", "jab"], choices=MOTIONS
     )
-    parser.add_argument(
-        "--gains", nargs="*", default=["default", "sinking"], choices=GAINS
-    )
+    parser.add_argument("--gains", nargs="*", default=[*GAINS], choices=GAINS)
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--failures", type=Path, help="file that gets each failure")
     parser.add_argument(
@@ -79,8 +77,7 @@ def main() -> None:
             if args.failures:
                 _note(args.failures, cell, verdicts)
     if args.write:
-        rows.sort(key=lambda texts: (texts[2], texts[1], texts[0]))
-        write_page(rows, args.points, args.tools, args.seed)
+        write_presses(rows, args.points, args.tools, args.seed)
 
 
 def _run(

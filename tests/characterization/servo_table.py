@@ -14,6 +14,7 @@ import matplotlib
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+from page_stamp import write_page
 from servo_loop import (
     HELD,
     LOCAL,
@@ -186,7 +187,7 @@ def main() -> None:
     write = parser.parse_args().write
     page = with_tables(PAGE.read_text(encoding="utf-8"))
     if write:
-        PAGE.write_text(page, encoding="utf-8")
+        write_page(PAGE, page, __file__)
         matplotlib.use("Agg")
         draw_traces()
         draw_map()

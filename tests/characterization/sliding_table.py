@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+from page_stamp import write_page
 from press_rig import GAINS
 from scipy.spatial.transform import Rotation
 from slide_rig import feel, make_slide_tools, slide, velocity
@@ -121,13 +122,14 @@ def main() -> None:
                 print(lines[-1], flush=True)
     if write:
         gains = GAINS["default"]
-        PAGE.write_text(
+        write_page(
+            PAGE,
             _TEXT.format(
                 rows="\n".join(lines),
                 tolerance=1e3 * gains.tolerance_m,
                 stiffness=gains.stiffness_N_per_m,
             ),
-            encoding="utf-8",
+            __file__,
         )
 
 

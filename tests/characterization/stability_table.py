@@ -13,6 +13,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 from boundary_table import to_markdown
+from page_stamp import write_page
 
 from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
 from drake_haptics.analysis.stability_page import describe_delay
@@ -131,7 +132,7 @@ def main() -> None:
     }
     page = with_tables(PAGE.read_text(encoding="utf-8"), results)
     if write:
-        PAGE.write_text(page, encoding="utf-8")
+        write_page(PAGE, page, __file__)
         results[DRAWN].plot().savefig(PICTURE, dpi=_DPI)
 
 

@@ -16,6 +16,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from page_stamp import write_page
 from symptom_cases import CASES
 from symptom_run import Case
 
@@ -121,7 +123,7 @@ def main() -> None:
             page = PAGE.read_text(encoding="utf-8")
             span = span_of(page, section)
             page = f"{page[: span.start]}\n{to_table(rows)}\n{page[span.stop :]}"
-            PAGE.write_text(page, encoding="utf-8")
+            write_page(PAGE, page, __file__)
 
 
 if __name__ == "__main__":

@@ -104,6 +104,22 @@ def test_the_page_covers_every_scene_and_method() -> None:
             assert f"| {make_scene(key).name} | {method} | " in page
 
 
+@pytest.mark.parametrize("key", ["spoon-cup", "tips", "flush"])
+def test_the_first_steps_walked_again_change_no_more_than_the_page_tells(
+    key: str,
+) -> None:
+    """Both walks begin alike: what the short one meets is in the page's row."""
+    lines = [x.strip("| ").split(" | ") for x in PAGE.read_text("utf-8").splitlines()]
+    for method, found in measure(make_scene(key), STEPS).items():
+        [told] = [x for x in lines if x[:2] == [make_scene(key).name, method]]
+        by_title = dict(zip(TITLES[6:], told[6:], strict=True))
+        for largest, text in zip(found.ratio.max(axis=0), told[2:6:2], strict=True):
+            # The page has three digits.
+            assert 0.0 < largest < 1.01 * float(text), method
+        assert found.exceeds.sum() <= int(by_title[f"over {JUMP:g}"]), method
+        assert found.chain_gain.max() < 1.01 * float(by_title["chain alone"]), method
+
+
 def test_a_row_has_a_text_for_each_title() -> None:
     found = measure(make_scene("spike"), 500, ("octree",))["octree"]
     texts = row("spike", "octree", found)

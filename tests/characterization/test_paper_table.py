@@ -65,9 +65,14 @@ def test_every_model_and_scenario_has_a_row():
 
 
 def test_every_statement_has_a_verdict_and_is_counted():
-    lines = re.findall(r"^- \*\*(\w+)\*\*: .+\.$", FIGURES, re.MULTILINE)
+    lines = re.findall(r"^- \*\*([\w ]+)\*\*: .+\.$", FIGURES, re.MULTILINE)
     assert set(lines) <= set(MEANING)
-    assert FIGURES.lstrip().startswith(f"Of {len(lines)} statements")
+    sum_up = re.match(r"\s*Of (\d+) statements (.*?)\.", FIGURES)
+    assert sum_up is not None and int(sum_up[1]) == len(lines)
+    for verdict, meaning in MEANING.items():
+        if lines.count(verdict):
+            assert f"{lines.count(verdict)} {meaning}" in sum_up[2]
+    assert sum(map(int, re.findall(r"\d+", sum_up[2]))) == len(lines)
 
 
 def test_pictures_are_there_and_small():

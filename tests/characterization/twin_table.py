@@ -20,6 +20,7 @@ from pydrake.systems.framework import Context
 
 sys.path.insert(0, str(Path(__file__).parent))
 from boundary_table import to_markdown
+from page_stamp import write_page
 
 from drake_haptics.analysis.held_scene import build_quietly, stop_hand
 from drake_haptics.analysis.sampled_linearization import linearize_sampled
@@ -197,7 +198,7 @@ def main() -> None:
     if write:
         page = PAGE.read_text(encoding="utf-8")
         span = span_of(page)
-        PAGE.write_text(page[: span.start] + table + page[span.stop :], "utf-8")
+        write_page(PAGE, page[: span.start] + table + page[span.stop :], __file__)
 
 
 if __name__ == "__main__":

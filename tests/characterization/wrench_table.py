@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+from page_stamp import write_page
 from wrench_chain import (
     DAMPING_NS_PER_M,
     DELTA_M,
@@ -164,7 +165,8 @@ def main() -> None:
     lines.insert(1, "|" + "---|" * len(TITLES))
     print(*lines, sep="\n")
     if write:
-        PAGE.write_text(
+        write_page(
+            PAGE,
             _TEXT.format(
                 tolerance=1e3 * TOLERANCE_M,
                 stiffness=STIFFNESS_N_PER_M,
@@ -180,7 +182,7 @@ def main() -> None:
                     for name, tests in EQUATIONS.items()
                 ),
             ),
-            encoding="utf-8",
+            __file__,
         )
 
 

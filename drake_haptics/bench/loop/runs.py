@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from drake_haptics.bench.loop.figures import LoopFigures, LoopTimes
-from drake_haptics.bench.loop.names import MUJOCO, NATIVE, OURS, STOCK
+from drake_haptics.bench.loop.names import MUJOCO, NATIVE, OURS, PACED, STOCK
 from drake_haptics.bench.loop.problem import Loop, LoopCourse, LoopProblem
 from drake_haptics.bench.loop.stock_drake import StockLoop, has_solver
 from drake_haptics.bench.loop.this_package import NativeLoop, ThisLoop
@@ -17,7 +17,11 @@ from drake_haptics.bench.timing import typical
 
 def make_loops(problem: LoopProblem) -> tuple[dict[str, Loop], dict[str, str]]:
     """Returns name -> loop, this package's first; and library -> why it is missing."""
-    loops: dict[str, Loop] = {OURS: ThisLoop(problem), NATIVE: NativeLoop(problem)}
+    loops: dict[str, Loop] = {
+        PACED: ThisLoop(problem, paced=True),
+        OURS: ThisLoop(problem),
+        NATIVE: NativeLoop(problem),
+    }
     missing: dict[str, str] = {}
     for name, solver in STOCK.items():
         if has_solver(solver):

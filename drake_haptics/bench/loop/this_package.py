@@ -20,6 +20,7 @@ from drake_haptics.pose_vector import pose_to_vector
 from drake_haptics.scene_check import SceneWarning
 from drake_haptics.simulation import make_simulator
 from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.tick_clock import TickClock
 
 # A row of the recording begins by this share of a tick early, so that round-off of the
 # time never shows the one before.
@@ -32,8 +33,16 @@ class ThisLoop:
     Behind the device port is a recording in Drake's own `TrajectorySource`.
     """
 
-    def __init__(self, problem: LoopProblem):
+    def __init__(self, problem: LoopProblem, *, paced: bool = False):
+        """Builds the loop.
+
+        Args:
+            problem: What it is given.
+            paced: Whether ticks that are timed wait for the clock, as for a device;
+                else each follows the one before at once.
+        """
         self._problem = problem
+        self._paced = paced
         site = find_device_site(problem.scene)
         device = HapticDevice(
             _make_recording(problem),
@@ -58,11 +67,17 @@ class ThisLoop:
         """See `Loop.time`."""
         n = len(self._problem.motion)
         simulator = make_simulator(self._haptic)
-        readings: list[float] = []
+        begins: list[float] = []
+        ends: list[float] = []
         clock = time.perf_counter
+        pace = TickClock(self._problem.motion.period_s) if self._paced else None
 
         def note(context: Context) -> EventStatus:
-            readings.append(clock())
+            ends.append(clock())
+            # Waiting belongs to no tick.
+            if pace is not None:
+                pace.wait()
+            begins.append(clock())
             return EventStatus.Succeeded()
 
         gc.collect()
@@ -70,12 +85,12 @@ class ThisLoop:
         try:
             simulator.Initialize()
             simulator.set_monitor(note)
-            begin = clock()
+            begins.append(clock())
             simulator.AdvanceTo((n - 0.5) * self._problem.motion.period_s)
         finally:
             gc.unfreeze()
         # The last tick ends where the run does, not where a tick does.
-        return np.diff([begin, *readings])[:n]
+        return (np.array(ends) - begins[: len(ends)])[:n]
 
 
 class NativeLoop:
