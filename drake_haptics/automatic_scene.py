@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.mesh_centering import center, find_origin_beside
 from drake_haptics.mesh_report import length
 from drake_haptics.scene import (
     Contact,
@@ -59,6 +60,9 @@ def make_scene_for_meshes(
         environment_scale,
         _LARGEST_ENVIRONMENT_M,
     )
+    is_far = find_origin_beside(tool) is not None
+    if is_far:
+        tool = center(tool)
     tip = _find_tip(tool)
     # The handle is above the tip, at half the tool's height: pressing straight down
     # then turns it little.
@@ -72,6 +76,7 @@ def make_scene_for_meshes(
         tool=Tool(
             mesh=str(tool_path.resolve()),
             scale=tool_scale,
+            center=is_far,
             grasp=Pose(position_m=_round_position(-grip_point)),
         ),
         environment=[
@@ -97,8 +102,7 @@ def _check_extent(
     hint = (
         ""
         if unit is None
-        else f". If {path.name} is in {unit}: --{name}-scale {METRES_PER_UNIT[unit]:g},"
-        f" in Python {name}_scale={METRES_PER_UNIT[unit]:g}"
+        else f". If {path.name} is in {unit}: {name}_scale={METRES_PER_UNIT[unit]:g}"
     )
     raise SceneError(
         f"the {name} {path.name} is {length(extent)} long, and must be between"

@@ -31,7 +31,7 @@ from drake_haptics.device_site import (
     wait_for_reading,
 )
 from drake_haptics.haptic_loop import BaseSystems, HapticLoop
-from drake_haptics.held_handle import check_scene_coupling
+from drake_haptics.held_handle import check_real_coupling, check_scene_coupling
 from drake_haptics.mass_properties import make_tool_dynamics
 from drake_haptics.one_line import count
 from drake_haptics.scene import (
@@ -43,9 +43,10 @@ from drake_haptics.scene import (
     Scene,
     Tool,
 )
-from drake_haptics.scene_check import SceneError, SceneWarning, check_values
+from drake_haptics.scene_check import SceneWarning, check_values
 from drake_haptics.scene_pieces import cut_scene
 from drake_haptics.simulated_device import make_hand_path, make_simulated_device
+from drake_haptics.skin import calc_skin_speed
 from drake_haptics.systems.contact_query import ContactObject
 from drake_haptics.systems.hand_path import HandPath
 from drake_haptics.systems.handle_model import HandleModel
@@ -91,6 +92,15 @@ class HapticDiagram:
     visualizer: HapticVisualizer | None
     backend: DeviceBackend | None = None
     X_WB: RigidTransform | None = None
+
+    @property
+    def skin_speed_m_per_s(self) -> float:
+        """Speed at which the tool crosses `contact.tolerance_m` in one step, m/s.
+
+        Above it a step may carry the tool from beyond the tolerance into a shape: it is
+        met all the same, but as deep as the step has taken it.
+        """
+        return calc_skin_speed(self.scene.contact, self.period_s)
 
     def __repr__(self) -> str:
         held = "a simulated hand" if self.backend is None else repr(self.backend)
@@ -341,7 +351,10 @@ def BuildHapticDiagram(
         see has output ports, those of `HapticLoop.outputs`.
 
     Warns:
-        SceneWarning: The coupling breaks a bound of stability or passivity.
+        SceneWarning: The coupling breaks a bound of stability or passivity: of a
+            simulated device in the scene's hand; of a backend that shows force in the
+            loosest grip, or it is more than the scene's preset is rated for. A port of
+            your own is not checked.
 
     Raises:
         SceneError: A value is impossible, also in a scene that was made or changed
@@ -459,16 +472,14 @@ def _find_port(
     """Returns the port of all but a backend, which must be read when all is ready."""
     if isinstance(device, HapticDevice):
         return device
-    try:
-        # A real device is held to what is known of its kind.
+    port = None
+    if device is None:
         port = make_simulated_device(scene, path)
-    except SceneError:
-        if device is None:
-            raise
+        broken = check_scene_coupling(scene, port)
     else:
-        for sentence in check_scene_coupling(scene, port):
-            warnings.warn(f"coupling.{sentence}", SceneWarning, stacklevel=3)
-        if device is None:
-            return port
-    wait_for_reading(device)
-    return None
+        broken = check_real_coupling(scene) if device.shows_force else []
+    for sentence in broken:
+        warnings.warn(f"coupling.{sentence}", SceneWarning, stacklevel=3)
+    if device is not None:
+        wait_for_reading(device)
+    return port

@@ -39,6 +39,8 @@ def add_picture(
             objects,
             loop.virtual_coupling.X_HT,
             period_s,
+            max_force_N=loop.device.max_force_N,
+            max_torque_Nm=loop.device.max_torque_Nm,
             has_friction=loop.effects.friction is not None,
             sheds_load=loop.load_shedding is not None,
         ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import time
+import warnings
 from collections import deque
 from collections.abc import Callable
 from functools import wraps
@@ -55,10 +56,24 @@ class CallbackTimer:
         return f"CallbackTimer({systems}, {count(len(self._ticks), 'tick')})"
 
     def __enter__(self) -> CallbackTimer:
-        """Begins to time the systems that are constructed."""
-        for name in _DECLARATIONS:
-            self._originals[name] = getattr(LeafSystem, name)
-            setattr(LeafSystem, name, self._timed_declaration(self._originals[name]))
+        """Begins to time the systems that are constructed.
+
+        Where bindings of Drake do not let it in, only whole ticks are timed, and a
+        `RuntimeWarning` says so.
+        """
+        originals = {name: getattr(LeafSystem, name) for name in _DECLARATIONS}
+        try:
+            for name, original in originals.items():
+                setattr(LeafSystem, name, self._timed_declaration(original))
+                self._originals[name] = original
+        except (AttributeError, TypeError) as error:
+            self._restore()
+            warnings.warn(
+                "only whole ticks are timed: the systems of this version of Drake"
+                f" cannot be timed one by one ({error})",
+                RuntimeWarning,
+                stacklevel=2,
+            )
         return self
 
     def __exit__(
@@ -68,8 +83,11 @@ class CallbackTimer:
         traceback: TracebackType | None,
     ) -> None:
         """Leaves later systems alone."""
-        for name, original in self._originals.items():
-            setattr(LeafSystem, name, original)
+        self._restore()
+
+    def _restore(self) -> None:
+        while self._originals:
+            setattr(LeafSystem, *self._originals.popitem())
 
     def end_tick(self, context: Context) -> None:
         """Ends a tick; for `run(on_tick=...)`. The first call only begins one."""

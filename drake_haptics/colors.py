@@ -14,19 +14,45 @@ TOOL: Color = (0.93, 0.62, 0.22, 1.0)
 ENVIRONMENT: Color = (0.62, 0.68, 0.76, 1.0)
 HANDLE_GHOST: Color = (0.25, 0.47, 0.85, 0.35)
 COUPLING_LINE: Color = (0.98, 0.82, 0.20, 1.0)
+TORQUE: Color = (0.05, 0.60, 0.66, 1.0)
 VIRTUAL_FACET: Color = (0.25, 0.25, 0.28, 0.30)
 BACKGROUND_TOP: Color = (0.97, 0.97, 0.98, 1.0)
 BACKGROUND_BOTTOM: Color = (0.86, 0.88, 0.91, 1.0)
 
 # What is drawn as lines and letters on white: the force's and the torque's.
 FORCE_INK: Color = (0.62, 0.40, 0.0, 1.0)
-TORQUE_INK: Color = (0.478, 0.259, 0.659, 1.0)
+TORQUE_INK: Color = (0.0, 0.42, 0.47, 1.0)
+
+# Lines and letters on white that only have to be told apart, in an order that repeats.
+INKS: tuple[Color, ...] = (
+    FORCE_INK,
+    STICKING_CONTACT,
+    TORQUE_INK,
+    (0.70, 0.12, 0.14, 1.0),
+    (0.12, 0.46, 0.20, 1.0),
+    (0.66, 0.20, 0.55, 1.0),
+)
+
+# What is drawn of stability. One color means one thing in every panel; what is the
+# scene's own is black.
+STABLE: Color = NEAR_CONTACT
+UNSTABLE: Color = PENETRATING_CONTACT
+EIGENVALUE: Color = (*HANDLE_GHOST[:3], 1.0)
+SIMULATION: Color = TOOL
+ONE_AXIS: Color = ENVIRONMENT
+FORMULA: Color = (0.30, 0.36, 0.46, 1.0)
+PASSIVITY: Color = TORQUE_INK
+
+# What is drawn of accuracy: the front and its knees, and what is another model's.
+FRONT: Color = EIGENVALUE
+OTHER_MODEL: Color = FORMULA
 
 _LEGEND = (
     (TOOL, "tool"),
     (ENVIRONMENT, "what it meets"),
     (HANDLE_GHOST, "where the handle wants the tool"),
     (COUPLING_LINE, "coupling, force on the hand"),
+    (TORQUE, "torque on the hand"),
     (NEAR_CONTACT, "near contact and its force"),
     (PENETRATING_CONTACT, "penetrating contact and its force"),
 )

@@ -57,6 +57,7 @@ def add_contact_systems(
     period_s: float,
     *,
     sheds_load: bool = False,
+    warns_deep: bool = False,
 ) -> ContactSystems:
     """Adds the systems; their inputs from elsewhere are left to the caller.
 
@@ -69,6 +70,7 @@ def add_contact_systems(
         materials: Of each object; gains that one does not give are those of `contact`.
         period_s: The tick, s.
         sheds_load: Whether query and clustering take the `relief` of a `LoadShedding`.
+        warns_deep: Whether the clustering warns of a deep contact itself.
 
     Raises:
         ValueError: A gain or size is out of range, two objects share a name, there
@@ -108,6 +110,7 @@ def add_contact_systems(
                 contact.tolerance_m,
                 contact.cluster_size_m,
                 sheds_load=sheds_load,
+                warns_deep=warns_deep,
             ),
         ),
         penalty_force=builder.AddNamedSystem(

@@ -1,10 +1,11 @@
-"""Checks whether a coupling is passive and stable on a device in a hand."""
+"""Checks whether a coupling is passive, stable and rated for on a device in a hand."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Protocol
 
+from drake_haptics.device_preset import DevicePreset
 from drake_haptics.passivity_bounds import (
     calc_passive_damping,
     calc_sampled_damping,
@@ -136,6 +137,38 @@ def find_broken_bounds(
             *_check_damping(kind, K, B, m, period_s),
             *_check_passivity(kind, K, B, b, period_s, delay_s),
         ]
+    return found
+
+
+def find_exceeded_ratings(
+    coupling: SpringAndDamper, preset: DevicePreset
+) -> list[BrokenBound]:
+    """Compares a coupling with what its device is rated for.
+
+    Args:
+        coupling: K and B of both kinds.
+        preset: The device; a rating that is not known is exceeded by nothing.
+
+    Returns:
+        Each rating that is exceeded.
+    """
+    found: list[BrokenBound] = []
+    for kind in (_TRANSLATION, _ROTATION):
+        for key, unit in (
+            (kind.stiffness, kind.stiffness_unit),
+            (kind.damping, kind.damping_unit),
+        ):
+            value, rating = getattr(coupling, key), getattr(preset, f"max_{key}")
+            if rating is not None and value > rating:
+                found.append(
+                    BrokenBound(
+                        key,
+                        f"This may shake: the device is rated for {rating:.3g} {unit}."
+                        " Lower it.",
+                        f"{key} is {value:g}, but the device, {preset.description}, is"
+                        f" rated for {rating:g} {unit}: lower it",
+                    )
+                )
     return found
 
 

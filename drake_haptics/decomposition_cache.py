@@ -84,7 +84,7 @@ def store_cached(key: str, pieces: PieceData) -> None:
     except OSError as error:
         _log.warning(
             "no decomposition can be kept in %s (%s), so that each run cuts its meshes"
-            " anew; DRAKE_HAPTICS_CACHE names another folder",
+            " again; DRAKE_HAPTICS_CACHE names another folder",
             path.parent,
             error.strerror,
         )

@@ -78,17 +78,19 @@ class DecompositionReport:
         if self.one_sided_triangles:
             share = self.one_sided_triangles / self.triangles
             yield Text(
-                f"  {self.one_sided_triangles:,} triangles ({share:.0%}) bound no "
+                f"  {count(self.one_sided_triangles, 'triangle')} ({share:.0%}) "
+                f"{'bounds' if self.one_sided_triangles == 1 else 'bound'} no "
                 f"solid: their pieces are one-sided and nothing can be inside. Closing "
                 f"the holes of the mesh gives fewer pieces and an inside.",
                 style="yellow",
             )
         if self.method == "surface" and self.pieces > _MANY_PIECES:
             yield Text(
-                f"  {self.pieces:,} pieces are many. Fewer are quicker to touch:"
-                " --max-triangles 2000 reduces the mesh first, --method merged --error"
-                " 1e-4 joins pieces within 0.1 mm (minutes for a large mesh). A scene"
-                " has max_triangles, decomposition and decomposition_error_m.",
+                f"  {count(self.pieces, 'piece')} are many. Fewer are quicker to"
+                " touch: reduce the mesh first, to 2000 triangles for instance, or take"
+                " the method merged with an error of 1e-4 m, which joins pieces within"
+                " 0.1 mm (minutes for a large mesh). A scene has max_triangles,"
+                " decomposition and decomposition_error_m.",
                 style="yellow",
             )
 

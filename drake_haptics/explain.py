@@ -12,8 +12,8 @@ from drake_haptics.callback_timer import CallbackTimer
 
 _WHY = {
     "display_force_hold": "always: limits what the device shows",
-    "device_io": "--device: reads the handle, writes the wrench",
-    "handle_model": "--device: carries the wrench on between two ticks",
+    "device_io": "a device: reads the handle, writes the wrench",
+    "handle_model": "a device: carries the wrench on between two ticks",
     "simulated_arm": "device.preset, hand: the arm that is held",
     "virtual_coupling": "always: couples the tool to the handle",
     "haptic_tool": "always: moves the tool",
@@ -29,9 +29,11 @@ _WHY = {
     "passivity_control": "effects.passivity",
     "load_shedding": "device.tick_budget_us: says what slow ticks leave out",
     "tick_end": "device.tick_budget_us: times the tick",
-    "tick_log_sink": "--log: notes every tick",
+    "tick_log_sink": "a log: notes every tick",
     "haptic_visualizer": "draws the page or the recording",
 }
+# Of a system that this package does not know.
+_NOT_OURS = "yours: it was added to the loop"
 REST = "Drake and the rest"
 
 
@@ -83,7 +85,8 @@ def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
     for system in _list_systems(haptic):
         name = system.get_name()
         seconds = sum(own_s.get(leaf, 0.0) for leaf in _list_leaves(system))
-        parts.append(make_part(name, type(system).__name__, _WHY[name], seconds))
+        why = _WHY.get(name, _NOT_OURS)
+        parts.append(make_part(name, type(system).__name__, why, seconds))
     rest_s = tick_s - sum(own_s.values())
     why = "always: steps the arm, calls the parts"
     parts.append(make_part(REST, "Simulator", why, rest_s))

@@ -12,6 +12,7 @@ from drake_haptics.coupling_gains import make_coupling_gains
 from drake_haptics.rendered_bodies import RenderedBody
 from drake_haptics.rendering_wiring import RenderingWiring
 from drake_haptics.scene import Contact, Coupling, Effects, Material
+from drake_haptics.skin import calc_skin_speed
 from drake_haptics.systems.haptic_device import HapticDevice
 
 
@@ -61,6 +62,10 @@ class HapticRendering(Diagram):
       `PassivityControl`.
 
     The force is a function of the plant's state now: there is no sample of delay.
+    Above `skin_speed_m_per_s` a step may carry the tool from beyond the tolerance into
+    a shape: it is met all the same, but as deep as the step has taken it. Once a
+    contact is deeper than ten tolerances there is a
+    `drake_haptics.scene_check.SceneWarning`, the first time only.
     """
 
     def __init__(
@@ -97,6 +102,7 @@ class HapticRendering(Diagram):
         _check_effects(effects, coupling, device)
         self._tool = tool
         self._objects = tuple(objects)
+        self._skin_speed_m_per_s = calc_skin_speed(contact, period_s)
         wiring = RenderingWiring(tool, objects)
         wiring.add_contact(contact, effects, materials, period_s)
         if coupling is not None:
@@ -122,6 +128,15 @@ class HapticRendering(Diagram):
     def objects(self) -> tuple[RenderedBody, ...]:
         """What it meets, in the order of `ContactSet.object_index`."""
         return self._objects
+
+    @property
+    def skin_speed_m_per_s(self) -> float:
+        """Speed at which one step of the plant crosses the contact tolerance, m/s.
+
+        With `contact.query_rate_hz`, one step of the query; of a plant without a time
+        step, the tick of effects with a memory.
+        """
+        return self._skin_speed_m_per_s
 
     def get_body_poses_input_port(self) -> InputPort:
         """Returns the input `body_poses`."""

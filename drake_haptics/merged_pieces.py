@@ -28,11 +28,10 @@ def check_error(method: str, error_m: float | None) -> None:
     """
     if (method == "merged") != (error_m is not None):
         raise UserError(
-            "the method merged needs an error_m (decompose: --error; in a scene:"
-            " decomposition_error_m), how far its pieces may depart from the mesh, m"
+            "the method merged needs an error_m, how far its pieces may depart from"
+            " the mesh, m"
             if error_m is None
-            else "error_m (decompose: --error; in a scene: decomposition_error_m) is"
-            f" for the method merged; {method} has none"
+            else f"error_m is for the method merged; {method} has none"
         )
     if error_m is not None and not 0.0 <= error_m < np.inf:
         raise UserError(f"error_m must be zero or more, in m, is {error_m}")

@@ -33,6 +33,7 @@ from drake_haptics.mesh_file import read_mesh_file
 from drake_haptics.mesh_report import Finding, MeshReport, Severity
 from drake_haptics.mesh_slivers import remove_zero_area_faces
 from drake_haptics.mesh_winding import Winding, wind_components
+from drake_haptics.one_line import count
 from drake_haptics.units import metres_per_unit
 
 __all__ = ["Component", "Mesh", "MeshError", "load_mesh"]
@@ -87,8 +88,9 @@ class Mesh:
     def __repr__(self) -> str:
         size_mm = " × ".join(f"{1e3 * side:.4g}" for side in self.report.extent)
         return (
-            f"Mesh({self.report.source!r}, {len(self.vertices)} vertices, "
-            f"{len(self.triangles)} triangles, {size_mm} mm)"
+            f"Mesh({self.report.source!r}, "
+            f"{count(len(self.vertices), 'vertex', 'vertices')}, "
+            f"{count(len(self.triangles), 'triangle')}, {size_mm} mm)"
         )
 
     @staticmethod
@@ -181,7 +183,11 @@ def _take_in(
                 "unused-vertices",
                 Severity.NOTE,
                 num_unused,
-                f"{num_unused:,} vertices belong to no triangle",
+                count(
+                    num_unused,
+                    "vertex belongs to no triangle",
+                    "vertices belong to no triangle",
+                ),
                 "dropped",
             )
         )

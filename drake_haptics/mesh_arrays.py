@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from drake_haptics.errors import MeshError
+from drake_haptics.one_line import count
 
 # Squares and cubes of coordinates are formed; beyond this they could overflow.
 _LARGEST_COORDINATE_M = 1e9
@@ -40,7 +41,8 @@ def checked_arrays(
     bad = ~np.isfinite(V).all(axis=1)
     if bad.any():
         raise MeshError(
-            f"{int(bad.sum())} of {len(V)} vertices are NaN or infinite, the first is "
+            f"{int(bad.sum())} of {count(len(V), 'vertex', 'vertices')} "
+            f"{'is' if bad.sum() == 1 else 'are'} NaN or infinite, the first is "
             f"vertex {int(bad.argmax())}: {V[bad.argmax()]}; the file is damaged "
             f"or its exporter failed: export it again"
         )
@@ -54,7 +56,7 @@ def checked_arrays(
         f = int(outside.any(axis=1).argmax())
         raise MeshError(
             f"triangle {f} names vertex {int(F[f][outside[f]][0])}, but there are only "
-            f"{len(V)} vertices (counted from 0): export it again"
+            f"{count(len(V), 'vertex', 'vertices')} (counted from 0): export it again"
         )
     return V, F.astype(np.int64)
 

@@ -29,7 +29,11 @@ def check_branching(triangles: np.ndarray, findings: list[Finding]) -> None:
                 "non-manifold-edges",
                 Severity.DEFECT,
                 branching,
-                f"{branching:,} edges join three or more triangles",
+                count(
+                    branching,
+                    "edge joins three or more triangles",
+                    "edges join three or more triangles",
+                ),
                 "the surface is cut there into separate parts",
             )
         )
@@ -109,7 +113,7 @@ def check_components(
                 "many-parts",
                 Severity.NOTE,
                 len(closed),
-                f"{len(closed):,} parts are not connected to each other",
+                f"{count(len(closed), 'part')} are not connected to each other",
                 "each is treated as a body of its own",
             )
         )

@@ -6,6 +6,7 @@ import numpy as np
 
 from drake_haptics.mesh_report import Finding, Severity
 from drake_haptics.mesh_topology import connected_labels, find_edges
+from drake_haptics.one_line import count
 
 
 def equal_vertices(vertices: np.ndarray) -> np.ndarray:
@@ -50,7 +51,11 @@ def join_open_parts(
                 "duplicate-vertices",
                 Severity.NOTE,
                 merged,
-                f"{merged:,} vertices are bit-equal copies of others",
+                count(
+                    merged,
+                    "vertex is a bit-equal copy of another",
+                    "vertices are bit-equal copies of others",
+                ),
                 "joined",
             )
         )
@@ -110,7 +115,11 @@ def distinct_faces(triangles: np.ndarray, findings: list[Finding]) -> np.ndarray
                 "duplicate-faces",
                 Severity.REPAIRED,
                 repeated,
-                f"{repeated:,} triangles are written more than once",
+                count(
+                    repeated,
+                    "triangle is written more than once",
+                    "triangles are written more than once",
+                ),
                 "the first of each was kept",
             )
         )
@@ -146,8 +155,8 @@ def distinct_faces(triangles: np.ndarray, findings: list[Finding]) -> np.ndarray
                 "opposite-faces",
                 Severity.REPAIRED,
                 num_sheet,
-                f"{num_sheet:,} triangles are written a second time with the opposite "
-                f"winding",
+                f"{count(num_sheet, 'triangle is', 'triangles are')} written a second"
+                " time with the opposite winding",
                 "the first of each was kept",
             )
         )

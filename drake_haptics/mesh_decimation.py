@@ -18,6 +18,7 @@ from drake_haptics import _core
 from drake_haptics.errors import MeshError
 from drake_haptics.mesh import Mesh
 from drake_haptics.mesh_report import Finding, Severity, length
+from drake_haptics.one_line import count
 
 # A count that leaves a clean surface is mostly found at once.
 _TRIES_BELOW = 12
@@ -56,7 +57,7 @@ def decimate(mesh: Mesh, max_triangles: int) -> Mesh:
     if len(fewer.triangles) <= max_triangles:
         return _report_error(mesh, fewer)
     raise MeshError(
-        f"{mesh.report.source}: cannot be reduced to {max_triangles:,} triangles"
+        f"{mesh.report.source}: cannot be reduced to {count(max_triangles, 'triangle')}"
         f" without tearing or folding it: take max_triangles = {nearest:,}, the nearest"
         f" count that works"
     )
@@ -78,11 +79,11 @@ def _first_sound(mesh: Mesh, counts: Iterator[int]) -> tuple[Mesh, int] | None:
 
     It may give fewer triangles, and the number of those need not be one that works.
     """
-    for count in counts:
+    for number in counts:
         for options in _OPTIONS:
-            fewer = _collapse(mesh, count, options)
+            fewer = _collapse(mesh, number, options)
             if fewer is not None:
-                return fewer, count
+                return fewer, number
     return None
 
 
@@ -143,7 +144,8 @@ def _report_error(mesh: Mesh, fewer: Mesh) -> Mesh:
         "decimated",
         Severity.NOTE,
         len(fewer.triangles),
-        f"decimated from {len(mesh.triangles):,} to {len(fewer.triangles):,} triangles",
+        f"decimated from {len(mesh.triangles):,} to"
+        f" {count(len(fewer.triangles), 'triangle')}",
         f"the surface is within {length(error_m)} of the original one",
     )
     findings = (*mesh.report.findings, finding)

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import logging
 import os
+import struct
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,8 +16,15 @@ import numpy as np
 
 from drake_haptics.errors import MeshError
 from drake_haptics.missing_file import describe_missing
+from drake_haptics.one_line import count
 from drake_haptics.package_url import resolve_package_url
 from drake_haptics.units import unit_of_name
+
+# Bytes of a binary STL: 80 of anything and the number of triangles; each triangle.
+_STL_HEADER = 84
+_STL_TRIANGLE = 50
+# So much of the beginning tells whether a file is text.
+_TEXT = 1000
 
 
 @dataclass(frozen=True)
@@ -82,7 +92,6 @@ def _read_npz(path: Path) -> RawMesh:
 def _read_with_trimesh(path: Path) -> RawMesh:
     import trimesh  # half a second: only for those who read such a file
 
-    logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # we report ourselves
     formats = trimesh.available_formats()
     if path.suffix.lower().lstrip(".") not in formats:
         raise MeshError(
@@ -91,7 +100,8 @@ def _read_with_trimesh(path: Path) -> RawMesh:
             f"the file, or install the reader that trimesh asks for"
         )
     try:
-        scene = trimesh.load_scene(path, process=False)
+        with _silent_trimesh():
+            scene = trimesh.load_scene(path, process=False)
     except Exception as error:  # each of trimesh's readers raises what it likes
         raise MeshError(
             f"{path}: cannot be read as {path.suffix} "
@@ -99,6 +109,49 @@ def _read_with_trimesh(path: Path) -> RawMesh:
             f"its name says: export it again"
         ) from error
     return _merge_scene(path, scene)
+
+
+@contextmanager
+def _silent_trimesh() -> Iterator[None]:
+    """Keeps trimesh from logging what our own error says."""
+    logger = logging.getLogger("trimesh")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
+
+
+def _describe_missing_triangles(path: Path) -> str:
+    """Returns why trimesh finds no triangle in a file.
+
+    It takes what is no whole STL for one without facets.
+    """
+    if path.suffix.lower() != ".stl":
+        return "has no triangles; point clouds and curves have no surface"
+    data = path.read_bytes()
+    # The count of a binary file's triangles has a zero byte below 16 million.
+    if b"\0" not in data[:_TEXT]:
+        if not data.lstrip().lower().startswith(b"solid"):
+            return "is a text file, and no STL: its content is not what its name says"
+        if b"endsolid" not in data.lower():
+            return (
+                "is cut off: a text STL ends with 'endsolid': export or copy it again"
+            )
+    elif len(data) < _STL_HEADER:
+        return f"is cut off after {count(len(data), 'byte')}: export or copy it again"
+    else:
+        (promised,) = struct.unpack_from("<I", data, _STL_HEADER - 4)
+        size = _STL_HEADER + _STL_TRIANGLE * promised
+        if size != len(data):
+            fault = "is cut off" if size > len(data) else "is damaged"
+            return (
+                f"{fault}: its header promises {count(promised, 'triangle')}, which are"
+                f" {count(size, 'byte')}, and the file has {len(data):,}: export or"
+                " copy it again"
+            )
+    return "has no triangles"
 
 
 def _merge_scene(path: Path, scene: Any) -> RawMesh:
@@ -121,15 +174,14 @@ def _merge_scene(path: Path, scene: Any) -> RawMesh:
             raise MeshError(
                 f"{path}: a triangle names vertex "
                 f"{int(F.max() if F.max() >= len(p_GV) else F.min())}, but there are "
-                f"only {len(p_GV)} vertices; the file is damaged: export it again"
+                f"only {count(len(p_GV), 'vertex', 'vertices')}; the file is damaged:"
+                " export it again"
             )
         vertices.append(p_GV)
         triangles.append(F + start)
         start += len(p_GV)
     if not triangles:
-        raise MeshError(
-            f"{path}: has no triangles; point clouds and curves have no surface"
-        )
+        raise MeshError(f"{path}: {_describe_missing_triangles(path)}")
     return RawMesh(
         np.concatenate(vertices),
         np.concatenate(triangles),

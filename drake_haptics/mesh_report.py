@@ -37,6 +37,12 @@ _COLORS = {
 }
 
 
+_NOT_LOOKED_FOR = (
+    "Not looked for: places where the surface passes through itself; depth is not"
+    " defined there."
+)
+
+
 @dataclass(frozen=True)
 class Finding:
     """One thing found in a mesh.
@@ -123,7 +129,7 @@ class MeshReport:
     def verdict(self) -> str:
         """One sentence: what the mesh is good for."""
         if self.solids == self.components:
-            plural = "one solid" if self.solids == 1 else f"{self.solids} solids"
+            plural = "one solid" if self.solids == 1 else count(self.solids, "solid")
             return f"Usable as {plural}: closed and wound outward."
         if self.solids == 0:
             return (
@@ -132,9 +138,10 @@ class MeshReport:
             )
         share = self.one_sided_triangles / self.triangles
         return (
-            f"Usable in part as a solid: {self.solids} of {self.components} parts "
-            f"bound a solid; the others ({share:.0%} of the triangles) are open "
-            f"surfaces whose pieces are one-sided."
+            f"Usable in part as a solid: {self.solids} of "
+            f"{count(self.components, 'part')} bound a solid; the others "
+            f"({share:.0%} of the triangles) are open surfaces whose pieces are "
+            "one-sided."
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -184,6 +191,8 @@ class MeshReport:
             yield self._findings()
             yield Text()
         yield Text(self.verdict, style="bold")
+        if self.solids:
+            yield Text(_NOT_LOOKED_FOR, style="dim")
 
     def _facts(self) -> Table:
         table = Table.grid(padding=(0, 2))

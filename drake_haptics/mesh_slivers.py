@@ -7,6 +7,7 @@ import numpy as np
 from drake_haptics.errors import MeshError
 from drake_haptics.mesh_report import Finding, Severity
 from drake_haptics.mesh_topology import Edges, find_edges, triangle_area_vectors
+from drake_haptics.one_line import count
 
 # Rounds of edge turning before what is left is cut out. Each round turns every
 # sliver that has a proper neighbour, so chains of slivers shrink from their ends.
@@ -31,9 +32,11 @@ def remove_zero_area_faces(
     triangles = triangles[~repeated].copy()
     thin = find_slivers(vertices, triangles)
     if thin.all():
+        all_are = f"all {count(before, 'triangle')} are"
+        every = "its only triangle is" if before == 1 else all_are
         raise MeshError(
-            f"all {before:,} triangles are degenerate (no area): the mesh has no "
-            f"surface. Was it flattened, or scaled to nothing?"
+            f"{every} degenerate (no area): the mesh has no surface. Was it flattened,"
+            " or scaled to nothing?"
         )
     turned = int(thin.sum())
     for _ in range(_MAX_ROUNDS):
@@ -51,7 +54,7 @@ def remove_zero_area_faces(
                 "zero-area-faces",
                 Severity.REPAIRED,
                 number,
-                f"{number:,} triangles have no area",
+                f"{count(number, 'triangle has', 'triangles have')} no area",
                 "removed"
                 + (
                     ", neighbours split where that closes the surface" if turned else ""

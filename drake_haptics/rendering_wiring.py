@@ -85,6 +85,7 @@ class RenderingWiring:
             effects,
             materials,
             period_s,
+            warns_deep=True,
         )
         force = found.penalty_force
         gains = find_contact_gains(contact, materials)

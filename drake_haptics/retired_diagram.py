@@ -23,7 +23,8 @@ def retire(haptic: HapticDiagram) -> None:
         haptic: What no simulator, port or onlooker uses any more.
     """
     for system in list(_list_systems(haptic.diagram)):
-        vars(system).clear()
+        # Other bindings may give a system no attributes to keep its diagram by.
+        getattr(system, "__dict__", {}).clear()
 
 
 def _list_systems(system: System) -> Iterator[System]:

@@ -8,6 +8,7 @@ from typing import TypedDict
 import numpy as np
 
 from drake_haptics.energy_ledger import EnergyLedger
+from drake_haptics.one_line import count
 from drake_haptics.systems.display_force_hold import LIMITED, NOT_FINITE
 from drake_haptics.systems.load_shedding import SHED_STAGES
 from drake_haptics.tick_clock import TickClock
@@ -82,8 +83,9 @@ class RunStatistics:
     def __repr__(self) -> str:
         self._digest()
         return (
-            f"RunStatistics({self._ticks} ticks of {1e3 * self._period_s:g} ms, at "
-            f"most {self._max_force_N:.3g} N, {self._max_torque_Nm:.3g} N·m and "
+            f"RunStatistics({count(self._ticks, 'tick')} of "
+            f"{1e3 * self._period_s:g} ms, at most "
+            f"{self._max_force_N:.3g} N, {self._max_torque_Nm:.3g} N·m and "
             f"{1e3 * self._max_penetration_m:.3g} mm deep)"
         )
 
@@ -91,6 +93,12 @@ class RunStatistics:
     def ticks(self) -> int:
         """Number of ticks so far."""
         return self._ticks + len(self._pending)
+
+    @property
+    def max_penetration_m(self) -> float:
+        """Depth of the deepest contact so far, m."""
+        self._digest()
+        return self._max_penetration_m
 
     def book(self, ledger: EnergyLedger) -> None:
         """Tells from now on of the energy in a ledger, where the run books it."""

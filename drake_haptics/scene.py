@@ -91,6 +91,9 @@ class Tool:
             are taken, as a whole rigid; relative to the scene file, absolute, or
             `package://...` of this package or of Drake.
         scale: Metres per unit of the mesh file.
+        center: Whether the mesh is moved so that the middle of its box is at the
+            origin of its frame, where the coupling pulls. For a file that has its
+            origin somewhere else.
         max_triangles: The mesh is first reduced to at most so many triangles; all
             of them where not given. See `drake_haptics.mesh_decimation.decimate`.
         chord_error_m: Of a model with round shapes: largest distance of the polytopes
@@ -105,6 +108,7 @@ class Tool:
 
     mesh: str = ""
     scale: float = 1.0
+    center: bool = False
     max_triangles: int | None = None
     chord_error_m: float | None = None
     decomposition: str = "surface"
@@ -121,6 +125,7 @@ class EnvironmentObject:
         name: Unique among the scene's objects.
         mesh: As for the tool.
         scale: Metres per unit of the mesh file.
+        center: As for the tool; `pose` then places the middle.
         max_triangles: As for the tool.
         chord_error_m: As for the tool.
         decomposition: As for the tool.
@@ -132,6 +137,7 @@ class EnvironmentObject:
     name: str = ""
     mesh: str = ""
     scale: float = 1.0
+    center: bool = False
     max_triangles: int | None = None
     chord_error_m: float | None = None
     decomposition: str = "surface"
@@ -211,7 +217,8 @@ class Device:
             (docs/under-load.md). Nothing is dropped where not given.
         max_force_N: Largest force shown, N; the preset's where not given. With no more
             is the tool pressed; at 0 nothing is shown, and it is pressed without limit.
-        max_torque_Nm: Largest torque shown, N·m; the same holds.
+        max_torque_Nm: Largest torque shown, N·m; the preset's where not given. With no
+            more is the tool turned; at 0 with no more than the force has at 5 cm.
         twin: What a simulated device has of a real one's faults.
     """
 
@@ -314,7 +321,8 @@ class Scene:
 
         The environment's frame is the world's. The tool starts above the middle
         of it, comes down, touches, and scrapes in a circle, pressed by the hand's
-        spring with a few newtons, for ever.
+        spring with a few newtons, for ever. A tool's file that has its origin far
+        beside the mesh is centered (`tool.center`).
 
         Args:
             tool_path: Mesh of the tool.
@@ -353,7 +361,7 @@ def load_scene(path: str | Path) -> Scene:
     path = Path(path)
     if str(path) in list_scenes() and not path.exists():
         raise SceneError(
-            f"{path}: no such file; the scene of that name that comes along is"
+            f"{path}: no such file; the scene of that name that is shipped is"
             f" load_scene(find_scene('{path}'))"
         )
     data = load_yaml(path)

@@ -32,8 +32,8 @@ def find_scene(name_or_path: str) -> Path:
     """
     if Path(name_or_path).suffix.lower() in _MESH_SUFFIXES:
         raise SceneError(
-            f"{name_or_path} is a mesh, not a scene: `run --tool MESH --environment"
-            " MESH` takes meshes, and a scene file names them"
+            f"{name_or_path} is a mesh, not a scene: `drake-haptics run --tool MESH"
+            " --environment MESH` takes meshes, and a scene file names them"
         )
     return _find("scene", name_or_path, list_scenes(), SceneError)
 
@@ -59,11 +59,11 @@ def _find(
     if path.parent != Path():
         raise error(f"no {what}: {describe_missing(path)}")
     if path.suffix:
-        own = f"; '{path.stem}' comes along" if path.stem in shipped else ""
+        own = f"; '{path.stem}' is shipped" if path.stem in shipped else ""
         raise error(f"no {what}: {describe_missing(path)}{own}")
     near = difflib.get_close_matches(name_or_path, shipped, n=1)
     hint = f"; did you mean '{near[0]}'?" if near else ""
     raise error(
         f"'{name_or_path}' is neither a {what} file in {Path.cwd()} nor a {what} that"
-        f" comes along ({', '.join(shipped)}){hint}"
+        f" is shipped ({', '.join(shipped)}){hint}"
     )

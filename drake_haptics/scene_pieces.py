@@ -9,6 +9,7 @@ from typing import cast
 from drake_haptics.decomposition import Decomposition, Method, decompose
 from drake_haptics.errors import SceneError
 from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.mesh_centering import center
 from drake_haptics.mesh_decimation import decimate
 from drake_haptics.model_file import (
     DEFAULT_CHORD_ERROR_M,
@@ -58,6 +59,7 @@ def _describe_cut(item: Tool | EnvironmentObject) -> tuple[object, ...]:
     return (
         item.mesh,
         item.scale,
+        item.center,
         item.max_triangles,
         item.chord_error_m,
         item.decomposition,
@@ -79,4 +81,6 @@ def _load_mesh(item: Tool | EnvironmentObject) -> Mesh:
         )
     else:
         mesh = load_mesh(item.mesh, scale=item.scale)
+    if item.center:
+        mesh = center(mesh)
     return mesh if item.max_triangles is None else decimate(mesh, item.max_triangles)

@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 from pydrake.math import RigidTransform
 
-from drake_haptics import _core
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.decomposition import Decomposition
 from drake_haptics.device_preset import load_device_preset
 from drake_haptics.device_site import find_device_site
+from drake_haptics.mesh_centering import describe_origin_beside, find_origin_beside
 from drake_haptics.mesh_checks import LARGEST_USUAL_EXTENT_M, SMALLEST_USUAL_EXTENT_M
 from drake_haptics.mesh_report import length
 from drake_haptics.mesh_topology import winding_numbers
-from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.scene import EnvironmentObject, Tool
 from drake_haptics.simulated_device import make_hand_path
 from drake_haptics.tolerance_question import question_tolerance
@@ -23,8 +23,6 @@ from drake_haptics.units import METRES_PER_UNIT, guess_unit
 
 # A tool is held in one hand.
 _LARGEST_USUAL_TOOL_M = 1.0
-# Of the tool's diagonal: so far beside its box a mesh's origin is by chance.
-_FAR_ORIGIN = 0.1
 # So many places of the hand's path, and vertices of the tool, are looked at.
 _PLACES = 100
 _VERTICES = 16
@@ -55,11 +53,9 @@ def _question_sizes(haptic: HapticDiagram) -> list[str]:
     scene = haptic.scene
     objects = zip(scene.environment, haptic.environment, strict=True)
     sentences = [
-        _question_size("tool", "tool", scene.tool, haptic.tool, _LARGEST_USUAL_TOOL_M)
+        _question_size("tool", scene.tool, haptic.tool, _LARGEST_USUAL_TOOL_M)
     ] + [
-        _question_size(
-            f"environment[{i}]", "environment", item, part, LARGEST_USUAL_EXTENT_M
-        )
+        _question_size(f"environment[{i}]", item, part, LARGEST_USUAL_EXTENT_M)
         for i, (item, part) in enumerate(objects)
     ]
     return [sentence for sentence in sentences if sentence]
@@ -67,7 +63,6 @@ def _question_sizes(haptic: HapticDiagram) -> list[str]:
 
 def _question_size(
     key: str,
-    option: str,
     item: Tool | EnvironmentObject,
     part: Decomposition,
     largest_m: float,
@@ -80,10 +75,7 @@ def _question_size(
     if unit is None:
         return f"{size}; is its scale ({item.scale:g}) right?"
     factor = METRES_PER_UNIT[unit]
-    return (
-        f"{size}; if the file is in {unit}: {key}.scale: {factor:g} in a scene file,"
-        f" --{option}-scale {factor:g} on the command line"
-    )
+    return f"{size}; if the file is in {unit}: {key}.scale: {factor:g}"
 
 
 def _question_origin(haptic: HapticDiagram) -> list[str]:
@@ -92,16 +84,15 @@ def _question_origin(haptic: HapticDiagram) -> list[str]:
     The coupling pulls at the origin: with a long lever to the hand its force is mostly
     torque, and what it pulls at is light.
     """
-    low, high = _find_box(haptic.tool.mesh.vertices)
-    beside_m = float(np.linalg.norm(np.maximum(np.maximum(low, -high), 0.0)))
-    if beside_m <= _FAR_ORIGIN * float(np.linalg.norm(high - low)):
+    beside_m = find_origin_beside(haptic.tool.mesh)
+    if beside_m is None:
         return []
-    middle = ", ".join(f"{x:.4g}" for x in (low + high) / 2.0 / haptic.scene.tool.scale)
     return [
-        f"tool: the origin of {Path(haptic.scene.tool.mesh).name} is"
-        f" {length(beside_m)} beside the mesh, and the coupling pulls there: force on"
-        " the hand becomes torque, and may shake. Move it so that its middle, now at"
-        f" ({middle}) of the file, is at the origin"
+        f"tool: {describe_origin_beside(Path(haptic.scene.tool.mesh).name, beside_m)},"
+        " and the coupling pulls there: force on the hand becomes torque, and may"
+        " shake;"
+        " tool.center: true moves the middle of the mesh to the origin (tool.grasp and"
+        " hand.path are then those of the middle)"
     ]
 
 
@@ -228,17 +219,16 @@ def question_start(haptic: HapticDiagram) -> list[str]:
         X_WT = X_WH @ scene.tool.grasp.to_rigid_transform()
         allowed_m = scene.contact.tolerance_m
         remedy = "lead the device's handle to a place beside it and start again"
-    p_WT = _find_corners(haptic.tool, X_WT)[np.newaxis]
+    depths_m = _calc_depths(haptic, X_WT)
     sentences = []
-    for item, part in zip(scene.environment, haptic.environment, strict=True):
-        X_WO = item.pose.to_rigid_transform()
-        if _calc_gap(p_WT, X_WO, part) > 0.0:
-            continue
-        X_OT = X_WO.inverse() @ X_WT
-        depth_m = _calc_depth(haptic.tool, part, X_OT, scene.contact.tolerance_m)
+    for item, part, depth_m in zip(
+        scene.environment, haptic.environment, depths_m, strict=True
+    ):
         if depth_m > allowed_m:
             how = f"{length(depth_m)} deep in '{item.name}'"
-        elif _is_inside(haptic.tool, part, X_OT):
+        elif _is_inside(
+            haptic.tool, part, item.pose.to_rigid_transform().inverse() @ X_WT
+        ):
             how = f"inside '{item.name}', out of which nothing leads it"
         else:
             continue
@@ -246,13 +236,21 @@ def question_start(haptic: HapticDiagram) -> list[str]:
     return sentences
 
 
-def _calc_depth(
-    tool: Decomposition, part: Decomposition, X_OT: RigidTransform, tolerance_m: float
-) -> float:
-    """Returns how deep the deepest contact is, m; 0 where there is none."""
-    tracker = _core.ContactTracker(tool.core, part.core, tolerance_m, "global")
-    distance = tracker.query(X_OT, RigidTransform()).distance
-    return max(0.0, -float(distance.min(initial=0.0)))
+def _calc_depths(haptic: HapticDiagram, X_WT: RigidTransform) -> list[float]:
+    """Returns how deep the tool is in each object, m; 0 where there is no contact.
+
+    The run's own query is asked, in a Context of its own, so that the depth is that
+    which the run begins with.
+    """
+    query = haptic.loop.contact_query
+    context = query.CreateDefaultContext()
+    query.get_tool_pose_input_port().FixValue(context, pose_to_vector(X_WT))
+    if query.HasInputPort("relief"):
+        query.get_relief_input_port().FixValue(context, np.ones(3))
+    contacts = query.get_contacts_output_port().Eval(context)
+    depths_m = np.zeros(len(haptic.environment))
+    np.maximum.at(depths_m, contacts.object_index, -contacts.distance)
+    return depths_m.tolist()
 
 
 def _is_inside(tool: Decomposition, part: Decomposition, X_OT: RigidTransform) -> bool:

@@ -54,7 +54,7 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
     model = preset.model_path
     if scene.hand.grip not in HAND_GRIPS:
         raise SceneError(
-            f"hand.grip: '{scene.hand.grip}' is none of {', '.join(HAND_GRIPS)}"
+            f"hand.grip: '{scene.hand.grip}' is not one of {', '.join(HAND_GRIPS)}"
         )
     X_TH = scene.tool.grasp.to_rigid_transform().inverse()
     X_WB = place_base(scene, path)

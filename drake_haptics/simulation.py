@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import math
 import time
+import warnings
 from collections.abc import Callable
 from contextlib import nullcontext
 
@@ -20,6 +21,8 @@ from drake_haptics.builder import HapticDiagram
 from drake_haptics.energy_ledger import EnergyLedger
 from drake_haptics.realtime_priority import realtime_priority
 from drake_haptics.run_statistics import RunStatistics
+from drake_haptics.scene_check import SceneWarning
+from drake_haptics.skin import question_depth
 from drake_haptics.tick_clock import TickClock
 
 _MADE_BY = "BuildHapticDiagram(scene) makes it of a scene"
@@ -72,7 +75,7 @@ def run(
 
     Args:
         haptic: What `BuildHapticDiagram` returned.
-        duration_s: Simulated time, s; until Ctrl-C where not given.
+        duration_s: Simulated time, s; for ever where not given.
         pace: Waits for each tick, so that simulated time is clock time; a device needs
             it, and the system is asked for a real-time priority. As fast as it can
             where not given.
@@ -85,16 +88,22 @@ def run(
         context: Where to go on; becomes the simulator's. Nothing in it is initialized.
             At the scene's start where not given.
         statistics: Of the runs before, which this one goes on with, or of none yet;
-            its own where not given.
+            its own where not given. It is filled tick by tick, and so holds what ran
+            also where an error or Ctrl-C ends the run.
 
     Returns:
-        What was measured. Ctrl-C ends a run early and is not an error.
+        What was measured.
+
+    Warns:
+        SceneWarning: At the end, a contact was deeper than ten tolerances, and none
+            was in the runs before.
 
     Raises:
         ValueError: `duration_s` is negative, `energy` is asked for, but the device is
             not simulated, or the run goes on with the statistics of others.
         RunError: The tool or the arm has a pose or velocity that is not finite.
         TypeError: An argument is of another kind; the message names it.
+        KeyboardInterrupt: At Ctrl-C.
     """
     require_kinds(_MADE_BY, haptic=(haptic, HapticDiagram))
     require_kinds(
@@ -116,6 +125,7 @@ def run(
         statistics = RunStatistics(haptic.period_s, pace=pace)
     if ledger is not None:
         statistics.book(ledger)
+    before_m = statistics.max_penetration_m
     end_s = math.inf
     if duration_s is not None:
         end_s = _find_end(simulator.get_context().get_time(), duration_s, haptic)
@@ -134,13 +144,18 @@ def run(
         simulator.set_monitor(_make_monitor(haptic, measure, on_tick, pace))
         with nullcontext() if pace is None else realtime_priority():
             simulator.AdvanceTo(end_s)
-    except KeyboardInterrupt:
-        pass
     except FloatingPointError as error:
         time_s = simulator.get_context().get_time()
         raise RunError(f"stopped at {time_s:.4f} s: {error}", statistics) from error
     finally:
         gc.unfreeze()
+        clustering = haptic.loop.contact_clustering
+        rule = clustering.get_rule(
+            clustering.GetMyContextFromRoot(simulator.get_context())
+        )
+        question = question_depth(statistics.max_penetration_m, rule.tolerance_m)
+        if question and not question_depth(before_m, rule.tolerance_m):
+            warnings.warn(question, SceneWarning, stacklevel=2)
     return statistics
 
 

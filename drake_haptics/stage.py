@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import socket
 
 import numpy as np
@@ -23,14 +22,12 @@ _VIEWS = {
     "top": (0.0, -1e-3, 1.0),
 }
 CAMERAS = tuple(_VIEWS)
-# Drake says so of every second page.
-_TWO_CAMERAS = "More than one meshcat client is attempting to broadcast its camera pose"
 # Half the angle of Meshcat's camera is 37.5 degrees; the rest is margin.
 _HALF_VIEW_RAD = np.deg2rad(35.0)
 
 
 def open_meshcat(port: int | None = None) -> Meshcat:
-    """Opens a page without Drake's messages on the terminal.
+    """Opens a page on this computer.
 
     Args:
         port: TCP port of the page; None takes the first free one from 7000 on.
@@ -38,9 +35,6 @@ def open_meshcat(port: int | None = None) -> Meshcat:
     Raises:
         UserError: The port cannot be had.
     """
-    logger = logging.getLogger("drake")
-    logger.setLevel(logging.WARNING)
-    logger.addFilter(_is_of_use)
     # Drake gives no reason where it fails, so ask the system first.
     if port is not None:
         with socket.socket() as probe:
@@ -56,14 +50,6 @@ def open_meshcat(port: int | None = None) -> Meshcat:
         )
     except RuntimeError as error:
         raise UserError(f"Meshcat cannot open a page: {error}") from error
-
-
-def _is_of_use(record: logging.LogRecord) -> bool:
-    """Whether a person at the terminal can do anything about a message of Drake's.
-
-    Two pages may show a run: which of them has the camera is told on the pages.
-    """
-    return not record.getMessage().startswith(_TWO_CAMERAS)
 
 
 def set_stage(meshcat: Meshcat, haptic: HapticDiagram) -> None:

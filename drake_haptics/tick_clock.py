@@ -7,6 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from drake_haptics.one_line import count
+
 # Percentiles are those of the latest ticks: a minute at 1 kHz.
 _MAX_RECORDS = 1 << 16
 
@@ -47,7 +49,7 @@ class TickClock:
 
     def __repr__(self) -> str:
         return (
-            f"TickClock({1e3 * self._period_s:g} ms, {self._ticks} ticks, "
+            f"TickClock({1e3 * self._period_s:g} ms, {count(self._ticks, 'tick')}, "
             f"{self._skipped} skipped)"
         )
 

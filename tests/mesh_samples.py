@@ -58,3 +58,26 @@ def corner_set(V, F):
         min((a, b, c), (b, c, a), (c, a, b))
         for a, b, c in ((tuple(V[i]) for i in t) for t in F)
     }
+
+
+def tray(inner=0.02, wall=0.006, height=0.02, floor=0.003):
+    """A closed square tray, wound outward, of 28 triangles: V (16, 3) in m, F.
+
+    It stands on z = 0 about the z axis; `inner` is half the width of its floor, whose
+    top is at z = `floor`.
+    """
+    outer = inner + wall
+    rings = ((outer, 0.0), (outer, height), (inner, height), (inner, floor))
+    V = np.array(
+        [
+            (x * s, y * s, z)
+            for s, z in rings
+            for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        ]
+    )
+    F = [(0, 2, 1), (0, 3, 2), (12, 13, 14), (12, 14, 15)]
+    for p in (0, 4, 8):
+        for k in range(4):
+            j = (k + 1) % 4
+            F += [(p + k, p + j, p + 4 + j), (p + k, p + 4 + j, p + 4 + k)]
+    return V, np.array(F)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 
 import numpy as np
@@ -11,10 +11,13 @@ from press_tools import PressTool
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
+from drake_haptics.device_preset import load_device_preset
 from drake_haptics.mesh import Mesh
+from drake_haptics.scene import Coupling, Device
 
 PERIOD_S = 1e-3
-LARGEST_FORCE_N = 8.5
+_DEVICE = load_device_preset(Device().preset)
+LARGEST_FORCE_N = _DEVICE.max_force_N
 START_M = 5e-3  # how far outside a press starts
 LONGEST_TRAVEL_M = 40e-3  # where it gives up if nothing resists
 HOLD_S = 0.2
@@ -31,14 +34,23 @@ class Gains:
     damping_Ns_per_m: float = 5.0
 
 
-# The builder's defaults answer 8.5 N before the shapes touch; the others sink in:
-# 1.2 mm, less than half of a 3 mm wall, and 3.25 mm, as the shipped scenes do.
+# The builder's defaults answer 8.5 N before the shapes touch; the next two sink in:
+# 1.2 mm, less than half of a 3 mm wall, and 3.25 mm, as the shipped scenes do. The last
+# have a skin so thin that a press crosses it ten times over in one tick, a jab fifty.
 GAINS = {
     "default": Gains(),
     "sinking": Gains(5e-4, 5e-3, 5e3, 5.0),
     "soft": Gains(1e-3, 6e-3, 2e3, 4.0),
+    "thin skin": Gains(1e-5, 5e-3, 2e4, 5.0),
 }
-COUPLING = _core.CouplingGains(800.0, 2.0, 1.0, 0.004)
+# A scene's own, which yields where its device can show no more.
+COUPLING = _core.CouplingGains(
+    **asdict(Coupling()),
+    max_force_N=_DEVICE.max_force_N,
+    max_torque_Nm=_DEVICE.max_torque_Nm,
+)
+# Of a press's force, where it stops: what yields reaches its limit but for rounding.
+_REACHED = 1.0 - 1e-9
 
 
 @dataclass(frozen=True)
@@ -187,7 +199,7 @@ def _script(press: Press) -> Generator[tuple[str, np.ndarray], float, None]:
     step = press.speed_m_per_s * PERIOD_S
     travel, slid = 0.0, 0.0
     force_N = yield "in", press.q_WH(travel, slid)
-    while travel < START_M + press.stop_m and force_N < press.stop_N:
+    while travel < START_M + press.stop_m and force_N < _REACHED * press.stop_N:
         travel += step
         force_N = yield "in", press.q_WH(travel, slid)
     if press.slide_W.any():

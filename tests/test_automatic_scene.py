@@ -82,3 +82,32 @@ def test_a_tool_of_an_unlikely_size_is_refused(tmp_path, size):
     block = write(tmp_path, "block.stl", SHAPES["block"])
     with pytest.raises(SceneError, match=r"the tool tool.stl is .*m long, and must"):
         Scene.for_meshes(tool, block)
+
+
+def test_a_tool_far_from_its_origin_is_held_as_if_it_were_not(tmp_path):
+    ball = write(tmp_path, "ball.ply", SHAPES["ball"])
+    near = Scene.for_meshes(write(tmp_path, "near.stl", SHAPES["stick"]), ball)
+    moved = SHAPES["stick"].copy()
+    moved.apply_translation([0.5, -0.25, 0.125])
+    far = Scene.for_meshes(write(tmp_path, "far.stl", moved), ball)
+    assert (near.tool.center, far.tool.center) == (False, True)
+    # STL has single precision: half a metre away, 30 nm.
+    np.testing.assert_allclose(
+        far.tool.grasp.position_m, near.tool.grasp.position_m, atol=1e-7
+    )
+    for one, two in zip(near.hand.path.waypoints, far.hand.path.waypoints, strict=True):
+        np.testing.assert_allclose(one.position_m, two.position_m, atol=1e-6)
+    figures = run(BuildHapticDiagram(far), 3.0).to_dict()
+    assert figures["contacts"]["max"] >= 1
+    assert figures["limit_hits"] == 0
+
+
+def test_a_tool_that_is_held_at_its_end_keeps_its_origin(tmp_path):
+    # The origin is 5 mm beyond the end of a stick of 120 mm.
+    stick = SHAPES["stick"].copy()
+    stick.apply_translation([0.0, 0.0, 0.065])
+    scene = Scene.for_meshes(
+        write(tmp_path, "stick.stl", stick),
+        write(tmp_path, "ball.ply", SHAPES["ball"]),
+    )
+    assert not scene.tool.center

@@ -12,7 +12,16 @@ from diagram_parts import EVERY, SYSTEMS, names, sources
 from pydrake.geometry import Meshcat
 
 from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import Braking, Contact, Effects, Material
+from drake_haptics.scene import (
+    Braking,
+    Contact,
+    Effects,
+    Friction,
+    Gravity,
+    Material,
+    Passivity,
+)
+from drake_haptics.simulation import run
 
 OF_EFFECT = {
     "shading": "force_shading",
@@ -129,3 +138,94 @@ def test_each_object_pushes_with_its_own_stiffness(tmp_path):
         F = force.get_tool_wrench_output_port().Eval(force.GetMyContextFromRoot(root))
         pushes.append(F[5])
     np.testing.assert_allclose(pushes[1], 2.0 * pushes[0], rtol=1e-9)
+
+
+def test_each_object_damps_with_its_own_damping(tmp_path):
+    # Two plates at one place share the damper: b₁/2 + b₂/2 of the speed of approach.
+    scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 1e-3)])
+    second = replace(scene.environment[0], name="second")
+    scene.contact = Contact(tolerance_m=2e-3, damping_Ns_per_m=4.0)
+    damped = []
+    for material in (Material(), Material(damping_Ns_per_m=20.0)):
+        scene.environment = [scene.environment[0], replace(second, material=material)]
+        haptic = BuildHapticDiagram(scene)
+        force = haptic.loop.penalty_force
+        root = haptic.diagram.CreateDefaultContext()
+        context = force.GetMyMutableContextFromRoot(root)
+        pushes = []
+        for speed in (0.0, 0.1):
+            falling = [0.0, 0.0, 0.0, 0.0, 0.0, -speed]
+            force.get_tool_velocity_input_port().FixValue(context, falling)
+            pushes.append(force.get_tool_wrench_output_port().Eval(context)[5])
+        damped.append(pushes[1] - pushes[0])
+    assert damped[0] > 0.0
+    np.testing.assert_allclose(damped[1], damped[0] * (4.0 + 20.0) / (4.0 + 4.0))
+
+
+@pytest.mark.parametrize("own", [None, 0.6, 0.0])
+def test_each_object_rubs_with_its_own_friction(tmp_path, own):
+    # Pressed onto the plate and drawn 40 mm along it: in sliding the force across is μ
+    # of the force along the normal.
+    down = TOOL_HALF_HEIGHT - 5e-3
+    path = [(0.0, 0.0, 0.0, down), (0.3, 0.0, 0.0, down), (0.8, 0.04, 0.0, down)]
+    scene = over_a_plate(tmp_path, path)
+    scene.effects = Effects(friction=Friction(coefficient=0.2))
+    scene.environment[0].material = Material(friction_coefficient=own)
+    haptic = BuildHapticDiagram(scene)
+    ratios = []
+
+    def look(root):
+        if root.get_time() > 0.6:
+            across, along = (
+                haptic.loop.wrench_sources[name].Eval(
+                    haptic.loop.wrench_sources[name]
+                    .get_system()
+                    .GetMyContextFromRoot(root)
+                )[3:6]
+                for name in ("friction", "contact")
+            )
+            ratios.append(np.linalg.norm(across) / along[2])
+
+    run(haptic, 0.75, on_tick=look)
+    assert np.mean(ratios) == pytest.approx(0.2 if own is None else own, rel=0.02)
+
+
+def test_the_reserve_is_what_coupling_softest_contact_and_tool_can_give_back(tmp_path):
+    scene = over_a_plate(tmp_path, [START])
+    second = replace(
+        scene.environment[0],
+        name="second",
+        material=Material(stiffness_N_per_m=250.0),
+    )
+    scene.environment = [scene.environment[0], second]
+    scene.contact = Contact(stiffness_N_per_m=5e4)
+    force, torque, mass = 8.5, 0.188, scene.tool.mass_kg
+    springs = force**2 / 800.0 / 2 + torque**2 / 1.0 / 2 + force**2 / 250.0 / 2
+    for gravity, lifted in [
+        (None, 0.0),
+        (Gravity(acceleration_m_per_s2=[0.0, 3.0, -4.0]), 0.5 * mass * 5.0),
+    ]:
+        scene.effects = Effects(gravity=gravity, passivity=Passivity())
+        # The hand moves the tool with 1 m/s at most.
+        expected_J = springs + 0.5 * mass * 1.0**2 + lifted
+        assert measure_reserve(BuildHapticDiagram(scene)) == pytest.approx(expected_J)
+
+
+def measure_reserve(haptic):
+    """Returns what is left of a balance after a hand has put a thousand joules in."""
+    passivity = haptic.loop.effects.passivity
+    context = passivity.CreateDefaultContext()
+    X_WH, F = [1.0, 0, 0, 0, 0, 0, 0], [0.0, 0, 0, 0, 0, -1000.0]
+    ports = [
+        (passivity.get_asked_wrench_input_port(), F),
+        (passivity.get_applied_wrench_input_port(), F),
+        (passivity.get_handle_velocity_input_port(), np.zeros(6)),
+    ]
+    for port, value in ports:
+        port.FixValue(context, value)
+    for height in (0.0, 1.0, 2.0):
+        X_WH[6] = height
+        passivity.get_handle_pose_input_port().FixValue(context, X_WH)
+        updated = passivity.EvalUniquePeriodicDiscreteUpdate(context)
+        context.SetDiscreteState(updated.Clone())
+    return passivity.GetOutputPort("energy_J").Eval(context)[0]

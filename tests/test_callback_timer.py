@@ -5,6 +5,7 @@ import time
 import pytest
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
+from drake_haptics import callback_timer
 from drake_haptics.callback_timer import CallbackTimer
 
 
@@ -115,3 +116,54 @@ def test_without_a_tick_there_is_nothing(clock):
     with CallbackTimer() as timer:
         source = Worker(clock, 5e-3, False)
     assert timer.calc_means() == ({source: 0.0}, 0.0)
+
+
+def test_pydrake_looks_declarations_up_on_the_class(clock):
+    """What the timer rests on: a change of pydrake's bindings fails here first."""
+    seen = []
+    declare = LeafSystem.DeclareVectorOutputPort
+
+    def spy(system, *arguments, **options):
+        seen.append(system)
+        return declare(system, *arguments, **options)
+
+    LeafSystem.DeclareVectorOutputPort = spy
+    try:
+        source = Worker(clock, 5e-3, False)
+    finally:
+        LeafSystem.DeclareVectorOutputPort = declare
+    assert seen == [source]
+
+
+class _Sealed(type):
+    """Lets one attribute of its classes be replaced, and no second one."""
+
+    def __setattr__(cls, name, value):
+        if name != callback_timer._DECLARATIONS[0]:
+            raise TypeError(f"cannot set {name}")
+        super().__setattr__(name, value)
+
+
+def test_bindings_that_cannot_be_changed_leave_the_time_of_whole_ticks(
+    clock, monkeypatch
+):
+    class Sealed(metaclass=_Sealed):
+        """Has what the timer replaces."""
+
+        DeclareVectorOutputPort = lambda *_: None  # noqa: E731
+        DeclareAbstractOutputPort = lambda *_: None  # noqa: E731
+        DeclarePeriodicDiscreteUpdateEvent = None
+        DeclarePeriodicPublishEvent = None
+
+    before = dict(vars(Sealed))
+    monkeypatch.setattr(callback_timer, "LeafSystem", Sealed)
+    with (
+        pytest.warns(RuntimeWarning, match="only whole ticks are timed"),
+        CallbackTimer() as timer,
+    ):
+        source, sink = Worker(clock, 5e-3, False), Worker(clock, 3e-3, True)
+    assert dict(vars(Sealed)) == before
+    _diagram, root = build(source, sink)
+    for i in range(3):
+        tick(timer, clock, sink, root, 1.0 + i, 2e-3)
+    assert timer.calc_means() == ({}, pytest.approx(10e-3))

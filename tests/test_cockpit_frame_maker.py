@@ -53,6 +53,17 @@ def test_vectors_are_those_of_the_picture():
     np.testing.assert_allclose(frame["handle"], [0.02 / height_m, 0.03 / height_m])
 
 
+def test_the_picture_is_as_high_at_the_handle_as_a_pinhole_makes_it():
+    """75 degrees from its lower to its upper edge; z of the world is up."""
+    p_WH = X_WC.translation() + X_WC.rotation().matrix() @ [0.1, -0.2, 0.5]
+    frame = FrameMaker().make(packet([], p_WH=p_WH.tolist()))
+    assert frame["height_m"] == pytest.approx(2 * 0.5 * math.tan(math.radians(37.5)))
+    R_CW = X_WC.rotation().matrix().T
+    for i, name in enumerate("xyz"):
+        x, y, z = R_CW[:, i]
+        np.testing.assert_allclose(frame["axes"][name], [x, -y, -z], atol=1e-12)
+
+
 @pytest.mark.parametrize("depth_m", [-1.0, 0.0, math.inf, math.nan])
 def test_what_is_not_before_the_camera_has_no_place(depth_m):
     p_WH = (X_WC.translation() + X_WC.rotation().matrix()[:, 2] * depth_m).tolist()
@@ -105,10 +116,10 @@ def test_times_are_those_of_the_latest_ticks():
 def test_the_deepest_of_a_frame_is_told_and_the_last_counts():
     ticks = [tick(0.0, distance_m=-2e-3, contacts=7.0), tick(1e-3, distance_m=1e-3)]
     frame = FrameMaker().make(packet(ticks))
-    assert (frame["depth_m"], frame["near_m"]) == (2e-3, 0.0)
+    assert frame["gap_m"] == -2e-3
     assert (frame["contacts"], frame["clusters"]) == (5, 2)
     frame = FrameMaker().make(packet([tick(0.0, distance_m=math.inf)]))
-    assert frame["depth_m"] is frame["near_m"] is None
+    assert frame["gap_m"] is None
 
 
 def test_what_is_not_known_is_null_in_json():
@@ -117,7 +128,7 @@ def test_what_is_not_known_is_null_in_json():
     )
     frame = FrameMaker().make(packet([tick(0.0, **nothing)]))
     json.dumps(frame, allow_nan=False)
-    for name in ("late_us", "tick_us", "contacts", "depth_m", "near_m"):
+    for name in ("late_us", "tick_us", "contacts", "gap_m"):
         assert frame[name] is None
 
 

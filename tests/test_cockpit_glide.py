@@ -28,6 +28,7 @@ STIFF = {"do": "set", "key": "coupling.stiffness_N_per_m", "to": 3000}
 SOFT = {**STIFF, "to": 100}
 HARD = {"do": "set", "key": "contact.stiffness_N_per_m", "to": 1e5}
 EARLY = {"do": "set", "key": "contact.tolerance_m", "to": 6e-3}
+GRAVITY = {"do": "effect", "name": "gravity", "on": True}
 OCTREE = {"do": "choose", "key": "contact.clustering", "to": "octree"}
 
 
@@ -91,6 +92,39 @@ def test_the_force_on_a_device_does_not_step(
     steps = np.linalg.norm(np.diff(shown[ASKED_AT - 1 :], axis=0), axis=1)
     assert steps.max() < LARGEST_STEP_N
     np.testing.assert_allclose(shown[-1], [0, 0, force_N], atol=0.02)
+
+
+def hold_still(k):
+    """A hand that cannot be moved, in the air."""
+    return make_reading(k)
+
+
+def test_a_heavy_tool_is_not_dropped_into_a_hand(scene, meshcat, monkeypatch):
+    """2 kg that fall pull at the coupling with twice what they weigh, in 40 ms."""
+    device = ScriptedDevice(hold_still)
+    monkeypatch.setattr(holding, "open_device", lambda *_: device)
+    heavy = dataclasses.replace(scene.tool, mass_kg=2.0)
+    rig = CockpitRig(
+        dataclasses.replace(scene, tool=heavy), meshcat, monkeypatch,
+        {ASKED_AT: [GRAVITY]}, address="udp://there", watch=find_force,
+    )  # fmt: skip
+    rig.run(1.0)
+    asked, felt = (
+        np.linalg.norm(forces, axis=1)
+        for forces in (rig.seen, [command.F_BH[3:] for command in device.commands])
+    )
+    assert np.diff(asked).max() > 2 * LARGEST_STEP_N
+    began = np.flatnonzero(felt)[0]
+    steps = np.abs(np.diff(felt))
+    assert steps[: began + 100].max() < LARGEST_STEP_N
+    # Then the tool swings, as physics has it; the rise adds its share of each tick.
+    swing = np.abs(np.diff(asked[began + 100 :])).max()
+    assert steps.max() < swing + asked.max() / 200 < np.diff(asked).max()
+    # In 0.2 s all of it is there, and before no more than its share of the time since
+    # gravity was asked for.
+    share = (np.arange(began, began + 200) - ASKED_AT) / 200
+    assert (felt[began : began + 200] <= share * asked.max() + 1e-9).all()
+    assert felt[-1] == pytest.approx(asked[-1], abs=LARGEST_STEP_N) and asked[-1] > 2.0
 
 
 def test_back_to_the_file_glides_too(scene, meshcat, monkeypatch):

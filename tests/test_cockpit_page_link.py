@@ -96,6 +96,26 @@ def test_it_talks_both_ways(link):
     assert read_until(page, "over") == {"why": "Enough."}
 
 
+def test_pages_are_told_that_a_loop_stands_still_until_it_goes_on(link):
+    link.tell({"hello": {}})
+    page, ticks = connect(link.url), TickBuffer()
+    read_until(page, "hello")
+    # A loop that has not begun does not stand still.
+    page.settimeout(1.5)
+    with pytest.raises(websocket.WebSocketTimeoutException):
+        page.recv()
+    page.settimeout(BOUND_S)
+    link.send(ticks.take(**HEAD))
+    quiet_s = [read_until(page, "quiet")["for_s"] for _ in range(3)]
+    assert 0.5 <= quiet_s[0] < quiet_s[1] < quiet_s[2]
+    # Whoever comes meanwhile is told, too.
+    late = connect(link.url)
+    assert read_until(late, "quiet")["for_s"] >= quiet_s[2]
+    link.send(ticks.take(**HEAD))
+    read_until(page, "frame")
+    assert read_until(page, "quiet")["for_s"] < quiet_s[2]
+
+
 def test_its_process_needs_neither_drake_nor_numpy():
     code = (
         "import sys, drake_haptics.cockpit.page_process;"

@@ -1,10 +1,12 @@
 """Nobody who takes a handle is surprised by its force."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fake_device import ScriptedDevice, make_reading
 
-from drake_haptics.cockpit.taken_device import TakenDevice
+from drake_haptics.cockpit.taken_device import ForceOnRequest, TakenDevice
 from drake_haptics.device.backend import DeviceCommand, DeviceReading, Fault, GateState
 
 PERIOD_S, FORCE_N, TORQUE_NM = 2e-3, 8.0, 0.4
@@ -97,6 +99,38 @@ def test_somebody_can_want_it_at_once_and_still_it_rises():
     np.testing.assert_allclose(np.diff(forces[9:]), 8.0 / RISING)
 
 
+def test_what_becomes_another_goes_over_from_what_was_shown():
+    device = ScriptedDevice()
+    taken = take(device)
+    before, after = np.array([0.1, 0, 0, 5.0, 0, 0]), np.array([0, 0.2, 0, 0, -3.0, 0])
+    taken.resume()
+    show(taken, before, RISING)
+    for asked in (after, before):
+        last = device.commands[-1].F_BH
+        taken.hand_over()
+        # Before it is all there it may become another one again.
+        show(taken, asked, RISING // 2)
+        shown = np.array([each.F_BH for each in device.commands[-RISING // 2 :]])
+        share = np.arange(1, RISING // 2 + 1)[:, None] / RISING
+        np.testing.assert_allclose(shown, last + share * (asked - last), atol=1e-12)
+        np.testing.assert_allclose(device.commands[-1].K_B, 1.5 * np.eye(6))
+    show(taken, before, RISING // 2)
+    np.testing.assert_allclose(device.commands[-1].F_BH, before, atol=1e-12)
+    # What a fault took away is not gone back to.
+    taken.hand_over()
+    taken.recover()
+    show(taken, GENTLE, WAITING)
+    np.testing.assert_allclose(device.commands[-1].F_BH, GENTLE / RISING, atol=1e-12)
+
+
+def test_what_waits_is_not_shown_for_becoming_another():
+    device = ScriptedDevice()
+    taken = take(device)
+    taken.hand_over()
+    show(taken, [0, 0, 0, 0, 0, 8.0], 10)
+    assert taken.waits and not any(each.F_BH.any() for each in device.commands)
+
+
 def test_after_a_fault_it_is_taken_anew():
     fault = []
 
@@ -128,3 +162,22 @@ def test_it_is_the_device_but_for_that():
     assert taken.get_link_status() == device.get_link_status()
     taken.close()
     assert device.closed
+
+
+def test_a_force_that_waits_sets_in_when_it_is_asked_for():
+    gates = [GateState.FAULT] * 2 + [GateState.IDLE] * 2 + [GateState.ACTIVE] * 4
+    device = ScriptedDevice(
+        lambda call: replace(make_reading(call), gate=gates[min(call, len(gates)) - 1])
+    )
+    taken = take(device)
+    # Pressed to leave the fault, and again before it was left: no wish for this.
+    wishes = [True, True, True, False, True]
+    request = ForceOnRequest(taken, lambda: wishes.pop(0))
+    for _ in range(6):
+        request.end_tick()
+        assert taken.waits
+    assert wishes == [True]
+    request.end_tick()
+    assert not taken.waits
+    request.end_tick()  # nobody is asked any more
+    assert wishes == []

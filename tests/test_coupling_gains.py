@@ -37,9 +37,14 @@ def test_it_yields_at_the_limits_of_the_device_and_nowhere_without_one():
     assert limits(make_coupling_gains(COUPLING, None)) == (np.inf, np.inf)
 
 
-def test_what_a_device_cannot_show_at_all_does_not_limit_it():
+def test_without_torque_it_turns_with_what_the_force_has_at_a_hand_s_half_width():
     gains = make_coupling_gains(COUPLING, make_device(max_torque_Nm=0.0))
-    assert limits(gains) == (3.0, np.inf)
+    assert limits(gains) == (3.0, pytest.approx(3.0 * 0.05))
+
+
+def test_a_device_that_shows_no_force_does_not_limit_it():
+    no_force = make_device(max_force_N=0.0, max_torque_Nm=0.0)
+    assert limits(make_coupling_gains(COUPLING, no_force)) == (np.inf, np.inf)
 
 
 def test_a_scene_s_coupling_keeps_them_while_its_values_change(tmp_path):

@@ -1,6 +1,11 @@
 """Twins of scalar type AutoDiffXd: what they mirror, read, refuse and never lose."""
 
 import gc
+import importlib
+import inspect
+import pkgutil
+import re
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,10 +13,17 @@ import pytest
 from pydrake.autodiffutils import AutoDiffXd, InitializeAutoDiff
 from pydrake.common.value import Value
 from pydrake.systems.analysis import Simulator_
-from pydrake.systems.framework import DiagramBuilder, LeafSystem_, PortDataType
+from pydrake.systems.framework import (
+    Diagram,
+    DiagramBuilder,
+    LeafSystem,
+    LeafSystem_,
+    PortDataType,
+)
 from pydrake.systems.primitives import ConstantVectorSource
 from twin_check import check_twin
 
+from drake_haptics import systems
 from drake_haptics._core import AutoDiffVector, CouplingGains, coupling_wrench
 from drake_haptics.systems.differentiable_system import DifferentiableSystem
 
@@ -357,6 +369,17 @@ def test_a_twin_does_not_convert_back():
         Sample().ToAutoDiffXd().ToScalarType[float]()
 
 
+@pytest.mark.parametrize("in_a_diagram", [False, True])
+def test_a_system_that_cannot_be_cloned_says_so(in_a_diagram):
+    system = Sample()
+    if in_a_diagram:
+        builder = DiagramBuilder()
+        builder.AddNamedSystem("sample", system)
+        system = builder.Build()
+    with pytest.raises(TypeError, match=r"cannot be cloned.* build it once more"):
+        system.Clone()
+
+
 def test_the_core_refuses_arguments_by_different_variables():
     """It would read beyond the end of the shorter derivatives."""
 
@@ -375,3 +398,33 @@ def test_the_core_refuses_arguments_by_different_variables():
         )
     with pytest.raises(ValueError, match="a row for each of the 2 values"):
         AutoDiffVector(np.ones(2), np.ones((3, 1)))
+
+
+def find_leaves_that_stay_doubles():
+    """Returns the public names of the systems that have no AutoDiffXd twin."""
+    names = set()
+    for found in pkgutil.iter_modules(systems.__path__, f"{systems.__name__}."):
+        module = importlib.import_module(found.name)
+        here = [
+            c
+            for c in vars(module).values()
+            if inspect.isclass(c) and c.__module__ == module.__name__
+        ]
+        for leaf in here:
+            if issubclass(leaf, LeafSystem) and not (
+                issubclass(leaf, DifferentiableSystem) or "𝓣" in leaf.__name__
+            ):
+                # A private leaf is part of the module's diagram.
+                (owner,) = (
+                    [leaf]
+                    if not leaf.__name__.startswith("_")
+                    else [c for c in here if issubclass(c, Diagram)]
+                )
+                names.add(owner.__name__)
+    return names
+
+
+def test_the_page_names_the_systems_that_do_not_convert():
+    page = (Path(__file__).parents[1] / "docs" / "gradients.md").read_text("utf-8")
+    told = page.split("do not convert:")[1].split("\n\n")[0]
+    assert set(re.findall(r"`(\w+)`", told)) == find_leaves_that_stay_doubles()

@@ -1,15 +1,62 @@
 """The parts of a tick: all of them, why they are there, and what they take."""
 
+from dataclasses import replace
+
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from diagram_parts import EVERY
 from pydrake.geometry import Meshcat
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.builder import AddHapticLoop, BuildHapticDiagram
 from drake_haptics.callback_timer import CallbackTimer
 from drake_haptics.explain import explain_tick
 from drake_haptics.scene import Effects
 from drake_haptics.simulation import run
+from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.systems.haptic_device import HapticDevice
+
+
+class StillArm(LeafSystem):
+    """A device's backend that rests where the tool touches the plate."""
+
+    def __init__(self, height_m):
+        super().__init__()
+        self.DeclareVectorInputPort("F_applied", 6)
+        self._X_WH = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, height_m]
+        always = {self.nothing_ticket()}
+        self.DeclareVectorOutputPort("X_WH", 7, self._calc_pose, always)
+        self.DeclareVectorOutputPort("V_WH", 6, self._calc_velocity, always)
+
+    def _calc_pose(self, context, output):
+        output.SetFromVector(self._X_WH)
+
+    def _calc_velocity(self, context, output):
+        output.SetZero()
+
+
+def build_with_own_arm(haptic):
+    """Returns the loop of a scene on a device that its user has written."""
+    scene, (plate,) = haptic.scene, haptic.environment
+    waypoint = scene.hand.path.waypoints[0]
+    arm = StillArm(waypoint.position_m[2])
+    arm.set_name("my_arm")
+    builder = DiagramBuilder()
+    loop = AddHapticLoop(
+        builder,
+        device=HapticDevice(arm, period_s=1e-3, max_force_N=1.0, max_torque_Nm=0.1),
+        tool=haptic.tool.core,
+        tool_dynamics=haptic.loop.haptic_tool.dynamics,
+        objects=[ContactObject("plate", plate.core, RigidTransform())],
+        contact=scene.contact,
+        coupling=scene.coupling,
+        X_HT=RigidTransform(),
+        X_WT=RigidTransform(waypoint.position_m),
+        period_s=1e-3,
+    )
+    return replace(haptic, diagram=builder.Build(), loop=loop)
+
 
 ALWAYS = [
     "display_force_hold",
@@ -58,6 +105,18 @@ def test_each_effect_is_there_by_its_key_and_takes_time(tmp_path):
     }
     for part in parts:
         assert part.mean_us > 0.0, part.name
+
+
+def test_a_device_of_the_users_own_is_a_part_that_is_said_to_be_theirs(tmp_path):
+    with CallbackTimer() as timer:
+        haptic = BuildHapticDiagram(touching(tmp_path, Effects()))
+        theirs = build_with_own_arm(haptic)
+    run(theirs, 0.05, on_tick=timer.end_tick)
+    parts = {part.name: part for part in explain_tick(theirs, timer)}
+    assert parts["my_arm"].why == "yours: it was added to the loop"
+    assert parts["my_arm"].system == "StillArm"
+    assert parts["display_force_hold"].why == "always: limits what the device shows"
+    assert sum(part.share for part in parts.values()) == pytest.approx(1.0)
 
 
 def test_times_and_shares_add_to_the_tick(tmp_path):

@@ -233,7 +233,7 @@ def test_an_address_as_a_person_writes_it():
         assert mass.largest_N <= 1.5
         assert not service.devices["left"].forces
     for options, says in [
-        ("max_force=1", "max_force is none of device_id, grip_id, force_field, max"),
+        ("max_force=1", "max_force is not one of device_id, grip_id, force_field, max"),
         ("max_force_N=x", "max_force_N must be a number, is 'x'"),
         ("max_force_N=-1", "max_force_N"),
         ("force_field=force", "must be vector or values, is 'force'"),

@@ -86,7 +86,7 @@ def test_bytes_of_another_type_or_length_are_refused(cls):
     data = cls().encode()
     other = next(item for item in TYPES if item is not cls)
     for wrong in (b"", data[:-1], data + b"\0", other().encode()):
-        with pytest.raises(ValueError, match=f"{cls.__name__}: .* bytes, must be"):
+        with pytest.raises(ValueError, match=f"{cls.__name__}: must have"):
             cls.decode(wrong)
     with pytest.raises(ValueError, match="of another type"):
         cls.decode(bytes([data[0] ^ 1]) + data[1:])

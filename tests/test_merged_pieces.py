@@ -191,7 +191,7 @@ def test_the_cache_tells_errors_apart(tmp_path, monkeypatch):
     ("method", "error_m", "complaint"),
     [
         ("merged", None, "merged needs an error_m"),
-        ("surface", 1e-3, "--error; .* is for the method merged; surface has none"),
+        ("surface", 1e-3, "error_m is for the method merged; surface has none"),
         ("merged", -1.0, "error_m must be zero or more, in m, is -1"),
         ("merged", np.inf, "error_m must be zero or more, in m, is inf"),
     ],

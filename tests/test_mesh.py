@@ -1,5 +1,6 @@
 """Mesh intake: what is refused, what is repaired, and that nothing is silent."""
 
+import logging
 from itertools import pairwise
 
 import mesh_samples
@@ -35,8 +36,8 @@ def codes(mesh):
         (np.eye(3), [[0, 1, 3]], "triangle 0 names vertex 3"),
         (np.eye(3), [[0, 1, 2], [0, -1, 2]], "triangle 1 names vertex -1"),
         (np.zeros((0, 3)), [[0, 1, 2]], "only 0 vertices"),
-        (np.diag([1, np.nan, 1]), [[0, 1, 2]], "vertices are NaN.*vertex 1"),
-        (np.diag([1, 1, -np.inf]), [[0, 1, 2]], "vertices are NaN.*vertex 2"),
+        (np.diag([1, np.nan, 1]), [[0, 1, 2]], "vertices is NaN.*vertex 1"),
+        (np.diag([1, 1, -np.inf]), [[0, 1, 2]], "vertices is NaN.*vertex 2"),
         (np.eye(3) * 1e200, [[0, 1, 2]], "state the unit"),
         (np.eye(3), [[0, 0, 1], [2, 2, 2]], "all 2 triangles are degenerate"),
         (np.outer([0, 1, 2], [1, 1, 1]), [[0, 1, 2]], "degenerate"),
@@ -57,7 +58,7 @@ def test_unusable_files_are_refused_by_name(tmp_path):
         assert name in str(refusal.value)
 
     refuse("empty.stl", b"", "is empty")
-    refuse("noise.stl", bytes(range(256)) * 3, "cannot be read|no triangles")
+    refuse("noise.stl", bytes(range(256)) * 3, "is cut off")
     refuse("noise.ply", b"ply\nformat nonsense\n", "cannot be read|no triangles")
     refuse("noise.glb", b"glTF" + bytes(40), "cannot be read")
     refuse("noise.npz", b"PK\x03\x04 and then nothing", "cannot be read")
@@ -69,6 +70,35 @@ def test_unusable_files_are_refused_by_name(tmp_path):
         load_mesh(tmp_path / "absent.stl")
     with pytest.raises(MeshError, match="is a folder"):
         load_mesh(tmp_path)
+
+
+def test_reading_a_file_leaves_the_logs_of_others_as_they_are(tmp_path, caplog):
+    logger = logging.getLogger("trimesh")
+    level = logger.level
+    (tmp_path / "cut.glb").write_bytes(b"glTF")
+    with pytest.raises(MeshError):
+        load_mesh(tmp_path / "cut.glb")
+    assert logger.level == level
+    assert caplog.records == []
+
+
+@pytest.mark.parametrize("kind", ["stl", "stl_ascii"])
+@pytest.mark.parametrize("share", [0.002, 0.01, 0.3, 0.9, 0.999])
+def test_a_cut_off_stl_file_is_said_to_be_cut_off(tmp_path, kind, share):
+    V, F = box((1.0, 2.0, 3.0))
+    F = np.concatenate([F + 8 * k for k in range(50)])
+    V = np.concatenate([V + 4.0 * k for k in range(50)])
+    whole = tmp_path / "whole.stl"
+    trimesh.Trimesh(V, F, process=False).export(whole, file_type=kind)
+    assert len(load_mesh(whole).triangles) == 600
+    data = whole.read_bytes()
+    cut = tmp_path / "cut.stl"
+    cut.write_bytes(data[: int(share * len(data))])
+    with pytest.raises(MeshError, match=r"cut\.stl: is cut off"):
+        load_mesh(cut)
+    if kind == "stl" and share > 0.01:
+        with pytest.raises(MeshError, match="promises 600 triangles, which are 30,084"):
+            load_mesh(cut)
 
 
 def test_an_npz_file_without_the_arrays_is_refused(tmp_path):

@@ -38,6 +38,8 @@ def test_text_names_every_finding_and_what_was_done(dirty):
     for finding in dirty.findings:
         assert f"{finding.message}: {finding.action} [{finding.code}]" in flat
     assert "300 mm x 100 mm x 100 mm" in flat
+    # One of them is a solid, in which depth may be asked for.
+    assert "Not looked for: places where the surface passes through itself" in flat
     assert "Usable in part as a solid: 1 of 2 parts" in flat
     assert max(map(len, text.splitlines())) <= 100
 

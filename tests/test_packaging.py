@@ -91,7 +91,7 @@ def test_it_holds_what_builds_the_package_and_nothing_else(sdist: Path) -> None:
 def test_it_tells_an_index_what_it_is(sdist: Path) -> None:
     told = (sdist / "PKG-INFO").read_text()
     assert "Requires-Python: >=3.10" in told
-    assert "Requires-Dist: drake>=1.51" in told
+    assert "Requires-Dist: drake>=1.51.1" in told
     assert "License-Expression: BSD-3-Clause" in told
 
 

@@ -2,10 +2,13 @@
 
 import gc
 import weakref
+from types import SimpleNamespace
 
 from box_scenes import over_a_plate
 from cockpit_rig import ABOVE, PRESSING, CockpitRig
 
+from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.retired_diagram import retire
 from drake_haptics.stage import open_meshcat
 
 TOGGLES = 4
@@ -37,3 +40,22 @@ def test_what_ran_before_is_freed(tmp_path, monkeypatch):
         # pydrake may keep the bare system, but nothing that it had.
         assert query() is None or not vars(query())
     assert vars(last[2]())
+
+
+def test_pydrake_frees_a_diagram_whose_systems_have_no_attributes(tmp_path):
+    """What `retire` rests on: a change of pydrake's bindings fails here first."""
+    haptic = BuildHapticDiagram(over_a_plate(tmp_path, [ABOVE]))
+    diagram = weakref.ref(haptic.diagram)
+    retire(haptic)
+    del haptic
+    gc.collect()
+    assert diagram() is None
+
+
+def test_a_system_without_attributes_is_left_as_it_is():
+    class Bare:
+        """A system of bindings that give it none."""
+
+        __slots__ = ()
+
+    retire(SimpleNamespace(diagram=Bare()))

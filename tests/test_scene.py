@@ -323,7 +323,7 @@ def test_an_unknown_scene_is_answered_with_those_there_are():
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [
-        ({"preset": "omega"}, r"device\.preset: 'omega' is none of .*'omega_6'"),
+        ({"preset": "omega"}, r"device\.preset: 'omega' is not one of .*'omega_6'"),
         ({"base": Pose([1.0, 0, 0])}, "from the middle of the device's workspace"),
     ],
 )
@@ -342,7 +342,7 @@ def test_a_path_too_long_for_the_device_is_refused(tmp_path):
 
 def test_an_unknown_grip_is_refused(tmp_path):
     scene = load(tmp_path, GOOD.replace("grip: light", "grip: iron"))
-    with pytest.raises(SceneError, match=r"hand\.grip: 'iron' is none of none, light"):
+    with pytest.raises(SceneError, match=r"hand\.grip: 'iron' is not one of none"):
         make_simulated_device(scene, make_hand_path(scene.hand.path))
 
 

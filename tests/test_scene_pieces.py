@@ -37,7 +37,7 @@ def test_a_rebuild_takes_the_pieces_as_they_are(scene, haptic):
 
 @pytest.mark.parametrize(
     "change",
-    [{"scale": 2.0}, {"decomposition": "hull"}, {"max_triangles": 8}],
+    [{"scale": 2.0}, {"decomposition": "hull"}, {"max_triangles": 8}, {"center": True}],
 )
 def test_what_is_cut_in_another_way_is_cut(scene, haptic, change):
     other = replace(scene, tool=replace(scene.tool, **change))

@@ -10,7 +10,15 @@ from box_scenes import PLATE_TOP, over_a_plate, write
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.device.backend import DeviceBackend, DeviceReading
 from drake_haptics.device_preset import load_device_preset
-from drake_haptics.scene import EnvironmentObject, Pose, load_scene
+from drake_haptics.mesh_report import length
+from drake_haptics.scene import (
+    EnvironmentObject,
+    Pose,
+    Scene,
+    Tool,
+    Waypoint,
+    load_scene,
+)
 from drake_haptics.scene_library import list_scenes
 from drake_haptics.scene_plausibility import question_scene
 
@@ -35,7 +43,6 @@ def test_millimetres_taken_for_metres_are_asked_for(tmp_path):
     (question,) = [q for q in ask(scene) if "big.obj" in q]
     assert f"is {size_m:.4g} m wide" in question and "in mm:" in question
     assert "environment[0].scale: 0.001" in question
-    assert "--environment-scale 0.001" in question
     scene.environment[0].scale = 1e-3
     assert ask(scene) == []
 
@@ -44,7 +51,7 @@ def test_a_scale_too_small_is_asked_for(tmp_path):
     scene = over_a_plate(tmp_path, PRESS)
     scene.tool.scale = 1e-3
     (question,) = [q for q in ask(scene) if q.startswith("tool:")]
-    assert "20 µm wide" in question and "tool.scale: 1 in" in question
+    assert "20 µm wide" in question and question.endswith("tool.scale: 1")
 
 
 def test_a_tolerance_in_millimetres_is_asked_for(tmp_path):
@@ -65,7 +72,10 @@ def test_a_mesh_far_from_its_origin_is_asked_for(tmp_path):
         asked = [question for question in ask(scene) if "origin" in question]
         assert bool(asked) == is_asked
     assert "far.obj is 290 mm beside the mesh" in asked[0]
-    assert "(0.3, 0, 0) of the file" in asked[0]
+    # What the question names answers it.
+    assert "tool.center: true" in asked[0]
+    scene.tool.center = True
+    assert not [question for question in ask(scene) if "origin" in question]
 
 
 def test_a_path_that_passes_all_objects_is_asked_for(tmp_path):
@@ -86,6 +96,29 @@ def test_a_tool_that_starts_deep_is_asked_for(tmp_path):
     deep = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, 0.005), (1.0, 0.0, 0.0, 0.02)])
     (question,) = ask(deep)
     assert "starts 5 mm deep in 'plate'" in question
+
+
+@pytest.mark.parametrize("budget_us", [None, 500.0])
+def test_the_depth_that_a_tool_starts_at_is_that_of_the_run(budget_us):
+    # A hammer through the wall of a cup: the least way out of one of the pieces that
+    # overlap is 20 mm long, but it is no way out of the cup.
+    meshes = "package://drake_haptics/models/meshes"
+    scene = Scene(
+        tool=Tool(mesh=f"{meshes}/hammer.obj"),
+        environment=[EnvironmentObject(name="cup", mesh=f"{meshes}/cup.obj")],
+    )
+    scene.hand.path.waypoints = [Waypoint(0.0, [0.01, 0.01, 0.01])]
+    scene.device.tick_budget_us = budget_us
+    haptic = BuildHapticDiagram(scene)
+    (question,) = [q for q in question_scene(haptic) if "the tool starts" in q]
+    port = haptic.loop.found_contacts
+    root = haptic.diagram.CreateDefaultContext()
+    X_WTool = haptic.loop.haptic_tool.get_pose_output_port().Eval(
+        haptic.loop.haptic_tool.GetMyContextFromRoot(root)
+    )
+    np.testing.assert_allclose(X_WTool, [1, 0, 0, 0, 0.01, 0.01, 0.01], atol=1e-12)
+    contacts = port.Eval(port.get_system().GetMyContextFromRoot(root))
+    assert f"starts {length(-contacts.least_distance)} deep in 'cup'" in question
 
 
 def test_a_tool_inside_a_solid_whose_surface_is_far_is_asked_for(tmp_path):

@@ -86,6 +86,21 @@ def test_a_wrench_that_is_not_renewed_is_held_then_released_then_gone():
     np.testing.assert_array_equal(law.step(1.1, AT_REST, np.ones(6)), STILL)
 
 
+@pytest.mark.parametrize("speed", [0.05, 0.2, 2.0])
+def test_the_pull_where_a_wall_was_left_unseen_fades_and_ends(speed):
+    stiffness, forces = 800.0, []
+    law = engaged_law(K=np.diag([0, 0, 0, stiffness, 0, 0]))
+    ages = np.arange(1, 100) * TICK
+    for age in ages:
+        X = moved(AT_REST, np.array([0, 0, 0, speed * age, 0, 0]))
+        forces.append(law.step(1.0 + age, X, STILL)[3])
+    spring = PUSH[3] - stiffness * speed * ages
+    part = np.clip(1 - (ages - HOLD - TICK) / RELEASE, 0, 1)
+    least = np.maximum(np.minimum(spring, 0.0), -MAX_FORCE) * part
+    assert (np.array(forces) >= least - 1e-9).all()
+    assert not np.any(np.array(forces)[ages > HOLD + RELEASE + TICK])
+
+
 def test_force_comes_and_goes_without_a_jump():
     """Over stalls of all lengths, each step is at most that of the release."""
     law, last = make_law(), 0.0

@@ -148,5 +148,5 @@ def test_regeneration_writes_every_shape(tmp_path):
 def test_rings_of_unequal_length_are_refused():
     builder = SurfaceBuilder()
     ring = builder.add_ring(np.eye(3))
-    with pytest.raises(ValueError, match="rings of 3 and 2"):
+    with pytest.raises(ValueError, match="rings of unlike sizes: 3 and 2"):
         builder.add_band(ring, ring[:2])

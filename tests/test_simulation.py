@@ -9,6 +9,7 @@ import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
 from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.simulation import RunError, make_simulator, run
 from drake_haptics.tick_clock import TickClock
 
@@ -112,12 +113,18 @@ def test_garbage_is_thawed_after_a_run(haptic):
     assert gc.get_freeze_count() == before
 
 
-def test_ctrl_c_ends_a_run_without_an_error(haptic):
+def test_ctrl_c_comes_out_of_a_run_and_leaves_what_ran(haptic):
     def interrupt(context):
         if context.get_time() > 0.0495:
             raise KeyboardInterrupt
 
-    assert run(haptic, None, on_tick=interrupt).ticks == 50
+    statistics = RunStatistics(haptic.period_s)
+    frozen = gc.get_freeze_count()
+    with pytest.raises(KeyboardInterrupt):
+        run(haptic, None, on_tick=interrupt, statistics=statistics)
+    assert statistics.ticks == 50
+    assert statistics.to_dict()["tick_us"]["median"] > 0.0
+    assert gc.get_freeze_count() == frozen
 
 
 def test_other_errors_come_out(haptic):

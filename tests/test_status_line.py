@@ -29,7 +29,7 @@ def haptic():
 def run_with_status(haptic, *, terminal):
     """Runs into contact, a tenth of a second of clock time per tick."""
     text = io.StringIO()
-    console = Console(file=text, force_terminal=terminal, width=160, color_system=None)
+    console = Console(file=text, force_terminal=terminal, width=320, color_system=None)
     clock = itertools.count(0.0, 0.1)
     with StatusLine(console, haptic, clock=lambda: next(clock)) as status:
         figures = run(haptic, 1.5, energy=True, on_tick=status.end_tick).to_dict()
@@ -143,9 +143,9 @@ def test_a_file_gets_no_status(haptic):
 def test_the_summary_has_the_figures(haptic):
     _, figures = run_with_status(haptic, terminal=False)
     text = io.StringIO()
-    Console(file=text, width=160).print(make_summary(figures))
+    Console(file=text, width=320).print(make_summary(figures))
     assert f"force {figures['max_force_N']:.2f} N" in text.getvalue()
-    assert "1500 ticks" in text.getvalue()
+    assert "1,500 ticks" in text.getvalue()
 
 
 def test_a_force_without_penetration_is_explained(haptic):
@@ -153,7 +153,7 @@ def test_a_force_without_penetration_is_explained(haptic):
     for depth_m, is_explained in [(1e-4, False), (0.0, True)]:
         text = io.StringIO()
         figures["max_penetration_m"] = depth_m
-        Console(file=text, width=160).print(make_summary(figures))
+        Console(file=text, width=320).print(make_summary(figures))
         assert ("contact.tolerance_m" in text.getvalue()) == is_explained
 
 
@@ -163,7 +163,7 @@ def energy_line(haptic, **changes):
     for name, books in changes.items():
         figures["energy_J"][name] |= books
     text = io.StringIO()
-    Console(file=text, width=160).print(make_summary(figures))
+    Console(file=text, width=320).print(make_summary(figures))
     return next(x for x in text.getvalue().splitlines() if x.startswith("energy"))
 
 
@@ -171,21 +171,31 @@ def test_the_summary_says_where_the_energy_went(haptic):
     none = {name: {"beyond": 1e-12} for name in ("coupling", "contact", "tool")}
     line = energy_line(haptic, device={"in": 0.0123, "out": 0.0045}, **none)
     assert "hand put in 12.3 mJ, got back 4.5 mJ" in line
-    assert line.endswith("none created beyond what sampling explains")
+    assert line.endswith("; good: no part made energy beyond what sampling explains")
 
 
 def test_the_summary_names_what_makes_energy(haptic):
-    others = {name: {"beyond": 0.0} for name in ("device", "tool")}
+    parts = {"contact": {"beyond": 2.5e-4}, "coupling": {"beyond": 1e-3}}
     line = energy_line(
-        haptic, contact={"beyond": 2.5e-4}, coupling={"beyond": 1e-3}, **others
+        haptic, device={"in": 0.01, "beyond": 0.0}, tool={"beyond": 0.0}, **parts
     )
     assert line.endswith(
-        "created beyond what sampling explains: coupling 1 mJ, contact 0.25 mJ"
+        "made beyond what sampling explains: coupling 1 mJ, contact 0.25 mJ, at most"
+        " 10 % of what the hand put in; good: the loop as a whole made none"
     )
+
+
+def test_the_summary_tells_what_energy_the_hand_may_feel(haptic):
+    device = {"in": 0.01, "beyond": 5e-4}
+    line = energy_line(haptic, device=device, coupling={"beyond": 1e-3})
+    assert "the loop as a whole made 0.5 mJ, 5 % of what the hand put in" in line
+    assert "good" not in line and "lower contact or coupling gains" in line
+    line = energy_line(haptic, device=device | {"in": 0.0})
+    assert "and the hand put in none" in line and "good" not in line
 
 
 def test_a_run_that_booked_nothing_has_no_line_of_energy():
     text = io.StringIO()
     figures = RunStatistics(1e-3).to_dict()
-    Console(file=text, width=160).print(make_summary(figures))
+    Console(file=text, width=320).print(make_summary(figures))
     assert "energy" not in text.getvalue()

@@ -8,6 +8,7 @@ from pydrake.common.value import Value
 from pydrake.math import RigidTransform, RollPitchYaw
 
 from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.systems.haptic_picture import HapticPicture
 from drake_haptics.systems.haptic_visualizer import HapticVisualizer
 
 
@@ -113,20 +114,35 @@ X_HT = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [0.01, 0.02, 0.03])
 X_WH = RigidTransform(RollPitchYaw(-0.5, 0.0, 0.7), [0.1, 0.0, 0.2])
 
 
-def make_visualizer(meshcat, objects=(), **options):
-    return HapticVisualizer(
-        meshcat, make_mesh(), objects, X_HT, tick_s=1 / 1024, **options
+MAX_FORCE_N, MAX_TORQUE_NM = 4.0, 0.5
+
+
+def make_visualizer(meshcat, objects=(), *, tick_s=1 / 1024, **options):
+    limits = {"max_force_N": MAX_FORCE_N, "max_torque_Nm": MAX_TORQUE_NM, **options}
+    return HapticVisualizer(meshcat, make_mesh(), objects, X_HT, tick_s, **limits)
+
+
+def make_picture(meshcat):
+    """What a visualizer draws with."""
+    limits = {"max_force_N": MAX_FORCE_N, "max_torque_Nm": MAX_TORQUE_NM}
+    return HapticPicture(
+        meshcat, make_mesh(), [], RigidTransform(), **limits, has_friction=False
     )
 
 
 def make_context(
-    visualizer, contacts=(), forces=None, X_WTool=X_WH @ X_HT, f_H_W=(0, 0, 0)
+    visualizer,
+    contacts=(),
+    forces=None,
+    X_WTool=X_WH @ X_HT,
+    f_H_W=(0, 0, 0),
+    tau_H_W=(0, 0, 0),
 ):
     context = visualizer.CreateDefaultContext()
     values = {
         "X_WH": pose_to_vector(X_WH),
         "X_WTool": pose_to_vector(X_WTool),
-        "F_display": np.array([0.0, 0, 0, *f_H_W]),
+        "F_display": np.array([*tau_H_W, *f_H_W], dtype=float),
         "contacts": Value(make_contacts(contacts)),
         "clusters": Value(make_contacts(contacts)),
         "contact_wrench": Value(

@@ -28,6 +28,7 @@ from drake_haptics.cli.accuracy_output import print_choice, print_study
 from drake_haptics.cli.complete import complete_knob, complete_scene
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.exit_codes import ExitCode
+from drake_haptics.cli.failures import naming
 from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import (
@@ -179,8 +180,9 @@ def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None
     """Returns the setting that --only names; None for those of all knobs."""
     if not words:
         return None
-    setting = parse_setting(words, list_settings(scene))
-    apply_checked(setting, scene)
+    with naming("--only"):
+        setting = parse_setting(words, list_settings(scene))
+        apply_checked(setting, scene)
     return [setting]
 
 

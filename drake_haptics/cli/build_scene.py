@@ -10,6 +10,7 @@ from rich.progress import Progress, TaskID
 
 from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.cli.failures import warn
+from drake_haptics.cli.scene_options import name_scale_options
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.scene import Scene
 from drake_haptics.scene_check import SceneWarning
@@ -35,7 +36,7 @@ def build_scene(
     for warning in caught:
         warn(str(warning.message))
     for question in question_scene(haptic):
-        warn(question)
+        warn(name_scale_options(question))
     return haptic
 
 

@@ -9,6 +9,7 @@ import click
 
 from drake_haptics.cli import lessons
 from drake_haptics.cli.console import make_console
+from drake_haptics.cli.failures import naming
 from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import (
@@ -23,6 +24,7 @@ from drake_haptics.cli.page_words import describe_page
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.decomposition import METHODS, Decomposition, Method
 from drake_haptics.decomposition import decompose as decompose_mesh
+from drake_haptics.merged_pieces import check_error
 from drake_haptics.mesh import Mesh
 from drake_haptics.mesh_report import Severity, length
 
@@ -82,6 +84,8 @@ def decompose(
     json_file: str | None,
 ) -> None:
     """Cut the surface of a mesh into convex pieces, and report them."""
+    with naming("--error"):
+        check_error(method, error_m)
     taken_in = read_mesh(mesh, unit, scale, max_triangles)
     result = _with_progress(taken_in, method, error_m, cache=not no_cache)
     if output is not None:

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from drake_haptics.device.backend import DeviceReading, GateState, LinkStatus
+from drake_haptics.cockpit.taken_device import TakenDevice
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceReading,
+    GateState,
+    LinkStatus,
+)
+from drake_haptics.one_line import count
 
 _STYLES = {
     GateState.IDLE: "dim",
@@ -27,9 +34,29 @@ def describe_gate(
         return "[dim]silent[/]"
     words = reading.gate.name
     if reading.gate == GateState.FAULT:
-        fault = reading.fault.name.lower().replace("_", " ")
-        words += f" ({fault}): {remedy}"
+        words += f" ({describe_fault(reading.fault.name)}): {remedy}"
     return f"[{_STYLES[reading.gate]}]{words}[/]"
+
+
+def describe_held(backend: DeviceBackend | None, reading: DeviceReading | None) -> str:
+    """Returns as `describe_gate`, or that the force of a device has not set in yet.
+
+    Args:
+        backend: What is held.
+        reading: Its newest.
+    """
+    waits = isinstance(backend, TakenDevice) and backend.waits
+    if waits and reading is not None and reading.gate == GateState.IDLE:
+        return (
+            "[yellow]WAITING: lead the handle to where the tool can follow;"
+            " Enter shows the force now[/]"
+        )
+    return describe_gate(reading)
+
+
+def describe_fault(name: str) -> str:
+    """Returns the name of a `Fault` as a word."""
+    return name.lower().replace("_", " ")
 
 
 def describe_lateness(late_s: Sequence[float]) -> str:
@@ -49,9 +76,7 @@ def describe_link(link: LinkStatus) -> str:
 
 def describe_device(figures: Mapping[str, Any]) -> str:
     """Returns `DeviceWatch.to_dict` in a line; of a link only if there is one."""
-    faults = [
-        f"{n} {name.lower().replace('_', ' ')}" for name, n in figures["faults"].items()
-    ]
+    faults = [f"{n} {describe_fault(name)}" for name, n in figures["faults"].items()]
     words = [
         f"showed at most {figures['max_force_N']:.2f} N,"
         f" {1e3 * figures['max_torque_Nm']:.0f} mN·m",
@@ -60,7 +85,7 @@ def describe_device(figures: Mapping[str, Any]) -> str:
     if figures["received"]:
         words.insert(
             0,
-            f"{figures['received']} readings, {figures['lost']} lost,"
+            f"{count(figures['received'], 'reading')}, {figures['lost']} lost,"
             f" {figures['rejected']} refused",
         )
     return "; ".join(words)

@@ -13,6 +13,7 @@ from rich.table import Table
 from drake_haptics.cli.device_words import describe_gate, describe_lateness
 from drake_haptics.cli.live_line import LiveLine
 from drake_haptics.device.driver import DeviceDriver
+from drake_haptics.one_line import count
 
 # What ends a fault of a driver.
 DRIVER_REMEDY = "until the host disables it"
@@ -66,11 +67,13 @@ def make_driver_summary(figures: Mapping[str, Any]) -> Table:
     table.add_column(style="dim")
     table.add_column()
     late = figures["lateness_us"]
-    table.add_row("ran", f"{figures['duration_s']:.2f} s, {figures['ticks']} ticks")
+    table.add_row(
+        "ran", f"{figures['duration_s']:.2f} s, {count(figures['ticks'], 'tick')}"
+    )
     table.add_row(
         "late",
         f"median {late['p50']:.0f} µs, p99 {late['p99']:.0f} µs,"
-        f" p99.9 {late['p99_9']:.0f} µs, {late['skipped']} ticks skipped",
+        f" p99.9 {late['p99_9']:.0f} µs, {count(late['skipped'], 'tick')} skipped",
     )
     table.add_row("packets", _count(figures["packets"]))
     table.add_row(
@@ -79,7 +82,7 @@ def make_driver_summary(figures: Mapping[str, Any]) -> Table:
         f" torque {1e3 * figures['max_torque_Nm']:.0f} of"
         f" {1e3 * figures['torque_limit_Nm']:g} mN·m",
     )
-    table.add_row("over limits", f"{figures['limit_violations']} ticks")
+    table.add_row("over limits", f"{count(figures['limit_violations'], 'tick')}")
     table.add_row("faults", _count(figures["faults"]))
     table.add_row("recovered", _count(figures["recoveries"]))
     return table

@@ -12,8 +12,8 @@ class ExitCode(IntEnum):
         DONE: it is done. `run`, `device` and `decompose --show` end so at Ctrl-C too.
         UNUSABLE: what was given cannot be used, or the system refuses a file or a port.
         WRONG_CALL: there is no such command, option or value.
-        NO: it is done, and the answer is no: a run became unstable, two logs differ, no
-            setting holds the budget.
+        NO: it is done, and the answer is no: a run became unstable or ended with its
+            device at fault, two logs differ, no setting holds the budget.
         DEFECT: a defect of the program.
         INTERRUPTED: ended by Ctrl-C before it was done: 128 + SIGINT, as of shells.
     """

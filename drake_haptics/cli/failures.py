@@ -26,6 +26,10 @@ _REMEDIES = {
 }
 
 
+# Drake says so of every second page; which of them has the camera is told on the pages.
+_TWO_CAMERAS = "More than one meshcat client is attempting to broadcast its camera pose"
+
+
 class _Defect(click.ClickException):
     """A defect of the program."""
 
@@ -123,6 +127,22 @@ def _describe_defect(error: BaseException) -> str:
 
 
 @contextmanager
+def naming(option: str) -> Iterator[None]:
+    """Puts the option that gave it before what the library says of an argument.
+
+    Args:
+        option: As it is given, or several.
+
+    Raises:
+        UserError: There was one, whose words name no option.
+    """
+    try:
+        yield
+    except UserError as error:
+        raise UserError(f"{option}: {error}") from error
+
+
+@contextmanager
 def _warnings_in_lines(debug: bool) -> Iterator[None]:
     """Shows Python's warnings as one line each, unless they are to be traced."""
     before = warnings.showwarning
@@ -148,7 +168,7 @@ class _LineHandler(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         """Writes a record."""
         words = record.getMessage()
-        if words not in self._written:
+        if words not in self._written and not words.startswith(_TWO_CAMERAS):
             self._written.add(words)
             warn(words)
 

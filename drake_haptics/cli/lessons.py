@@ -85,7 +85,7 @@ DECOMPOSE = Lesson(
         ),
     ],
     exits=f"0: done. {_UNUSABLE}. 130: Ctrl-C; nothing is left half written, and the"
-    " next call starts anew.",
+    " next call starts from the beginning.",
     further="`run` cuts the meshes of a scene itself, and finds what was cut before."
     " docs/decomposition.md compares the methods.",
 )
@@ -174,8 +174,8 @@ LOG_DIFF = Lesson(
 
 LOG_CSV = Lesson(
     examples=[
-        ("For a spreadsheet", "drake-haptics log csv run.tick run.csv"),
-        ("The first lines", "drake-haptics log csv run.tick - | head"),
+        ("For a spreadsheet", "drake-haptics log csv run.tick --out run.csv"),
+        ("The first lines", "drake-haptics log csv run.tick --out - | head"),
     ],
     exits=f"0: done. {_UNUSABLE}.",
 )

@@ -10,6 +10,7 @@ import click
 from drake_haptics.cli import lessons
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.log_words import warn_of_gaps
+from drake_haptics.cli.mesh_options import require_folder, require_writable
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.errors import UserError
 from drake_haptics.tick_log.csv_export import write_csv
@@ -18,15 +19,24 @@ from drake_haptics.tick_log.tick_log import TickLogReader
 
 @click.command(cls=TaughtCommand, lesson=lessons.LOG_CSV)
 @click.argument("file", type=click.Path(path_type=Path))
-@click.argument("out", type=click.Path(dir_okay=False, allow_dash=True))
-def csv(file: Path, out: str) -> None:
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, allow_dash=True),
+    metavar="FILE",
+    callback=require_folder,
+    help="The table to write; - writes it to stdout.  [default: the name of the log,"
+    " with .csv]",
+)
+def csv(file: Path, out: str | None) -> None:
     """Write a log as a table: a line per tick, units in the names of the columns.
 
-    OUT is a file, or - for stdout. The numbers read back as the very same doubles;
-    gate and fault are words.
+    The numbers read back as the very same doubles; gate and fault are words.
     """
+    if out is None:
+        out = f"{file.stem}.csv"
+        require_writable(Path(out), "--out")
     if os.path.exists(out) and os.path.exists(file) and os.path.samefile(out, file):
-        raise UserError(f"{out} is the log itself; give another file")
+        raise UserError(f"--out: {out} is the log itself; give another file")
     reader = TickLogReader(file)
     try:
         with (

@@ -13,6 +13,7 @@ from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.one_line import count
 from drake_haptics.tick_log.log_summary import LogSummary, summarize_log
 
 
@@ -51,9 +52,10 @@ def _print(file: Path, summary: LogSummary) -> None:
         "largest",
         f"force {summary.max_force_N:.2f} N, torque"
         f" {1e3 * summary.max_torque_Nm:.0f} mN·m, penetration"
-        f" {1e3 * summary.max_penetration_m:.3f} mm, {summary.max_contacts} contacts",
+        f" {1e3 * summary.max_penetration_m:.3f} mm,"
+        f" {count(summary.max_contacts, 'contact')}",
     )
-    table.add_row("device limit", f"{summary.limited_ticks} ticks at it")
+    table.add_row("device limit", f"{count(summary.limited_ticks, 'tick')} at it")
     for mesh in header.mesh_sha256:
         changed = "  [yellow]changed since[/]" if mesh in summary.changed_meshes else ""
         table.add_row("mesh", f"{escape(mesh)}{changed}")

@@ -15,6 +15,7 @@ from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.cli.scene_options import set_option, set_values
 from drake_haptics.errors import UserError
+from drake_haptics.one_line import count
 from drake_haptics.scene import load_scene
 from drake_haptics.scene_library import find_scene
 from drake_haptics.tick_log.log_diff import compare_logs
@@ -71,7 +72,7 @@ def replay(
         write_json({"ticks": len(again.rows), "diff": described}, json_file)
     if json_file == "-":
         return
-    click.echo(f"Replayed {log.count_ticks_from_start()} ticks.")
+    click.echo(f"Replayed {count(log.count_ticks_from_start(), 'tick')}.")
     if difference is None:
         click.echo("The rates differ, so there is nothing to compare tick by tick.")
     else:

@@ -9,6 +9,7 @@ import click
 from rich.table import Table
 
 from drake_haptics.cli.console import make_console
+from drake_haptics.one_line import count
 from drake_haptics.tick_log.log_diff import LogDiff
 
 # Of two scenes that differ, more are told by --json.
@@ -26,7 +27,10 @@ def print_diff(diff: LogDiff, period_s: float) -> None:
     console = make_console()
     for name, ticks in [("first", diff.only_a), ("second", diff.only_b)]:
         if ticks:
-            console.print(f"{ticks} ticks are only in the {name} log", style="yellow")
+            console.print(
+                f"{count(ticks, 'tick is', 'ticks are')} only in the {name} log",
+                style="yellow",
+            )
     if not diff.same_scene:
         console.print("The scenes differ:", style="dim")
     for setting in diff.settings[:_MOST_SETTINGS]:
@@ -36,7 +40,9 @@ def print_diff(diff: LogDiff, period_s: float) -> None:
     if not diff.same_meshes:
         console.print("The meshes differ.", style="dim")
     if diff.is_bit_equal:
-        console.print(f"All {diff.ticks} ticks are [bold]equal to the last bit[/].")
+        console.print(
+            f"All {count(diff.ticks, 'tick')} are [bold]equal to the last bit[/]."
+        )
         return
     table = Table(box=None, header_style="bold", pad_edge=False)
     table.add_column("quantity", no_wrap=True)
@@ -54,7 +60,7 @@ def print_diff(diff: LogDiff, period_s: float) -> None:
             f"{quantity.rms:.3g}",
             quantity.unit,
         )
-    console.print(f"Of {diff.ticks} ticks differ:")
+    console.print(f"Of {count(diff.ticks, 'tick')} differ:")
     console.print(table)
     equal = [quantity.name for quantity in diff.quantities if not quantity.differing]
     if equal:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 from collections.abc import Callable
@@ -114,10 +115,31 @@ def require_writable(path: Path, option: str) -> None:
     folder = path.absolute().parent
     if not folder.is_dir():
         raise UserError(f"{option}: there is no folder {path.parent}")
-    if not os.access(path if path.exists() else folder, os.W_OK):
+    if reason := _try_to_open(path):
         raise UserError(
-            f"{option}: {path} cannot be written; name a file in a folder of yours"
+            f"{option}: {path} cannot be written ({reason}); name a file in a folder of"
+            " yours"
         )
+
+
+def _try_to_open(path: Path) -> str:
+    """Returns why a file cannot be opened for writing, or "".
+
+    The file stays as it is. It is really opened: permissions do not tell of a folder
+    in which nothing can be made, nor of a name that is too long.
+    """
+    try:
+        target = Path(os.path.realpath(path))
+        is_new = not target.exists()
+        # A pipe, or a device, may be waiting for its reader.
+        if not is_new and not target.is_file():
+            return "" if os.access(target, os.W_OK) else os.strerror(errno.EACCES)
+        os.close(os.open(target, os.O_WRONLY | os.O_CREAT, 0o666))
+    except OSError as error:
+        return error.strerror or str(error)
+    if is_new:
+        target.unlink()
+    return ""
 
 
 def write_json(data: dict[str, Any], file: str) -> None:

@@ -33,9 +33,9 @@ from drake_haptics.paper.report import describe_machine_line, make_sections
 
 _STYLES = {
     "agrees": "green",
-    "passes": "bold green",
+    "better": "bold green",
     "differs": "red",
-    "lacks": "yellow",
+    "not measured": "yellow",
 }
 
 _ANY_WIDTH = 1000
@@ -104,7 +104,7 @@ def _print(evaluation: PaperEvaluation, out: Path) -> None:
                 console.print(block.title)
             for statement in block.statements:
                 style = _STYLES[statement.verdict]
-                console.print(f"[{style}]{statement.verdict:>7}[/]  {statement.text}")
+                console.print(f"[{style}]{statement.verdict:>12}[/]  {statement.text}")
         console.print()
     console.print(summarize(sections))
     console.print(describe_machine_line(evaluation), style="dim")

@@ -25,3 +25,15 @@ def make_parts_table(parts: Sequence[Part]) -> Table:
     total_us = sum(part.mean_us for part in parts)
     add_row("[bold]whole tick[/]", "", total_us, sum(part.share for part in parts))
     return table
+
+
+def describe_skin(speed_m_per_s: float) -> str:
+    """Returns above which speed a step skips the skin of contact.
+
+    Args:
+        speed_m_per_s: Of `drake_haptics.builder.HapticDiagram`.
+    """
+    return (
+        f"Above {speed_m_per_s:g} m/s the tool crosses contact.tolerance_m in one step:"
+        " it is met as deep as the step has taken it."
+    )

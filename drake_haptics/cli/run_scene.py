@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import socket
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,18 +13,24 @@ from rich.console import Console
 
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.cli.console import make_console
+from drake_haptics.cli.device_words import describe_fault
 from drake_haptics.cli.exit_codes import ExitCode
+from drake_haptics.cli.failures import naming
 from drake_haptics.cli.lasting_interrupt import lasting_interrupt
 from drake_haptics.cli.mesh_options import write_json
 from drake_haptics.cli.page_words import describe_page
-from drake_haptics.cli.parts_table import make_parts_table
+from drake_haptics.cli.parts_table import describe_skin, make_parts_table
 from drake_haptics.cli.run_session import PageOptions, run_session
-from drake_haptics.cli.scene_options import load_set_scene, set_values
+from drake_haptics.cli.scene_options import (
+    load_set_scene,
+    name_scale_options,
+    set_values,
+)
 from drake_haptics.cli.status_line import make_summary
 from drake_haptics.cockpit.page_port import open_page_port
 from drake_haptics.errors import UserError
 from drake_haptics.recording import write_recording
-from drake_haptics.scene import Scene
+from drake_haptics.scene import Scene, SceneError
 from drake_haptics.scene_file import write_scene
 from drake_haptics.stage import open_meshcat, set_stage
 from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
@@ -54,12 +61,21 @@ def choose_scene(
         return load_set_scene(scene, settings), Path(scene).stem
     _refuse_settings_of_meshes(settings)
     assert tool is not None and environment is not None
-    made = Scene.for_meshes(
-        tool,
-        environment,
-        tool_scale=tool_scale,
-        environment_scale=environment_scale,
-    )
+    try:
+        made = Scene.for_meshes(
+            tool,
+            environment,
+            tool_scale=tool_scale,
+            environment_scale=environment_scale,
+        )
+    except SceneError as error:
+        raise SceneError(name_scale_options(str(error))) from error
+    if made.tool.center:
+        click.echo(
+            f"{Path(tool).name} has its origin far beside the mesh: the tool is"
+            " centered (tool.center: true in a scene file).",
+            err=True,
+        )
     return set_values(made, settings), f"{Path(tool).stem} on {Path(environment).stem}"
 
 
@@ -92,7 +108,8 @@ def run_scene(
 
     Raises:
         UserError: Two files are one.
-        click.ClickException: The simulation became unstable.
+        click.ClickException: The simulation became unstable, or the device is at fault
+            at the end.
     """
     written = (record, log, scene_file, json_file)
     files = [Path(file).absolute() for file in written if file]
@@ -107,7 +124,7 @@ def run_scene(
     if not headless:
         locked = _explain_lock({"--record": record, "--log": log, "--json": json_file})
         views = SHOWN_AT_FIRST | {"pieces"} if pieces else SHOWN_AT_FIRST
-        page = PageOptions(open_page_port(port), name, locked, views)
+        page = PageOptions(_open_page(port), name, locked, views)
     meshcat = None if headless and record is None else open_meshcat()
     # Also while the report is written: a second Ctrl-C must not lose it.
     with lasting_interrupt() as check_interrupt:
@@ -131,6 +148,8 @@ def run_scene(
             session.figures["parts"] = [part.to_dict() for part in session.parts]
             console.print()
             console.print(make_parts_table(session.parts))
+            speed = session.figures["skin_speed_m_per_s"]
+            console.print(describe_skin(speed), soft_wrap=True, markup=False)
             relief = find_tick_relief(session.parts, session.scene)
             if relief is not None:
                 console.print(relief, soft_wrap=True, markup=False)
@@ -148,6 +167,17 @@ def run_scene(
             write_json(session.figures, json_file)
     if session.error is not None:
         raise _UnstableError(str(session.error)) from session.error
+    if (fault := session.figures.get("device", {}).get("fault", "NONE")) != "NONE":
+        raise _FaultError(
+            f"the run ended with its device at fault ({describe_fault(fault)}):"
+            " docs/closed-loop.md says what each fault means"
+        )
+
+
+def _open_page(port: int | None) -> socket.socket:
+    """Opens the port of the page."""
+    with naming("--port"):
+        return open_page_port(port)
 
 
 def _explain_lock(files: dict[str, object]) -> str:
@@ -197,8 +227,17 @@ def _write_recording(
         meshcat,
         file,
         haptic.scene.description,
+        haptic.visualizer.recorded_sizes,
+        max_force_N=haptic.loop.device.max_force_N,
+        max_torque_Nm=haptic.loop.device.max_torque_Nm,
         has_friction=haptic.scene.effects.friction is not None,
     )
+
+
+class _FaultError(click.ClickException):
+    """A run whose device showed no force at the end: scripts can tell."""
+
+    exit_code = ExitCode.NO
 
 
 class _UnstableError(click.ClickException):

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import socket
+import warnings
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, closing, contextmanager, nullcontext
+from contextlib import ExitStack, closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,16 +17,25 @@ from rich.console import Console
 from drake_haptics.builder import HapticDiagram
 from drake_haptics.callback_timer import CallbackTimer
 from drake_haptics.cli.build_scene import build_scene
+from drake_haptics.cli.change_log import ChangeLog
+from drake_haptics.cli.device_words import describe_held
 from drake_haptics.cli.enter_key import is_enter_pressed
+from drake_haptics.cli.failures import warn
 from drake_haptics.cli.status_line import StatusLine
 from drake_haptics.cockpit.cockpit_run import CockpitRun
+from drake_haptics.cockpit.taken_device import (
+    ForceOnRequest,
+    TakenDevice,
+    take_device,
+)
 from drake_haptics.device.backend import DeviceBackend, DeviceError
-from drake_haptics.device_address import open_device
+from drake_haptics.device_address import NoPageError, open_device
 from drake_haptics.device_watch import DeviceWatch
 from drake_haptics.explain import Part, explain_tick
 from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.scene import Scene
 from drake_haptics.simulation import RunError, run
+from drake_haptics.skin import calc_skin_speed
 from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
 from drake_haptics.tick_clock import TickClock
 from drake_haptics.tick_log.loop_log import make_log_header
@@ -39,8 +49,9 @@ class Session:
     Attributes:
         haptic: What ran last.
         scene: As it is at the end, with what the page has changed.
-        figures: As `RunStatistics.to_dict` has them, and of a device under `device`
-            those of `DeviceWatch.to_dict`.
+        figures: As `RunStatistics.to_dict` has them, `skin_speed_m_per_s` as of a
+            `HapticDiagram`, and of a device under `device` those of
+            `DeviceWatch.to_dict`.
         parts: Of a tick, if they were to be explained.
         error: Why the run was stopped, if it was.
     """
@@ -85,6 +96,9 @@ def run_session(
 ) -> Session:
     """Opens the device, builds the scene and runs it under a status line.
 
+    What the run is warned of is written to stderr when it is over, a line each: a
+    terminal that takes nothing must not keep a loop waiting.
+
     Args:
         console: Where bars and the status line go.
         scene: What to run.
@@ -118,7 +132,10 @@ def run_session(
             stack.enter_context(closing(cockpit))
             backend = cockpit.backend
         elif device is not None:
-            backend = stack.enter_context(open_device(device, scene, meshcat))
+            with _page_in_words():
+                backend = stack.enter_context(open_device(device, scene, meshcat))
+            if backend.shows_force:
+                backend = take_device(backend, scene)
         with timer or nullcontext(), _address_in_words(device):
             haptic = build_scene(console, scene, meshcat, backend, recorder)
         prepare(haptic, None if cockpit is None else cockpit.url)
@@ -127,6 +144,14 @@ def run_session(
         status = StatusLine(console, haptic, pace)
         stack.enter_context(status)
         onlookers = _Onlookers(check_interrupt, status, timer)
+        if not console.is_terminal:
+            # What the status line shows elsewhere is not to wait for the report.
+            changes = ChangeLog(
+                Console(stderr=True, force_terminal=False), onlookers.describe_gate
+            )
+            stack.enter_context(changes)
+            onlookers.changes = changes
+        caught = stack.enter_context(warnings.catch_warnings(record=True))
         energy = energy and backend is None
         statistics = RunStatistics(haptic.period_s, pace=pace)
         error = None
@@ -143,20 +168,38 @@ def run_session(
                 )
             else:
                 onlookers.begin(haptic)
-                run(
-                    haptic,
-                    duration_s,
-                    pace=pace,
-                    energy=energy,
-                    on_tick=onlookers.end_tick,
-                    statistics=statistics,
-                )
+                # Ctrl-C is how such a run ends; what ran is in the statistics.
+                with suppress(KeyboardInterrupt):
+                    run(
+                        haptic,
+                        duration_s,
+                        pace=pace,
+                        energy=energy,
+                        on_tick=onlookers.end_tick,
+                        statistics=statistics,
+                    )
         except RunError as stopped:
             error = stopped
         last = scene if cockpit is None else cockpit.scene
-        figures = statistics.to_dict() | onlookers.describe_device()
+        speed = calc_skin_speed(last.contact, 1.0 / last.device.rate_hz)
+        figures = {
+            **statistics.to_dict(),
+            "skin_speed_m_per_s": speed,
+            **onlookers.describe_device(),
+        }
+    for warning in caught:
+        warn(str(warning.message))
     parts = explain_tick(haptic, timer) if timer is not None else []
     return Session(haptic, last, figures, parts, error)
+
+
+@contextmanager
+def _page_in_words() -> Iterator[None]:
+    """Says which option leaves no page for a device that needs one."""
+    try:
+        yield
+    except NoPageError as error:
+        raise DeviceError(f"{error}: leave --headless out") from error
 
 
 @contextmanager
@@ -183,6 +226,7 @@ class _Onlookers:
         self._backend: DeviceBackend | None = None
         self._watch: DeviceWatch | None = None
         self._ends: list[Callable[[Context], None]] = []
+        self.changes: ChangeLog | None = None
 
     def begin(self, haptic: HapticDiagram) -> None:
         """Looks at a diagram from now on."""
@@ -191,7 +235,10 @@ class _Onlookers:
             self._backend, self._watch = haptic.backend, None
             if haptic.backend is not None:
                 self._watch = DeviceWatch(haptic.backend, is_enter_pressed)
-        looking = (self._status, self._watch, self._timer)
+        waiting = None
+        if isinstance(haptic.backend, TakenDevice):
+            waiting = ForceOnRequest(haptic.backend, is_enter_pressed)
+        looking = (self._status, self._watch, waiting, self._timer)
         self._ends = [part.end_tick for part in looking if part is not None]
 
     def end_tick(self, context: Context) -> None:
@@ -199,6 +246,14 @@ class _Onlookers:
         self._check_interrupt()
         for end in self._ends:
             end(context)
+        if self.changes is not None:
+            self.changes.update()
+
+    def describe_gate(self) -> str:
+        """Returns whether the device that is held shows force; empty if none can."""
+        if self._backend is None or not self._backend.shows_force:
+            return ""
+        return describe_held(self._backend, self._backend.read())
 
     def describe_device(self) -> dict[str, Any]:
         """Returns `device` of the figures, of the device that was held last."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -13,6 +14,9 @@ from drake_haptics.errors import SceneError, UserError
 
 if TYPE_CHECKING:
     from drake_haptics.scene import Scene
+
+# A scale that the library asks for, as a key of a scene or an argument.
+_SCALE = re.compile(r"(tool|environment)(?:\[0\]\.|\.|_)scale(?:: |=)([\d.e-]+)")
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -68,3 +72,8 @@ def write_call(command: str, scene: str, settings: Sequence[str]) -> str:
     """Returns the words that give another command the same scene, for a shell."""
     pairs = [word for setting in settings for word in ("--set", setting)]
     return shlex.join(["drake-haptics", command, scene, *pairs])
+
+
+def name_scale_options(words: str) -> str:
+    """Returns words of the library with the options of the scales that they ask for."""
+    return _SCALE.sub(r"\g<0> (with --tool and --environment: --\1-scale \2)", words)

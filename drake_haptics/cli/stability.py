@@ -10,6 +10,7 @@ from rich.table import Table
 from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
 from drake_haptics.analysis.stability_page import (
     describe_delay,
+    describe_restless,
     describe_situation,
     describe_verdict,
     write_stability_page,
@@ -136,6 +137,8 @@ def _print(result: SceneStability, path: Path) -> None:
             style="dim",
         )
     console.print(f"further delay that is stable: {describe_delay(result)}")
+    if restless := describe_restless(result):
+        console.print(restless, style="dim")
     console.print(
         f"Wrote {path} and {path.with_suffix('.png')}.", soft_wrap=True, markup=False
     )

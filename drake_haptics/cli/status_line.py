@@ -15,11 +15,11 @@ from drake_haptics.builder import HapticDiagram
 from drake_haptics.cli.device_words import (
     describe_device,
     describe_gate,
+    describe_held,
     describe_lateness,
     describe_link,
 )
 from drake_haptics.cli.live_line import LiveLine
-from drake_haptics.cockpit.taken_device import TakenDevice
 from drake_haptics.device.backend import DeviceReading, GateState
 from drake_haptics.device_watch import SILENT_S, DriverSilence
 from drake_haptics.one_line import count
@@ -105,13 +105,7 @@ class StatusLine(LiveLine):
         """Returns whether the device shows force, and whether its driver is there."""
         silent_s = self._silence.add(reading, passed_s)
         if silent_s < SILENT_S:
-            backend = self._haptic.backend
-            waits = isinstance(backend, TakenDevice) and backend.waits
-            if waits and reading is not None and reading.gate == GateState.IDLE:
-                return (
-                    "[yellow]WAITING: lead the handle to where the tool can follow[/]"
-                )
-            return describe_gate(reading)
+            return describe_held(self._haptic.backend, reading)
         silence = f"silent for {silent_s:.0f} s, is its driver running?"
         return describe_gate(reading, silence)
 
@@ -162,14 +156,16 @@ def make_summary(figures: dict[str, Any]) -> Table:
         )
 
     contacts, clusters = figures["contacts"], figures["clusters"]
-    table.add_row("ran", f"{figures['duration_s']:.2f} s, {figures['ticks']} ticks")
+    table.add_row(
+        "ran", f"{figures['duration_s']:.2f} s, {count(figures['ticks'], 'tick')}"
+    )
     table.add_row("whole tick", times("tick_us"))
     table.add_row("contact query", times("contact_query_us"))
     if late := figures["lateness_us"]:
         table.add_row(
             "late",
             f"median {late['p50']:.0f} µs, p99 {late['p99']:.0f} µs,"
-            f" p99.9 {late['p99_9']:.0f} µs; {late['skipped']} ticks skipped",
+            f" p99.9 {late['p99_9']:.0f} µs; {count(late['skipped'], 'tick')} skipped",
         )
     table.add_row(
         "contacts",
@@ -187,11 +183,11 @@ def make_summary(figures: dict[str, Any]) -> Table:
         table.add_row(
             "left out",
             ", ".join(
-                f"{name} in {count} ticks"
-                for name, count in figures["shed_ticks"].items()
+                f"{name} in {count(ticks, 'tick')}"
+                for name, ticks in figures["shed_ticks"].items()
             ),
         )
-    table.add_row("device limit", f"{figures['limit_hits']} ticks at it")
+    table.add_row("device limit", f"{count(figures['limit_hits'], 'tick')} at it")
     if device := figures.get("device"):
         table.add_row("device", describe_device(device))
     if figures["energy_J"]:
@@ -211,11 +207,28 @@ def _describe_energy(energy_J: dict[str, dict[str, float]]) -> str:
     """Returns what the hand spent, and whether a part made energy."""
     hand = energy_J["device"]
     flow = f"hand put in {1e3 * hand['in']:.1f} mJ, got back {1e3 * hand['out']:.1f} mJ"
-    makers = [
-        f"{name} {1e3 * part['beyond']:.2g} mJ"
+    created_J = {
+        name: part["beyond"]
         for name, part in energy_J.items()
-        if name != "device" and part["beyond"] > _ROUNDING_J
-    ]
-    if makers:
-        return f"{flow}; created beyond what sampling explains: {', '.join(makers)}"
-    return f"{flow}; none created beyond what sampling explains"
+        if part["beyond"] > _ROUNDING_J
+    }
+    felt_J = created_J.pop("device", 0.0)
+    if not created_J and not felt_J:
+        return f"{flow}; good: no part made energy beyond what sampling explains"
+    makers = [f"{name} {1e3 * made:.2g} mJ" for name, made in created_J.items()]
+    made = f"made beyond what sampling explains: {', '.join(makers) or 'no part'}"
+    if not felt_J:
+        most = _describe_share(max(created_J.values()), hand["in"])
+        return f"{flow}; {made}, at most {most}; good: the loop as a whole made none"
+    felt = f"{1e3 * felt_J:.2g} mJ, {_describe_share(felt_J, hand['in'])}"
+    return (
+        f"{flow}; {made}; the loop as a whole made {felt}, and the hand may feel it as"
+        " vibration: lower contact or coupling gains if it does"
+    )
+
+
+def _describe_share(part_J: float, whole_J: float) -> str:
+    """Returns how much an energy is of what the hand put in."""
+    if whole_J <= _ROUNDING_J:
+        return "and the hand put in none"
+    return f"{100.0 * part_J / whole_J:.2g} % of what the hand put in"

@@ -25,6 +25,22 @@ def turn_into_view(v_W: Sequence[float], R_WC: Sequence[float]) -> list[float]:
     return [x, -y, -z]
 
 
+def measure_height(
+    p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
+) -> float | None:
+    """Returns what the picture is high at the depth of a point, m.
+
+    None for a point that is not before the camera, or nowhere.
+
+    Args:
+        p_WQ: (3,) the point, m.
+        R_WC: (9,) axes of the camera, row by row.
+        p_WC: (3,) where the camera is, m.
+    """
+    *_, near = _see(p_WQ, R_WC, p_WC)
+    return HEIGHT_PER_DEPTH * -near if LEAST_DEPTH_M <= -near < math.inf else None
+
+
 def find_in_view(
     p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
 ) -> list[float] | None:
@@ -37,10 +53,15 @@ def find_in_view(
         R_WC: (9,) axes of the camera, row by row.
         p_WC: (3,) where the camera is, m.
     """
-    right, up, near = turn_into_view(
-        [q - c for q, c in zip(p_WQ, p_WC, strict=True)], R_WC
-    )
-    if not LEAST_DEPTH_M <= -near < math.inf:
+    height_m = measure_height(p_WQ, R_WC, p_WC)
+    if height_m is None:
         return None
-    height_m = HEIGHT_PER_DEPTH * -near
+    right, up, _ = _see(p_WQ, R_WC, p_WC)
     return [right / height_m, up / height_m]
+
+
+def _see(
+    p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
+) -> list[float]:
+    """Returns where a point is from the camera: right, up and near, m."""
+    return turn_into_view([q - c for q, c in zip(p_WQ, p_WC, strict=True)], R_WC)

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from drake_haptics.coupling_check import BrokenBound, find_broken_bounds
+from drake_haptics.coupling_check import (
+    BrokenBound,
+    find_broken_bounds,
+    find_exceeded_ratings,
+)
+from drake_haptics.device_preset import load_device_preset
 from drake_haptics.held_handle import calc_force_delay, calc_scene_handle
 from drake_haptics.scene import Scene, SceneError
 from drake_haptics.simulated_device import make_hand_path, make_simulated_device
@@ -19,6 +24,7 @@ class CouplingAdvice:
         """
         self._period_s = 1.0 / scene.device.rate_hz
         self._delay_s = calc_force_delay(scene)
+        self._preset = load_device_preset(scene.device.preset)
         try:
             device = make_simulated_device(scene, make_hand_path(scene.hand.path))
         except SceneError:
@@ -33,9 +39,12 @@ class CouplingAdvice:
         return self._held is not None
 
     def check(self, scene: Scene) -> list[BrokenBound]:
-        """Returns each bound that a scene's coupling breaks."""
+        """Returns each bound that a scene's coupling breaks.
+
+        Where there is no arm, these are the ratings of the scene's device.
+        """
         if self._held is None:
-            return []
+            return find_exceeded_ratings(scene.coupling, self._preset)
         return find_broken_bounds(
             scene.coupling, self._held, self._period_s, self._delay_s
         )

@@ -7,13 +7,18 @@ from collections import deque
 from collections.abc import Sequence
 from typing import Any
 
-from drake_haptics.cockpit.camera_view import find_in_view, turn_into_view
+from drake_haptics.cockpit.camera_view import (
+    find_in_view,
+    measure_height,
+    turn_into_view,
+)
 from drake_haptics.cockpit.telemetry import Telemetry, Tick
 from drake_haptics.cockpit.trace import Trace
 
 # Times are those of so many latest ticks, rates those of so many seconds.
 _LATEST = 1000
 _RATE_SPAN_S = 1.0
+_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 class FrameMaker:
@@ -37,7 +42,8 @@ class FrameMaker:
         """Returns a frame for the page, without whether it drives.
 
         What is not known is None. Vectors `f` and `tau` are right, up and near in the
-        page's picture, `handle` right and up of its middle in heights of it.
+        page's picture, and so are the world's `axes`; `handle` is right and up of its
+        middle in heights of it, which is `height_m` there.
         """
         for tick in packet.ticks:
             self._trace.add(tick.time_s, math.hypot(*tick.f_W), math.hypot(*tick.tau_W))
@@ -51,6 +57,10 @@ class FrameMaker:
             "skipped": packet.skipped,
             "shed": list(self._shed_stages[: packet.shed]),
             "handle": find_in_view(packet.p_WH, packet.R_WC, packet.p_WC),
+            "height_m": measure_height(packet.p_WH, packet.R_WC, packet.p_WC),
+            "axes": {
+                name: turn_into_view(axis, packet.R_WC) for name, axis in _AXES.items()
+            },
             "late_us": _describe(self._late_s, {"p50": 0.5, "p99": 0.99, "max": 1.0}),
             "tick_us": _describe(
                 self._tick_s, {"median": 0.5, "p99": 0.99, "max": 1.0}
@@ -87,17 +97,17 @@ class FrameMaker:
 
 
 def _describe_contact(ticks: Sequence[Tick]) -> dict[str, float | None]:
-    """Returns the last tick's counts, and the deepest or nearest contact of all."""
-    found: dict[str, float | None] = dict.fromkeys(
-        ("contacts", "clusters", "depth_m", "near_m")
-    )
+    """Returns the last tick's counts, and the least distance of all ticks, m.
+
+    That is negative where something penetrates.
+    """
+    found: dict[str, float | None] = dict.fromkeys(("contacts", "clusters", "gap_m"))
     if ticks and not math.isnan(ticks[-1].contacts):
         found["contacts"] = int(ticks[-1].contacts)
         found["clusters"] = int(ticks[-1].clusters)
         least_m = min(tick.distance_m for tick in ticks)
         if least_m < math.inf:
-            found["depth_m"] = max(0.0, -least_m)
-            found["near_m"] = max(0.0, least_m)
+            found["gap_m"] = least_m
     return found
 
 

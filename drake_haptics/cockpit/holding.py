@@ -6,7 +6,7 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 
 from drake_haptics.cockpit.page_handle import PageHandle
-from drake_haptics.cockpit.taken_device import TakenDevice
+from drake_haptics.cockpit.taken_device import TakenDevice, take_device
 from drake_haptics.device.backend import DeviceBackend, DeviceError, GateState
 from drake_haptics.device.meshcat_device import MeshcatDevice
 from drake_haptics.device_address import open_device
@@ -132,9 +132,4 @@ class Holding:
         except BaseException:
             device.close()
             raise
-        return TakenDevice(
-            device,
-            max_force_N=self.site.max_force_N,
-            max_torque_Nm=self.site.max_torque_Nm,
-            period_s=1.0 / self._scene.device.rate_hz,
-        )
+        return take_device(device, self._scene)

@@ -56,6 +56,11 @@ class PageHandle(DeviceBackend):
         return True
 
     @property
+    def shows_force(self) -> bool:
+        """False."""
+        return False
+
+    @property
     def gate(self) -> GateState:
         """Active from the first wrench on until it is closed."""
         return self._handle.gate

@@ -10,8 +10,8 @@ from drake_haptics.builder import HapticDiagram
 from drake_haptics.stage import aim_camera, find_framed_points
 from drake_haptics.systems.picture_views import PICTURE_VIEWS, check_view
 
-# Of the force on the hand, in the picture's scene tree.
-_FORCE = "/haptics/force"
+# Of force and torque on the hand, in the picture's scene tree.
+_FELT = ("/haptics/force", "/haptics/torque")
 _UNFELT_OPACITY = 0.25
 
 
@@ -45,12 +45,13 @@ class PagePicture:
                 self._visualizer.Show(view, visible)
 
     def mark_felt(self, is_felt: bool) -> None:
-        """Fades the arrow of a force that is asked for and not shown."""
+        """Fades the arrows of a wrench that is asked for and not shown."""
         if is_felt == self._is_felt:
             return
         self._is_felt = is_felt
         opacity = 1.0 if is_felt else _UNFELT_OPACITY
-        self._meshcat.SetProperty(_FORCE, "modulated_opacity", opacity)
+        for path in _FELT:
+            self._meshcat.SetProperty(path, "modulated_opacity", opacity)
 
     def obey(self, request: dict[str, Any]) -> bool:
         """Does what a page asks for, if that is a matter of the picture.

@@ -19,7 +19,7 @@ def open_page_port(port: int | None = None) -> socket.socket:
         port: None takes the first free one from `FIRST_PORT` on.
 
     Raises:
-        UserError: The port cannot be had.
+        UserError: The port cannot be used.
     """
     for candidate in itertools.count(FIRST_PORT) if port is None else [port]:
         try:
@@ -29,6 +29,6 @@ def open_page_port(port: int | None = None) -> socket.socket:
                 continue
             raise UserError(
                 f"port {candidate} cannot be used for the page: {error}. Give another"
-                f" one with --port, or none for the first free one from {FIRST_PORT}"
+                f" one, or none for the first free one from {FIRST_PORT}"
             ) from error
     raise AssertionError("counting does not end")

@@ -12,6 +12,7 @@ import os
 import socket
 import sys
 from contextlib import suppress
+from time import monotonic
 from typing import Any
 
 from drake_haptics.cockpit.changes_yaml import write_changes
@@ -20,6 +21,8 @@ from drake_haptics.cockpit.page_server import PageServer
 from drake_haptics.cockpit.telemetry import KIND, LARGEST_DATAGRAM, read_telemetry
 
 _CLOSE_S = 0.5
+# A loop that says nothing for so long stands still; pages are told as often.
+_QUIET_S = 0.5
 _STDIN = 0
 
 
@@ -38,6 +41,8 @@ class PageProcess:
         self._server = PageServer(listener, origin, self._forward)
         self._frames = FrameMaker()
         self._why = ""
+        # When the loop last told of ticks; None before it begins.
+        self._heard_s: float | None = None
 
     async def run(self) -> None:
         """Serves until the loop has ended."""
@@ -52,13 +57,15 @@ class PageProcess:
         server = await self._server.open()
         loop.add_reader(self._link, self._read)
         loop.add_reader(_STDIN, look_for_end)
+        watch = asyncio.create_task(self._watch())
         await ended.wait()
+        watch.cancel()
         # What waits for free connections finds its socket closed.
         loop.set_exception_handler(lambda *_: None)
         loop.remove_reader(_STDIN)
         # What the loop said last.
         self._read()
-        why = self._why or "The run has gone without a word."
+        why = self._why or "The run stopped unexpectedly."
         self._server.tell("over", json.dumps({"over": {"why": why}}))
         server.close()
         # A page that does not answer is not waited for.
@@ -71,9 +78,19 @@ class PageProcess:
         with suppress(BlockingIOError):
             while packet := self._link.recv(LARGEST_DATAGRAM):
                 if packet.startswith(KIND):
+                    self._heard_s = monotonic()
                     self._server.show(self._frames.make(read_telemetry(packet)))
                 else:
                     self._take(json.loads(packet))
+
+    async def _watch(self) -> None:
+        """Tells pages that nothing is heard of the loop, for as long as it is so."""
+        while True:
+            await asyncio.sleep(_QUIET_S)
+            if self._heard_s is not None:
+                quiet_s = monotonic() - self._heard_s
+                if quiet_s >= _QUIET_S:
+                    self._server.say(json.dumps({"quiet": {"for_s": quiet_s}}))
 
     def _take(self, message: dict[str, Any]) -> None:
         """Does what a message of the loop says."""

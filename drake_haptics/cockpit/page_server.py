@@ -90,6 +90,14 @@ class PageServer:
             message: JSON text.
         """
         self._lasting[name] = message
+        self.say(message)
+
+    def say(self, message: str) -> None:
+        """Tells every page something that those who come later need not know.
+
+        Args:
+            message: JSON text.
+        """
         broadcast(self._pages, message)
 
     def show(self, frame: dict[str, Any]) -> None:

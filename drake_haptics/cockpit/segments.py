@@ -158,6 +158,9 @@ class Segments:
                 raise
             self._steering.refuse(str(error))
             return old, last
+        if holding.taken is not None:
+            # Effects come and go at once: what is felt of them does not.
+            holding.taken.hand_over()
         if goes_on:
             context = carry_on(old, last, new)
             if change.restarts:

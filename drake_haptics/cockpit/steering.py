@@ -132,7 +132,7 @@ class Steering:
             return False
         changes.restore(changes.file)
         self._glide = self._make_glide()
-        self._fail(f"It was too much: {why}. The scene begins anew, as in its file.")
+        self._fail(f"The run failed: {why}. The scene starts again, as in its file.")
         return True
 
     def tell_error(self) -> str:

@@ -1,8 +1,9 @@
-"""A device that is taken by a hand: its force sets in gently, or not yet."""
+"""A device in a hand: what it shows sets in, and changes over, gently."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,8 @@ from drake_haptics.device.backend import (
     GateState,
     LinkStatus,
 )
+from drake_haptics.device_site import find_device_site
+from drake_haptics.scene import Scene
 
 # Of the largest force and torque: what may set in without surprising a hand. The weight
 # of a tool is less, what presses a tool out of a wall more.
@@ -25,12 +28,34 @@ _GENTLE_S = 0.1
 _RISE_S = 0.2
 
 
+def take_device(device: DeviceBackend, scene: Scene) -> TakenDevice:
+    """Returns a device as a hand takes it, within the limits of a scene.
+
+    Args:
+        device: Open; closed with what is returned.
+        scene: Says limits and rate.
+
+    Raises:
+        SceneError: As `find_device_site`.
+    """
+    site = find_device_site(scene)
+    return TakenDevice(
+        device,
+        max_force_N=site.max_force_N,
+        max_torque_Nm=site.max_torque_Nm,
+        period_s=1.0 / scene.device.rate_hz,
+    )
+
+
 class TakenDevice(DeviceBackend):
     """Shows no force of a device until that has been gentle for a moment.
 
     Whoever takes a handle, or takes it up again after a fault, does not know what the
     virtual tool meets: it may be behind a wall, or turned. Until the two have found
     each other the tool is led to the handle, and the hand feels nothing.
+
+    Where what makes the force becomes another while it is shown, as an effect comes or
+    goes, it goes over from what was shown last.
 
     Attributes:
         device: What is taken.
@@ -61,6 +86,8 @@ class TakenDevice(DeviceBackend):
         self._gentle_ticks = 0
         # Of the wrench that is asked for, how much is shown, and its rise in a tick.
         self._share, self._rise = 0.0, period_s / _RISE_S
+        # What the rest is of, and what was shown last.
+        self._before_B = self._shown_B = np.zeros(6)
 
     def __repr__(self) -> str:
         return repr(self.device)
@@ -75,6 +102,11 @@ class TakenDevice(DeviceBackend):
         """The device's."""
         return self.device.is_placed
 
+    @property
+    def shows_force(self) -> bool:
+        """The device's."""
+        return self.device.shows_force
+
     def read(self) -> DeviceReading | None:
         """Returns the newest reading; idle as long as it waits."""
         reading = self.device.read()
@@ -86,7 +118,12 @@ class TakenDevice(DeviceBackend):
         """Asks for what is shown of a wrench from now on."""
         if self._share < 1.0:
             command = self._ease(command)
+        self._shown_B = command.F_BH
         self.device.write(command)
+
+    def hand_over(self) -> None:
+        """Goes over to what is asked for next from what is shown, as it sets in."""
+        self._before_B, self._share = self._shown_B, 0.0
 
     def resume(self) -> None:
         """Takes it up again if it is at fault; else lets the force set in as it is."""
@@ -100,6 +137,7 @@ class TakenDevice(DeviceBackend):
         """Takes a device at fault up again, as one that is taken."""
         self.waits = True
         self._gentle_ticks, self._share = 0, 0.0
+        self._before_B = np.zeros(6)
         self.device.recover()
 
     def close(self) -> None:
@@ -119,11 +157,12 @@ class TakenDevice(DeviceBackend):
         if self.waits:
             return DeviceCommand(np.zeros(6), command.X_BH, command.V_BH)
         self._share = min(1.0, self._share + self._rise)
-        parts = (command.F_BH, command.K_B, command.B_B)
-        F_BH, K_B, B_B = (
-            None if part is None else self._share * np.asarray(part) for part in parts
+        share = self._share
+        F_BH = (1.0 - share) * self._before_B + share * np.asarray(command.F_BH)
+        K_B, B_B = (
+            None if part is None else share * np.asarray(part)
+            for part in (command.K_B, command.B_B)
         )
-        assert F_BH is not None
         return DeviceCommand(F_BH, command.X_BH, command.V_BH, K_B, B_B)
 
     def _is_gentle(self, F_BH: np.ndarray) -> bool:
@@ -131,3 +170,30 @@ class TakenDevice(DeviceBackend):
         tau_x, tau_y, tau_z, f_x, f_y, f_z = np.asarray(F_BH).tolist()
         torque_Nm, force_N = math.hypot(tau_x, tau_y, tau_z), math.hypot(f_x, f_y, f_z)
         return force_N <= self._gentle_force_N and torque_Nm <= self._gentle_torque_Nm
+
+
+class ForceOnRequest:
+    """Lets the force of a taken device set in where somebody asks for it."""
+
+    def __init__(self, device: TakenDevice, wants_it_now: Callable[[], bool]):
+        """Looks at nothing yet.
+
+        Args:
+            device: May wait.
+            wants_it_now: Says, while it waits, whether to show the force as it is.
+        """
+        self._device = device
+        self._wants_it_now = wants_it_now
+        self._could_show = False
+
+    def end_tick(self, _context: object = None) -> None:
+        """Looks at the device; made to be called after every tick."""
+        reading = self._device.device.read()
+        gate = None if reading is None else reading.gate
+        if not self._device.waits or gate == GateState.FAULT:
+            self._could_show = False
+            return
+        # A wish from before was for something else: to leave a fault.
+        if self._wants_it_now() and self._could_show:
+            self._device.resume()
+        self._could_show = gate == GateState.ACTIVE

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import drake_haptics
+from drake_haptics.one_line import count
 from drake_haptics.shapes import SHAPES
 
 
@@ -12,7 +13,7 @@ def main(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for name, make in SHAPES.items():
         surface = make()
-        title = f"{name}: {len(surface.triangles)} triangles"
+        title = f"{name}: {count(len(surface.triangles), 'triangle')}"
         surface.write_obj(folder / f"{name}.obj", title)
         print(title)
 

@@ -77,7 +77,7 @@ class SurfaceBuilder:
             ValueError: the rings differ in length.
         """
         if len(near) != len(far):
-            raise ValueError(f"rings of {len(near)} and {len(far)} vertices")
+            raise ValueError(f"rings of unlike sizes: {len(near)} and {len(far)}")
         count = len(near)
         for i in set(range(count)) - set(holes):
             j = (i + 1) % count

@@ -33,7 +33,7 @@ class Gap:
         where = f"from tick {self.first_tick} ({self.first_tick * period_s:.3f} s)"
         if self.ticks is None:
             return f"the log ends without its end mark: what came {where} on is missing"
-        return f"{self.ticks} ticks are missing {where}"
+        return f"{count(self.ticks, 'tick is', 'ticks are')} missing {where}"
 
 
 @dataclass(frozen=True, eq=False)

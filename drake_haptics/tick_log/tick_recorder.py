@@ -12,6 +12,7 @@ from typing import BinaryIO
 
 import numpy as np
 
+from drake_haptics.one_line import count
 from drake_haptics.tick_log.tick_block import MAX_BLOCK_TICKS, pack_block
 from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_log_header import TickLogHeader, pack_header
@@ -93,7 +94,7 @@ class TickRecorder:
         return self._ticks
 
     def __repr__(self) -> str:
-        return f"TickRecorder({str(self._path)!r}, {self._ticks} ticks noted)"
+        return f"TickRecorder({str(self._path)!r}, {count(self._ticks, 'tick')} noted)"
 
     def add(
         self,
@@ -155,8 +156,8 @@ class TickRecorder:
             ) from self._error
         if self._left_out:
             raise TickLogError(
-                f"{self._path}: {self._left_out} ticks are missing in the log, the"
-                " disk was too slow; record to a faster one"
+                f"{self._path}: {count(self._left_out, 'tick is', 'ticks are')} missing"
+                " in the log, the disk was too slow; record to a faster one"
             )
 
     def __enter__(self) -> TickRecorder:

@@ -21,7 +21,9 @@ def run(*arguments):
 
 def test_scenes_are_measured_and_written(tmp_path):
     result = run("scenes", "--quick", "--json", tmp_path / "figures.json")
-    assert result.returncode == 0 and result.stderr == ""
+    assert result.returncode == 0
+    # How far it is, where it takes longer than ten seconds.
+    assert all(line.startswith("scenes: ") for line in result.stderr.splitlines())
     assert "spoon on cup" in result.stdout and "Scenes" in result.stdout
     assert "Convex pairs" not in result.stdout
     figures = json.loads((tmp_path / "figures.json").read_text())

@@ -44,7 +44,7 @@ def test_a_port_that_is_taken_is_told_with_what_to_do():
         result = invoke("--port", port, "--duration", 0.1)
     assert result.exit_code == 1
     assert result.stderr.startswith(f"Error: port {port} is taken")
-    assert "--port" in result.stderr
+    assert "choose another (0: any free one)" in result.stderr
 
 
 def test_a_scene_that_is_none_is_told_with_those_there_are():

@@ -54,7 +54,8 @@ MESHES = {
     "nan.obj": (TRIANGLE.replace("1 0 0", "nan 0 0") + "f 1 2 3\n", "NaN or infinite"),
     "cut.obj": (TRIANGLE + "f 1 2 9\n", "cannot be read"),
     "picture.jpg": ("x", "trimesh reads no format .jpg"),
-    "cut.stl": ("solid cup\nfacet nor", "cut.stl"),
+    "cut.stl": ("solid cup\nfacet nor", "is cut off: a text STL"),
+    "text.stl": (TRIANGLE + "f 1 2 3\n", "is a text file, and no STL"),
 }
 
 
@@ -105,6 +106,7 @@ def test_millimetres_are_asked_for_by_every_command(folder):
     assert result.exit_code == 0, result.output
     (line,) = [x for x in result.stderr.splitlines() if "big.obj" in x]
     assert line.startswith("Warning: ") and "environment[0].scale: 0.001" in line
+    assert ": --environment-scale 0.001)" in line
     # A tool of that size fits into no workspace.
     pair = ["--tool", "big.obj", "--environment", "block.obj", "--headless"]
     assert fails(invoke("run", *pair), "200 m long", "--tool-scale 0.001")
@@ -176,12 +178,34 @@ def test_an_extra_that_is_missing_is_named(monkeypatch):
     assert fails(result, "pip install 'drake_haptics[coacd]'")
 
 
+# Nobody can make a file there, root neither, though root may do everything.
+UNWRITABLE = "/proc/x.out"
+
+
+@pytest.mark.parametrize("name", [UNWRITABLE, 300 * "x"])
 @pytest.mark.parametrize("option", ["--json", "-o", "--html"])
-def test_nothing_is_computed_for_a_folder_that_cannot_be_written(monkeypatch, option):
-    monkeypatch.setattr(mesh_options.os, "access", lambda *_: False)
-    result = invoke("decompose", "block.obj", option, "x.out")
-    assert fails(result, f"{option}: x.out cannot be written")
+def test_nothing_is_computed_for_a_file_that_cannot_be_written(option, name):
+    result = invoke("decompose", "block.obj", option, name)
+    assert fails(result, f"{option}: {name} cannot be written")
     assert result.stdout == ""
+
+
+@pytest.mark.parametrize("option", ["--json", "--log", "--record", "--write-scene"])
+def test_nothing_runs_for_a_file_that_cannot_be_written(monkeypatch, option):
+    monkeypatch.setattr(
+        "drake_haptics.cli.run_scene.run_session", lambda *_, **__: pytest.fail("ran")
+    )
+    assert fails(run_scene(option, UNWRITABLE), f"{option}: {UNWRITABLE} cannot be")
+
+
+def test_that_a_file_can_be_written_is_asked_without_a_trace(folder):
+    (folder / "old.json").write_text("old")
+    (folder / "link.json").symlink_to(folder / "linked.json")
+    for name in ("old.json", "new.json", "link.json"):
+        mesh_options.require_writable(folder / name, "--json")
+    assert (folder / "old.json").read_text() == "old"
+    assert not (folder / "new.json").exists()
+    assert (folder / "link.json").is_symlink() and not (folder / "linked.json").exists()
 
 
 def test_a_device_file_is_written_and_not_replaced():

@@ -63,7 +63,7 @@ def test_info_says_what_is_in_it(log):
 def test_a_replay_in_another_process_is_equal_to_the_last_bit(log, tmp_path):
     answer = invoke("log", "replay", log, "--log", tmp_path / "again.tick")
     assert answer.exit_code == 0
-    assert "All 1500 ticks are equal to the last bit." in answer.output
+    assert "All 1,500 ticks are equal to the last bit." in answer.output
     assert answer.output.endswith(f"\nWrote {tmp_path / 'again.tick'}.\n")
     answer = invoke("log", "diff", log, tmp_path / "again.tick")
     assert answer.exit_code == 0
@@ -104,19 +104,29 @@ def test_a_replay_into_another_scene_file(log, tmp_path):
 
 
 def test_csv_has_every_tick(log, tmp_path):
-    assert invoke("log", "csv", log, tmp_path / "run.csv").exit_code == 0
+    out = tmp_path / "run.csv"
+    assert invoke("log", "csv", log, "--out", out).exit_code == 0
     text = (tmp_path / "run.csv").read_text()
     lines = list(csv.DictReader(io.StringIO(text)))
     rows = read_tick_log(log).rows
     assert len(lines) == len(rows) == 1500
     column = [float(line["F_display_fz_N"]) for line in lines]
     assert column == rows["F_display"][:, 5].tolist()
-    assert invoke("log", "csv", log, "-").output == text
+    assert invoke("log", "csv", log, "--out", "-").output == text
+
+
+def test_csv_is_named_after_its_log(log, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    answer = invoke("log", "csv", log)
+    assert answer.output == f"Wrote {log.stem}.csv.\n"
+    assert (tmp_path / f"{log.stem}.csv").stat().st_size > 1000
+    # There is one way to say where to.
+    assert invoke("log", "csv", log, "other.csv").exit_code == 2
 
 
 def test_a_table_does_not_take_the_place_of_its_log(log):
     before = log.read_bytes()
-    answer = invoke("log", "csv", log, log)
+    answer = invoke("log", "csv", log, "--out", log)
     assert answer.exit_code == 1 and "is the log itself" in answer.output
     assert log.read_bytes() == before
 
@@ -125,7 +135,7 @@ LOOKS_WITHOUT_DRAKE = """
 import sys
 from click.testing import CliRunner
 from drake_haptics.cli import main
-for words in (["info", "LOG"], ["csv", "LOG", "-"], ["diff", "LOG", "LOG"]):
+for words in (["info", "LOG"], ["csv", "LOG", "--out", "-"], ["diff", "LOG", "LOG"]):
     words = ["log"] + [sys.argv[1] if word == "LOG" else word for word in words]
     assert CliRunner().invoke(main, words).exit_code == 0
 print(sorted({"pydrake", "matplotlib"} & sys.modules.keys()))
@@ -155,7 +165,7 @@ def test_a_damaged_log_is_used_as_far_as_it_goes(log, tmp_path):
     assert "Warning" in answer.stderr
     assert "only in the first log" in answer.stdout
     broken.write_bytes(data[: len(data) // 3])
-    answer = invoke("log", "csv", broken, tmp_path / "broken.csv")
+    answer = invoke("log", "csv", broken, "--out", tmp_path / "broken.csv")
     assert answer.exit_code == 0
     assert "ends without its end mark" in answer.stderr
 
@@ -172,8 +182,8 @@ def test_a_damaged_log_is_used_as_far_as_it_goes(log, tmp_path):
         (["replay", "LOG", "--log", "none/out.tick"], "No such file or directory"),
         (["diff", "LOG", "LOG", "--plot", "none/a.png"], "--plot: there is no folder"),
         (["diff", "LOG", "LOG", "--plot", "a.xyz"], "--plot: Format 'xyz'"),
-        (["csv", "LOG", "none/out.csv"], "No such file or directory"),
-        (["csv", "LOG", "/dev/full"], "/dev/full: No space left"),
+        (["csv", "LOG", "--out", "none/out.csv"], "--out: there is no folder none"),
+        (["csv", "LOG", "--out", "/dev/full"], "/dev/full: No space left"),
         (["replay", "LOG", "--log", "/dev/full"], "/dev/full: No space left"),
     ],
 )
@@ -225,7 +235,7 @@ def test_a_run_over_two_processes_replays_to_the_last_bit(tmp_path):
     assert (np.diff(rows["sequence"].astype(int)) >= 0).all()
     assert rows["contacts"].max() > 0
     answer = invoke("log", "replay", path)
-    assert "All 1500 ticks are equal to the last bit." in answer.output
+    assert "All 1,500 ticks are equal to the last bit." in answer.output
 
 
 def test_a_recorded_handle_can_be_held(log, tmp_path):

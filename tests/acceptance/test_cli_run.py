@@ -51,6 +51,7 @@ def stats(request, tmp_path_factory):
     file = tmp_path_factory.mktemp(request.param) / "s.json"
     result = invoke("run", request.param, "--headless", "--duration", 5, "--json", file)
     assert result.exit_code == 0, result.output
+    assert "Warning" not in result.stderr
     return json.loads(file.read_text())
 
 

@@ -4,6 +4,7 @@ import re
 import shutil
 
 import pytest
+import trimesh
 from accuracy_samples import make_study
 from click.testing import CliRunner
 
@@ -50,6 +51,22 @@ def test_meshes_become_a_scene_file_to_go_on_from(invoke, tmp_path):
     # A file that is named is not one that stands elsewhere, too.
     assert str(tmp_path) not in (tmp_path / "mine.yaml").read_text()
     assert invoke("run", "mine.yaml", *SHORT).exit_code == 0
+
+
+def test_a_mesh_far_from_its_origin_is_centered_and_said_to_be(invoke, tmp_path):
+    pen = trimesh.load("pen.obj")
+    pen.apply_translation([0.4, 0.5, 0.1])
+    pen.export("far.obj")
+    meshes = ["--tool", "far.obj", "--environment", "torus.obj"]
+    result = invoke("run", *meshes, *SHORT, "--write-scene", "mine.yaml")
+    assert result.exit_code == 0, result.output
+    assert "far.obj has its origin far beside the mesh: the tool is centered" in (
+        result.stderr
+    )
+    assert "Warning" not in result.stderr
+    assert "  center: true\n" in (tmp_path / "mine.yaml").read_text()
+    near = invoke("run", "--tool", "pen.obj", *meshes[2:], *SHORT)
+    assert "centered" not in near.output
 
 
 def test_the_other_end_of_a_device_is_told_the_same_scene(invoke):

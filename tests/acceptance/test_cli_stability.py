@@ -1,6 +1,7 @@
 """`drake-haptics stability` from end to end."""
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -47,7 +48,9 @@ def test_a_scene_from_end_to_end(tmp_path):
         capture_output=True, text=True, cwd=tmp_path,
     )  # fmt: skip
     assert process.returncode == 0, process.stderr
-    assert process.stderr == ""
+    # No more than how far it is, if it takes long.
+    lines = process.stderr.splitlines()
+    assert all(re.fullmatch(r"(stopping|limit) .*: \d+%", line) for line in lines)
     figures = json.loads(process.stdout)
     assert figures["is_stable"] and figures["is_passive"] and figures["map"] is None
     contact, rotation, wall, turned = figures["limits"]

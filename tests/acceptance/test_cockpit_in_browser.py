@@ -4,6 +4,8 @@ One run and one browser serve all tests, which go on from one another.
 """
 
 import json
+import signal
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -149,7 +151,7 @@ def test_what_is_no_number_of_the_range_is_refused_and_changes_nothing(page):
         ("0,5", "point"),
         ("two", "not a number"),
         ("1e9", "to 5000 N/m"),
-        ("-3", "from 50"),
+        ("-3", "50 to"),
     ]:
         type_value(page, STIFFNESS, text)
         page.wait_for(f"{refusal}.textContent.includes({json.dumps(why)})")
@@ -170,6 +172,24 @@ def test_what_is_no_number_of_the_range_is_refused_and_changes_nothing(page):
     page.wait_for(f"!{SLIDER}.classList.contains('changed')")
     f_W = page.wait_for_rest()
     assert f_W[2] == pytest.approx(calc_pressed_force(K_COUPLING), abs=TOLERANCE_N)
+
+
+def test_a_refusal_is_forgotten_when_something_else_is_asked_for(page):
+    refusal = f"{SLIDER}.querySelector('.refusal')"
+    views = "document.getElementById('view-pieces')"
+    for act in [
+        lambda: page.click("#reset"),
+        lambda: type_value(page, DAMPING, "3"),
+        lambda: page.click("#view-pieces"),
+    ]:
+        type_value(page, STIFFNESS, "1e9")
+        page.wait_for(f"!{refusal}.hidden")
+        act()
+        page.wait_for(f"{refusal}.hidden")
+    page.wait_for(f"{views}.checked")
+    page.click("#view-pieces")
+    page.click("#reset")
+    page.wait_for(f"document.getElementById('{DAMPING}').value == 2")
 
 
 def test_no_row_moves_under_the_pointer_when_its_value_changes(page):
@@ -232,6 +252,25 @@ def test_the_camera_goes_where_a_key_says(page):
     wait_for_change(page, before, is_same=True)
 
 
+def wait_for_axes(page, across, up):
+    """Waits until the run knows that the camera sees these axes so."""
+    arm = "document.querySelector('#triad [data-axis={}] path').getAttribute('d')"
+    # Of 26 px, which is all of it.
+    page.wait_for(
+        f"[{arm.format(across)}, {arm.format(up)}].map(d => d.match(/L(.*) (.*)/))"
+        ".map(([, x, y]) => [Math.round(x), Math.round(-y)]).join() == '26,0,0,26'"
+    )
+
+
+def test_the_worlds_axes_are_where_the_camera_sees_them(page):
+    for key, across, up in [("2", "x", "z"), ("3", "y", "z"), ("4", "x", "y")]:
+        page.press(key, f"Digit{key}")
+        wait_for_axes(page, across, up)
+    before = page.evaluate("document.getElementById('scale').textContent")
+    assert before.endswith(" mm") and float(before.split()[0]) > 0
+    page.press("1", "Digit1")
+
+
 def test_every_control_is_reached_by_tab_and_has_a_name(page):
     page.evaluate("""
       window.nameOf = e => e.id || e.ariaLabel || e.parentElement.id;
@@ -290,9 +329,8 @@ def test_keys_fold_the_panels_and_list_themselves(page):
 
 def test_the_mouse_takes_the_handle_and_drags_it_over_what_is_rough(page):
     """Without friction a ball that is dragged feels the block's normal alone."""
-    before = look(page)
     page.press("2", "Digit2")
-    wait_for_change(page, before)
+    wait_for_axes(page, "x", "z")
     page.press("g")
     page.wait_for("document.body.classList.contains('piloting')")
     f_W = drag_aside(page)
@@ -363,8 +401,8 @@ def test_thousands_of_frames_leave_no_more_behind(page):
           torque_Nm: Array(8).fill(0.1)}, f: [0, 0, 1], tau: [0, 0, 0],
           f_W: [0, 0, n % 7], tau_W: [0, 0, 0], rate_hz: 1000, real_time: 1,
           late_us: null, skipped: 0,
-          tick_us: {median: 50, p99: 80, max: 90}, contacts: 1, clusters: 1, depth_m: 0,
-          near_m: 0.001, gate: 'simulated', shed: [], handle: null, drives: true}})});
+          tick_us: {median: 50, p99: 80, max: 90}, contacts: 1, clusters: 1,
+          gap_m: 0.001, gate: 'simulated', shed: [], handle: null, drives: true}})});
         return document.querySelectorAll('*').length;
       }""")
 
@@ -377,6 +415,53 @@ def test_thousands_of_frames_leave_no_more_behind(page):
     (nodes, heap), (nodes_later, heap_later) = weigh(), weigh()
     assert nodes_later == nodes
     assert heap_later - heap < 200e3
+
+
+@contextmanager
+def stopped(run):
+    """The process of the loop stands still meanwhile."""
+    run.process.send_signal(signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        run.process.send_signal(signal.SIGCONT)
+
+
+def read_what_traces_write(page):
+    """Makes `written` of the page: of each text in the torque's trace [text, x, y]."""
+    page.evaluate("""(() => {
+      window.written = [];
+      const draw = window.drawText ?? CanvasRenderingContext2D.prototype.fillText;
+      window.drawText = draw;
+      CanvasRenderingContext2D.prototype.fillText = function(text, x, y) {
+        if (this.canvas.id == 'torque-trace') written.push([text, x, y]);
+        draw.call(this, text, x, y);
+      };
+    })()""")
+
+
+def test_a_loop_that_stands_still_is_told_of_until_it_goes_on(run, page):
+    """As after Ctrl-Z, in a debugger, or on a machine that swaps."""
+    read_what_traces_write(page)
+    gate, figure = "document.getElementById('gate')", "document.getElementById('{}')"
+    page.wait_for("written.some(([text]) => text == 'now')")
+    with stopped(run):
+        page.wait_for(f"{gate}.textContent.startsWith('no news for 3')")
+        assert page.read("rate") == "0 Hz · 0.00×" and page.read("late") == "–"
+        assert page.evaluate(f"{gate}.className") == "chip"
+        assert "stands still" in page.read("notice-quiet")
+        page.evaluate("written = []")
+        page.wait_for("written.some(([text]) => text.endsWith(' s ago'))")
+        assert not page.evaluate("written.some(([text]) => text == 'now')")
+        time_s = page.read("time")
+        page.wait_for(f"{gate}.textContent.startsWith('no news for 5')")
+        assert page.read("time") == time_s
+    page.wait_for(f"{gate}.className == 'chip simulated'")
+    page.wait_for("document.getElementById('notice-quiet') == null")
+    page.evaluate("written = []")
+    page.wait_for("written.some(([text]) => text == 'now')")
+    page.wait_for(f"parseFloat({figure.format('rate')}.textContent) > 10")
+    assert page.read("late") != "–" and page.read("time") != time_s
 
 
 def feed(page, expression, **changes):
@@ -394,7 +479,14 @@ def feed(page, expression, **changes):
 def test_a_tool_that_is_deep_in_a_wall_is_told_of(page):
     is_told = "document.getElementById('notice-deep') != null"
     for depth_m, told in [(1.9 * TOLERANCE_M, False), (2.1 * TOLERANCE_M, True)]:
-        assert feed(page, is_told, depth_m=depth_m) == told
+        assert feed(page, is_told, gap_m=-depth_m) == told
+
+
+def test_one_field_has_gap_and_depth_by_their_sign(page):
+    gap, shown = "document.getElementById('gap').textContent", []
+    for gap_m in [2.5e-4, -1.25e-3, 2e-7, None]:
+        shown.append(feed(page, gap, gap_m=gap_m, contacts=3, clusters=1))
+    assert shown == ["0.250 mm", "−1.250 mm", "0.000 mm", "–"]
 
 
 def test_a_device_that_shows_no_force_says_why_and_what_to_do(page):

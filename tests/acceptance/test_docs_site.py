@@ -29,6 +29,13 @@ LOOKED_AT = (
     "tutorials/2-felt-force.html",
 )
 WIDTHS = (390, 1440)
+LAPTOP_WIDTH = 1280
+WIDE_TABLES = (
+    "no-fall-through.html",
+    "effects.html",
+    "accuracy.html",
+    "stability.html",
+)
 # What people look for, and the page or section that they are to find.
 SOUGHT = {
     "PenaltyForce": "reference/generated/system-penalty_force.html",
@@ -59,6 +66,7 @@ def test_the_site_is_built_without_a_warning_and_is_whole(tmp_path: Path) -> Non
     if browser := find_browser():
         with serve(site) as address, HeadlessBrowser(browser) as page:
             look(page, address)
+            look_at_tables(page, address)
             search(page, address)
             assert not page.errors
 
@@ -166,6 +174,24 @@ def look(page: HeadlessBrowser, address: str) -> None:
             page.open(address + name)
             wide = page.evaluate("document.documentElement.scrollWidth")
             assert wide <= width, f"{name} is {wide} wide on {width}"
+
+
+def look_at_tables(page: HeadlessBrowser, address: str) -> None:
+    """No table is wider than its page's column on a laptop."""
+    page.call(
+        "Emulation.setDeviceMetricsOverride",
+        width=LAPTOP_WIDTH,
+        height=800,
+        deviceScaleFactor=1,
+        mobile=False,
+    )
+    for name in WIDE_TABLES:
+        page.open(address + name)
+        widths = page.evaluate(
+            "[...document.querySelectorAll('table.docutils')]"
+            ".map(t => [t.scrollWidth, t.parentElement.clientWidth])"
+        )
+        assert widths and all(table <= column for table, column in widths), name
 
 
 def search(page: HeadlessBrowser, address: str) -> None:

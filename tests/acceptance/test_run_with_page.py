@@ -113,7 +113,7 @@ def test_a_run_is_changed_while_it_goes_on(tmp_path):
         output, _ = run.process.communicate(timeout=BOUND_S)
         assert run.process.returncode == 0
     # All that ran, in whatever hands.
-    assert re.search(r"ran\s+4.00 s, 4000 ticks", output)
+    assert re.search(r"ran\s+4.00 s, 4,000 ticks", output)
     scene = load_scene(find_scene("cup_spoon"))
     scene.contact.stiffness_N_per_m = 3000.0
     scene.coupling.stiffness_N_per_m = 400.0

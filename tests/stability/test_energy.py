@@ -81,15 +81,36 @@ def test_spoon_and_cup_at_rest_make_and_take_nothing():
             assert part[what] == pytest.approx(settled[name][what], abs=1e-12)
 
 
-@pytest.mark.parametrize("scene", ["cup_spoon", "sphere_pen", "torus_peg"])
+# Beyond what sampling explains, of what goes in, at the contact and at the device.
+MADE = {
+    "can_box": (0.0055, 0.0001),
+    "cup_spoon": (0.0909, 0.0171),
+    "hammer_block": (0.0056, 0.0004),
+    "rubbed_sphere": (0.1720, 0.0001),
+    "sphere_pen": (0.0071, 0.0001),
+    "torus_peg": (0.1329, 0.0049),
+}
+
+
+@pytest.mark.parametrize("scene", MADE)
 def test_what_a_shipped_scene_creates_is_the_contact_s(scene):
     """A known gap: depth and centre of a flush contact are of different points.
 
-    Its wrench is then not quite the gradient of what it stores. All else balances.
+    Its wrench is then not quite the gradient of what it stores. All else balances. What
+    is made was measured, and may be a tenth more; docs/numerics.md tells of it.
     """
     books = energies(load_scene(find_scene(scene)), 5.0)
     contact = books.pop("contact")
     device = books.pop("device")
     assert_nothing_is_created(books)
-    assert contact["beyond"] < 0.25 * contact["in"]
-    assert device["beyond"] < 0.05 * device["in"]
+    at_contact, at_device = MADE[scene]
+    assert contact["beyond"] < 1.1 * at_contact * contact["in"]
+    assert device["beyond"] < 1.1 * at_device * device["in"]
+
+
+def test_the_page_tells_what_shipped_scenes_create():
+    page = (Path(__file__).parents[2] / "docs" / "numerics.md").read_text("utf-8")
+    text = " ".join(page.split())
+    for scene in ("cup_spoon", "torus_peg", "rubbed_sphere"):
+        assert f"{100 * MADE[scene][0]:.0f} % (`{scene}`)" in text
+    assert f"{100 * MADE['cup_spoon'][1]:.1f} %" in text

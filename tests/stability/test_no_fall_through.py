@@ -126,6 +126,22 @@ def block_press(tool: str, stop_m: float) -> Press:
     )
 
 
+def test_docs_numerics_tells_of_a_contact_that_chatters_at_rest() -> None:
+    mesh, _, pieces = solid(MODELS / "cup.obj")
+    [press] = sample_presses(mesh, tools()["box"], "press", [14], SEED)
+    ticks = list(run_press(press, tools()["box"], pieces, GAINS["default"]))
+    held = [t for t in ticks if t.phase == "hold"]
+    counts = np.array([len(t.contacts) for t in held])
+    forces = np.array([np.linalg.norm(t.F_contact_W[3:]) for t in held])
+    hand_N = np.ptp([t.F_coupling_W[3:] for t in held], axis=0).max()
+    page = (Path(__file__).parents[2] / "docs" / "numerics.md").read_text("utf-8")
+    text = " ".join(page.split())
+    assert f"between {counts.min()} and {counts.max()} contacts" in text
+    assert f"on {np.count_nonzero(np.diff(counts))} of {len(held)} ticks" in text
+    assert f"between {forces.min():.1f} and {forces.max():.1f} N" in text
+    assert f"leave {hand_N:.2f} N" in text
+
+
 @pytest.mark.parametrize("gains", GAINS)
 def test_a_spike_on_a_cube_rests_where_the_spring_says(gains: str) -> None:
     mesh = Mesh.from_arrays(*box((0.04, 0.04, 0.04)))

@@ -1,7 +1,7 @@
 // The bar over the scene: what the loop does and whether it keeps up.
 
 import {find, write} from "./find.js";
-import {micros, millimetres, seconds} from "./format.js";
+import {micros, millimetres, seconds, silence} from "./format.js";
 
 const GATES = {
   simulated: "Hand and arm are simulated: there is no device.",
@@ -13,8 +13,20 @@ const GATES = {
 
 export function showGate(gate, fault = "") {
   find("gate").className = "chip " + gate;
+  find("gate").ariaLive = "polite";
   find("gate").title = GATES[gate] ?? "";
   write(find("gate"), gate + (fault ? ` (${fault})` : ""));
+}
+
+/** Of a loop of which nothing is heard no figure of its pace holds. */
+export function showQuiet(for_s) {
+  find("gate").className = "chip";
+  // A text that changes each second would be read out each second.
+  find("gate").ariaLive = "off";
+  find("gate").title = "The loop stands still, or its process does.";
+  write(find("gate"), "no news for " + silence(for_s));
+  show("rate", 0, () => "0 Hz · 0.00×");
+  show("late", 0, () => "–");
 }
 
 export function showFigures(frame, period_s) {
@@ -27,11 +39,8 @@ export function showFigures(frame, period_s) {
   show("tick", frame.tick_us, tick => micros(tick.median) + " of " + micros(1e6 * period_s));
   if (frame.tick_us) showTick(frame.tick_us, 1e6 * period_s, frame.shed);
   show("contacts", frame.contacts, n => n + " → " + frame.clusters);
-  const deep = frame.depth_m > 0;
-  write(find("depth-name"), deep ? "Depth" : "Gap");
   // Without a contact there is no distance, but where there could be one its place stays.
-  const distance_m = deep ? frame.depth_m : frame.near_m;
-  show("depth", frame.contacts, () => distance_m === null ? "–" : millimetres(distance_m));
+  show("gap", frame.contacts, () => frame.gap_m === null ? "–" : millimetres(frame.gap_m));
 }
 
 /** Writes a figure; one of which nothing is known is not there. */

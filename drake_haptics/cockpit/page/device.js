@@ -5,7 +5,7 @@ import {notify} from "./notices.js";
 
 const FAULTS = {
   stale: "commands came too late",
-  "not finite": "a number was none",
+  "not finite": "it was sent something that is not a number",
   overspeed: "the handle was too fast",
   clock: "its clock went back",
   device: "its driver finds it at fault",

@@ -1,5 +1,5 @@
 // Panels and columns fold, and stay so when the page is opened again. Some open by
-// themselves only in a window of so many px.
+// themselves only where their column has room for them.
 
 import {find} from "./find.js";
 
@@ -26,8 +26,17 @@ for (const panel of document.querySelectorAll("details.panel")) {
   const kept = read(panel.id);
   if (kept !== null) panel.open = kept === "open";
   else if (SMALL.matches) panel.open = panel.id === "panel-force";
-  else if (panel.dataset.openFrom) panel.open = innerHeight >= Number(panel.dataset.openFrom);
   panel.querySelector("summary").addEventListener("click", () => keep(panel.id, panel.open ? "folded" : "open"));
+}
+
+/** Opens the panels that nobody has folded and that their column has room for. */
+export function openWhatFits() {
+  if (SMALL.matches) return;
+  for (const panel of document.querySelectorAll("details[data-if-room]")) {
+    if (read(panel.id) !== null) continue;
+    panel.open = true;
+    panel.open = panel.parentElement.scrollHeight <= panel.parentElement.clientHeight;
+  }
 }
 
 /** Folds a column, "left" or "right", or unfolds it. */

@@ -17,15 +17,16 @@ export function micros(us) {
   return Number((us / 1000).toFixed(us < 10000 ? 1 : 0)) + " ms";
 }
 
-/** A length in mm, µm below a tenth of one. */
-export function millimetres(m) {
-  return m < 1e-4 ? (1e6 * m).toFixed(0) + " µm" : (1e3 * m).toFixed(2) + " mm";
-}
+/** A length with its sign, in mm. */
+export const millimetres = m => signed(1e3 * m, 3) + " mm";
 
 export function seconds(s) {
   if (s < 60) return s.toFixed(1) + " s";
   return Math.floor(s / 60) + " min " + String(Math.floor(s % 60)).padStart(2, "0") + " s";
 }
+
+/** How long nothing was heard: in whole seconds from one on. */
+export const silence = s => s < 1 ? s.toFixed(1) + " s" : seconds(Math.floor(s)).replace(".0", "");
 
 /** Three significant digits, without an exponent where people would write none. */
 export const rounded = x => Number(x.toPrecision(3));

@@ -1,10 +1,11 @@
 // Joins the run and the page's parts.
 
-import {showFigures, showGate} from "./bar.js";
+import {showCompass} from "./compass.js";
+import {showFigures, showGate, showQuiet} from "./bar.js";
 import {showDevice} from "./device.js";
 import {showDirection} from "./dial.js";
 import {find, write} from "./find.js";
-import "./folds.js";
+import {openWhatFits} from "./folds.js";
 import {connect, say} from "./link.js";
 import {notify} from "./notices.js";
 import {showHandle} from "./pointer.js";
@@ -13,11 +14,12 @@ import {makeSliders, placeWarnings, showValues} from "./sliders.js";
 import "./shortcuts.js";
 import {aim, layOut, makeCameras} from "./stage.js";
 import {makeChoices, makeHandles, makeSwitches, showSwitches} from "./switches.js";
-import {setLimits, showTrace} from "./traces.js";
+import {setLimits, showQuietTrace, showTrace} from "./traces.js";
 import {setYaml} from "./yaml.js";
 
 // What a page is told may leave out what does not apply: the pointer of somebody's own program
 // has no scene to be changed.
+const QUIET = "Nothing is heard of the run: it stands still. What you change acts when it goes on.";
 const DEEP = "The tool is deep in an object: a stiffer contact holds it further out.";
 // Contacts push from the tolerance on: one that is soft on purpose gives way by about as much again.
 const DEEP_TOLERANCES = 2;
@@ -35,6 +37,7 @@ let dismissed = "";
 
 const on = {
   hello(hello) {
+    const isFirst = !find("view").src;
     // Another run at this page's port: this page may frame no other Meshcat than the first one's.
     if (find("view").src && new URL(find("view").src).origin !== new URL(hello.meshcat).origin) location.reload();
     settings = hello;
@@ -50,15 +53,17 @@ const on = {
     showPanels(hello);
     write(find("locked"), hello.locked ?? "");
     find("locked").hidden = !hello.locked;
+    if (isFirst) openWhatFits();
     layOut();
   },
 
   frame(frame) {
     notify("watching", frame.drives ? "" : "Another page drives. This one watches.",
            {buttons: [{label: "Drive from here", act: () => say({do: "take"})}]});
+    setQuiet(false);
     showDevice(frame);
     notify("shed", frame.shed.length ? `Ticks take too long. Left out: ${frame.shed.join(", ")}. ${relief}` : "", {kind: "warn"});
-    notify("deep", frame.depth_m > DEEP_TOLERANCES * tolerance_m ? DEEP : "", {kind: "warn"});
+    notify("deep", frame.gap_m < -DEEP_TOLERANCES * tolerance_m ? DEEP : "", {kind: "warn"});
     showGate(frame.gate, frame.fault);
     enable(frame.drives);
     // A loop that stands still has no new tick to tell of.
@@ -68,10 +73,18 @@ const on = {
       showDirection(frame, settings.limits.force_N);
     }
     showHandle(frame.handle);
+    // The camera that the run knows is that of the page that drives.
+    showCompass(frame.drives ? frame : {});
     if (frame.drives && !isFramed) {
       isFramed = true;
       aim("fit");
     }
+  },
+
+  quiet({for_s}) {
+    setQuiet(true);
+    showQuiet(for_s);
+    showQuietTrace(for_s);
   },
 
   state(state) {
@@ -103,15 +116,26 @@ const on = {
     // A run that has said its last word stays so.
     if (find("notice-over")) return;
     end("connecting");
-    notify("link", "No way to the run: it has ended, or is yet to come. Trying again.");
+    notify("link", "Cannot reach the run: it has ended, or has not begun. Trying again.");
   },
 };
 
+/** Nothing that is shown is of now while nothing is heard of the run. */
+function setQuiet(is) {
+  document.body.classList.toggle("quiet", is);
+  notify("quiet", is ? QUIET : "", {kind: "warn"});
+}
+
 /** Nothing can be changed any more; traces and figures stay. */
 function end(gate) {
+  setQuiet(false);
   showGate(gate);
   enable(false);
   showHandle(null);
+  showCompass({});
+  // What Meshcat says at its upper edge is said here: the bar is over that edge again.
+  document.body.classList.remove("sliders");
+  layOut();
   for (const matter of ["watching", "silent", "fault", "waiting", "start", "shed", "deep", "error"]) notify(matter, "");
 }
 

@@ -28,6 +28,14 @@ export function showValues(values) {
   for (const [key, value] of Object.entries(values)) rows.get(key)?.show(value);
 }
 
+/** A refusal has been read when something else is asked for. */
+function forgetRefusals() {
+  for (const row of rows.values()) row.refuse("");
+}
+// Before whoever is asked, who may refuse that, too.
+find("right").addEventListener("change", forgetRefusals, true);
+find("actions").addEventListener("click", forgetRefusals, true);
+
 /** Puts warnings, {key, words, why}, at the sliders that they are about. */
 export function placeWarnings(warnings) {
   for (const [key, row] of rows) {
@@ -52,19 +60,19 @@ class Slider {
     label.htmlFor = key.key;
     label.textContent = key.label;
     part(".unit").textContent = unit;
-    this.bounds = `from ${low} to ${high} ${unit}`;
+    this.bounds = `${low} to ${high} ${unit}`;
     const help = key.help.replace(", " + key.unit, "");
     label.title = help;
     this.range.setAttribute("aria-label", key.label + ", slider");
     for (const input of [this.number, this.range]) {
-      input.title = `${help} It goes ${this.bounds}; the scene file has ${file}.`;
+      input.title = `${help} It goes from ${this.bounds}; the scene file has ${file}.`;
     }
     // The thumb's middle goes from 8 px to 8 px before the end.
     part(".mark").style.left = `calc(8px + ${this._share(key.file)} * (100% - 16px))`;
     this.isAsked = false;
     this.range.addEventListener("input", () => this._ask(rounded(this._value(this.range.value / STEPS))));
     this.number.addEventListener("change", () => this._take());
-    this.number.addEventListener("input", () => this._refuse(""));
+    this.number.addEventListener("input", () => this.refuse(""));
     this.number.addEventListener("keydown", event => { if (event.key === "Escape") this._forget(); });
     this.range.addEventListener("dblclick", () => this._reset());
     this.undo.addEventListener("click", () => this._reset());
@@ -89,7 +97,7 @@ class Slider {
 
   /** Sends what was asked for last, once a picture. */
   _ask(value) {
-    this._refuse("");
+    this.refuse("");
     this.wanted = Math.min(Math.max(value, this.key.low), this.key.high);
     this._write(this.wanted);
     if (this.isAsked) return;
@@ -107,9 +115,9 @@ class Slider {
     const value = typed === "" ? NaN : Number(typed) / this.scale;
     const [low, high] = [this.key.low, this.key.high].map(bound => this._text(bound));
     if (!Number.isFinite(value)) {
-      this._refuse(typed && `“${typed}” is not a number` + (typed.includes(",") ? ": write a point for the comma." : "."));
+      this.refuse(typed && `“${typed}” is not a number` + (typed.includes(",") ? ": write a point for the comma." : "."));
     } else if (Number(typed) < low || Number(typed) > high) {
-      this._refuse(`${typed} cannot be: it goes ${this.bounds}.`);
+      this.refuse(`${typed} is out of range: ${this.bounds}.`);
     } else {
       this._ask(value);
     }
@@ -119,11 +127,11 @@ class Slider {
   /** Takes back what was typed and not sent. */
   _forget() {
     this.number.value = this._text(this.shown);
-    this._refuse("");
+    this.refuse("");
   }
 
   /** Says why a number was not taken; an empty text takes that back. */
-  _refuse(why) {
+  refuse(why) {
     this.refusal.textContent = why;
     this.refusal.hidden = !why;
   }

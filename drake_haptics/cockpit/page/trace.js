@@ -1,9 +1,12 @@
 // One live trace on a canvas: its own axis, the device's limit, the largest value.
 
+import {silence} from "./format.js";
 import {SPAN_S} from "./history.js";
 
 const MARGIN = {left: 38, right: 12, top: 16, bottom: 17};
 const STEPS = [1, 2, 5, 10];
+// The axis ends at so many parts of a step: at whole ones a third of it may stay empty.
+const PARTS = 5;
 // Of what was asked for and not shown.
 const UNFELT = "#8b939f";
 
@@ -23,18 +26,18 @@ export class Trace {
     this.size = [0, 0];
   }
 
-  /** Draws; with the value at an age, if the pointer is there. */
-  draw(age = null) {
+  /** Draws; with the value at an age, if the pointer is there; its end may be some seconds ago. */
+  draw(age = null, quiet_s = 0) {
     const context = this._fit();
     if (!context) return;
     const [width, height] = this.size, {left, right, top, bottom} = MARGIN;
     this.peak = 0;
     this.history.forEach(this.name, (_, v) => { if (v > this.peak) this.peak = v; });
-    const step = niceStep(Math.max(1.08 * this.scale * this.peak, this.least));
-    const most = step * Math.ceil(Math.max(1.08 * this.scale * this.peak, this.least) / step);
+    const reach = Math.max(1.08 * this.scale * this.peak, this.least), step = niceStep(reach);
+    const most = step * Math.ceil(PARTS * reach / step) / PARTS;
     const x = a => width - right - (a / SPAN_S) * (width - left - right);
     const y = v => height - bottom - (this.scale * v / most) * (height - top - bottom);
-    this._drawAxes(context, x, step, most);
+    this._drawAxes(context, x, step, most, quiet_s);
     this._drawLimit(context, y, most);
     this._drawLine(context, x, y);
     if (age !== null) this._drawReading(context, x, y, age);
@@ -62,7 +65,7 @@ export class Trace {
     return context;
   }
 
-  _drawAxes(context, x, step, most) {
+  _drawAxes(context, x, step, most, quiet_s) {
     const [width, height] = this.size, {left, right, top, bottom} = MARGIN;
     const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     context.strokeStyle = "rgb(20 30 50 / 0.10)";
@@ -82,7 +85,7 @@ export class Trace {
     context.textAlign = "center";
     for (let age = 8; age > 0; age -= 2) context.fillText("−" + age + (age === 8 ? " s" : ""), x(age), height - 4);
     context.textAlign = "right";
-    context.fillText("now", width - right, height - 4);
+    context.fillText(quiet_s ? silence(quiet_s) + " ago" : "now", width - right, height - 4);
   }
 
   /** The device's limit: a line where the axis reaches it, else how far it is. */

@@ -12,6 +12,7 @@ const traces = [
   new Trace(find("torque-trace"), history, {name: "torque", scale: 1e3, unit: "mN·m", digits: 0, least: 10}),
 ];
 let hovered = null;
+let quiet_s = 0;
 let isAsked = false;
 
 function redraw() {
@@ -19,7 +20,7 @@ function redraw() {
   isAsked = true;
   requestAnimationFrame(() => {
     isAsked = false;
-    for (const trace of traces) trace.draw(hovered);
+    for (const trace of traces) trace.draw(hovered, quiet_s);
   });
 }
 
@@ -30,11 +31,18 @@ export function setLimits({force_N, torque_Nm}) {
 
 export function showTrace(frame) {
   const felt = isFelt(frame.gate);
+  quiet_s = 0;
   history.append(frame.time_s, frame.trace, felt);
   // The loop still asks for what the hand does not feel.
   const end = felt ? "" : ", not shown";
   write(find("force"), newtons(norm(frame.f_W)) + end);
   write(find("torque"), millinewtonmetres(norm(frame.tau_W)) + end);
+  redraw();
+}
+
+/** Says at the end of the axis how long ago that was. */
+export function showQuietTrace(for_s) {
+  quiet_s = for_s;
   redraw();
 }
 
