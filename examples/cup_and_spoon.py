@@ -7,8 +7,10 @@ whether the loop has kept to the clock.
 """
 
 import sys
+from contextlib import suppress
 
 from drake_haptics import BuildHapticDiagram, TickClock, find_scene, load_scene, run
+from drake_haptics.run_statistics import RunStatistics
 from drake_haptics.stage import open_meshcat, set_stage
 
 meshcat = open_meshcat()
@@ -17,7 +19,10 @@ set_stage(meshcat, haptic)
 print(f"Open {meshcat.web_url()}; Ctrl-C ends.")
 duration_s = float(sys.argv[1]) if len(sys.argv) > 1 else None
 clock = TickClock(haptic.period_s)
-figures = run(haptic, duration_s, pace=clock).to_dict()
+statistics = RunStatistics(haptic.period_s, pace=clock)
+with suppress(KeyboardInterrupt):
+    run(haptic, duration_s, pace=clock, statistics=statistics)
+figures = statistics.to_dict()
 print(f"Largest force {figures['max_force_N']:.2f} N, on the device's display.")
 median_us = figures["tick_us"]["median"]
 print(
