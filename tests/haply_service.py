@@ -102,12 +102,13 @@ class HaplyService:
             pass
 
     def expect_nothing(self, connection):
-        """A client that has not had its answer has nothing to say."""
+        """A client that has not had its answer has nothing to say; it is obeyed."""
         try:
-            connection.recv(timeout=0.0)
+            text = connection.recv(timeout=0.0)
         except TimeoutError:
             return
         self.violations += 1
+        self.obey(json.loads(text))
 
     def obey(self, message):
         """Does what a message asks for."""

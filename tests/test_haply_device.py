@@ -194,11 +194,26 @@ def test_a_closed_device_shows_nothing_and_stays_closed():
         wait_until(lambda: mass.largest_N > 0.0, lambda: press(device))
         device.close()
         device.close()
-        assert not mass.forces[-1][1].any()
+        wait_until(lambda: not mass.forces[-1][1].any())
         count = len(mass.forces)
         press(device)
         device.recover()
         assert len(mass.forces) == count
+
+
+def test_a_device_that_is_closed_while_its_service_is_silent_ends_at_zero_force():
+    with make_service() as service:
+        mass = service.devices["049D"]
+        device = open_device(service)
+        wait_until(lambda: mass.largest_N > 0.5, lambda: press(device))
+        service.answers.clear()
+        wait_until(
+            lambda: is_in(device, GateState.FAULT, Fault.DEVICE), lambda: press(device)
+        )
+        assert mass.forces[-1][1].any()
+        device.close()
+        service.answers.set()
+        wait_until(lambda: not mass.forces[-1][1].any())
 
 
 def test_no_service():

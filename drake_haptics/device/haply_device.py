@@ -208,6 +208,8 @@ class HaplyDevice(DeviceBackend):
                 text = socket.recv(timeout=1e-9 * SILENT_NS)
             except TimeoutError:
                 if self._closes:
+                    # Out of turn, since there is no time left to wait for one.
+                    socket.send(self._exchange.end())
                     return
                 self._connection = f"{self._uri} says nothing"
                 self._exchange.fall_silent()

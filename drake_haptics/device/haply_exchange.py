@@ -114,6 +114,15 @@ class HaplyExchange:
         self._named = state.device_id
         return self._format(F_BH)
 
+    def end(self) -> str:
+        """Ends all force at once and returns the message that says so.
+
+        For a service that gives no turn any more, of which a later one must not go on
+        with the force of the last.
+        """
+        self._gate.fail()
+        return self._format(np.zeros(6))
+
     def fall_silent(self) -> None:
         """Has the reading say that the service says nothing usable."""
         if self.reading is not None and self.reading.fault is not Fault.DEVICE:

@@ -1,6 +1,7 @@
 """`drake-haptics accuracy` from end to end."""
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -68,7 +69,8 @@ def test_one_row_from_end_to_end_and_again_from_its_store(tmp_path):
     arguments = ["accuracy", "sphere_pen", "--quick", *ONLY, "--store", "s.jsonl"]
     first = run(*arguments, "--json", "-", folder=tmp_path)
     assert first.returncode == 0, first.stderr
-    assert first.stderr == ""
+    # A machine that is busy makes it last long enough for a word on how far it is.
+    assert re.sub(r"times: \d of 4: +\d+%\n", "", first.stderr) == ""
     study = from_json_data(json.loads(first.stdout))
     scene, row = study.rows
     assert scene.is_scene and not row.is_scene
