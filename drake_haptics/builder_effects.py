@@ -44,7 +44,7 @@ class EffectSite:
             velocities of objects that move are left out.
         tool: Pieces of the tool, in its frame T.
         tool_mass_kg: Its mass, kg.
-        p_TTcm: Its centre of mass (3,), m.
+        p_TTcm: Its center of mass (3,), m.
         objects: What it meets.
         materials: Of each object.
         period_s: The tick, s.

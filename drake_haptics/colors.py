@@ -1,4 +1,4 @@
-"""One colour scheme for both viewers: (red, green, blue, alpha) in [0, 1]."""
+"""One color scheme for both viewers: (red, green, blue, alpha) in [0, 1]."""
 
 from __future__ import annotations
 
@@ -65,9 +65,9 @@ _GOLDEN_RATIO = (1 + 5**0.5) / 2
 
 
 def piece_color(index: int) -> Color:
-    """Returns the colour of a convex piece.
+    """Returns the color of a convex piece.
 
-    Hues advance by the golden ratio, so that neighbours in the order differ as
+    Hues advance by the golden ratio, so that neighbors in the order differ as
     much as possible for any number of pieces; value and saturation alternate
     with periods 3 and 4 to tell apart hues that come near again.
     """
@@ -79,13 +79,13 @@ def piece_color(index: int) -> Color:
 
 
 def write_css(color: Color) -> str:
-    """Returns a colour as style sheets write it."""
+    """Returns a color as style sheets write it."""
     red, green, blue = (round(255 * part) for part in color[:3])
     return f"rgb({red} {green} {blue} / {color[3]:g})"
 
 
 def make_legend(has_friction: bool) -> list[dict[str, str]]:
-    """Returns what the colours of a loop's picture mean.
+    """Returns what the colors of a loop's picture mean.
 
     Args:
         has_friction: Whether friction is drawn.

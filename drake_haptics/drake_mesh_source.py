@@ -22,7 +22,7 @@ def read_mesh_source(source: MeshSource, scale3: np.ndarray) -> RawMesh:
 
     Args:
         source: Names a file, or holds it.
-        scale3: (3,) metres per unit of the file, along each axis.
+        scale3: (3,) meters per unit of the file, along each axis.
 
     Returns:
         The triangles, m, counter-clockwise seen from outside if the file's are.

@@ -29,7 +29,7 @@ class EnergyLedger:
     The parts, in a row: `display` (what the device does to the wrench: limits, hold;
     and passivity control), `coupling`, `tool`, and each source of wrench on the tool
     by the name of its port (`contact`, `friction`, `braking`, `gravity`). What goes
-    out of one goes into its neighbour. `device` is all of them together, as the hand
+    out of one goes into its neighbor. `device` is all of them together, as the hand
     has them at the device's port. How a tick is booked, and what the sampling of a
     force can seem to create, is derived in `core/tick_energy.h`.
 

@@ -73,7 +73,7 @@ class LiveGlide:
 def _blend(item: LiveKey, start: float, goal: float, share: float) -> float:
     """Returns the value so far on the way: of gains in equal ratios.
 
-    A force is in proportion to a gain, but grows by so much for each metre.
+    A force is in proportion to a gain, but grows by so much for each meter.
     """
     if start == goal:
         return goal

@@ -1,4 +1,4 @@
-"""Centre of mass and inertia of a mesh of one density, and the tool that it makes."""
+"""Center of mass and inertia of a mesh of one density, and the tool that it makes."""
 
 from __future__ import annotations
 

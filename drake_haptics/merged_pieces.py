@@ -1,6 +1,6 @@
 """Fewer convex pieces than the exact ones, within a stated error.
 
-Neighbouring pieces of the surface decomposition become one, the cheapest two first,
+Neighboring pieces of the surface decomposition become one, the cheapest two first,
 for as long as the hull of what they hold departs from the mesh by no more than the
 error: no point of a hull is farther outside of the solid, and no point of the mesh is
 buried deeper in a hull. The hulls are those of corners of the mesh, so that they fill

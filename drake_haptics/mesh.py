@@ -127,8 +127,8 @@ def load_mesh(
         path: any format that trimesh reads, or .npz with V (n, 3) and F (m, 3);
             `package://...` names a file of this package or of Drake.
         unit: length unit of the file ("m", "mm", "cm", "in", ...).
-        scale: metres per unit of the file, instead of `unit`. Without either,
-            the file is in metres.
+        scale: meters per unit of the file, instead of `unit`. Without either,
+            the file is in meters.
         strict: refuse a mesh that has a defect, repairable or not.
 
     Raises:

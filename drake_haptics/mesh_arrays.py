@@ -16,7 +16,7 @@ _LARGEST_COORDINATE_M = 1e9
 def checked_arrays(
     vertices: Any, triangles: Any, metres_per_unit: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Returns (n, 3) float64 vertices in metres and (m, 3) int64 triangles.
+    """Returns (n, 3) float64 vertices in meters and (m, 3) int64 triangles.
 
     Raises:
         MeshError: if either has a wrong shape or type, there is no triangle, a

@@ -139,7 +139,7 @@ def check_size(
                 "unit-ignored",
                 Severity.QUESTION,
                 1,
-                f"the file states its unit as {ignored_unit}, but was read as metres",
+                f"the file states its unit as {ignored_unit}, but was read as meters",
                 f"nothing was changed; state the unit {ignored_unit} if that is right",
             )
         )

@@ -83,7 +83,7 @@ class MeshReport:
 
     Attributes:
         source: file or name of the mesh.
-        metres_per_unit: factor from the file's unit to metres.
+        metres_per_unit: factor from the file's unit to meters.
         vertices: count after intake.
         triangles: count after intake.
         components: count of connected parts.
@@ -226,13 +226,13 @@ class MeshReport:
         return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
 
 
-def length(metres: float) -> str:
+def length(meters: float) -> str:
     """Writes a length in the unit that people would use for it."""
-    if metres >= 1 or metres == 0:
-        return f"{metres:.4g} m"
-    if metres >= 1e-3:
-        return f"{metres * 1e3:.4g} mm"
-    return f"{metres * 1e6:.4g} µm"
+    if meters >= 1 or meters == 0:
+        return f"{meters:.4g} m"
+    if meters >= 1e-3:
+        return f"{meters * 1e3:.4g} mm"
+    return f"{meters * 1e6:.4g} µm"
 
 
 def _power(value: float, exponent: int) -> str:

@@ -10,7 +10,7 @@ from drake_haptics.mesh_topology import Edges, find_edges, triangle_area_vectors
 from drake_haptics.one_line import count
 
 # Rounds of edge turning before what is left is cut out. Each round turns every
-# sliver that has a proper neighbour, so chains of slivers shrink from their ends.
+# sliver that has a proper neighbor, so chains of slivers shrink from their ends.
 _MAX_ROUNDS = 32
 
 
@@ -20,8 +20,8 @@ def remove_zero_area_faces(
     """Removes triangles whose corners coincide or lie on one line.
 
     Cutting out a triangle with three distinct corners on one line would leave a
-    crack: its middle corner lies on the neighbour's edge. So that edge is turned:
-    the neighbour (x, y, d) at the long side x-y is split at the middle corner b
+    crack: its middle corner lies on the neighbor's edge. So that edge is turned:
+    the neighbor (x, y, d) at the long side x-y is split at the middle corner b
     into (x, b, d) and (b, y, d). The surface stays the same set of points.
 
     Raises:
@@ -56,9 +56,7 @@ def remove_zero_area_faces(
                 number,
                 f"{count(number, 'triangle has', 'triangles have')} no area",
                 "removed"
-                + (
-                    ", neighbours split where that closes the surface" if turned else ""
-                ),
+                + (", neighbors split where that closes the surface" if turned else ""),
             )
         )
     return triangles

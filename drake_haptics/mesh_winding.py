@@ -99,8 +99,8 @@ def _volumes(
     vertices: np.ndarray, triangles: np.ndarray, component: np.ndarray, k: int
 ) -> np.ndarray:
     """(k,) enclosed volumes, by the divergence theorem about a nearby point."""
-    centre = vertices.mean(axis=0)
-    a, b, c = (vertices[triangles[:, i]] - centre for i in range(3))
+    center = vertices.mean(axis=0)
+    a, b, c = (vertices[triangles[:, i]] - center for i in range(3))
     signed = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
     return np.bincount(component, signed, minlength=k)
 
@@ -171,7 +171,7 @@ def _report(
                 Severity.REPAIRED,
                 int(flip.sum()),
                 f"{count(int(flip.sum()), 'triangle')} in {count(parts, 'part')} "
-                f"{_are(flip)} wound against the neighbours",
+                f"{_are(flip)} wound against the neighbors",
                 "turned over, the larger area decides",
             )
         )

@@ -54,7 +54,7 @@ def each_facet(
 def piece_surfaces(
     pieces: list[_core.ConvexPolytope],
 ) -> tuple[ColoredTriangles, ColoredTriangles]:
-    """Returns the facets on the mesh, a colour for each piece, and the virtual ones."""
+    """Returns the facets on the mesh, a color for each piece, and the virtual ones."""
     corners: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
     owners: tuple[list[int], list[int]] = ([], [])
     for index, original, points in each_facet(pieces):

@@ -98,7 +98,7 @@ def AddHapticRendering(
         SceneWarning: A gain is too stiff for the explicit step of a discrete plant,
             Drake's own contact acts between the tool and bodies that neither this call
             nor an earlier one renders, or a body is as large as if its mesh were in
-            another unit than metres.
+            another unit than meters.
 
     Raises:
         ValueError: What was asked for cannot be; the message names the argument and

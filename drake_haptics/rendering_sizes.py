@@ -18,7 +18,7 @@ def question_rendered_sizes(
 ) -> list[str]:
     """Asks for the unit of bodies that are unlike anything that a hand touches.
 
-    A file in millimetres that is read as metres is a thousand times too large. What the
+    A file in millimeters that is read as meters is a thousand times too large. What the
     tool meets may be as large as it likes: a ground is.
 
     Args:

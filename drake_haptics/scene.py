@@ -90,7 +90,7 @@ class Tool:
         mesh: Path of a mesh, or of a model (SDF, URDF, MJCF) whose collision shapes
             are taken, as a whole rigid; relative to the scene file, absolute, or
             `package://...` of this package or of Drake.
-        scale: Metres per unit of the mesh file.
+        scale: Meters per unit of the mesh file.
         center: Whether the mesh is moved so that the middle of its box is at the
             origin of its frame, where the coupling pulls. For a file that has its
             origin somewhere else.
@@ -124,7 +124,7 @@ class EnvironmentObject:
     Attributes:
         name: Unique among the scene's objects.
         mesh: As for the tool.
-        scale: Metres per unit of the mesh file.
+        scale: Meters per unit of the mesh file.
         center: As for the tool; `pose` then places the middle.
         max_triangles: As for the tool.
         chord_error_m: As for the tool.
@@ -153,7 +153,7 @@ class Contact:
     Attributes:
         tolerance_m: Pieces nearer than this push each other apart, m (the
             paper's t).
-        stiffness_N_per_m: Force per metre below the tolerance, N/m (k of Eq. 6).
+        stiffness_N_per_m: Force per meter below the tolerance, N/m (k of Eq. 6).
         damping_Ns_per_m: Force per speed of approach, N·s/m (k_v of Eq. 6).
         clustering: How few contacts are made of many: `shared`, which is
             continuous, or `octree`, the paper's.
@@ -188,7 +188,7 @@ class Coupling:
     are stable on the shipped device, with and without a hand.
 
     Attributes:
-        stiffness_N_per_m: Force per metre between handle and tool, N/m.
+        stiffness_N_per_m: Force per meter between handle and tool, N/m.
         damping_Ns_per_m: Force per speed of one against the other, N·s/m.
         rotational_stiffness_Nm_per_rad: Torque per angle between them, N·m/rad.
         rotational_damping_Nms_per_rad: Torque per speed of rotation of one against
@@ -253,7 +253,7 @@ class HandPath:
     Attributes:
         periodic: Whether the path starts again at its last waypoint, which must
             then be at the first one's pose. Else the hand rests at the last.
-        waypoints: In order of time, the first at 0 s; neighbours turned by less
+        waypoints: In order of time, the first at 0 s; neighbors turned by less
             than 120°.
     """
 
@@ -327,8 +327,8 @@ class Scene:
         Args:
             tool_path: Mesh of the tool.
             environment_path: Mesh of what it meets.
-            tool_scale: Metres per unit of the tool's file.
-            environment_scale: Metres per unit of the environment's file.
+            tool_scale: Meters per unit of the tool's file.
+            environment_scale: Meters per unit of the environment's file.
 
         Raises:
             SceneError: The tool does not fit into the device's workspace.

@@ -168,7 +168,7 @@ def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
         rate_hz >= _LEAST_QUERY_RATE_HZ,
         where,
         f"must be at least {_LEAST_QUERY_RATE_HZ:g}, is {rate_hz:g}: a hand moves tools"
-        " by millimetres in the meantime",
+        " by millimeters in the meantime",
     )
     ticks = ticks_per_s / rate_hz
     require(

@@ -1,4 +1,4 @@
-"""Whether a tolerance of contact is in metres."""
+"""Whether a tolerance of contact is in meters."""
 
 from __future__ import annotations
 
@@ -20,5 +20,5 @@ def question_tolerance(tolerance_m: float, tool: str, extent_m: float) -> list[s
         return []
     return [
         f"contact.tolerance_m: is {length(tolerance_m)}, more than {tool} is"
-        f" wide ({length(extent_m)}): is it in metres?"
+        f" wide ({length(extent_m)}): is it in meters?"
     ]

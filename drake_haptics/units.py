@@ -1,4 +1,4 @@
-"""Length units of mesh files, as factors to metres."""
+"""Length units of mesh files, as factors to meters."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ _LONG_NAMES = {
 
 
 def metres_per_unit(unit: str | None, scale: float | None) -> float:
-    """Returns the factor that turns a file's coordinates into metres.
+    """Returns the factor that turns a file's coordinates into meters.
 
     Args:
         unit: name of a length unit, such as "mm"; None if not stated.
-        scale: metres per unit of the file; None if not stated.
+        scale: meters per unit of the file; None if not stated.
 
     Returns:
-        The factor; 1.0 (metres) if neither is stated.
+        The factor; 1.0 (meters) if neither is stated.
 
     Raises:
         MeshError: if both are given, the unit is unknown, or the scale is not
@@ -70,7 +70,7 @@ def metres_per_unit(unit: str | None, scale: float | None) -> float:
         return 1.0
     if not (math.isfinite(scale) and scale > 0):
         raise MeshError(
-            f"scale must be a positive number of metres per unit of the file, "
+            f"scale must be a positive number of meters per unit of the file, "
             f"not {scale!r}"
         )
     return float(scale)

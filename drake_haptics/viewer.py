@@ -17,7 +17,7 @@ from drake_haptics.decomposition import Decomposition
 from drake_haptics.piece_surfaces import ColoredTriangles, piece_surfaces
 
 # The mesh is drawn with this largest extent, since the viewer's camera suits
-# objects of about a metre, and ours range from a peg to a room.
+# objects of about a meter, and ours range from a peg to a room.
 _DRAWN_EXTENT_M = 1.5
 # How far the pieces of the exploded copy move out, as a share of their distance
 # from the middle.
@@ -27,9 +27,9 @@ _EXPLOSION = 0.5
 class DecompositionViewer:
     """Shows a decomposition on a web page.
 
-    On the left the pieces in place, coloured, as they cover the mesh; on the
+    On the left the pieces in place, colored, as they cover the mesh; on the
     right the same pieces moved apart, with their virtual facets (those that are
-    not on the mesh) in translucent grey. The page's own controls hide each.
+    not on the mesh) in translucent gray. The page's own controls hide each.
 
     Args:
         decomposition: what to show.

@@ -34,7 +34,7 @@ class ArrowPool:
     live picture.
 
     A slot is placed, and the folder `arrow` in it is scaled: a pose that the page
-    receives resets the scale of the same node. The folder has one arrow per colour, of
+    receives resets the scale of the same node. The folder has one arrow per color, of
     which at most one is visible. Whatever is drawn under the same key stays in the same
     slot, so that a recording, which is interpolated between frames, does not sweep
     arrows across the scene.
@@ -54,14 +54,14 @@ class ArrowPool:
             meshcat: Where to draw.
             path: Folder of the arrows in the scene tree.
             capacity: How many arrows can be seen at once.
-            colors: What an arrow can be coloured.
+            colors: What an arrow can be colored.
             profile: Of an arrow.
         """
         self._meshcat = meshcat
         self._num_colors = len(colors)
         self._slots = [f"{path}/{i}" for i in range(capacity)]
         self._slot_of_key: dict[Hashable, int] = {}
-        # Colour shown in each slot; None where hidden.
+        # Color shown in each slot; None where hidden.
         self._shown: list[int | None] = [None] * capacity
         self._lengths = [1.0] * capacity
         vertices, triangles = _make_arrow(profile)
@@ -87,7 +87,7 @@ class ArrowPool:
             keys: (n,) what each arrow stands for, each once.
             p_WTip: (n, 3) tips, m.
             vectors_W: (n, 3) from tail to tip, m, none of them zero.
-            colors: (n,) indices into the pool's colours.
+            colors: (n,) indices into the pool's colors.
             time_s: Time in the recording, s.
         """
         keys = keys[: len(self._slots)]
@@ -128,7 +128,7 @@ class ArrowPool:
         self._slot_of_key = {k: kept[k] if k in kept else next(free) for k in keys}
 
     def _show(self, slot: int, color: int | None, time_s: float) -> None:
-        """Makes another colour of a slot visible, or none."""
+        """Makes another color of a slot visible, or none."""
         for changed, visible in ((self._shown[slot], False), (color, True)):
             if changed is not None:
                 path = f"{self._slots[slot]}/arrow/{changed}"

@@ -45,7 +45,7 @@ class DrawnPieces:
 
     def send(self) -> Iterator[None]:
         """Sends all facets as it is iterated over."""
-        # Corners and colours that wait for a sheet to be full, by kind.
+        # Corners and colors that wait for a sheet to be full, by kind.
         waiting: dict[bool, list[tuple[np.ndarray, np.ndarray]]] = {True: [], False: []}
         sent = {True: 0, False: 0}
         for index, original, corners in each_facet(self._pieces):

@@ -11,7 +11,7 @@ from pydrake.trajectories import PiecewisePolynomial
 from drake_haptics._core import PosePath
 from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
 
-# Neighbouring quaternions are interpolated along their chord; beyond this angle
+# Neighboring quaternions are interpolated along their chord; beyond this angle
 # the speed of turning along it would vary too much.
 _LARGEST_TURN_DEG = 120.0
 
@@ -42,7 +42,7 @@ class HandPath:
                 at its end.
 
         Raises:
-            ValueError: The times do not rise from 0, neighbours are turned by
+            ValueError: The times do not rise from 0, neighbors are turned by
                 120° or more, or a periodic path does not close.
         """
         if len(times_s) != len(poses) or not len(poses):

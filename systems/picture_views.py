@@ -15,7 +15,7 @@ PICTURE_VIEWS = MappingProxyType(
 )
 """Names of the views and what people read.
 
-`pieces` colours each convex piece; `virtual` shows, translucent, the facets of pieces
+`pieces` colors each convex piece; `virtual` shows, translucent, the facets of pieces
 that are not on the mesh; `ghost` is where the handle wants the tool, with the coupling;
 `contacts` are the small arrows, `forces` the large ones.
 """

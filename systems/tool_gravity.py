@@ -22,7 +22,7 @@ STANDARD_GRAVITY_M_PER_S2 = (0.0, 0.0, -9.81)
 
 
 class ToolGravity(DifferentiableSystem):
-    """Gravity on the tool, a constant force at its centre of mass.
+    """Gravity on the tool, a constant force at its center of mass.
 
     .. pydrake_system::
 
@@ -51,7 +51,7 @@ class ToolGravity(DifferentiableSystem):
 
         Args:
             mass_kg: Mass of the tool, kg.
-            p_TTcm: (3,) its centre of mass in its frame, m.
+            p_TTcm: (3,) its center of mass in its frame, m.
             gravity_m_per_s2: (3,) acceleration of gravity in the world, m/s².
 
         Raises:
@@ -75,7 +75,7 @@ class ToolGravity(DifferentiableSystem):
 
     @property
     def p_TTcm(self) -> np.ndarray:
-        """(3,) the centre of mass in the tool's frame, m."""
+        """(3,) the center of mass in the tool's frame, m."""
         return self._p_TTcm
 
     def get_tool_pose_input_port(self) -> InputPort:

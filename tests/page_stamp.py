@@ -12,7 +12,9 @@ _SOURCES = ("drake_haptics", "systems", "models", "tests", "pyproject.toml")
 _LINE = "Figures of `{}`: made at commit {}."
 STAMP = re.compile(
     r"Figures of `(?P<generator>tests/\w+/\w+\.py)`: made at commit"
-    r" `(?P<commit>[0-9a-f]{7,})` of (?P<date>\d{4}-\d\d-\d\d)(?:, with changes)?\."
+    r" `(?P<commit>[0-9a-f]{7,})` of (?P<date>\d{4}-\d\d-\d\d)(?:, with changes)?"
+    # Some of them later.
+    r"(?:; [^;`]+ at commit `[0-9a-f]{7,}` of \d{4}-\d\d-\d\d(?:, with changes)?)*\."
 )
 
 
@@ -52,6 +54,33 @@ def write_page(page: Path, text: str, generator: str | Path) -> None:
     """
     stamp = make_stamp(generator, describe_commit())
     page.write_text(with_stamp(text, stamp), encoding="utf-8")
+
+
+def amend_page(page: Path, text: str, generator: str | Path, what: str) -> None:
+    """Writes a page some of whose figures were made again, and says which and when.
+
+    Args:
+        page: The file.
+        text: Its text.
+        generator: The program that made the figures, in the repository.
+        what: The figures that it made now.
+    """
+    stamp = make_stamp(generator, describe_commit())
+    page.write_text(with_amendment(text, stamp, what), encoding="utf-8")
+
+
+def with_amendment(text: str, stamp: str, what: str) -> str:
+    """Returns a page whose stamp says what was made again at the commit of another.
+
+    Args:
+        text: Of the page, with a stamp of the same program.
+        stamp: What the line would say of all figures.
+        what: The figures that are meant, once.
+    """
+    name, _, now = stamp.partition(": made ")
+    [old] = [x for x in text.rstrip().split("\n") if x.startswith(f"{name}:")]
+    kept = [x for x in old.rstrip(".").split("; ") if not x.startswith(f"{what} at ")]
+    return with_stamp(text, "; ".join([*kept, f"{what} {now}"]))
 
 
 def _git(*arguments: str) -> str:

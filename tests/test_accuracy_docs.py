@@ -16,12 +16,15 @@ from accuracy_table import (
     BUDGET_SCENES,
     BUDGETS_NAME,
     COLUMNS_NAME,
+    ERRORS,
     PAGE,
     PICTURE,
     SCENES,
     make_columns,
     make_prices,
+    measure_errors,
     span_of,
+    with_errors,
     with_parts,
 )
 from click.testing import CliRunner
@@ -51,6 +54,36 @@ def test_every_setting_has_a_row_with_all_columns(name: str) -> None:
     written = [(knob, label.strip("*† ")) for knob, label, *_ in rows]
     settings = list_settings(load_scene(find_scene(name)))
     assert written == [(setting.knob, setting.label) for setting in settings]
+
+
+@pytest.mark.parametrize(
+    ("name", "knob", "label"),
+    [
+        ("cup_spoon", "tool.decomposition", "one hull"),
+        ("rubbed_sphere", "effects.shading", "no shading"),
+    ],
+)
+def test_errors_that_are_measured_again_are_those_of_the_page(
+    name: str, knob: str, label: str
+) -> None:
+    """To mend it: accuracy_table.py --write --errors KNOB."""
+    again = measure_errors(name, lambda x: (x.knob, x.label) == (knob, label))
+    [cells] = again.values()
+    [told] = [r for r in rows_of(TEXT, name) if (r[0], r[1].strip("*† ")) in again]
+    for now, then in zip(cells, told[ERRORS], strict=True):
+        # Force has two figures; the last digit is round-off.
+        for figure, text in zip(now.split("/"), then.split("/"), strict=True):
+            assert float(figure) == pytest.approx(float(text), rel=0.02, abs=2e-3)
+
+
+def test_errors_of_some_knobs_replace_those_of_their_rows_and_nothing_else() -> None:
+    key = ("tool.decomposition", "one hull")
+    renewed = with_errors(TEXT, "cup_spoon", {key: ["7/8", "9", "10", "11"]})
+    lines = zip(TEXT.splitlines(), renewed.splitlines(), strict=True)
+    [(before, after)] = [(x, y) for x, y in lines if x != y]
+    assert "| tool.decomposition | one hull | " in before
+    assert after.split(" | ")[2:4] == before.split(" | ")[2:4]
+    assert " | 7/8 | 9 | 10 | 11 | " in after
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -10,8 +10,14 @@ sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
 from test_bench_figures import EVERYTHING
 from write_docs import PAGE, figures_of, with_figures
 
-from drake_haptics.bench.pair_shapes import KINDS, SIZES
+from drake_haptics.bench.benchmark import Effort
+from drake_haptics.bench.libraries.with_drake_haptics import LIBRARIES
+from drake_haptics.bench.pair_runs import run_pair
+from drake_haptics.bench.pair_shapes import KINDS, SIZES, make_pair
+from drake_haptics.bench.pair_tables import error_table
 from drake_haptics.bench.report import make_tables
+from drake_haptics.bench.scene_runs import NAME, DrakeHapticsScene, run_scene
+from drake_haptics.bench.scene_table import scene_table
 from drake_haptics.bench.scenes import scene_makers
 
 _SECTION = figures_of(PAGE.read_text(encoding="utf-8"))
@@ -48,6 +54,37 @@ def test_every_library_has_a_row() -> None:
     libraries = [row[0] for row in rows_below(make_tables(EVERYTHING)[0].title)[2:]]
     for name in ("drake_haptics", "coal", "MuJoCo", "FCL", "Bullet", "Drake"):
         assert any(row.startswith(name) for row in libraries)
+
+
+def number(text: str) -> float:
+    return float(text.rstrip(" %°"))
+
+
+def test_pairs_that_are_pressed_again_are_as_right_as_the_page_tells() -> None:
+    """The page's figures are the worst of all sizes."""
+    pairs = [make_pair(kind, size) for kind in KINDS for size in SIZES[:3]]
+    presses = Effort().presses
+    found = [f for pair in pairs for f in run_pair(pair, LIBRARIES, presses, repeats=1)]
+    again = error_table(found)
+    told = {row[0]: row[1:] for row in rows_below(again.title)}
+    for library, *now in again.rows:
+        error, wrong, exact, jump, failed = map(number, now)
+        most_error, most_wrong, least_exact, most_jump, most_failed = map(
+            number, told[library]
+        )
+        assert error <= most_error and wrong <= most_wrong and jump <= most_jump
+        assert exact >= least_exact and failed <= most_failed
+
+
+def test_a_scene_that_is_run_again_has_the_contacts_of_the_page() -> None:
+    """One of the package's own shapes, which every machine has."""
+    problem = scene_makers(Effort().motions)["peg in hole"]()
+    ours = run_scene(problem, {NAME: DrakeHapticsScene(problem)}, repeats=1)
+    again = scene_table(ours)
+    [told] = [r for r in rows_below(again.title) if r[0] == problem.name]
+    for what in ("scene", "pieces", "contacts"):
+        at = again.header.index(what)
+        assert again.rows[0][at] == told[at], what
 
 
 def test_new_figures_replace_the_old_ones_and_nothing_else() -> None:

@@ -13,14 +13,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_haptics.bench.benchmark import BenchFigures
+from drake_haptics.bench.benchmark import BenchFigures, Effort
 from drake_haptics.bench.loop import runs
 from drake_haptics.bench.loop.figures import LoopFigures, LoopTimes
 from drake_haptics.bench.loop.names import MUJOCO, NATIVE, OURS, STOCK
 from drake_haptics.bench.loop.problem import Loop, LoopCourse, LoopProblem, make_problem
 from drake_haptics.bench.loop.runs import make_loops, run_loops
 from drake_haptics.bench.loop.table import loop_tables
-from drake_haptics.bench.loop.this_package import ThisLoop
+from drake_haptics.bench.loop.this_package import NativeLoop, ThisLoop
 from drake_haptics.bench.report import make_tables
 
 sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
@@ -156,12 +156,37 @@ def test_figures_survive_json() -> None:
     assert make_tables(read)[1].rows == loop_tables(SOME)[1].rows
 
 
-def test_the_page_has_the_tables_with_their_headings_and_rows() -> None:
+def shown_below(title: str) -> str:
+    """What the page has below the title of a table of another scene, `cup`."""
     section = figures_of(PAGE.read_text(encoding="utf-8"))
+    below = section.split(f"### {title.replace('cup', 'cup_spoon')}\n")[1]
+    return below.split("###")[0]
+
+
+def rows_below(title: str) -> list[list[str]]:
+    """The cells of that table, its head first, without the line below."""
+    shown = shown_below(title)
+    rows = re.findall(r"^\| (.*) \|$", shown, flags=re.MULTILINE)
+    return [row.split(" | ") for row in (rows[0], *rows[2:])]
+
+
+def test_the_page_has_the_tables_with_their_headings_and_rows() -> None:
     for table in loop_tables(SOME):
-        shown = section.split(f"### {table.title.replace('cup', 'cup_spoon')}\n")[1]
-        shown = shown.split("###")[0]
-        assert table.note in shown
-        rows = re.findall(r"^\| (.*) \|$", shown, flags=re.MULTILINE)
-        assert tuple(rows[0].split(" | ")) == table.header
-        assert {OURS, NATIVE, MUJOCO} <= {row.split(" | ")[0] for row in rows[2:]}
+        assert table.note in shown_below(table.title)
+        head, *rows = rows_below(table.title)
+        assert tuple(head) == table.header
+        assert {OURS, NATIVE, MUJOCO} <= {row[0] for row in rows}
+
+
+def test_our_loop_does_again_what_the_page_tells() -> None:
+    """Its contacts, depth and largest force, over the whole motion that was timed."""
+    course = NativeLoop(make_problem(duration_s=Effort().loop_s)).observe()
+    most, deepest_m = course.num_contacts[1:].max(), -course.nearest_m.min()
+    median = np.median(course.num_contacts[course.num_contacts > 0])
+    head, *rows = rows_below(loop_tables(SOME)[1].title)
+    for told in rows:
+        if told[0] in (OURS, NATIVE):
+            figures = dict(zip(head, told, strict=True))
+            assert figures["contacts"] == f"{median:.0f}–{most}"
+            assert figures["deepest"] == f"{1e3 * deepest_m:.2f} mm"
+            assert figures["force"].endswith(f" / {course.force_N[1:].max():.2f} N")

@@ -70,7 +70,7 @@ def test_a_page_is_told_what_there_is_to_see_and_to_change(make, scene):
     assert stiffness["file"] == scene.contact.stiffness_N_per_m
     assert (stiffness["unit"], stiffness["group"]) == ("N/m", "contact")
     assert stiffness["low"] < stiffness["file"] < stiffness["high"]
-    assert stiffness["help"].startswith("Force per metre")
+    assert stiffness["help"].startswith("Force per meter")
     assert [item["name"] for item in hello["effects"]] == list(EFFECTS)
     assert all(item["help"] and item["file"] is False for item in hello["effects"])
     [choice] = hello["choices"]

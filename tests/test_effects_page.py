@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 
 import pytest
@@ -54,6 +54,15 @@ def test_costs_are_differences_to_the_base():
     elastic = rows["near-contact elastic force, `contact.stiffness_N_per_m`"]
     assert elastic[3:6] == [f"{COSTS.core['force']:.0f}", "in the base", "in the base"]
     assert rows["no effect named"] == ["99,990", "100,007"]
+
+
+def test_costs_without_times_leave_those_of_the_page():
+    timed = with_figures(PAGE.read_text(encoding="utf-8"), COSTS)
+    counted = replace(COSTS, bare=[2e5] * 3, tick_us={})
+    rows = cells(with_figures(timed, counted))
+    shading = rows["force shading, `effects.shading`"]
+    assert shading[4:6] == ["+-99,000", "+10"]
+    assert rows["no effect named"] == ["200,000", "200,000"]
 
 
 def test_writing_twice_changes_nothing_but_the_figures():

@@ -8,7 +8,14 @@ import subprocess
 import page_stamp
 import pytest
 from make_figures import FIGURES
-from page_stamp import ROOT, STAMP, describe_commit, make_stamp, with_stamp
+from page_stamp import (
+    ROOT,
+    STAMP,
+    describe_commit,
+    make_stamp,
+    with_amendment,
+    with_stamp,
+)
 
 # Sums up other pages, and measures nothing.
 SUMS = "tests/characterization/numerics_table.py"
@@ -49,6 +56,19 @@ def test_a_stamp_replaces_its_own_and_stands_beside_those_of_others():
     page = with_stamp(with_stamp("text\n", old), beside)
     assert page == f"text\n\n{old}\n{beside}\n"
     assert with_stamp(page, new) == f"text\n\n{beside}\n{new}\n"
+
+
+def test_a_stamp_tells_which_figures_were_made_again_later():
+    generator = ROOT / "tests/benchmarks/one.py"
+    first = make_stamp(generator, "`0123456` of 2001-02-03")
+    page = with_stamp("text\n", first)
+    for commit in ("`89abcde` of 2004-05-06", "`fedcba9` of 2005-06-07, with changes"):
+        page = with_amendment(page, make_stamp(generator, commit), "all but times")
+        amended = page.splitlines()[-1]
+        assert STAMP.fullmatch(amended)["commit"] == "0123456"
+        assert amended == f"{first[:-1]}; all but times at commit {commit}."
+    # All of them are made at once again.
+    assert with_stamp(page, first) == with_stamp("text\n", first)
 
 
 def test_sources_that_were_changed_since_the_commit_are_told(monkeypatch):

@@ -1,14 +1,20 @@
 """docs/record-replay.md: its table is the code's, and its reader reads."""
 
 import re
+import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 from tick_log_samples import make_rows, pack_rows
 
+from drake_haptics.scene_library import list_scenes
 from drake_haptics.tick_log.tick_rows import COUNTS, REALS
 
-PAGE = (Path(__file__).parents[1] / "docs" / "record-replay.md").read_text("utf-8")
+sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
+import tick_log_costs
+
+PAGE = tick_log_costs.PAGE.read_text("utf-8")
 
 
 def test_every_quantity_is_explained_in_order():
@@ -35,6 +41,19 @@ def test_the_reader_on_the_page_reads_a_block():
     reals = np.array(columns[:43]).T
     np.testing.assert_array_equal(reals, rows.reals)
     np.testing.assert_array_equal(np.array(columns[43:]).T, rows.counts)
+
+
+def test_logs_that_are_written_again_are_as_large_as_the_page_tells(tmp_path):
+    rows = tick_log_costs.read_rows(PAGE)
+    [low, high] = map(
+        int, rows[f"bytes per tick, {len(list_scenes())} scenes"].split(" to ")
+    )
+    sizes = tick_log_costs.measure_bytes(tmp_path, ["sphere_pen", "can_box"])
+    for size in sizes.values():
+        assert low - 1 < size < high + 1
+    [slow, fast] = map(float, rows["MB per minute at 1 kHz"].split(" to "))
+    # Of rounded bytes, and rounded itself.
+    assert [slow, fast] == pytest.approx([0.06 * low, 0.06 * high], abs=0.1)
 
 
 def test_the_picture_is_there():

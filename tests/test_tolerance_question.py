@@ -15,4 +15,4 @@ def test_what_is_wider_is_named_with_both_lengths():
     assert sentence.startswith(
         "contact.tolerance_m: is 2 m, more than the tool is wide"
     )
-    assert "(20 mm)" in sentence and "in metres" in sentence
+    assert "(20 mm)" in sentence and "in meters" in sentence

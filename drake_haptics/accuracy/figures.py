@@ -50,7 +50,7 @@ class Errors:
         force_rms_N: Root mean square of the force's difference from the reference
             setting's, N.
         force_max_N: The largest, N.
-        torque_rms_Nm: The same of the torque at the tool's centre of mass, N·m.
+        torque_rms_Nm: The same of the torque at the tool's center of mass, N·m.
         torque_max_Nm: The largest, N·m.
         depth_max_m: Largest difference of the deepest contact's distance from the
             exact one, m.

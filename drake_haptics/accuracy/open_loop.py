@@ -22,7 +22,7 @@ class OpenLoopErrors:
     Attributes:
         force_rms_N: N.
         force_max_N: N.
-        torque_rms_Nm: N·m, at the tool's centre of mass.
+        torque_rms_Nm: N·m, at the tool's center of mass.
         torque_max_Nm: N·m.
         depth_max_m: m.
         normal_jump_deg: Degrees.
@@ -51,7 +51,7 @@ def compare(
     """Compares the answers of anything with the truth.
 
     Args:
-        F_Tcm_W: (n, 6) wrench [τ; f] at the truth's centre of mass, N·m and N.
+        F_Tcm_W: (n, 6) wrench [τ; f] at the truth's center of mass, N·m and N.
         distance: (n,) of the deepest contact, m; infinite where there is none.
         tolerance_m: How far contacts were looked for, m. Depths are compared up to
             where both look.

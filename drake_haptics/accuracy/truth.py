@@ -18,9 +18,9 @@ class Truth:
     """The reference's wrench and the exact depth at n ticks of a motion.
 
     Attributes:
-        F_Tcm_W: (n, 6) wrench [τ; f] at the tool's centre of mass in the world, N·m
+        F_Tcm_W: (n, 6) wrench [τ; f] at the tool's center of mass in the world, N·m
             and N.
-        p_TTcm: (3,) the centre of mass in the tool's frame, m.
+        p_TTcm: (3,) the center of mass in the tool's frame, m.
         distance: (n,) exact distance of the deepest pair of pieces, m; infinite beyond
             the tolerance.
         tolerance_m: Of the reference, m.

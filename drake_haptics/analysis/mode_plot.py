@@ -33,7 +33,7 @@ def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
     """Draws the eigenvalues of a linear map over a period in the z plane.
 
     Lines of equal damping ratio spiral from 1 inwards; lines of equal natural
-    frequency cross them. Both are labelled: ζ, and Hz.
+    frequency cross them. Both are labeled: ζ, and Hz.
 
     Args:
         linear: From `linearize_sampled` or `monodromy`.

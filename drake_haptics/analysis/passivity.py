@@ -185,7 +185,7 @@ def _calc_required_matrix(
     """Returns R at ωT, (m, m).
 
     T/2 (Re H - cot(ωT/2) Im H), where Re and Im are the two Hermitian parts of
-    H = Re H + j Im H: the module's expression with its small differences cancelled.
+    H = Re H + j Im H: the module's expression with its small differences canceled.
     """
     H = transfer(complex(math.cos(angle), math.sin(angle)))
     real, imaginary = (H + H.conj().T) / 2.0, (H - H.conj().T) / 2.0j

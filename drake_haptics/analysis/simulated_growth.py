@@ -12,7 +12,7 @@ from pydrake.systems.framework import Context
 from drake_haptics.analysis.sampled_map import get_state, set_state
 
 # So small that nothing but the linear part of the motion is seen, and so large that
-# round-off is not: relative to states of metres, radians and newtons.
+# round-off is not: relative to states of meters, radians and newtons.
 _DISTURBANCE = 1e-7
 # A mode is followed until it is so many times larger or smaller than it began.
 _FOLLOWED = 1e4

@@ -92,7 +92,7 @@ def run_study(
             why = explain_broken_pool()
             raise study.make_error(f"The executor broke: {why}.") from error
         except CancelledError as error:
-            why = "The executor was closed, or cancelled what it had."
+            why = "The executor was closed, or canceled what it had."
             raise study.make_error(why) from error
     if study.failures:
         raise study.make_error(f"{len(study.failures)} of the tasks failed.")

@@ -29,9 +29,9 @@ class Press:
 def make_presses(pair: PairShape, count: int) -> list[Press]:
     """Returns presses in random directions and attitudes, the same on every call.
 
-    A's centre comes straight in, rests for an instant and withdraws, its speed a
+    A's center comes straight in, rests for an instant and withdraws, its speed a
     sine of at most 0.2 m/s, while A turns about a fixed axis at up to 2 rad/s,
-    fastest where the centre rests. At its deepest the centre has gone 20 % of the
+    fastest where the center rests. At its deepest the center has gone 20 % of the
     offset at which the bodies touch in that direction and attitude; it starts as far
     outside.
 
@@ -61,7 +61,7 @@ def _press(pair: PairShape, rng: np.random.Generator) -> Press:
 
 
 def _touching_offset(pair: PairShape, R_WA: np.ndarray, way_W: np.ndarray) -> float:
-    """How far along `way_W` A's centre is where the bodies just touch, m."""
+    """How far along `way_W` A's center is where the bodies just touch, m."""
     query = ConvexPair(ConvexPolytope(pair.A_vertices), ConvexPolytope(pair.B_vertices))
     X_WA = np.eye(4)
     X_WA[:3, :3] = R_WA

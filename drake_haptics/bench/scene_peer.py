@@ -23,7 +23,7 @@ class CoalScene:
     A tick poses the tool's pieces, grows their boxes by the tolerance, refits the
     tool's tree, and takes the signed distance of each pair whose boxes overlap (here
     faster than coal's own distance traversal). GJK starts from the boxes'
-    centres, the fastest start that needs no memory of a pair.
+    centers, the fastest start that needs no memory of a pair.
     """
 
     def __init__(self, problem: SceneProblem):

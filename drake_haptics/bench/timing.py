@@ -28,7 +28,7 @@ class CallTimer:
     """Times calls of one bound function, less what a trivial call of it costs.
 
     What is taken off is the binding, the clock and the trivial work itself, which
-    favours the library a little.
+    favors the library a little.
     """
 
     def __init__(self, function: Callable[..., Any], trivial: tuple[Any, ...]):

@@ -45,7 +45,7 @@ from drake_haptics.mesh_report import Severity, length
     "--error",
     "error_m",
     type=FiniteRange(0),
-    metavar="METRES",
+    metavar="METERS",
     help="How far merged pieces may depart from the mesh.",
 )
 @click.option(
@@ -143,7 +143,7 @@ def _view(result: Decomposition, show: bool, html: str | None) -> None:
                 click.echo(line, err=True)
             click.echo(
                 "Left the pieces in their places; right the same moved apart, with"
-                " their virtual facets in grey.",
+                " their virtual facets in gray.",
                 err=True,
             )
             click.echo("Ctrl-C ends.", err=True)

@@ -11,7 +11,7 @@ RUN = Lesson(
         ("The spoon in the cup, in the browser", "drake-haptics run cup_spoon"),
         ("Move the spoon yourself", "drake-haptics run cup_spoon --device mouse:"),
         (
-            "Your own meshes, in millimetres",
+            "Your own meshes, in millimeters",
             "drake-haptics run --tool pen.stl --environment mug.stl --unit mm",
         ),
         (
@@ -60,8 +60,8 @@ DEVICES = Lesson(
 
 CHECK = Lesson(
     examples=[
-        ("A mesh in metres", "drake-haptics check cup.obj"),
-        ("One in millimetres", "drake-haptics check cup.obj --unit mm"),
+        ("A mesh in meters", "drake-haptics check cup.obj"),
+        ("One in millimeters", "drake-haptics check cup.obj --unit mm"),
         (
             "Only whether it is without defect, in a script",
             "drake-haptics check cup.obj --strict --json cup.json",
@@ -76,11 +76,11 @@ DECOMPOSE = Lesson(
     examples=[
         ("Exactly, and kept for the next time", "drake-haptics decompose cup.obj"),
         (
-            "Fewer pieces, within a tenth of a millimetre",
+            "Fewer pieces, within a tenth of a millimeter",
             "drake-haptics decompose cup.obj --method merged --error 1e-4",
         ),
         (
-            "Pieces in colours, as a page to keep",
+            "Pieces in colors, as a page to keep",
             "drake-haptics decompose cup.obj --html pieces.html",
         ),
     ],

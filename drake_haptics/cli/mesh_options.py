@@ -25,8 +25,8 @@ def unit_options(function: _Function) -> _Function:
     scale = click.option(
         "--scale",
         type=float,
-        metavar="METRES",
-        help="Metres per unit of the file, instead of --unit.",
+        metavar="METERS",
+        help="Meters per unit of the file, instead of --unit.",
     )
     return unit_option("the file")(scale(function))
 

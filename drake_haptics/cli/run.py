@@ -37,13 +37,13 @@ _EXPLAINED_S = 2.0
 @click.option(
     "--tool-scale",
     type=FiniteRange(0, min_open=True),
-    metavar="METRES",
-    help="Metres per unit of the tool's file, where it has a unit of its own.",
+    metavar="METERS",
+    help="Meters per unit of the tool's file, where it has a unit of its own.",
 )
 @click.option(
     "--environment-scale",
     type=FiniteRange(0, min_open=True),
-    metavar="METRES",
+    metavar="METERS",
     help="The same for the environment's file.",
 )
 @set_option
@@ -103,7 +103,7 @@ _EXPLAINED_S = 2.0
     callback=require_folder,
     help="Write the figures as JSON; - writes them to stdout, alone.",
 )
-@click.option("--pieces", is_flag=True, help="Colour the convex pieces.")
+@click.option("--pieces", is_flag=True, help="Color the convex pieces.")
 @click.option(
     "--port",
     type=click.IntRange(1024, 65535),

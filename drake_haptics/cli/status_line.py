@@ -27,7 +27,7 @@ from drake_haptics.systems.load_shedding import SHED_STAGES
 from drake_haptics.tick_clock import TickClock
 
 # Energies below are rounding: a nanojoule lifts a milligram by a tenth of a
-# millimetre.
+# millimeter.
 _ROUNDING_J = 1e-9
 # Lateness in the line is that of so many latest ticks.
 _LATEST = 1000

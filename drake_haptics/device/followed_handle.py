@@ -10,7 +10,7 @@ from drake_haptics.device.pose_filter import PoseFilter
 # The handle is 50 ms behind a steady motion: less is felt as steps of the input, more
 # as a rubber band.
 _RATE_PER_S = 40.0
-# A fast hand. At half a metre per second a tool passes through nothing.
+# A fast hand. At half a meter per second a tool passes through nothing.
 _MAX_SPEED_M_PER_S = 0.5
 _MAX_TURN_RAD_PER_S = 6.0
 

@@ -65,7 +65,7 @@ class MeshcatDevice(DeviceBackend):
             workspace_radius_m: How far the sliders reach along each axis, m.
 
         Raises:
-            ValueError: A pose is not finite, or the radius is less than a millimetre
+            ValueError: A pose is not finite, or the radius is less than a millimeter
                 or not finite.
             DeviceError: The Meshcat has such controls already.
         """

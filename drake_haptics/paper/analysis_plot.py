@@ -43,9 +43,9 @@ def draw_analysis(analysis: Analysis) -> Figure:
     pairs.set_title("query over pairs", fontsize=10)
     pairs.legend(fontsize=8)
     for forces in analysis.forces:
-        name, colour = _METHOD[forces.method]
+        name, color = _METHOD[forces.method]
         label = f"{name}: power {forces.time_growth.exponent:.2f}"
-        force.loglog(forces.contacts, forces.median_us, "o-", color=colour, label=label)
+        force.loglog(forces.contacts, forces.median_us, "o-", color=color, label=label)
     first = analysis.forces[0]
     proportional = first.median_us[0] * np.array(first.contacts) / first.contacts[0]
     force.loglog(

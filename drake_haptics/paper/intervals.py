@@ -32,7 +32,7 @@ def find_intervals(penetrating: np.ndarray, shortest: int = 1) -> list[Interval]
     """Divides ticks into intervals that are disjoint or penetrating as a whole.
 
     As long as there is an interval of fewer than `shortest` ticks, the shortest of
-    all is joined with its neighbours, so that what flickers at the edge of contact
+    all is joined with its neighbors, so that what flickers at the edge of contact
     does not fill a chart with lines.
 
     Args:
@@ -53,7 +53,7 @@ def find_intervals(penetrating: np.ndarray, shortest: int = 1) -> list[Interval]
         k = int(lengths.argmin())
         if lengths[k] >= shortest:
             break
-        # Without its edges it is one with the neighbours, which are of one kind.
+        # Without its edges it is one with the neighbors, which are of one kind.
         if k == 0:
             kind = not kind
             del edges[1]

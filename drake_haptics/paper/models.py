@@ -21,7 +21,7 @@ class ModelSource:
 
     Attributes:
         file: Its name in a folder of real meshes.
-        scale: Metres per unit of the file.
+        scale: Meters per unit of the file.
         make: The package's own shape like it; None if there is none.
     """
 

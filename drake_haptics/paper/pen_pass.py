@@ -36,7 +36,7 @@ class PenPass:
     Attributes:
         time_s: (n,) of each tick, s.
         triangles: Of the polyhedron that stands for the sphere.
-        corner_deg: Largest angle between neighbouring faces of it.
+        corner_deg: Largest angle between neighboring faces of it.
         truth: On a perfect sphere.
         curves: By library; this package's under `OURS`.
         smoothness: By library.
@@ -138,7 +138,7 @@ def _find_libraries() -> dict[str, _Follow]:
 
 
 def _find_corner(surface: Surface) -> float:
-    """Returns the largest angle between neighbouring faces, degrees."""
+    """Returns the largest angle between neighboring faces, degrees."""
     corners = surface.vertices[surface.triangles]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)

@@ -27,8 +27,8 @@ def calc_sphere_contact(
 ) -> ContactCurves:
     """Calculates the contact of a convex body and a sphere about the world's origin.
 
-    While the sphere's centre is outside the body, the signed distance is that of the
-    centre from the body less the radius, disjoint and penetrating alike.
+    While the sphere's center is outside the body, the signed distance is that of the
+    center from the body less the radius, disjoint and penetrating alike.
 
     Args:
         vertices: (v, 3) of the body, in its frame A, m.

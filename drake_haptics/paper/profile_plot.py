@@ -33,12 +33,12 @@ def draw_profile(profile: Profile, figures: ProfileFigures) -> Figure:
     figure = Figure(figsize=_SIZE_INCH, layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
     time_s = profile.time_s
-    for seconds, label, colour, width in (
+    for seconds, label, color, width in (
         (profile.tick_s, "whole tick", "#9aa5b1", 0.7),
         (profile.query_s, "contact query", "#1f5fa8", 0.8),
         (profile.force_s, "clusters and force", "#d9822b", 0.8),
     ):
-        above.plot(time_s, 1e6 * seconds, color=colour, lw=width, label=label)
+        above.plot(time_s, 1e6 * seconds, color=color, lw=width, label=label)
     above.axhline(_PERIOD_US, color="#b03030", ls="--", lw=1.0, label="1 ms")
     above.set_yscale("log")
     least_s = np.percentile([profile.query_s, profile.force_s], 1, axis=1)

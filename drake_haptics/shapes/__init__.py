@@ -1,6 +1,6 @@
 """The shapes of the shipped scenes, made by code.
 
-Each generator returns a closed, outward wound `Surface` in metres. `python -m
+Each generator returns a closed, outward wound `Surface` in meters. `python -m
 drake_haptics.shapes` writes them all to `models/meshes`.
 """
 

@@ -73,9 +73,9 @@ def _handle_section(s: float) -> np.ndarray:
     """The section at the fraction `s` of the way from upper to lower opening."""
     turn = np.pi * s
     radial = np.array([np.sin(turn), 0, np.cos(turn)])
-    centre = np.array([0.036, 0, 0.036]) + radial * [0.030, 0, 0.0185]
+    center = np.array([0.036, 0, 0.036]) + radial * [0.030, 0, 0.0185]
     lateral = np.array([0.0, 1.0, 0.0])
     corners = ((-1, -3.0), (1, -3.0), (1.35, 0), (1, 3.0), (-1, 3.0), (-1.35, 0))
     return np.array(
-        [centre + 0.0042 * w * lateral + 1e-3 * h * radial for w, h in corners]
+        [center + 0.0042 * w * lateral + 1e-3 * h * radial for w, h in corners]
     )

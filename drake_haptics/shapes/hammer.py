@@ -26,7 +26,7 @@ _HEAD = (
     (0.0104, 0.0460),
 )
 _OPENING_ROW = 7
-# The opening is this many quads wide and high, centred on +x.
+# The opening is this many quads wide and high, centered on +x.
 _OPENING = 4
 # The handle: distance from the head's axis, half width (y), half height (z), m.
 _HANDLE = (
@@ -114,8 +114,8 @@ def _add_claw(builder: SurfaceBuilder, root: list[int]) -> None:
             near = far
         # Half way between the flat side's middle and the round side's.
         end = _tine_section(side, 1.0)
-        centre = (end[0] + end[-1]) / 4 + end[_SECTORS // 4] / 2
-        builder.add_fan(near, builder.add_vertex(centre), at_start=False)
+        center = (end[0] + end[-1]) / 4 + end[_SECTORS // 4] / 2
+        builder.add_fan(near, builder.add_vertex(center), at_start=False)
 
 
 def _tine_section(side: int, s: float) -> np.ndarray:
@@ -134,6 +134,6 @@ def _tine_section(side: int, s: float) -> np.ndarray:
     lateral = side * gap + width * np.sin(half_disc)
     bend = _CLAW_BEND_RAD * s
     outward = np.array([np.cos(bend), 0, -np.sin(bend)])
-    centre = _CLAW_BEND_RADIUS_M * np.array([1 - np.cos(bend), 0, np.sin(bend)])
-    centre[2] += height
-    return centre + np.outer(across, outward) + np.outer(lateral, [0, 1, 0])
+    center = _CLAW_BEND_RADIUS_M * np.array([1 - np.cos(bend), 0, np.sin(bend)])
+    center[2] += height
+    return center + np.outer(across, outward) + np.outer(lateral, [0, 1, 0])

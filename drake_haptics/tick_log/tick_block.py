@@ -108,7 +108,7 @@ def unpack_block(header: BlockHeader, payload: bytes) -> TickRows | None:
 def _shuffle(values: np.ndarray, word: str) -> bytes:
     """Returns what is left of columns of smooth numbers, like bytes together.
 
-    Neighbours in time share sign, exponent and leading bits: of the difference of
+    Neighbors in time share sign, exponent and leading bits: of the difference of
     their bit patterns these bytes are zero.
     """
     bits = np.ascontiguousarray(values).view(word)

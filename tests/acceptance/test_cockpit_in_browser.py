@@ -303,7 +303,7 @@ def test_a_screen_reader_is_told_what_things_are_and_not_every_number(page):
     assert [node for node in found if not read(node, "name")] == []
     # What a value means, and in which unit it is.
     stiffness = next(node for node in found if read(node, "name") == "Stiffness")
-    assert read(stiffness, "description").startswith("Force per metre")
+    assert read(stiffness, "description").startswith("Force per meter")
     assert "to 5000 N/m" in read(stiffness, "description")
     friction = next(node for node in found if read(node, "name") == "Friction")
     assert read(friction, "description") == "Stick-slip friction."

@@ -44,7 +44,7 @@ SOUGHT = {
     "damping unit": "glossary.html#units",
     "force on the hand": "glossary.html",
     "buzzing": "troubleshooting.html#buzzing",
-    "mesh in millimetres": "troubleshooting.html#meshes",
+    "mesh in millimeters": "troubleshooting.html#meshes",
     "network delay": "stability.html",
     "own plant": "compose.html",
     "friction": "effects.html",

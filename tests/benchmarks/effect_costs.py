@@ -1,8 +1,9 @@
 """Counts what each effect costs per tick, and that one not named costs nothing.
 
-python tests/benchmarks/effect_costs.py [--write]
+python tests/benchmarks/effect_costs.py [--write] [--keep-times]
 
-Needs valgrind. --write puts the tables into docs/effects.md.
+Needs valgrind. --write puts the tables into docs/effects.md. --keep-times only counts,
+which a busy machine can do as well: times stay as the page has them.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import shutil
 import statistics
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +21,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from effect_child import CORE_CALLS, EFFECTS, TICKS, WARM_UP, make_scene
 from effect_rows import make_rows
-from page_stamp import write_page
+from page_stamp import amend_page, write_page
 
 from drake_haptics.bench.valgrind import count_instructions
 from drake_haptics.builder import BuildHapticDiagram
@@ -49,6 +50,7 @@ _HEADER = (
     "tick, µs",
     "effect on stability",
 )
+_TIME = _HEADER.index("tick, µs")
 _TIMED_ROUNDS = 5
 
 
@@ -62,7 +64,7 @@ class Costs:
         control: The same with as much else taken away.
         loop: Instructions per tick of the whole loop, by its effect.
         core: Instructions per tick in calls of the core, by key of `CORE_CALLS`.
-        tick_us: Median tick, by effect, µs.
+        tick_us: Median tick, by effect, µs; empty where the page keeps its own.
     """
 
     bare: list[float]
@@ -106,8 +108,8 @@ def time_loops(effects: Sequence[str]) -> dict[str, float]:
     return {effect: min(values) for effect, values in medians.items()}
 
 
-def measure() -> Costs:
-    """Counts with all cores but one, then times alone."""
+def measure(has_times: bool) -> Costs:
+    """Counts with all cores but one, then times alone if asked to."""
     switching = count_instructions([_CHILD, "core", "gravity", "0"])
     with ThreadPoolExecutor(max((os.cpu_count() or 2) - 1, 1)) as pool:
 
@@ -124,24 +126,40 @@ def measure() -> Costs:
         [run.result() for run in control],
         {name: run.result() for name, run in loop.items()},
         {name: run.result() for name, run in core.items()},
-        time_loops(["none", *EFFECTS]),
+        time_loops(["none", *EFFECTS]) if has_times else {},
     )
 
 
-def make_table(costs: Costs) -> str:
-    """Returns the table of effects with their costs, as Markdown."""
+def read_times(page: str) -> dict[str, str]:
+    """Returns the cells of the page that have times, by what is in the first cell."""
+    start, end = page.index(_BEGIN), page.index(_END)
+    rows = [line[2:-2].split(" | ") for line in page[start:end].splitlines()]
+    return {row[0]: row[_TIME] for row in rows if len(row) == len(_HEADER)}
+
+
+def make_table(costs: Costs, times: Mapping[str, str]) -> str:
+    """Returns the table of effects with their costs, as Markdown.
+
+    Args:
+        costs: Now.
+        times: Of the page, for costs without.
+    """
     base = statistics.median(costs.bare)
     lines = [_row(_HEADER), _row(["---"] * 4 + ["--:"] * 3 + ["---"])]
     for row in make_rows():
         core = "–" if row.core is None else f"{costs.core[row.core]:,.0f}"
+        name = f"{row.name}, {row.key}"
         tick, tick_us = "in the base", "in the base"
         if row.core in EFFECTS:
             tick = f"+{costs.loop[row.core] - base:,.0f}"
-            tick_us = f"+{costs.tick_us[row.core] - costs.tick_us['none']:.0f}"
+            if costs.tick_us:
+                tick_us = f"+{costs.tick_us[row.core] - costs.tick_us['none']:.0f}"
+            else:
+                tick_us = times[name]
         lines.append(
             _row(
                 [
-                    f"{row.name}, {row.key}",
+                    name,
                     row.formula,
                     row.source,
                     row.default,
@@ -177,7 +195,7 @@ def with_figures(page: str, costs: Costs) -> str:
         ValueError: a mark is missing.
     """
     start, end = page.index(_BEGIN) + len(_BEGIN), page.index(_END)
-    parts = [make_table(costs), _PROOF + "\n" + make_proof(costs)]
+    parts = [make_table(costs, read_times(page)), _PROOF + "\n" + make_proof(costs)]
     return page[:start] + "\n" + "\n\n".join(parts) + "\n\n" + page[end:]
 
 
@@ -189,11 +207,16 @@ def main() -> None:
     """Measures, prints, and writes the page if asked to."""
     if shutil.which("valgrind") is None:
         sys.exit("valgrind is not installed")
-    costs = measure()
-    print(make_table(costs), make_proof(costs), costs.tick_us, sep="\n\n")
-    if "--write" in sys.argv[1:]:
-        page = PAGE.read_text(encoding="utf-8")
-        write_page(PAGE, with_figures(page, costs), __file__)
+    has_times = "--keep-times" not in sys.argv[1:]
+    costs = measure(has_times)
+    page = with_figures(PAGE.read_text(encoding="utf-8"), costs)
+    print(page[page.index(_BEGIN) : page.index(_END)], costs.tick_us)
+    if "--write" not in sys.argv[1:]:
+        return
+    if has_times:
+        write_page(PAGE, page, __file__)
+    else:
+        amend_page(PAGE, page, __file__, "instructions")
 
 
 if __name__ == "__main__":

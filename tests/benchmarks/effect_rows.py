@@ -127,7 +127,7 @@ def make_rows() -> list[EffectRow]:
             "gravity on the tool",
             "`effects.gravity`",
             "gravity",
-            "f = m g at the centre of mass",
+            "f = m g at the center of mass",
             "Newton",
             f"g = {gravity.acceleration_m_per_s2} m/s²",
             "None: a constant force.",

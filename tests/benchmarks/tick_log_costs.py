@@ -1,9 +1,10 @@
 """Measures what a log of every tick costs: instructions, time and bytes.
 
-python tests/benchmarks/tick_log_costs.py [--write]
+python tests/benchmarks/tick_log_costs.py [--write] [--keep-times]
 
 Needs valgrind. --write puts the table into docs/record-replay.md. Times are noisy on a
-computer that does other things too; instructions are not.
+computer that does other things too; instructions are not. --keep-times leaves the times
+as the page has them.
 """
 
 from __future__ import annotations
@@ -13,11 +14,12 @@ import statistics
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from page_stamp import write_page
+from page_stamp import amend_page, write_page
 
 from drake_haptics.bench.valgrind import count_instructions, counted
 from drake_haptics.builder import BuildHapticDiagram
@@ -38,6 +40,7 @@ _WARM_UP = 1000
 _TICKS = 1000
 _TIMED_TICKS = 10_000
 _RECORDED_S = 4.0
+_TIME = "tick, µs (noisy)"
 
 
 def make_loop(stack: ExitStack, folder: Path, name: str, logged: bool):  # type: ignore[no-untyped-def]
@@ -84,10 +87,10 @@ def time_ticks(folder: Path) -> dict[bool, float]:
     return {logged: 1e6 * statistics.median(values) for logged, values in times.items()}
 
 
-def measure_bytes(folder: Path) -> dict[str, float]:
+def measure_bytes(folder: Path, names: Sequence[str]) -> dict[str, float]:
     """Returns bytes per tick by scene."""
     found = {}
-    for name in list_scenes():
+    for name in names:
         with ExitStack() as stack:
             simulator, _ = make_loop(stack, folder, name, True)
             simulator.AdvanceTo(_RECORDED_S)
@@ -96,12 +99,25 @@ def measure_bytes(folder: Path) -> dict[str, float]:
     return found
 
 
-def measure() -> list[tuple[str, str]]:
-    """Returns the rows of the table."""
+def read_rows(page: str) -> dict[str, str]:
+    """Returns the rows of the page's table."""
+    lines = page[page.index(_BEGIN) : page.index(_END)].splitlines()
+    rows = [line[2:-2].split(" | ") for line in lines if line.startswith("| ")]
+    return {name: value for name, value in rows[2:]}
+
+
+def measure(kept_time: str | None) -> list[tuple[str, str]]:
+    """Returns the rows of the table.
+
+    Args:
+        kept_time: What is said of times; measured if not given.
+    """
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        sizes = measure_bytes(folder)
-        tick_us = time_ticks(folder)
+        sizes = measure_bytes(folder, list_scenes())
+        if kept_time is None:
+            tick_us = time_ticks(folder)
+            kept_time = f"+{tick_us[True] - tick_us[False]:.0f} on {tick_us[False]:.0f}"
         child = [__file__, str(folder)]
         bare, log, thread = (
             count_instructions([*child, what]) / _TICKS
@@ -111,10 +127,7 @@ def measure() -> list[tuple[str, str]]:
     minutes = [0.06 * size for size in (min(sizes.values()), max(sizes.values()))]
     return [
         ("tick, instructions", f"+{log - bare:,.0f} on {bare:,.0f}"),
-        (
-            "tick, µs (noisy)",
-            f"+{tick_us[True] - tick_us[False]:.0f} on {tick_us[False]:.0f}",
-        ),
+        (_TIME, kept_time),
         ("writer's thread, instructions per tick", f"{thread:,.0f}"),
         (f"bytes per tick, {len(sizes)} scenes", span),
         ("MB per minute at 1 kHz", f"{minutes[0]:.1f} to {minutes[1]:.1f}"),
@@ -123,19 +136,25 @@ def measure() -> list[tuple[str, str]]:
 
 def main() -> None:
     """Measures, prints, and writes the page if asked to."""
-    if len(sys.argv) == 3:
+    if len(sys.argv) == 3 and not sys.argv[2].startswith("--"):
         count(sys.argv[2], Path(sys.argv[1]))
         return
     if shutil.which("valgrind") is None:
         sys.exit("valgrind is not installed")
+    keeps_times = "--keep-times" in sys.argv[1:]
+    page = PAGE.read_text(encoding="utf-8")
     lines = ["| cost of a log | |", "| --- | --: |"]
-    lines += [f"| {name} | {value} |" for name, value in measure()]
+    rows = measure(read_rows(page)[_TIME] if keeps_times else None)
+    lines += [f"| {name} | {value} |" for name, value in rows]
     table = "\n".join(lines)
     print(table)
-    if "--write" in sys.argv[1:]:
-        page = PAGE.read_text(encoding="utf-8")
-        start, end = page.index(_BEGIN) + len(_BEGIN), page.index(_END)
-        page = f"{page[:start]}\n{table}\n\n{page[end:]}"
+    if "--write" not in sys.argv[1:]:
+        return
+    start, end = page.index(_BEGIN) + len(_BEGIN), page.index(_END)
+    page = f"{page[:start]}\n{table}\n\n{page[end:]}"
+    if keeps_times:
+        amend_page(PAGE, page, __file__, "all but times")
+    else:
         write_page(PAGE, page, __file__)
 
 

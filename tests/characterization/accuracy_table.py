@@ -3,7 +3,10 @@
 python tests/characterization/accuracy_table.py --write
 
 Some minutes, on a machine that does nothing else. Ctrl-C keeps what is measured where
---store names a folder.
+--store names a folder. On any machine, this makes the errors of some knobs again and
+leaves the rest of the page as it is:
+
+python tests/characterization/accuracy_table.py --write --errors KNOB ...
 """
 
 from __future__ import annotations
@@ -11,21 +14,33 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from page_stamp import write_page
+from page_stamp import amend_page, write_page
 
 from drake_haptics.accuracy.add_peers import add_peers
 from drake_haptics.accuracy.budget import BudgetChoice, choose_setting
 from drake_haptics.accuracy.budget_words import describe_outcome, describe_sacrifices
-from drake_haptics.accuracy.figures import AccuracyStudy, Row
+from drake_haptics.accuracy.figures import AccuracyStudy, Errors, Row
 from drake_haptics.accuracy.fresh_run import measure_p99
+from drake_haptics.accuracy.knobs import list_settings, make_reference
+from drake_haptics.accuracy.measurement import Measurement
 from drake_haptics.accuracy.model_changes import find_model_change
 from drake_haptics.accuracy.plot import draw_study
+from drake_haptics.accuracy.recorded_motion import record_motion
 from drake_haptics.accuracy.setting import Setting
 from drake_haptics.accuracy.study import run_accuracy_study
-from drake_haptics.accuracy.table import COLUMNS, get_columns, group_rows, make_cells
+from drake_haptics.accuracy.study_rows import make_task
+from drake_haptics.accuracy.table import (
+    COLUMNS,
+    get_columns,
+    group_rows,
+    make_cells,
+    make_error_cells,
+)
+from drake_haptics.accuracy.truth import find_truth
 from drake_haptics.accuracy.words import (
     describe_knees,
     describe_machine,
@@ -52,6 +67,8 @@ BEGIN = "<!-- {}: written by tests/characterization/accuracy_table.py -->\n"
 END = "<!-- end of {} -->\n"
 COLUMNS_NAME, BUDGETS_NAME = "columns", "budgets"
 BUDGET_HEADINGS = ("scene", "budget, µs", "p99, µs", "scene's p99, µs", "given up")
+# Knob, setting, and times of tick and core are before the errors; energy is the last.
+ERRORS = slice(4, 8)
 _DPI = 90
 
 
@@ -125,6 +142,41 @@ def measure_prices(name: str, store: Path | None) -> AccuracyStudy:
         return add_peers(study, scene, progress=show)
 
 
+def measure_errors(
+    name: str, is_meant: Callable[[Setting], bool]
+) -> dict[tuple[str, str], list[str]]:
+    """Returns cells of the errors of settings, by knob and setting.
+
+    Args:
+        name: Of the scene.
+        is_meant: Whether a setting is.
+    """
+    scene = load_scene(find_scene(name))
+    motion = record_motion(scene)
+    truth = find_truth(make_reference(scene).apply(scene), motion)
+    measurement = Measurement(scene, motion, truth, None)
+    found = {}
+    for setting in filter(is_meant, list_settings(scene)):
+        print(f"{name}: {setting.knob} {setting.label}", file=sys.stderr)
+        result = measurement(make_task("errors", setting))
+        cells = make_error_cells(Errors(**result["errors"]))
+        found[setting.knob, setting.label] = list(cells)
+    return found
+
+
+def with_errors(page: str, name: str, errors: dict[tuple[str, str], list[str]]) -> str:
+    """Returns the page with these errors in the rows of a scene."""
+    span = span_of(page, name)
+    lines = page[span].split("\n")
+    for i, line in enumerate(lines):
+        cells = line[2:-2].split(" | ")
+        found = errors.get((cells[0], cells[1].strip("*† ")) if cells[1:] else ("", ""))
+        if found is not None:
+            cells[ERRORS] = found
+            lines[i] = f"| {' | '.join(cells)} |"
+    return page[: span.start] + "\n".join(lines) + page[span.stop :]
+
+
 def hold_budget(name: str, study: AccuracyStudy | None) -> BudgetChoice:
     """Holds a budget of four fifths of what a scene takes by itself.
 
@@ -183,7 +235,21 @@ def main() -> None:
     )
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
     parser.add_argument("--store", type=Path, help="folder that keeps results")
+    parser.add_argument(
+        "--errors", nargs="+", metavar="KNOB", help="of these knobs alone"
+    )
     arguments = parser.parse_args()
+    if arguments.errors:
+        page = PAGE.read_text(encoding="utf-8")
+        for name in SCENES:
+            errors = measure_errors(name, lambda x: x.knob in arguments.errors)
+            page = with_errors(page, name, errors)
+            for key, cells in errors.items():
+                print(name, *key, *cells)
+        if arguments.write:
+            what = f"errors of {', '.join(arguments.errors)}"
+            amend_page(PAGE, page, __file__, what)
+        return
     if arguments.store is not None:
         arguments.store.mkdir(parents=True, exist_ok=True)
     studies = {name: measure_prices(name, arguments.store) for name in SCENES}

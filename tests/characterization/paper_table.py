@@ -2,20 +2,22 @@
 
 python tests/characterization/paper_table.py --write --meshes FOLDER
 
-Without --write it prints what it would write. Some two minutes.
+Without --write it prints what it would write. Some two minutes. On a machine that does
+other things too, --keep-times writes all but times, which stay as the page has them.
 """
 
 from __future__ import annotations
 
 import argparse
 import io
+import re
 import sys
 from pathlib import Path
 
 from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from page_stamp import write_page
+from page_stamp import amend_page, write_page
 
 from drake_haptics.paper.evaluation import QUICK, PaperEvaluation, evaluate_paper
 from drake_haptics.paper.page import render, summarize
@@ -31,6 +33,9 @@ PAGE = _DOCS / "paper.md"
 BEGIN = "<!-- figures: written by tests/characterization/paper_table.py -->\n"
 END = "<!-- end of figures -->\n"
 _DPI, _COLOURS = 80, 128
+# Heads of columns, and words of sentences, in which times are.
+_TIMED_COLUMN = re.compile(r"µs|seconds|Hz|under 1 ms|^(query|force|whole tick)$")
+_TIMED_SENTENCE = re.compile(r"µs|time (?:that )?grows|takes .* % more")
 
 
 def figures_of(page: str) -> str:
@@ -69,6 +74,33 @@ def with_figures(page: str, evaluation: PaperEvaluation) -> str:
     return page[:start] + "\n" + "\n".join(parts) + "\n" + page[page.index(END) :]
 
 
+def keep_times(new: str, old: str) -> str:
+    """Returns new figures of the page with the times of old ones.
+
+    Raises:
+        ValueError: They have other lines, or a sentence that stays would not fit: all
+            must be made.
+    """
+    head: list[str] = []
+    lines = []
+    for now, before in zip(new.split("\n"), old.split("\n"), strict=True):
+        if now.startswith("| "):
+            cells, kept = (line[2:-2].split(" | ") for line in (now, before))
+            if not head:
+                head = cells
+            pairs = zip(head, cells, kept, strict=True)
+            chosen = [b if _TIMED_COLUMN.search(name) else a for name, a, b in pairs]
+            now = f"| {' | '.join(chosen)} |"
+        else:
+            head = []
+            if _TIMED_SENTENCE.search(now) or now.startswith("Of "):
+                now = before
+            elif now.partition(":")[0] != before.partition(":")[0]:
+                raise ValueError(f"'{now}' was '{before}': the sum of them is another")
+        lines.append(now)
+    return "\n".join(lines)
+
+
 def write_pictures(evaluation: PaperEvaluation) -> None:
     """Writes the pictures, small, and removes those that are no longer shown."""
     for old in _DOCS.glob("paper_*.png"):
@@ -88,15 +120,25 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
     parser.add_argument("--meshes", type=Path, help="folder of real meshes")
     parser.add_argument("--quick", action="store_true", help="measure less")
+    parser.add_argument(
+        "--keep-times", action="store_true", help="leave the page's times and pictures"
+    )
     arguments = parser.parse_args()
     evaluation = evaluate_paper(
         effort=QUICK if arguments.quick else None,
         meshes=arguments.meshes,
         progress=lambda what, share: print(f"{share:4.0%} {what}", file=sys.stderr),
     )
-    page = with_figures(PAGE.read_text(encoding="utf-8"), evaluation)
+    old = PAGE.read_text(encoding="utf-8")
+    page = with_figures(old, evaluation)
+    if arguments.keep_times:
+        now, before = figures_of(page), figures_of(old)
+        page = old.replace(before, keep_times(now, before))
     if not arguments.write:
         print(figures_of(page))
+        return
+    if arguments.keep_times:
+        amend_page(PAGE, page, __file__, "all but times and pictures")
         return
     write_page(PAGE, page, __file__)
     write_pictures(evaluation)

@@ -37,7 +37,7 @@ RATES_HZ = (100, 250, 500, 1000)
 STALLS_S = (0.0, 0.02, 0.05, 0.121, 0.2)
 STIFFNESSES = (250, 500, 1000, 1500, 2000, 3000)
 HANDS = {"nobody holds it": None, "nominal hand": NOMINAL_HAND}
-# Below this nothing is felt: a tenth of a millimetre; a twentieth of a newton.
+# Below this nothing is felt: a tenth of a millimeter; a twentieth of a newton.
 BUZZ_M, STALE_N = 1e-4, 0.05
 WILD_M = 0.02
 

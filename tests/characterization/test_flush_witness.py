@@ -1,4 +1,4 @@
-"""Test that flush features meet at the centre of their overlap, by another clip.
+"""Test that flush features meet at the center of their overlap, by another clip.
 
 The overlap is found here as an intersection of half planes (scipy), not by clipping.
 """

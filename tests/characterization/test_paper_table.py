@@ -2,6 +2,7 @@
 
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,12 +10,24 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 from paper_samples import make_evaluation
-from paper_table import PAGE, figures_of, file_of, with_figures
+from paper_table import PAGE, figures_of, file_of, keep_times, with_figures
 
+from drake_haptics.paper.evaluation import Run
+from drake_haptics.paper.force_scaling import measure_force_scaling
+from drake_haptics.paper.pen_pass import OURS, measure_pen_pass
+from drake_haptics.paper.profile import measure_profile
+from drake_haptics.paper.profile_figures import sum_up
 from drake_haptics.paper.published import TABLE_1
 from drake_haptics.paper.report import make_sections
 from drake_haptics.paper.scenarios import scenario_makers
 from drake_haptics.paper.statement import MEANING
+from drake_haptics.paper.table1 import measure_table1
+from drake_haptics.paper.tables import (
+    make_pen_table,
+    make_profile_table,
+    make_run_table,
+    make_table1,
+)
 
 TEXT = PAGE.read_text(encoding="utf-8")
 FIGURES = figures_of(TEXT)
@@ -101,3 +114,58 @@ def test_the_pairs_are_on_the_line_that_is_told():
     last = rows[-1]
     assert number(last[1]) / number(last[0]) == pytest.approx(number(last[2]), rel=0.02)
     assert [number(row[0]) for row in rows] == [1, 2, 4, 8, 16, 32, 64]
+
+
+def assert_is_on_the_page(table, columns, key=1):
+    """Rows made again agree with those of the page that begin alike, in columns."""
+    head, *told = read_rows(table.title)
+    for row in table.rows:
+        [found] = [cells for cells in told if cells[:key] == list(row[:key])]
+        for column in columns:
+            at = head.index(column)
+            assert found[at] == row[at], (row[:key], column)
+
+
+def test_own_shapes_are_cut_as_the_page_tells():
+    rows = [row for row in measure_table1(None, lambda *_: None) if row.source]
+    assert len(rows) == 5
+    columns = ("triangles", "pieces", "flat", "virtual facets")
+    assert_is_on_the_page(make_table1(rows), columns, key=4)
+
+
+def test_a_scenario_that_is_run_again_meets_what_the_page_tells():
+    """Of all that is no time."""
+    profile = measure_profile(scenario_makers(None)["spoon in cup"](), passes=1)
+    run = [Run(profile, sum_up(profile))]
+    columns = "pieces", "triangles", "contacts", "clusters", "objects touched"
+    assert_is_on_the_page(make_run_table(run), (*columns, "deepest, mm"))
+    assert_is_on_the_page(make_profile_table(run), ("ticks", "contacts"))
+
+
+def test_a_pass_of_the_pen_is_as_smooth_as_the_page_tells():
+    table = make_pen_table([measure_pen_pass()])
+    rows = [row for row in table.rows if row[1] == OURS]
+    _, _, *columns = table.header
+    assert_is_on_the_page(replace(table, rows=rows), columns, key=2)
+
+
+def test_brushes_make_as_many_forces_as_the_page_tells():
+    octree, shared = measure_force_scaling(repeats=1)
+    head, *rows = read_rows("Force over contacts")
+    told = [[int(row[i]) for i in (0, 1, 3)] for row in rows]
+    made = zip(octree.contacts, octree.forces, shared.forces, strict=True)
+    assert told == [list(row) for row in made]
+    assert head[1] == "paper's: forces" and head[3] == "shared: forces"
+
+
+def test_times_stay_where_only_the_rest_is_made_again():
+    old = (
+        "Of 2 statements 2 agree.\n- **agrees**: Up to 2 contacts at a time.\n"
+        "- **agrees**: Half of the ticks take less than 9 µs.\n\n"
+        "| scenario | contacts | query |\n| --- | --: | --: |\n| cup | 2 | 9 / 10 |\n"
+    )
+    new = old.replace("2 contacts", "3 contacts").replace("| 2 |", "| 3 |")
+    busy = new.replace("9 µs", "99 µs").replace("9 / 10", "99 / 999")
+    assert keep_times(busy, old) == new
+    with pytest.raises(ValueError, match="the sum of them is another"):
+        keep_times(busy.replace("**agrees**: Up", "**differs**: Up"), old)

@@ -2,11 +2,18 @@
 
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 from stability_table import PAGE, PICTURE, SCENES, limit_rows, place_rows, span_of
+
+from drake_haptics.analysis import analyse_held_scene, hold_scene
+from drake_haptics.analysis.stiffness_limits import find_stiffness_limits
+from drake_haptics.scene import load_scene
+from drake_haptics.scene_library import find_scene
 
 TEXT = PAGE.read_text(encoding="utf-8")
 
@@ -45,6 +52,30 @@ def test_simulation_agrees_and_one_axis_is_the_worst_direction():
         assert abs(float(row[6].removesuffix(" %"))) < 0.5
         if row[2] == "a rigid wall":
             assert float(row[8].removesuffix(" %")) < 1.0
+
+
+def number(cell):
+    """The figure of a cell, to two units of its last digit."""
+    text = cell.removesuffix(" %")
+    decimals = len(text.partition(".")[2])
+    return pytest.approx(float(text), rel=2e-4, abs=2.0 * 10.0**-decimals)
+
+
+def test_a_scene_that_is_held_again_is_that_of_the_page():
+    """Where it is held, and one of its limits in all ways."""
+    name, kind, against = "can_box", "rotation", "a rigid wall"
+    head, *places = read_rows("places")
+    [told] = [dict(zip(head, row, strict=True)) for row in places if row[0] == name]
+    held = hold_scene(load_scene(find_scene(name)), float(told["held at, s"]))
+    loop = analyse_held_scene(held)
+    assert loop.growth == number(told["growth per tick"])
+    F_Tool_W = loop.haptic.diagram.GetOutputPort("F_Tool_W").Eval(loop.context)
+    assert np.linalg.norm(F_Tool_W[3:]) == number(told["force, N"])
+    limits = (find_stiffness_limits(held, kind, against),)
+    _, now = limit_rows({name: SimpleNamespace(limits=limits)})
+    [told] = [row for row in read_rows("limits") if row[:3] == now[:3]]
+    for figure, cell in zip(now[3:], told[3:], strict=True):
+        assert float(figure.removesuffix(" %")) == number(cell)
 
 
 def test_the_picture_is_there():

@@ -1,4 +1,4 @@
-"""Vertex sets of the bodies in the hard cases, in metres about their own origin."""
+"""Vertex sets of the bodies in the hard cases, in meters about their own origin."""
 
 from __future__ import annotations
 

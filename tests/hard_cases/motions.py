@@ -94,9 +94,9 @@ def plate() -> Iterator[Passage]:
             yield moved(cone(), leaf, poses)
 
 
-@hard_case("through the symmetric centre")
+@hard_case("through the symmetric center")
 def through_centre() -> Iterator[Passage]:
-    """A body goes straight through the centre of its like."""
+    """A body goes straight through the center of its like."""
     for A, B in (
         (cube(), cube()),
         (ball(0), ball(0)),

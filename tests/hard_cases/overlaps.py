@@ -1,4 +1,4 @@
-"""Hard cases of overlap: one body inside another, and about one centre."""
+"""Hard cases of overlap: one body inside another, and about one center."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def containment() -> Iterator[Passage]:
 def about_centre(
     A: np.ndarray, B: np.ndarray, turn: object = (0, 0, 0)
 ) -> Iterator[Passage]:
-    """A at B's centre exactly, and within fractions of round-off about it."""
+    """A at B's center exactly, and within fractions of round-off about it."""
     poses = [pose(rotvec=turn)] + [
         pose(np.roll([s * d, 0, 0], k), turn)
         for d in (1e-17, 1e-15, 1e-12, 1e-9, 1e-3)
@@ -54,7 +54,7 @@ def about_centre(
 
 @hard_case("concentric cubes")
 def concentric_cubes() -> Iterator[Passage]:
-    """Identical cubes, and cubes turned against each other, at one centre."""
+    """Identical cubes, and cubes turned against each other, at one center."""
     yield from about_centre(cube(), cube())
     yield from about_centre(cube(), cube(), [0, 0, np.pi / 4])
     yield from about_centre(cube(), cube(), [0.3, 0.5, -0.2])
@@ -63,7 +63,7 @@ def concentric_cubes() -> Iterator[Passage]:
 
 @hard_case("concentric balls")
 def concentric_balls() -> Iterator[Passage]:
-    """Identical and unlike balls at one centre."""
+    """Identical and unlike balls at one center."""
     yield from about_centre(ball(0), ball(0))
     yield from about_centre(ball(0), ball(0, 0.5), [0.1, 0.2, 0.3])
     yield moved(ball(1), ball(1), [pose(), pose([1e-9, 0, 0]), pose([0, 1e-3, 0])])
@@ -71,7 +71,7 @@ def concentric_balls() -> Iterator[Passage]:
 
 @hard_case("concentric boxes")
 def concentric_boxes() -> Iterator[Passage]:
-    """Identical boxes, discs and tetrahedra at one centre."""
+    """Identical boxes, discs and tetrahedra at one center."""
     yield from about_centre(box(1, 0.5, 0.25), box(1, 0.5, 0.25))
     yield from about_centre(box(1, 0.5, 0.25), box(1, 0.5, 0.25), [0, 0, np.pi / 2])
     yield from about_centre(disc(8), disc(8))

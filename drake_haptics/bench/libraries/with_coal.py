@@ -25,7 +25,7 @@ _STARTS = {
 class CoalQuery:
     """One pair: coal's `ComputeDistance` with its default tolerances, in C++.
 
-    Cold starts from a fixed direction, boxes from the centres of the bounding boxes.
+    Cold starts from a fixed direction, boxes from the centers of the bounding boxes.
     Warm means that each query is handed the last one's guess and support vertices
     (`updateGuess`).
     """

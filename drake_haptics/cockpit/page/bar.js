@@ -1,7 +1,7 @@
 // The bar over the scene: what the loop does and whether it keeps up.
 
 import {find, write} from "./find.js";
-import {micros, millimetres, seconds, silence} from "./format.js";
+import {micros, millimeters, seconds, silence} from "./format.js";
 
 const GATES = {
   simulated: "Hand and arm are simulated: there is no device.",
@@ -40,7 +40,7 @@ export function showFigures(frame, period_s) {
   if (frame.tick_us) showTick(frame.tick_us, 1e6 * period_s, frame.shed);
   show("contacts", frame.contacts, n => n + " → " + frame.clusters);
   // Without a contact there is no distance, but where there could be one its place stays.
-  show("gap", frame.contacts, () => frame.gap_m === null ? "–" : millimetres(frame.gap_m));
+  show("gap", frame.contacts, () => frame.gap_m === null ? "–" : millimeters(frame.gap_m));
 }
 
 /** Writes a figure; one of which nothing is known is not there. */

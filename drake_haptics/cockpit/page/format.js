@@ -1,7 +1,7 @@
 // Numbers as people read them.
 
 export const newtons = f => f.toFixed(2) + " N";
-export const millinewtonmetres = t => (1e3 * t).toFixed(0) + " mN·m";
+export const millinewtonmeters = t => (1e3 * t).toFixed(0) + " mN·m";
 export const norm = v => Math.hypot(...v);
 
 /** A number with its sign as a minus, and none where it rounds to zero. */
@@ -18,7 +18,7 @@ export function micros(us) {
 }
 
 /** A length with its sign, in mm. */
-export const millimetres = m => signed(1e3 * m, 3) + " mm";
+export const millimeters = m => signed(1e3 * m, 3) + " mm";
 
 export function seconds(s) {
   if (s < 60) return s.toFixed(1) + " s";

@@ -3,7 +3,7 @@
 import {isFelt} from "./device.js";
 import {find, write} from "./find.js";
 import {History} from "./history.js";
-import {millinewtonmetres, newtons, norm} from "./format.js";
+import {millinewtonmeters, newtons, norm} from "./format.js";
 import {Trace} from "./trace.js";
 
 const history = new History();
@@ -36,7 +36,7 @@ export function showTrace(frame) {
   // The loop still asks for what the hand does not feel.
   const end = felt ? "" : ", not shown";
   write(find("force"), newtons(norm(frame.f_W)) + end);
-  write(find("torque"), millinewtonmetres(norm(frame.tau_W)) + end);
+  write(find("torque"), millinewtonmeters(norm(frame.tau_W)) + end);
   redraw();
 }
 

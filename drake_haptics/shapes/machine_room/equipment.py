@@ -18,7 +18,7 @@ _RAIL_SECTORS = 8
 
 
 def make_slab(x: float, y: float, z: float, chamfer: float = 0.004) -> Surface:
-    """Returns a block of the size x, y, z, centred on the z axis, all m."""
+    """Returns a block of the size x, y, z, centered on the z axis, all m."""
     levels = [(chamfer, 0.0), (0.0, chamfer), (0.0, z - chamfer), (chamfer, z)]
     outlines = (_outline(x, y, inset, chamfer, at) for inset, at in levels)
     return loft((0, 0, 0), outlines, (0, 0, z))
