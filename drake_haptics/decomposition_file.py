@@ -70,7 +70,7 @@ def read_decomposition(path: Path) -> tuple[Mesh, str, PieceData]:
     if "mesh_report" not in facts:
         raise DecompositionFileError(
             f"{path}: is an entry of the cache, which holds no mesh; make a file with: "
-            f"drake-haptics decompose MESH -o FILE"
+            f"drake-haptics decompose MESH --out FILE"
         )
     try:
         mesh = Mesh(

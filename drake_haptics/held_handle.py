@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
@@ -9,8 +11,10 @@ from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
 from pydrake.systems.framework import Context
 
 from drake_haptics.coupling_check import (
+    BrokenBound,
     HeldHandle,
     check_coupling,
+    find_broken_bounds,
     find_exceeded_ratings,
 )
 from drake_haptics.device_preset import DevicePreset, load_device_preset
@@ -52,22 +56,44 @@ def check_real_coupling(scene: Scene) -> list[str]:
         SceneError: There is no such preset, or its model is no arm.
     """
     preset = load_device_preset(scene.device.preset)
-    ratings = find_exceeded_ratings(scene.coupling, preset)
-    found = [rating.sentence for rating in ratings]
-    if preset.has_model:
-        held = _calc_loosely_held(scene, preset)
+    found = find_real_bounds(scene, preset, calc_loosely_held(scene, preset))
+    return [bound.sentence for bound in found]
+
+
+def find_real_bounds(
+    scene: Scene, preset: DevicePreset, loosely_held: HeldHandle | None
+) -> list[BrokenBound]:
+    """Returns what `check_real_coupling` checks.
+
+    Args:
+        scene: Gains and rate.
+        preset: The scene's.
+        loosely_held: What `calc_loosely_held` returned for them.
+    """
+    found = find_exceeded_ratings(scene.coupling, preset)
+    if loosely_held is not None:
         period_s = 1.0 / scene.device.rate_hz
         found += [
-            f"{sentence} (in a {LOOSEST_GRIP} grip)"
-            for sentence in check_coupling(
-                scene.coupling, held, period_s, calc_force_delay(scene)
+            replace(bound, sentence=f"{bound.sentence} (in a {LOOSEST_GRIP} grip)")
+            for bound in find_broken_bounds(
+                scene.coupling, loosely_held, period_s, calc_force_delay(scene)
             )
         ]
     return found
 
 
-def _calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle:
-    """Returns what a preset's arm at its default angles is in the loosest grip."""
+def calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle | None:
+    """Returns what a preset's arm at its default angles is in the loosest grip.
+
+    Args:
+        scene: Its tool is grasped.
+        preset: The scene's; None is returned for one without a model.
+
+    Raises:
+        SceneError: Its model is no arm.
+    """
+    if not preset.has_model:
+        return None
     grip = HAND_GRIPS[LOOSEST_GRIP]
     assert grip is not None
     try:

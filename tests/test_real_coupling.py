@@ -10,6 +10,7 @@ from other_arm import PRESET, write_preset
 from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cockpit.coupling_advice import CouplingAdvice
 from drake_haptics.device_preset import list_device_presets, load_device_preset
+from drake_haptics.held_handle import check_real_coupling
 from drake_haptics.scene import ForceDelay, SceneError
 from drake_haptics.scene_check import SceneWarning
 
@@ -117,7 +118,30 @@ def test_a_handle_without_motors_is_not_warned_of(tmp_path):
 def test_the_page_warns_by_the_ratings_where_there_is_no_twin(tmp_path):
     scene = over_a_plate(tmp_path, [START])
     scene.device.preset = "touch"
-    (bound,) = CouplingAdvice(scene).check(scene)
-    assert bound.key == "stiffness_N_per_m" and "400 N/m" in bound.words
+    advice = CouplingAdvice(scene)
+    for is_real in (False, True):
+        (bound,) = advice.check(scene, is_real=is_real)
+        assert bound.key == "stiffness_N_per_m" and "400 N/m" in bound.words
     scene.coupling.stiffness_N_per_m = 400.0
-    assert CouplingAdvice(scene).check(scene) == []
+    assert CouplingAdvice(scene).check(scene, is_real=True) == []
+
+
+def test_the_page_warns_of_a_real_device_as_a_run_does(tmp_path):
+    """In the loosest grip, whatever grip the scene names for its simulated hand."""
+    scene = over_a_plate(tmp_path, [START])
+    scene.hand.grip = "firm"
+    advice = CouplingAdvice(scene)
+    assert advice.has_hand
+    said = [bound.sentence for bound in advice.check(scene, is_real=True)]
+    assert said == check_real_coupling(scene)
+    assert any("in a light grip" in sentence for sentence in said)
+    simulated = advice.check(scene, is_real=False)
+    assert not any("light" in bound.sentence for bound in simulated)
+    assert len(simulated) < len(said)
+
+
+def test_why_the_simulated_hand_cannot_hold_the_handle_is_said(tmp_path):
+    scene = over_a_plate(tmp_path, [START, (0.1, 5.0, 0.0, 0.05)])
+    with pytest.warns(SceneWarning, match=r"simulated hand cannot .*: hand\.path"):
+        advice = CouplingAdvice(scene)
+    assert not advice.has_hand

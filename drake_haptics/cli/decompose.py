@@ -49,8 +49,7 @@ from drake_haptics.mesh_report import Severity, length
     help="How far merged pieces may depart from the mesh.",
 )
 @click.option(
-    "-o",
-    "--output",
+    "--out",
     type=click.Path(dir_okay=False),
     metavar="FILE",
     callback=require_folder,
@@ -77,7 +76,7 @@ def decompose(
     max_triangles: int | None,
     method: Method,
     error_m: float | None,
-    output: str | None,
+    out: str | None,
     no_cache: bool,
     show: bool,
     html: str | None,
@@ -88,8 +87,8 @@ def decompose(
         check_error(method, error_m)
     taken_in = read_mesh(mesh, unit, scale, max_triangles)
     result = _with_progress(taken_in, method, error_m, cache=not no_cache)
-    if output is not None:
-        result.save(output)
+    if out is not None:
+        result.save(out)
     if json_file is not None:
         data = {**result.report.to_dict(), "mesh": taken_in.report.to_dict()}
         write_json(data, json_file)

@@ -128,13 +128,15 @@ class Cockpit:
         if self._greeted != (keys := self._changes.list_keys()):
             self._greeted = keys
             self._greet()
+        backend = self._holding.backend
+        is_real = backend is not None and backend.shows_force
         warnings = [
             {
                 "key": f"coupling.{bound.key}",
                 "words": bound.words,
                 "why": f"{bound.sentence}.",
             }
-            for bound in self._advice.check(self._changes.scene)
+            for bound in self._advice.check(self._changes.scene, is_real=is_real)
         ]
         state = {
             **self._changes.describe(),

@@ -182,8 +182,14 @@ def test_an_extra_that_is_missing_is_named(monkeypatch):
 UNWRITABLE = "/proc/x.out"
 
 
+def test_the_file_of_decompose_is_named_as_that_of_other_commands():
+    result = invoke("decompose", "block.obj", "--output", "out.npz")
+    assert result.exit_code == 2
+    assert "--output" in result.stderr and "--out" in result.stderr.split("mean")[1]
+
+
 @pytest.mark.parametrize("name", [UNWRITABLE, 300 * "x"])
-@pytest.mark.parametrize("option", ["--json", "-o", "--html"])
+@pytest.mark.parametrize("option", ["--json", "--out", "--html"])
 def test_nothing_is_computed_for_a_file_that_cannot_be_written(option, name):
     result = invoke("decompose", "block.obj", option, name)
     assert fails(result, f"{option}: {name} cannot be written")
@@ -209,7 +215,7 @@ def test_that_a_file_can_be_written_is_asked_without_a_trace(folder):
 
 
 def test_a_device_file_is_written_and_not_replaced():
-    result = invoke("decompose", "block.obj", "-o", "/dev/full")
+    result = invoke("decompose", "block.obj", "--out", "/dev/full")
     assert fails(result, "No space left")
     assert not os.path.isfile("/dev/full")
 
@@ -224,13 +230,13 @@ def test_an_interrupted_decomposition_leaves_nothing_and_begins_anew(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(decomposition._core, "decompose_surface", interrupt)
-    result = invoke("decompose", "block.obj", "-o", "out.npz")
+    result = invoke("decompose", "block.obj", "--out", "out.npz")
     assert (result.exit_code, result.stderr) == (130, "Stopped.\n")
     assert not (folder / "cache").exists() and not (folder / "out.npz").exists()
     monkeypatch.undo()
     monkeypatch.chdir(folder)
     monkeypatch.setenv("DRAKE_HAPTICS_CACHE", str(folder / "cache"))
-    again = invoke("decompose", "block.obj", "-o", "out.npz")
+    again = invoke("decompose", "block.obj", "--out", "out.npz")
     assert again.exit_code == 0 and "found in" in again.stdout
     assert (folder / "out.npz").is_file()
 

@@ -78,7 +78,7 @@ def test_errors_of_the_user_are_one_message(l_file, tmp_path):
     assert fails_with_one_message(
         failed, 1, f"--json: there is no folder {nowhere.parent}"
     )
-    failed = run("decompose", l_file, "--no-cache", "-o", nowhere)
+    failed = run("decompose", l_file, "--no-cache", "--out", nowhere)
     assert fails_with_one_message(failed, 1, "-o: there is no folder")
 
 
@@ -98,7 +98,7 @@ def test_strict_fails_after_the_report(tmp_path):
 
 def test_decompose_writes_file_and_json_and_remembers(environment, l_file, tmp_path):
     out = tmp_path / "pieces.npz"
-    first = run("decompose", l_file, "--unit", "mm", "-o", out, "--json", "-")
+    first = run("decompose", l_file, "--unit", "mm", "--out", out, "--json", "-")
     assert first.returncode == 0, first.stderr
     data = json.loads(first.stdout)
     assert data["pieces"] > 1 and data["from_cache"] is False

@@ -1,9 +1,12 @@
 """A page that is open while the loop draws shows things at their size."""
 
+import time
+
 import numpy as np
 import pytest
 from headless_browser import HeadlessBrowser, find_browser
 from pydrake.geometry import Rgba
+from visualizer_rig import MAX_TORQUE_NM, X_WH, make_context, make_mesh, make_visualizer
 
 from drake_haptics.stage import open_meshcat
 from drake_haptics.systems.arrow_pool import ArrowPool
@@ -47,4 +50,50 @@ def test_arrows_keep_their_size_however_they_move(early):
             " < 1e-6"
         )
         assert browser.evaluate(SCALE) == pytest.approx(LENGTH_M, rel=1e-6)
+        assert browser.errors == []
+
+
+# The arrow of the torque as the page has it: whether it is seen, and its world matrix,
+# whose third column goes from its begin to its end and whose last one is its begin.
+TORQUE = """(() => {
+  const arrow = viewer.scene_tree.find(['haptics', 'torque', '0', 'arrow', '0']).object;
+  viewer.scene_tree.object.updateMatrixWorld(true);
+  let seen = true;
+  for (let part = arrow; part; part = part.parent) seen = seen && part.visible;
+  return [seen, arrow.matrixWorld.elements];
+})()"""
+
+
+def draw_until(browser, visualizer, tau_W, expression):
+    """Draws a torque until the page is so: a frame is left out after a slow one."""
+    deadline = time.monotonic() + 120.0
+    while not browser.evaluate(expression):
+        assert time.monotonic() < deadline, browser.evaluate(TORQUE)
+        visualizer.ForcedPublish(make_context(visualizer, tau_H_W=tau_W))
+
+
+def test_the_torques_arrow_is_along_its_axis_and_as_long_as_its_share():
+    executable = find_browser()
+    if executable is None:
+        pytest.skip("no Chromium on the PATH")
+    meshcat = open_meshcat()
+    visualizer = make_visualizer(meshcat)
+    size_m = np.linalg.norm(np.ptp(make_mesh().vertices, axis=0))
+    # three.js's world has y up: its axes are Drake's x, z, -y.
+    R_TW = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
+    with HeadlessBrowser(executable) as browser:
+        browser.open(meshcat.web_url())
+        browser.wait_for("typeof viewer != 'undefined'")
+        for share, axis_W in [(0.5, [0.6, 0, -0.8]), (1.0, [0, -1.0, 0])]:
+            tau_W = share * MAX_TORQUE_NM * np.array(axis_W)
+            along_T = R_TW @ axis_W * share * size_m / 3
+            is_so = (
+                f"(([seen, m]) => seen && Math.hypot(m[8] - {along_T[0]},"
+                f" m[9] - {along_T[1]}, m[10] - {along_T[2]}) < 1e-6)({TORQUE})"
+            )
+            draw_until(browser, visualizer, tau_W, is_so)
+            begin_T = browser.evaluate(TORQUE)[1][12:15]
+            np.testing.assert_allclose(begin_T, R_TW @ X_WH.translation(), atol=1e-9)
+        # Nothing is drawn of none.
+        draw_until(browser, visualizer, (0, 0, 0), f"!{TORQUE}[0]")
         assert browser.errors == []
