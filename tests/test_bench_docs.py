@@ -10,9 +10,9 @@ sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
 from test_bench_figures import EVERYTHING
 from write_docs import PAGE, figures_of, with_figures
 
-from drake_haptics.bench.pair_shapes import KINDS, SIZES
-from drake_haptics.bench.report import make_tables
-from drake_haptics.bench.scenes import scene_makers
+from drake_haptics.evaluation.benchmark.pair_shapes import KINDS, SIZES
+from drake_haptics.evaluation.benchmark.report import make_tables
+from drake_haptics.evaluation.benchmark.scenes import scene_makers
 
 _SECTION = figures_of(PAGE.read_text(encoding="utf-8"))
 

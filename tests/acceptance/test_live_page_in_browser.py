@@ -5,8 +5,8 @@ import pytest
 from headless_browser import HeadlessBrowser, find_browser
 from pydrake.geometry import Rgba
 
-from drake_haptics.stage import open_meshcat
-from drake_haptics.systems.arrow_pool import ArrowPool
+from drake_haptics.systems.output.arrow_pool import ArrowPool
+from drake_haptics.visualization.meshcat import open_meshcat
 
 LENGTH_M = 0.02
 # Length of the column of the world matrix along the arrow: its scale on the page.

@@ -16,17 +16,26 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from page_stamp import write_page
 
-from drake_haptics.accuracy.add_peers import add_peers
-from drake_haptics.accuracy.budget import BudgetChoice, choose_setting
-from drake_haptics.accuracy.budget_words import describe_outcome, describe_sacrifices
-from drake_haptics.accuracy.figures import AccuracyStudy, Row
-from drake_haptics.accuracy.fresh_run import measure_p99
-from drake_haptics.accuracy.model_changes import find_model_change
-from drake_haptics.accuracy.plot import draw_study
-from drake_haptics.accuracy.setting import Setting
-from drake_haptics.accuracy.study import run_accuracy_study
-from drake_haptics.accuracy.table import COLUMNS, get_columns, group_rows, make_cells
-from drake_haptics.accuracy.words import (
+from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.evaluation.accuracy.add_peers import add_peers
+from drake_haptics.evaluation.accuracy.budget import BudgetChoice, choose_setting
+from drake_haptics.evaluation.accuracy.budget_words import (
+    describe_outcome,
+    describe_sacrifices,
+)
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Row
+from drake_haptics.evaluation.accuracy.fresh_run import measure_p99
+from drake_haptics.evaluation.accuracy.model_changes import find_model_change
+from drake_haptics.evaluation.accuracy.plot import draw_study
+from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.evaluation.accuracy.study import run_accuracy_study
+from drake_haptics.evaluation.accuracy.table import (
+    COLUMNS,
+    get_columns,
+    group_rows,
+    make_cells,
+)
+from drake_haptics.evaluation.accuracy.words import (
     describe_knees,
     describe_machine,
     describe_missing,
@@ -35,9 +44,8 @@ from drake_haptics.accuracy.words import (
     describe_verdict,
     make_front,
 )
-from drake_haptics.cli.progress_bar import progress_bar
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 _DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = _DOCS / "accuracy.md"

@@ -11,10 +11,10 @@ sys.path.insert(0, str(Path(__file__).parent))
 from paper_samples import make_evaluation
 from paper_table import PAGE, figures_of, file_of, with_figures
 
-from drake_haptics.paper.published import TABLE_1
-from drake_haptics.paper.report import make_sections
-from drake_haptics.paper.scenarios import scenario_makers
-from drake_haptics.paper.statement import MEANING
+from drake_haptics.evaluation.paper.published import TABLE_1
+from drake_haptics.evaluation.paper.report import make_sections
+from drake_haptics.evaluation.paper.scenarios import scenario_makers
+from drake_haptics.evaluation.paper.statement import MEANING
 
 TEXT = PAGE.read_text(encoding="utf-8")
 FIGURES = figures_of(TEXT)
