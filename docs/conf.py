@@ -53,7 +53,7 @@ toc_object_entries = False  # the navigation would name every method, and take m
 nitpick_ignore_regex = [
     ("py:.*", r"(?!drake_haptics\.).*"),
     ("py:class", r"drake_haptics\..*\._.*"),  # private bases and type variables
-    ("py:class", r"drake_haptics\.accuracy\.knob_values\.Number"),
+    ("py:class", r"drake_haptics\.evaluation\.accuracy\.knob_values\.Number"),
 ]
 
 nb_execution_mode = "off"  # the tests run the notebooks

@@ -25,7 +25,7 @@ from drake_haptics import (
     run,
 )
 from drake_haptics._core import penalty_force, share_stiffness
-from drake_haptics.colors import (
+from drake_haptics.common.colors import (
     ENVIRONMENT,
     FORCE_INK,
     NEAR_CONTACT,

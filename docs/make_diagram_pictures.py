@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pygraphviz
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 _DOCS = Path(__file__).parent
 # File by scene: one without effects, one with all.

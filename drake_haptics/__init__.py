@@ -26,40 +26,44 @@ if TYPE_CHECKING:
         PairTrajectory,
         SceneTracker,
     )
-    from drake_haptics.applied_force_port import AddAppliedSpatialForce
-    from drake_haptics.builder import AddHapticLoop, BuildHapticDiagram, HapticDiagram
-    from drake_haptics.callback_timer import CallbackTimer
-    from drake_haptics.carried_context import carry_on
-    from drake_haptics.decomposition import Decomposition, decompose
+    from drake_haptics.common.errors import MeshError, SceneError, UserError
+    from drake_haptics.common.tick_clock import TickClock
     from drake_haptics.device.backend import (
         DeviceBackend,
         DeviceCommand,
         DeviceError,
         DeviceReading,
     )
-    from drake_haptics.device_address import open_device
-    from drake_haptics.device_site import make_device_port
-    from drake_haptics.energy_ledger import EnergyLedger
-    from drake_haptics.errors import MeshError, SceneError, UserError
-    from drake_haptics.explain import explain_tick
-    from drake_haptics.haptic_loop import ConnectMovingObject, HapticLoop
-    from drake_haptics.haptic_rendering import HapticRendering
-    from drake_haptics.headers import get_include
-    from drake_haptics.live_key import live_keys
-    from drake_haptics.live_scene import write_live_values
-    from drake_haptics.mesh import Mesh, load_mesh
-    from drake_haptics.rendering_builder import AddHapticRendering
-    from drake_haptics.scene import Scene, load_scene
-    from drake_haptics.scene_library import (
+    from drake_haptics.device.include_dir import get_include
+    from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
+    from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+    from drake_haptics.loop.builder import (
+        AddHapticLoop,
+        BuildHapticDiagram,
+        HapticDiagram,
+    )
+    from drake_haptics.loop.device_placement import make_device_port
+    from drake_haptics.loop.haptic_loop import ConnectMovingObject, HapticLoop
+    from drake_haptics.loop.open_device import open_device
+    from drake_haptics.loop.tick_log import make_log_header
+    from drake_haptics.rendering.add_haptic_rendering import AddHapticRendering
+    from drake_haptics.rendering.applied_force import AddAppliedSpatialForce
+    from drake_haptics.rendering.haptic_rendering import HapticRendering
+    from drake_haptics.scene.library import (
         find_mesh,
         find_scene,
         list_meshes,
         list_scenes,
     )
-    from drake_haptics.simulation import RunError, make_simulator, run
-    from drake_haptics.tick_clock import TickClock
-    from drake_haptics.tick_log.loop_log import make_log_header
-    from drake_haptics.tick_log.replay import replay
+    from drake_haptics.scene.schema import Scene, load_scene
+    from drake_haptics.simulation.callback_timer import CallbackTimer
+    from drake_haptics.simulation.energy import EnergyLedger
+    from drake_haptics.simulation.explain import explain_tick
+    from drake_haptics.simulation.live_key import live_keys
+    from drake_haptics.simulation.live_scene import write_live_values
+    from drake_haptics.simulation.replay_log import replay
+    from drake_haptics.simulation.run import RunError, make_simulator, run
+    from drake_haptics.simulation.transfer_state import carry_on
     from drake_haptics.tick_log.tick_log import read_tick_log
     from drake_haptics.tick_log.tick_recorder import TickRecorder
 
@@ -120,12 +124,12 @@ __all__ = [
 ]
 
 _MODULE_OF = {
-    "AddAppliedSpatialForce": "applied_force_port",
-    "AddHapticLoop": "builder",
-    "AddHapticRendering": "rendering_builder",
-    "BuildHapticDiagram": "builder",
-    "CallbackTimer": "callback_timer",
-    "ConnectMovingObject": "haptic_loop",
+    "AddAppliedSpatialForce": "rendering.applied_force",
+    "AddHapticLoop": "loop.builder",
+    "AddHapticRendering": "rendering.add_haptic_rendering",
+    "BuildHapticDiagram": "loop.builder",
+    "CallbackTimer": "simulation.callback_timer",
+    "ConnectMovingObject": "loop.haptic_loop",
     "Contact": "_core",
     "ContactSet": "_core",
     "ContactStatus": "_core",
@@ -133,46 +137,46 @@ _MODULE_OF = {
     "ContactTrajectory": "_core",
     "ConvexPair": "_core",
     "ConvexPolytope": "_core",
-    "Decomposition": "decomposition",
+    "Decomposition": "geometry.decomposition.decompose",
     "DeviceBackend": "device.backend",
     "DeviceCommand": "device.backend",
     "DeviceError": "device.backend",
     "DeviceReading": "device.backend",
-    "EnergyLedger": "energy_ledger",
+    "EnergyLedger": "simulation.energy",
     "Feature": "_core",
     "FeatureKind": "_core",
-    "HapticDiagram": "builder",
-    "HapticLoop": "haptic_loop",
-    "HapticRendering": "haptic_rendering",
-    "Mesh": "mesh",
-    "MeshError": "errors",
+    "HapticDiagram": "loop.builder",
+    "HapticLoop": "loop.haptic_loop",
+    "HapticRendering": "rendering.haptic_rendering",
+    "Mesh": "geometry.mesh.mesh",
+    "MeshError": "common.errors",
     "PairTrajectory": "_core",
-    "RunError": "simulation",
-    "Scene": "scene",
-    "SceneError": "errors",
+    "RunError": "simulation.run",
+    "Scene": "scene.schema",
+    "SceneError": "common.errors",
     "SceneTracker": "_core",
-    "TickClock": "tick_clock",
+    "TickClock": "common.tick_clock",
     "TickRecorder": "tick_log.tick_recorder",
-    "UserError": "errors",
-    "carry_on": "carried_context",
-    "decompose": "decomposition",
-    "explain_tick": "explain",
-    "find_mesh": "scene_library",
-    "find_scene": "scene_library",
-    "get_include": "headers",
-    "list_meshes": "scene_library",
-    "list_scenes": "scene_library",
-    "live_keys": "live_key",
-    "load_mesh": "mesh",
-    "load_scene": "scene",
-    "make_device_port": "device_site",
-    "make_log_header": "tick_log.loop_log",
-    "make_simulator": "simulation",
-    "open_device": "device_address",
+    "UserError": "common.errors",
+    "carry_on": "simulation.transfer_state",
+    "decompose": "geometry.decomposition.decompose",
+    "explain_tick": "simulation.explain",
+    "find_mesh": "scene.library",
+    "find_scene": "scene.library",
+    "get_include": "device.include_dir",
+    "list_meshes": "scene.library",
+    "list_scenes": "scene.library",
+    "live_keys": "simulation.live_key",
+    "load_mesh": "geometry.mesh.mesh",
+    "load_scene": "scene.schema",
+    "make_device_port": "loop.device_placement",
+    "make_log_header": "loop.tick_log",
+    "make_simulator": "simulation.run",
+    "open_device": "loop.open_device",
     "read_tick_log": "tick_log.tick_log",
-    "replay": "tick_log.replay",
-    "run": "simulation",
-    "write_live_values": "live_scene",
+    "replay": "simulation.replay_log",
+    "run": "simulation.run",
+    "write_live_values": "simulation.live_scene",
 }
 
 

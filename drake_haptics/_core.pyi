@@ -10,8 +10,8 @@ import numpy
 import numpy.typing
 from numpy.typing import NDArray
 
-import drake_haptics.decomposition
-import drake_haptics.pose_like
+import drake_haptics.common.pose_like
+import drake_haptics.geometry.decomposition.decompose
 
 
 class AutoDiffVector:
@@ -288,7 +288,7 @@ class ContactStatus(enum.IntEnum):
 
 class Contact:
     """
-    One contact of two convex polytopes A and B, in the world frame W, in the words and signs of Drake's `SignedDistancePair`. Immutable, and made by queries only: tolerance and gains are those of a `drake_haptics.scene.Contact`.
+    One contact of two convex polytopes A and B, in the world frame W, in the words and signs of Drake's `SignedDistancePair`. Immutable, and made by queries only: tolerance and gains are those of a `drake_haptics.scene.schema.Contact`.
     """
 
     def __init__(self) -> None: ...
@@ -534,7 +534,7 @@ class ConvexPair:
     def depth(self) -> str:
         """'tracked' or 'global'."""
 
-    def query(self, X_WA: drake_haptics.pose_like.PoseLike, X_WB: drake_haptics.pose_like.PoseLike) -> Contact:
+    def query(self, X_WA: drake_haptics.common.pose_like.PoseLike, X_WB: drake_haptics.common.pose_like.PoseLike) -> Contact:
         """
         `Contact` of the pair at the poses X_WA and X_WB.
 
@@ -542,7 +542,7 @@ class ConvexPair:
             ValueError: a pose is not finite or not rigid.
         """
 
-    def query_trajectory(self, X_WA: drake_haptics.pose_like.PoseLike, X_WB: drake_haptics.pose_like.PoseLike) -> PairTrajectory:
+    def query_trajectory(self, X_WA: drake_haptics.common.pose_like.PoseLike, X_WB: drake_haptics.common.pose_like.PoseLike) -> PairTrajectory:
         """
         What n single queries would give, in one call without the GIL.
 
@@ -658,7 +658,7 @@ class ContactTracker:
     A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector [qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt as it is. Threads that share a tracker take turns.
     """
 
-    def __init__(self, A: drake_haptics.decomposition.Decomposition | Decomposition, B: drake_haptics.decomposition.Decomposition | Decomposition, tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
+    def __init__(self, A: drake_haptics.geometry.decomposition.decompose.Decomposition | Decomposition, B: drake_haptics.geometry.decomposition.decompose.Decomposition | Decomposition, tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
         """
         Watches A against B for contacts up to `tolerance` (m).
 
@@ -670,7 +670,7 @@ class ContactTracker:
             ValueError: not decompositions, the tolerance is negative or not finite, no such depth, or max_walk_steps below 1.
         """
 
-    def query(self, X_WA: drake_haptics.pose_like.PoseLike, X_WB: drake_haptics.pose_like.PoseLike) -> ContactSet:
+    def query(self, X_WA: drake_haptics.common.pose_like.PoseLike, X_WB: drake_haptics.common.pose_like.PoseLike) -> ContactSet:
         """
         `ContactSet` of the bodies at the poses X_WA and X_WB.
 
@@ -678,7 +678,7 @@ class ContactTracker:
             ValueError: a pose is not finite or not rigid.
         """
 
-    def query_trajectory(self, X_WA: drake_haptics.pose_like.PoseLike, X_WB: drake_haptics.pose_like.PoseLike) -> ContactTrajectory:
+    def query_trajectory(self, X_WA: drake_haptics.common.pose_like.PoseLike, X_WB: drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory:
         """
         What k single queries would give, in one call without the GIL.
 
@@ -724,7 +724,7 @@ class SceneTracker:
     All contacts of a moving tool with many objects at once; else a `ContactTracker`, A the tool and B each object. Objects are posed one by one and stay there, so that those at rest cost nothing.
     """
 
-    def __init__(self, tool: drake_haptics.decomposition.Decomposition | Decomposition, objects: Sequence[drake_haptics.decomposition.Decomposition | Decomposition], tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
+    def __init__(self, tool: drake_haptics.geometry.decomposition.decompose.Decomposition | Decomposition, objects: Sequence[drake_haptics.geometry.decomposition.decompose.Decomposition | Decomposition], tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
         """
         Watches `tool` against `objects`, all at the identity pose, for contacts up to `tolerance` (m).
 
@@ -739,7 +739,7 @@ class SceneTracker:
     @property
     def num_objects(self) -> int: ...
 
-    def set_object_pose(self, i: int, X_WO: drake_haptics.pose_like.PoseLike) -> None:
+    def set_object_pose(self, i: int, X_WO: drake_haptics.common.pose_like.PoseLike) -> None:
         """
         Poses object i.
 
@@ -748,7 +748,7 @@ class SceneTracker:
             IndexError: no such object.
         """
 
-    def query(self, X_WTool: drake_haptics.pose_like.PoseLike, tolerance: float | None = None) -> ContactSet:
+    def query(self, X_WTool: drake_haptics.common.pose_like.PoseLike, tolerance: float | None = None) -> ContactSet:
         """
         `ContactSet` of the tool at the pose X_WTool. With a `tolerance` (m) smaller than the tracker's only of contacts up to that, for less work; the next query may ask for another.
 
@@ -756,7 +756,7 @@ class SceneTracker:
             ValueError: the pose is not finite or not rigid, or the tolerance not within 0 and the tracker's.
         """
 
-    def query_trajectory(self, X_WTool: drake_haptics.pose_like.PoseLike) -> ContactTrajectory:
+    def query_trajectory(self, X_WTool: drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory:
         """
         What k single queries would give, in one call without the GIL; the objects rest.
 

@@ -10,8 +10,8 @@ import sys
 from contextlib import suppress
 
 from drake_haptics import BuildHapticDiagram, TickClock, find_scene, load_scene, run
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.stage import open_meshcat, set_stage
+from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.visualization.meshcat import open_meshcat, set_stage
 
 meshcat = open_meshcat()
 haptic = BuildHapticDiagram(load_scene(find_scene("cup_spoon")), meshcat=meshcat)

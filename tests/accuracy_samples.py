@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from drake_haptics.accuracy.figures import (
+from drake_haptics.evaluation.accuracy.figures import (
     AccuracyStudy,
     Cost,
     Errors,
@@ -13,7 +13,7 @@ from drake_haptics.accuracy.figures import (
     Row,
     TickTimes,
 )
-from drake_haptics.accuracy.setting import Setting
+from drake_haptics.evaluation.accuracy.setting import Setting
 
 MACHINE = {
     "processor": "a <processor>",

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import trimesh
 
-from drake_haptics.scene import (
+from drake_haptics.scene.schema import (
     EnvironmentObject,
     Hand,
     HandPath,

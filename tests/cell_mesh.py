@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from drake_haptics.mesh import Mesh
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 Cell = tuple[int, int, int]
 

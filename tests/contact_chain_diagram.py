@@ -13,10 +13,10 @@ from pydrake.autodiffutils import (
 from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics._core import AutoDiffVector
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.systems.contact_clustering import ContactClustering
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
-from drake_haptics.systems.penalty_force import PenaltyForce
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.systems.contact.contact_clustering import ContactClustering
+from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.contact.penalty_force import PenaltyForce
 
 
 class ContactChain:

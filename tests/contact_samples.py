@@ -6,8 +6,8 @@ import numpy as np
 from press_tools import MODELS
 
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import load_mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import load_mesh
 
 IDENTITY = np.array([1.0, 0, 0, 0, 0, 0, 0])
 

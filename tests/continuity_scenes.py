@@ -19,8 +19,8 @@ from slide_scenes import TOP_M, fifty_pieces
 from wrench_chain import join_hulls
 
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 
 _DOWN = np.array([0.0, 0.0, -1.0])
 _START_M = 4e-3

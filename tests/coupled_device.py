@@ -8,10 +8,10 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from drake_haptics._core import CouplingGains
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.haptic_device import HapticDevice
-from drake_haptics.systems.passivity_control import PassivityControl
-from drake_haptics.systems.virtual_coupling import VirtualCoupling
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.device.haptic_device import HapticDevice
+from drake_haptics.systems.tool.passivity_control import PassivityControl
+from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 
 def add_device_on_fixed_tool(

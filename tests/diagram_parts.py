@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydrake.systems.framework import Diagram
 
-from drake_haptics.scene import Braking, Friction, Gravity, Passivity, Shading
+from drake_haptics.scene.schema import Braking, Friction, Gravity, Passivity, Shading
 
 # The systems of every scene.
 SYSTEMS = {

@@ -8,12 +8,12 @@ import numpy as np
 from pydrake.systems.framework import Diagram, DiagramBuilder, System
 
 from drake_haptics._core import Decomposition
-from drake_haptics.systems.contact_clustering import ContactClustering
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
-from drake_haptics.systems.force_shading import ForceShading
-from drake_haptics.systems.penalty_force import PenaltyForce
-from drake_haptics.systems.pre_contact_braking import PreContactBraking
-from drake_haptics.systems.stick_slip_friction import StickSlipFriction
+from drake_haptics.systems.contact.contact_clustering import ContactClustering
+from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.contact.force_shading import ForceShading
+from drake_haptics.systems.contact.penalty_force import PenaltyForce
+from drake_haptics.systems.contact.pre_contact_braking import PreContactBraking
+from drake_haptics.systems.contact.stick_slip_friction import StickSlipFriction
 
 STIFFNESS_N_PER_M, DAMPING_NS_PER_M = 2e4, 20.0
 

@@ -14,9 +14,9 @@ from drake_haptics.analysis.modes import find_modes
 from drake_haptics.analysis.passivity import calc_passivity
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits
-from drake_haptics.held_handle import calc_scene_handle
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.bounds.held_handle import calc_scene_handle
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 
 @cache

@@ -18,13 +18,13 @@ from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_command,
     lcmt_haptic_status,
 )
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.lcm_driver import AddLcmDriver
-from drake_haptics.systems.hand_grip import HAND_GRIPS
-from drake_haptics.systems.hand_path import HandPath
-from drake_haptics.systems.haptic_command_sender import HapticCommandSender
-from drake_haptics.systems.haptic_status_receiver import HapticStatusReceiver
-from drake_haptics.systems.simulated_arm import SimulatedArm
+from drake_haptics.loop.lcm_driver import AddLcmDriver
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_path import HandPath
+from drake_haptics.systems.arm.simulated_arm import SimulatedArm
+from drake_haptics.systems.lcm.haptic_command_sender import HapticCommandSender
+from drake_haptics.systems.lcm.haptic_status_receiver import HapticStatusReceiver
 
 PERIOD_S = 1e-3
 MAX_FORCE_N, MAX_TORQUE_NM = 8.5, 0.188

@@ -17,9 +17,9 @@ from twin_check import differentiate, differentiate_to_one_side
 from drake_haptics.analysis.diagram_systems import find_timings
 from drake_haptics.analysis.sampled_map import SampledMap, SampledValues, get_state
 from drake_haptics.analysis.state_layout import find_state_layout
-from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 # Between looks for contact, s.
 _LOOK_S = 0.01

@@ -4,15 +4,15 @@ from functools import cache
 
 import numpy as np
 
-from drake_haptics.paper.depth_cost import DepthCost, DepthCosts
-from drake_haptics.paper.evaluation import Analysis, PaperEvaluation, Run
-from drake_haptics.paper.fits import fit_line, fit_power
-from drake_haptics.paper.force_scaling import ForceScaling
-from drake_haptics.paper.pair_scaling import PairScaling
-from drake_haptics.paper.pen_pass import measure_pen_pass
-from drake_haptics.paper.profile import Profile
-from drake_haptics.paper.profile_figures import sum_up
-from drake_haptics.paper.table1 import ModelFigures
+from drake_haptics.evaluation.paper.depth_cost import DepthCost, DepthCosts
+from drake_haptics.evaluation.paper.evaluation import Analysis, PaperEvaluation, Run
+from drake_haptics.evaluation.paper.fits import fit_line, fit_power
+from drake_haptics.evaluation.paper.force_scaling import ForceScaling
+from drake_haptics.evaluation.paper.pair_scaling import PairScaling
+from drake_haptics.evaluation.paper.pen_pass import measure_pen_pass
+from drake_haptics.evaluation.paper.profile import Profile
+from drake_haptics.evaluation.paper.profile_figures import sum_up
+from drake_haptics.evaluation.paper.table1 import ModelFigures
 
 
 def make_profile(name="spoon in cup", figure="11-(a)", tick_us=100.0, touched=1):

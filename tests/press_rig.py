@@ -11,9 +11,9 @@ from press_tools import PressTool
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.mesh import Mesh
-from drake_haptics.scene import Coupling, Device
+from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.scene.schema import Coupling, Device
 
 PERIOD_S = 1e-3
 _DEVICE = load_device_preset(Device().preset)
@@ -159,7 +159,7 @@ class Tick:
 def run_press(
     press: Press, tool: PressTool, solid: _core.Decomposition, gains: Gains
 ) -> Iterator[Tick]:
-    """Runs a press tick by tick, wired as `drake_haptics.builder` wires the loop."""
+    """Runs a press tick by tick, wired as by `drake_haptics.loop.builder`."""
     tracker = _core.SceneTracker(tool.core, [solid], gains.tolerance_m)
     zeros3, zeros6 = np.zeros((1, 3)), np.zeros((1, 6))
     q_WH = press.q_WH(0.0, 0.0)

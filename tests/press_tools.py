@@ -9,9 +9,9 @@ import numpy as np
 
 import drake_haptics
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mass_properties import calc_mass_properties
-from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
+from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 
 MODELS = Path(drake_haptics.__file__).parent / "models" / "meshes"
 TOOL_MASS_KG = 0.05

@@ -8,8 +8,8 @@ from contact_samples import IDENTITY
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
-from drake_haptics.decomposition import Method, decompose
-from drake_haptics.mesh import Mesh
+from drake_haptics.geometry.decomposition.decompose import Method, decompose
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 T = 2e-3
 CREASE = np.deg2rad(40.0)

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from wrench_chain import cluster
 
 from drake_haptics import _core
-from drake_haptics.mesh import Mesh
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 STEP_M = 1e-4  # of a slide, in a tick: 0.1 m/s
 _APPROACH_M = 4e-3

@@ -9,8 +9,8 @@ from cell_mesh import cell_mesh
 from slide_rig import cut, line
 
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import Mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 TOP_M = 0.01  # height of both faces
 

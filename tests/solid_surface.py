@@ -8,8 +8,8 @@ import coal
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from drake_haptics.mesh import Mesh
-from drake_haptics.mesh_topology import winding_numbers
+from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.topology import winding_numbers
 
 
 def rotation_of(q: np.ndarray) -> np.ndarray:

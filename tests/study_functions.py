@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drake_haptics.analysis.exact_json import to_exact_json
-from drake_haptics.analysis.study import run_study
-from drake_haptics.analysis.study_pool import SerialExecutor
+from drake_haptics.analysis.jobs.exact_json import to_exact_json
+from drake_haptics.analysis.jobs.pool import SerialExecutor
+from drake_haptics.analysis.jobs.study import run_study
 
 
 def square(x):

@@ -6,18 +6,18 @@ from dataclasses import replace
 import pytest
 from accuracy_samples import make_row, make_study
 
-from drake_haptics.accuracy.budget import Trial, choose_setting
-from drake_haptics.accuracy.budget_words import (
+from drake_haptics.common.errors import UserError
+from drake_haptics.evaluation.accuracy.budget import Trial, choose_setting
+from drake_haptics.evaluation.accuracy.budget_words import (
     describe_file,
     describe_help,
     describe_outcome,
     describe_sacrifices,
     to_budget_data,
 )
-from drake_haptics.accuracy.combinations import Combination
-from drake_haptics.errors import UserError
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.evaluation.accuracy.combinations import Combination
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 STUDY = make_study(
     make_row("the scene", "as it is", 100.0, 10.0, 0.0, is_scene=True),

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from box_scenes import over_a_plate
 
-from drake_haptics import simulation
-from drake_haptics.accuracy import closed_loop
-from drake_haptics.accuracy.closed_loop import (
+from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_scene import hold_scene
+from drake_haptics.evaluation.accuracy import closed_loop
+from drake_haptics.evaluation.accuracy.closed_loop import (
     PressedPlace,
     find_pressed_place,
     find_stable_stiffness,
     measure_created_energy,
 )
-from drake_haptics.analysis.held_loop import analyse_held_scene
-from drake_haptics.analysis.held_scene import hold_scene
-from drake_haptics.simulation import make_simulator, run
+from drake_haptics.simulation import run as simulation
+from drake_haptics.simulation.run import make_simulator, run
 
 PRESS = [(0.0, 0.0, 0.0, 0.015), (0.15, 0.0, 0.0, 0.006), (0.3, 0.01, 0.0, 0.006)]
 

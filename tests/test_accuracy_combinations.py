@@ -6,11 +6,11 @@ from dataclasses import replace
 import pytest
 from accuracy_samples import make_row, make_study
 
-from drake_haptics.accuracy.combinations import list_combinations
-from drake_haptics.accuracy.figures import Row
-from drake_haptics.accuracy.setting import Setting
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.evaluation.accuracy.combinations import list_combinations
+from drake_haptics.evaluation.accuracy.figures import Row
+from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 # A row's p99 is twice its median: make_row's tick.
 SCENE = make_row("the scene", "as it is", 100.0, 10.0, 0.0, is_scene=True)

@@ -29,11 +29,11 @@ from accuracy_table import (
 )
 from click.testing import CliRunner
 
-from drake_haptics.accuracy.knobs import list_settings
-from drake_haptics.accuracy.table import COLUMNS
 from drake_haptics.cli import main
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.evaluation.accuracy.knobs import list_settings
+from drake_haptics.evaluation.accuracy.table import COLUMNS
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 TEXT = PAGE.read_text(encoding="utf-8")
 

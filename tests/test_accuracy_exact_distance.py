@@ -6,9 +6,9 @@ from minkowski_truth import place, signed_distance
 from trimesh.creation import box
 from trimesh.util import concatenate
 
-from drake_haptics.accuracy.exact_distance import calc_exact_distance
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.pose_vector import vector_to_pose
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.evaluation.accuracy.exact_distance import calc_exact_distance
+from drake_haptics.loop.builder import BuildHapticDiagram
 
 _REST = [(0.0, 0.0, 0.0, 0.03), (1.0, 0.0, 0.0, 0.03)]
 

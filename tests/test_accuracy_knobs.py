@@ -6,17 +6,17 @@ import typing
 
 import pytest
 
-from drake_haptics.accuracy.knobs import (
+from drake_haptics.evaluation.accuracy.knobs import (
     AS_IT_IS,
     KNOBS,
     list_few_settings,
     list_settings,
     make_reference,
 )
-from drake_haptics.accuracy.not_knobs import NOT_KNOBS
-from drake_haptics.scene import Gravity, Scene, load_scene
-from drake_haptics.scene_check import check_values
-from drake_haptics.scene_library import find_scene, list_scenes
+from drake_haptics.evaluation.accuracy.not_knobs import NOT_KNOBS
+from drake_haptics.scene.library import find_scene, list_scenes
+from drake_haptics.scene.schema import Gravity, Scene, load_scene
+from drake_haptics.scene.validation import check_values
 
 SCENES = list(list_scenes())
 

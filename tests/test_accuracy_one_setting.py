@@ -4,15 +4,15 @@ import shlex
 
 import pytest
 
-from drake_haptics.accuracy.one_setting import (
+from drake_haptics.common.errors import UserError
+from drake_haptics.evaluation.accuracy.one_setting import (
     apply_checked,
     format_setting,
     parse_setting,
 )
-from drake_haptics.accuracy.setting import Setting
-from drake_haptics.errors import UserError
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 
 @pytest.fixture

@@ -5,13 +5,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from drake_haptics.accuracy.knobs import make_reference
-from drake_haptics.accuracy.open_loop import compare, measure_open_loop
-from drake_haptics.accuracy.recorded_motion import record_motion
-from drake_haptics.accuracy.setting import Setting
-from drake_haptics.accuracy.truth import Truth, find_truth
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.evaluation.accuracy.knobs import make_reference
+from drake_haptics.evaluation.accuracy.open_loop import compare, measure_open_loop
+from drake_haptics.evaluation.accuracy.recorded_motion import record_motion
+from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.evaluation.accuracy.truth import Truth, find_truth
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 N = 10
 

@@ -5,8 +5,8 @@ import math
 import pytest
 from accuracy_samples import make_row, make_study
 
-from drake_haptics.accuracy.figures import Row
-from drake_haptics.accuracy.pareto import (
+from drake_haptics.evaluation.accuracy.figures import Row
+from drake_haptics.evaluation.accuracy.pareto import (
     ERROR_FLOOR_N,
     find_bend,
     find_front,
@@ -15,7 +15,7 @@ from drake_haptics.accuracy.pareto import (
     get_native_us,
     get_tick_us,
 )
-from drake_haptics.accuracy.setting import Setting
+from drake_haptics.evaluation.accuracy.setting import Setting
 
 
 def test_the_front_has_what_nothing_beats():

@@ -10,16 +10,21 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.accuracy.peers.problem import (
+from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.evaluation.accuracy.peers.problem import (
     PeerAnswers,
     PeerProblem,
     make_peer_problem,
 )
-from drake_haptics.accuracy.peers.run import METHODS, PeerMethod, run_peer, run_peers
-from drake_haptics.accuracy.recorded_motion import RecordedMotion
-from drake_haptics.accuracy.truth import Truth
-from drake_haptics.analysis.held_scene import build_quietly
-from drake_haptics.scene import (
+from drake_haptics.evaluation.accuracy.peers.run import (
+    METHODS,
+    PeerMethod,
+    run_peer,
+    run_peers,
+)
+from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
+from drake_haptics.evaluation.accuracy.truth import Truth
+from drake_haptics.scene.schema import (
     Contact,
     EnvironmentObject,
     Friction,

@@ -9,12 +9,12 @@ from accuracy_samples import make_peers, make_row, make_study
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from drake_haptics.accuracy.pareto import ERROR_FLOOR_N
-from drake_haptics.accuracy.plot import draw_study
-from drake_haptics.accuracy.plot_labels import Label, label_points
-from drake_haptics.accuracy.setting import Setting
-from drake_haptics.accuracy.table import group_rows
-from drake_haptics.colors import FRONT
+from drake_haptics.common.colors import FRONT
+from drake_haptics.evaluation.accuracy.pareto import ERROR_FLOOR_N
+from drake_haptics.evaluation.accuracy.plot import draw_study
+from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.evaluation.accuracy.table import group_rows
+from drake_haptics.report.plot_labels import Label, label_points
 
 STUDY = make_study(peers=make_peers())
 

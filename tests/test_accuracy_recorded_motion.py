@@ -5,11 +5,14 @@ import copy
 import numpy as np
 import pytest
 
-from drake_haptics.accuracy.recorded_motion import choose_duration, record_motion
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import HandPath, load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import make_simulator
+from drake_haptics.evaluation.accuracy.recorded_motion import (
+    choose_duration,
+    record_motion,
+)
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import HandPath, load_scene
+from drake_haptics.simulation.run import make_simulator
 
 
 @pytest.fixture(scope="module")

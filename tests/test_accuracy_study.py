@@ -6,13 +6,13 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from box_scenes import over_a_plate
 
-from drake_haptics.accuracy.figures import AccuracyStudy
-from drake_haptics.accuracy.knobs import AS_IT_IS
-from drake_haptics.accuracy.setting import Setting
-from drake_haptics.accuracy.study import run_accuracy_study
-from drake_haptics.analysis.study_pool import SerialExecutor
-from drake_haptics.bench import valgrind
-from drake_haptics.errors import UserError
+from drake_haptics.analysis.jobs.pool import SerialExecutor
+from drake_haptics.common.errors import UserError
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
+from drake_haptics.evaluation.accuracy.knobs import AS_IT_IS
+from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.evaluation.accuracy.study import run_accuracy_study
+from drake_haptics.evaluation.measuring import valgrind
 
 OWN = Setting("device.rate_hz", "1000 Hz", {"device.rate_hz": 1000.0})
 SLOW = Setting("device.rate_hz", "500 Hz", {"device.rate_hz": 500.0})

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from accuracy_samples import make_errors, make_peers, make_row, make_study
 
-from drake_haptics.accuracy.study_json import from_json_data, to_json_data
+from drake_haptics.evaluation.accuracy.study_json import from_json_data, to_json_data
 
 
 def test_a_study_comes_back_from_json():

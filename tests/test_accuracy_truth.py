@@ -5,11 +5,11 @@ import pytest
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
 from pydrake.multibody.math import SpatialForce
 
-from drake_haptics.accuracy.recorded_motion import RecordedMotion
-from drake_haptics.accuracy.truth import Truth, find_truth, shift_wrench
-from drake_haptics.mesh import load_mesh
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import Gravity, Scene
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
+from drake_haptics.evaluation.accuracy.truth import Truth, find_truth, shift_wrench
+from drake_haptics.geometry.mesh.mesh import load_mesh
+from drake_haptics.scene.schema import Gravity, Scene
 
 K, T = 2000.0, 2e-3
 

@@ -9,10 +9,10 @@ from held_samples import hold_with_grip, load_held
 from drake_haptics.analysis import aimed_hand
 from drake_haptics.analysis.aimed_hand import build_aimed
 from drake_haptics.analysis.equilibrium import find_equilibrium
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import Coupling
-from drake_haptics.scene_check import SceneError
-from drake_haptics.systems.arm_inverse_kinematics import UnreachableError
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.scene.schema import Coupling
+from drake_haptics.scene.validation import SceneError
+from drake_haptics.systems.arm.arm_inverse_kinematics import UnreachableError
 
 GAINS = {
     "own": {},

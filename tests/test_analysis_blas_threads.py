@@ -21,7 +21,7 @@ from drake_haptics.analysis import (
     modes,
     suggest_coupling,
 )
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 
 SPIED = ("eig", "eigvals", "eigvalsh", "inv", "lstsq", "solve", "svd")
 # Not in any other test: some answers are remembered.

@@ -10,7 +10,7 @@ from drake_haptics.analysis.exact_boundary import (
     calc_exact_boundary,
     make_loop_polynomial,
 )
-from drake_haptics.passivity_bounds import calc_sampled_stiffness
+from drake_haptics.bounds.sampled_spring import calc_sampled_stiffness
 
 
 def calc_largest_root(alpha, beta, delay):

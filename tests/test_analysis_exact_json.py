@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_haptics.analysis.exact_json import from_exact_json, to_exact_json
+from drake_haptics.analysis.jobs.exact_json import from_exact_json, to_exact_json
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,8 @@ from drake_haptics.analysis.felt_impedance import calc_felt_impedance
 from drake_haptics.analysis.held_loop import analyse_held_scene
 from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.analysis.passivity import calc_passivity
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import ForceDelay, Twin
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.scene.schema import ForceDelay, Twin
 
 # Ticks in which the tool comes to rest while the handle stands still.
 TICKS = 3000

@@ -13,10 +13,10 @@ from drake_haptics.analysis.held_scene import (
     hold_scene,
     stop_hand,
 )
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import Coupling, Gravity, load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulated_device import make_hand_path, place_base
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.loop.simulated_device import make_hand_path, place_base
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import Coupling, Gravity, load_scene
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from scipy.linalg import expm
 
 from drake_haptics.analysis.passivity import calc_passivity
 from drake_haptics.analysis.transfer_function import make_spring_damper
-from drake_haptics.passivity_bounds import calc_passive_damping
+from drake_haptics.bounds.sampled_spring import calc_passive_damping
 
 T = 1e-3
 

@@ -21,7 +21,7 @@ from drake_haptics.analysis.sampled_wall import (
     calc_largest_delay,
     calc_largest_stiffness,
 )
-from drake_haptics.passivity_bounds import calc_stable_delay, calc_stable_stiffness
+from drake_haptics.bounds.sampled_spring import calc_stable_delay, calc_stable_stiffness
 
 
 def integrate(wall, ticks, parts):

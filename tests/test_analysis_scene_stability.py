@@ -15,11 +15,11 @@ from matplotlib.patches import Patch
 from drake_haptics.analysis import scene_stability
 from drake_haptics.analysis.delay_margin import calc_delay_margin
 from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.analysis.scene_stability import analyse_scene
-from drake_haptics.analysis.study_pool import SerialExecutor
-from drake_haptics.held_handle import check_scene_coupling
-from drake_haptics.scene import Coupling, load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.bounds.held_handle import check_scene_coupling
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import Coupling, load_scene
 
 
 @pytest.fixture(scope="module")

@@ -28,11 +28,11 @@ from study_functions import (
 )
 from threadpoolctl import threadpool_limits
 
-from drake_haptics.analysis import study
-from drake_haptics.analysis.study import run_study
-from drake_haptics.analysis.study_error import StudyError
-from drake_haptics.analysis.study_pool import SerialExecutor
-from drake_haptics.analysis.study_progress import StudyProgress
+from drake_haptics.analysis.jobs import study
+from drake_haptics.analysis.jobs.error import StudyError
+from drake_haptics.analysis.jobs.pool import SerialExecutor
+from drake_haptics.analysis.jobs.progress import StudyProgress
+from drake_haptics.analysis.jobs.study import run_study
 
 SERIAL = SerialExecutor()
 

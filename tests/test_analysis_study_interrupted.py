@@ -16,8 +16,8 @@ from study_functions import (
     Journal,
 )
 
-from drake_haptics.analysis.study import run_study
-from drake_haptics.analysis.study_pool import SerialExecutor
+from drake_haptics.analysis.jobs.pool import SerialExecutor
+from drake_haptics.analysis.jobs.study import run_study
 
 SERIAL = SerialExecutor()
 
@@ -25,7 +25,7 @@ SERIAL = SerialExecutor()
 PROGRAM = """
 import sys
 from study_functions import Journal
-from drake_haptics.analysis.study import run_study
+from drake_haptics.analysis.jobs.study import run_study
 
 if __name__ == "__main__":
     journal, store, *tasks = sys.argv[1:]
@@ -136,7 +136,7 @@ def test_a_program_without_its_guard_is_told_so(start, tmp_path):
 def test_a_program_from_standard_input_is_told_to_become_a_file():
     program = (
         "import math\n"
-        "from drake_haptics.analysis.study import run_study\n"
+        "from drake_haptics.analysis.jobs.study import run_study\n"
         "run_study(math.sqrt, [1])"
     )
     piped = subprocess.run(

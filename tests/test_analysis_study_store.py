@@ -16,9 +16,9 @@ from study_functions import (
     square,
 )
 
-from drake_haptics.analysis.study import run_study
-from drake_haptics.analysis.study_pool import SerialExecutor
-from drake_haptics.analysis.study_store import StudyWarning
+from drake_haptics.analysis.jobs.pool import SerialExecutor
+from drake_haptics.analysis.jobs.store import StudyWarning
+from drake_haptics.analysis.jobs.study import run_study
 
 SERIAL = SerialExecutor()
 
@@ -117,8 +117,8 @@ def test_a_store_of_other_bound_values_is_refused(tmp_path):
 
 def test_a_store_of_another_version_is_refused(tmp_path, monkeypatch):
     store = tmp_path / "store"
-    for module in ("study_function", "study_store"):
-        name = f"drake_haptics.analysis.{module}.PACKAGE_VERSION"
+    for module in ("function", "store"):
+        name = f"drake_haptics.analysis.jobs.{module}.PACKAGE_VERSION"
         monkeypatch.setattr(name, "0.0.1")
     run_study(square, [1], executor=SERIAL, store=store)
     monkeypatch.undo()

@@ -13,7 +13,10 @@ from scipy.optimize import minimize_scalar
 
 from drake_haptics.analysis import HeldBounds, SerialExecutor, StudyError, z_width
 from drake_haptics.analysis.z_width_map import ZWidth
-from drake_haptics.passivity_bounds import calc_passive_damping, calc_sampled_stiffness
+from drake_haptics.bounds.sampled_spring import (
+    calc_passive_damping,
+    calc_sampled_stiffness,
+)
 
 SERIAL = SerialExecutor()
 # In these units stiffness is α and damping is β.

@@ -5,7 +5,7 @@ import pytest
 from pydrake.autodiffutils import ExtractGradient, ExtractValue, InitializeAutoDiff
 from pydrake.multibody.tree import BodyIndex
 
-from drake_haptics.systems.applied_wrenches import AppliedWrenches
+from drake_haptics.systems.plant.applied_wrenches import AppliedWrenches
 
 TOOL, CART, DOOR = BodyIndex(5), BodyIndex(2), BodyIndex(7)
 

@@ -13,8 +13,8 @@ from pydrake.systems.framework import DiagramBuilder
 
 import drake_haptics
 from drake_haptics import AddHapticRendering, BuildHapticDiagram, find_scene, run
-from drake_haptics.argument_kinds import require_kinds
-from drake_haptics.scene import (
+from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.scene.schema import (
     Contact,
     Coupling,
     Effects,
@@ -65,7 +65,7 @@ def test_what_fits_is_taken(value, kind):
         (
             drake_haptics.Contact,
             Contact,
-            "it must be a drake_haptics.scene.Contact, is of type",
+            "it must be a drake_haptics.scene.schema.Contact, is of type",
         ),
         (Contact(tolerance_m="1"), Contact, r"it.tolerance_m must be a number, is the"),
         (

@@ -23,10 +23,10 @@ from twin_rig import (
 
 from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.analysis.sampled_linearization import linearize_sampled
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.held_handle import calc_force_delay
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import (
+from drake_haptics.bounds.held_handle import calc_force_delay
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.schema import (
     Encoder,
     ForceDelay,
     JointFriction,
@@ -35,11 +35,11 @@ from drake_haptics.scene import (
     Twin,
     load_scene,
 )
-from drake_haptics.simulation import run
-from drake_haptics.systems.arm_inverse_kinematics import solve_arm_positions
-from drake_haptics.systems.hand_impedance import HandImpedance
-from drake_haptics.systems.simulated_arm import make_arm_plant
-from drake_haptics.systems.vector_ports import export_parts
+from drake_haptics.simulation.run import run
+from drake_haptics.systems.arm.arm_inverse_kinematics import solve_arm_positions
+from drake_haptics.systems.arm.hand_impedance import HandImpedance
+from drake_haptics.systems.arm.simulated_arm import make_arm_plant
+from drake_haptics.systems.framework.vector_ports import export_parts
 
 ALWAYS = {"arm", "hand_impedance", "parts"}
 PARTS = {

@@ -7,9 +7,9 @@ import pytest
 from diagram_parts import EVERY
 from loop_gradients import calc_gradients, contact_states
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import Effects, load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import Effects, load_scene
 
 
 @pytest.fixture(scope="module")

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import Scene, SceneError
-from drake_haptics.scene_check import check_values
-from drake_haptics.simulation import run
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.schema import Scene, SceneError
+from drake_haptics.scene.validation import check_values
+from drake_haptics.simulation.run import run
 
 
 def write(folder, name, mesh):

@@ -9,20 +9,24 @@ from itertools import count
 import numpy as np
 import pytest
 
-from drake_haptics.bench import timing
-from drake_haptics.bench.benchmark import BenchFigures
-from drake_haptics.bench.pair_ratios import (
+from drake_haptics.evaluation.benchmark.benchmark import BenchFigures
+from drake_haptics.evaluation.benchmark.pair_ratios import (
     COLUMNS,
     geometric_mean,
     growth,
     ratios_to_fastest,
 )
-from drake_haptics.bench.pair_runs import PairFigures
-from drake_haptics.bench.pair_tables import time_table
-from drake_haptics.bench.python_figures import PythonFigures
-from drake_haptics.bench.report import machine_line, make_tables, missing_lines
-from drake_haptics.bench.scene_runs import SceneFigures
-from drake_haptics.bench.timing import CallTimer, Times, typical
+from drake_haptics.evaluation.benchmark.pair_runs import PairFigures
+from drake_haptics.evaluation.benchmark.pair_tables import time_table
+from drake_haptics.evaluation.benchmark.python_figures import PythonFigures
+from drake_haptics.evaluation.benchmark.report import (
+    machine_line,
+    make_tables,
+    missing_lines,
+)
+from drake_haptics.evaluation.benchmark.scene_runs import SceneFigures
+from drake_haptics.evaluation.measuring import timing
+from drake_haptics.evaluation.measuring.timing import CallTimer, Times, typical
 
 
 def pair(library: str, size: int, median: float, kind: str = "ball") -> PairFigures:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from minkowski_truth import place, signed_distance
 
-from drake_haptics.bench.pair_motion import make_presses
-from drake_haptics.bench.pair_shapes import make_pair
-from drake_haptics.bench.pair_truth import find_truth
-from drake_haptics.bench.timing import clock_interval
+from drake_haptics.evaluation.benchmark.pair_motion import make_presses
+from drake_haptics.evaluation.benchmark.pair_shapes import make_pair
+from drake_haptics.evaluation.benchmark.pair_truth import find_truth
+from drake_haptics.evaluation.measuring.timing import clock_interval
 
 # Library -> (module it needs, m by which its distance may be off on these pairs).
 LIBRARIES = {
@@ -31,7 +31,9 @@ def test_distances_and_normals_are_those_of_the_enumeration(
 ) -> None:
     needed, tolerance_m = LIBRARIES[name]
     pytest.importorskip(needed)
-    module = importlib.import_module(f"drake_haptics.bench.libraries.with_{name}")
+    module = importlib.import_module(
+        f"drake_haptics.evaluation.benchmark.libraries.with_{name}"
+    )
     pair = make_pair(kind, 8)
     X_WA = make_presses(pair, 1)[0].X_WA[::20]
     exact = [signed_distance(place(pair.A_vertices, X), pair.B_vertices) for X in X_WA]
@@ -46,7 +48,9 @@ def test_distances_and_normals_are_those_of_the_enumeration(
 
 
 def test_a_query_forgets_the_last_motion() -> None:
-    from drake_haptics.bench.libraries.with_drake_haptics import LIBRARIES as ours
+    from drake_haptics.evaluation.benchmark.libraries.with_drake_haptics import (
+        LIBRARIES as ours,
+    )
 
     pair = make_pair("ellipsoid", 42)
     X_WA = make_presses(pair, 1)[0].X_WA[::10]

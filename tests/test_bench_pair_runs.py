@@ -9,16 +9,16 @@ import pytest
 from minkowski_truth import place, signed_distance
 
 from drake_haptics import ConvexPair, ConvexPolytope
-from drake_haptics.bench.pair_library import (
+from drake_haptics.evaluation.benchmark.pair_library import (
     PairAnswers,
     PairLibrary,
     PairQuery,
     normals_between,
 )
-from drake_haptics.bench.pair_motion import make_presses
-from drake_haptics.bench.pair_runs import PairFigures, run_pair
-from drake_haptics.bench.pair_shapes import PairShape, make_pair
-from drake_haptics.bench.pair_truth import find_truth, support_gaps
+from drake_haptics.evaluation.benchmark.pair_motion import make_presses
+from drake_haptics.evaluation.benchmark.pair_runs import PairFigures, run_pair
+from drake_haptics.evaluation.benchmark.pair_shapes import PairShape, make_pair
+from drake_haptics.evaluation.benchmark.pair_truth import find_truth, support_gaps
 
 PAIR = make_pair("slab", 8)
 

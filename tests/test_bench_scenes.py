@@ -8,10 +8,14 @@ from mesh_samples import box, l_prism, real_mesh
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import Mesh, SceneTracker, decompose
-from drake_haptics.bench.scene_motion import make_touches
-from drake_haptics.bench.scene_problem import SceneAnswers, SceneProblem
-from drake_haptics.bench.scene_runs import NAME, DrakeHapticsScene, run_scene
-from drake_haptics.bench.scenes import scene_makers
+from drake_haptics.evaluation.benchmark.scene_motion import make_touches
+from drake_haptics.evaluation.benchmark.scene_problem import SceneAnswers, SceneProblem
+from drake_haptics.evaluation.benchmark.scene_runs import (
+    NAME,
+    DrakeHapticsScene,
+    run_scene,
+)
+from drake_haptics.evaluation.benchmark.scenes import scene_makers
 
 
 def pieces(V: np.ndarray, F: np.ndarray):
@@ -44,7 +48,7 @@ def test_touches_start_apart_touch_lightly_and_stay_slow(problem) -> None:
 
 
 def test_coal_finds_the_same_nearest_distance(problem) -> None:
-    coal = pytest.importorskip("drake_haptics.bench.scene_peer")
+    coal = pytest.importorskip("drake_haptics.evaluation.benchmark.scene_peer")
     ours, theirs = DrakeHapticsScene(problem), coal.CoalScene(problem)
     for X_WTool in problem.motions:
         mine, its = ours.run(X_WTool), theirs.run(X_WTool)
@@ -58,7 +62,7 @@ def test_coal_finds_the_same_nearest_distance(problem) -> None:
 
 
 def test_coal_takes_flat_pieces(problem) -> None:
-    coal = pytest.importorskip("drake_haptics.bench.scene_peer")
+    coal = pytest.importorskip("drake_haptics.evaluation.benchmark.scene_peer")
     sheet = pieces(
         np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]),
         np.array([[0, 1, 2], [0, 2, 3]]),

@@ -4,13 +4,16 @@ import shutil
 
 import pytest
 
-from drake_haptics.bench.valgrind import count_by_library, count_instructions
+from drake_haptics.evaluation.measuring.valgrind import (
+    count_by_library,
+    count_instructions,
+)
 
 pytestmark = pytest.mark.skipif(shutil.which("valgrind") is None, reason="no valgrind")
 _TIMES, _SIZE = 5000, 60 * 60
 _PROGRAM = f"""
 import numpy as np
-from drake_haptics.bench.valgrind import counted
+from drake_haptics.evaluation.measuring.valgrind import counted
 a = np.ones({_SIZE})
 with counted():
     for _ in range({_TIMES}):

@@ -6,8 +6,8 @@ from plant_scenes import PLANTS, PlantScene
 from pydrake.autodiffutils import ExtractGradient, ExtractValue, InitializeAutoDiff
 from pydrake.math import RigidTransform, RollPitchYaw
 
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.body_motions import BodyMotions
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.plant.body_motions import BodyMotions
 
 OUTPUTS = ("X_WTool", "V_WTool", "X_WO_cart", "V_WO_cart")
 

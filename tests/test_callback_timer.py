@@ -5,8 +5,8 @@ import time
 import pytest
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from drake_haptics import callback_timer
-from drake_haptics.callback_timer import CallbackTimer
+from drake_haptics.simulation import callback_timer
+from drake_haptics.simulation.callback_timer import CallbackTimer
 
 
 class Clock:

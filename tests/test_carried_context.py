@@ -7,9 +7,8 @@ import pytest
 import trimesh
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate, write
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.carried_context import carry_on, find_handle
-from drake_haptics.scene import (
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.schema import (
     Braking,
     Coupling,
     Effects,
@@ -23,7 +22,8 @@ from drake_haptics.scene import (
     Shading,
     Twin,
 )
-from drake_haptics.simulation import run
+from drake_haptics.simulation.run import run
+from drake_haptics.simulation.transfer_state import carry_on, find_handle
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.005)
 DOWN = (0.05, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.005)

@@ -8,10 +8,10 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from fake_device import ScriptedDevice, make_reading
 from pydrake.math import RigidTransform, RollPitchYaw
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.carried_context import carry_on, find_handle
-from drake_haptics.scene import Effects, Friction, Pose
-from drake_haptics.simulation import run
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.schema import Effects, Friction, Pose
+from drake_haptics.simulation.run import run
+from drake_haptics.simulation.transfer_state import carry_on, find_handle
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
 BESIDE = (0.2, 0.02, 0.01, TOOL_HALF_HEIGHT + 0.01)

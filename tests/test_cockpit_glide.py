@@ -13,8 +13,8 @@ from cockpit_rig import FRICTION, CockpitRig
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.cockpit import holding
-from drake_haptics.scene import Effects, Passivity
-from drake_haptics.stage import open_meshcat
+from drake_haptics.scene.schema import Effects, Passivity
+from drake_haptics.visualization.meshcat import open_meshcat
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.005)
 DEEP_M, DOWN_TICKS, ASKED_AT = 6e-3, 100, 250

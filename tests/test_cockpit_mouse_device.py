@@ -14,12 +14,13 @@ from meshcat_page import MeshcatPage
 from pydrake.math import RigidTransform, RollPitchYaw
 from scipy.spatial.transform import Rotation
 
-from drake_haptics.cockpit import mouse_device, page_handle
-from drake_haptics.cockpit.mouse_device import MouseDevice
+from drake_haptics.common.errors import UserError
+from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.device.backend import DeviceCommand, GateState
-from drake_haptics.errors import UserError
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.stage import open_meshcat
+from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.web import handle as page_handle
+from drake_haptics.web import mouse_device
+from drake_haptics.web.mouse_device import MouseDevice
 
 X_WB = RigidTransform(RollPitchYaw(0.3, -0.2, 1.8), [0.1, 0.2, -0.3])
 X_BH = RigidTransform(RollPitchYaw(-0.4, 0.5, 0.1), [0.02, -0.05, 0.3])

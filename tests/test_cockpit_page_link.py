@@ -12,10 +12,10 @@ import time
 import pytest
 import websocket
 
-from drake_haptics.cockpit import page_link
-from drake_haptics.cockpit.page_link import PageLink
-from drake_haptics.cockpit.page_port import open_page_port
-from drake_haptics.cockpit.telemetry import TickBuffer
+from drake_haptics.web import link as page_link
+from drake_haptics.web.link import PageLink
+from drake_haptics.web.port import open_page_port
+from drake_haptics.web.telemetry import TickBuffer
 
 BOUND_S = 120.0
 MESHCAT = "http://localhost:6999"
@@ -32,7 +32,7 @@ HEAD = {
 # A loop that tells the number of its page's process, and goes on.
 LOOP = f"""
 import time
-from drake_haptics.cockpit.page_link import PageLink
+from drake_haptics.web.link import PageLink
 link = PageLink({MESHCAT!r})
 print(link.url, link._process.pid, flush=True)
 while True:
@@ -118,7 +118,7 @@ def test_pages_are_told_that_a_loop_stands_still_until_it_goes_on(link):
 
 def test_its_process_needs_neither_drake_nor_numpy():
     code = (
-        "import sys, drake_haptics.cockpit.page_process;"
+        "import sys, drake_haptics.web.process;"
         "print([name for name in ('pydrake', 'numpy') if name in sys.modules])"
     )
     done = subprocess.run(

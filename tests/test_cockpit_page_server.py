@@ -12,9 +12,9 @@ import urllib.request
 import pytest
 import websocket
 
-from drake_haptics.cockpit import page_server
-from drake_haptics.cockpit.page_port import open_page_port
-from drake_haptics.cockpit.page_server import PageServer
+from drake_haptics.web import server as page_server
+from drake_haptics.web.port import open_page_port
+from drake_haptics.web.server import PageServer
 
 MESHCAT = "http://localhost:6999"
 BOUND_S = 120.0
@@ -124,10 +124,10 @@ def test_it_serves_the_page(server, path, media_type, begin):
     [
         ("other", {}, 404),
         ("../../etc/passwd", {}, 404),
-        ("../page_server.py", {}, 404),
+        ("../server.py", {}, 404),
         ("page/index.html", {}, 404),
         ("/index.html", {}, 404),
-        ("%2e%2e/page_server.py", {}, 404),
+        ("%2e%2e/server.py", {}, 404),
         ("", {"Host": "stranger.example"}, 403),
         ("", {"Host": "localhost.stranger.example:80"}, 403),
         ("", {"Host": "]["}, 403),

@@ -6,15 +6,15 @@ import pytest
 import websocket
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
-from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.cockpit.page_port import open_page_port
+from drake_haptics.common.errors import UserError
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import GateState
-from drake_haptics.errors import UserError
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.simulation import RunError
-from drake_haptics.stage import open_meshcat
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.simulation.run import RunError
+from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.web.port import open_page_port
 
 BOUND_S = 120.0
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)

@@ -3,10 +3,10 @@
 import pytest
 import yaml
 
-from drake_haptics.cockpit.changes_yaml import write_changes
 from drake_haptics.cockpit.scene_changes import EFFECTS, ChangeError, SceneChanges
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene, list_scenes
+from drake_haptics.scene.library import find_scene, list_scenes
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.web.changes_yaml import write_changes
 
 EVERYTHING = [
     {"do": "set", "key": "coupling.stiffness_N_per_m", "to": 1000},

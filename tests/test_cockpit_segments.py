@@ -19,17 +19,17 @@ from cockpit_rig import (
 from driver_process import device_command, running
 from fake_device import ScriptedDevice, make_reading
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.carried_context import find_handle
 from drake_haptics.cockpit import holding, segments
-from drake_haptics.cockpit.telemetry import GATES
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice
-from drake_haptics.scene import Gravity, Pose
-from drake_haptics.scene_check import SceneError
-from drake_haptics.simulation import RunError, run
-from drake_haptics.stage import open_meshcat
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.schema import Gravity, Pose
+from drake_haptics.scene.validation import SceneError
+from drake_haptics.simulation.run import RunError, run
+from drake_haptics.simulation.transfer_state import find_handle
+from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.web.telemetry import GATES
 
 RETAKE = {"do": "handle", "to": "device"}
 TURN = {"do": "turn", "by": [0.3, 0.0, 0.0]}

@@ -16,17 +16,17 @@ from cockpit_rig import (
     find_tool,
 )
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.cockpit.page_request import read_page_request
 from drake_haptics.cockpit.scene_changes import EFFECTS
-from drake_haptics.cockpit.telemetry import LARGEST_DATAGRAM
-from drake_haptics.device_site import find_device_site
-from drake_haptics.live_key import live_keys
-from drake_haptics.live_scene import write_live_values
-from drake_haptics.scene import Effects, EnvironmentObject, Passivity, Scene
-from drake_haptics.simulation import run
-from drake_haptics.stage import CAMERAS, open_meshcat
-from drake_haptics.systems.picture_views import PICTURE_VIEWS
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.loop.device_placement import find_device_site
+from drake_haptics.scene.schema import Effects, EnvironmentObject, Passivity, Scene
+from drake_haptics.simulation.live_key import live_keys
+from drake_haptics.simulation.live_scene import write_live_values
+from drake_haptics.simulation.run import run
+from drake_haptics.systems.output.picture_views import PICTURE_VIEWS
+from drake_haptics.visualization.meshcat import CAMERAS, open_meshcat
+from drake_haptics.web.request import read_page_request
+from drake_haptics.web.telemetry import LARGEST_DATAGRAM
 
 
 @pytest.fixture(scope="module")

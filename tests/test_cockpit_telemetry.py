@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from drake_haptics.cockpit.telemetry import (
+from drake_haptics.device.backend import Fault, GateState
+from drake_haptics.web.telemetry import (
     FAULTS,
     GATES,
     KIND,
@@ -12,7 +13,6 @@ from drake_haptics.cockpit.telemetry import (
     TickBuffer,
     read_telemetry,
 )
-from drake_haptics.device.backend import Fault, GateState
 
 LATEST = (60e-6, 30e-6, 12, 3, -1e-3, 0.1, 0.2, 0.3, 1.0, 2.0, 3.0, 1.0)
 HEAD = {

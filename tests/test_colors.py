@@ -5,7 +5,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from drake_haptics import colors
+from drake_haptics.common import colors
 
 
 def test_all_colors_are_valid():
@@ -57,7 +57,7 @@ def test_the_legend_names_each_colour_once():
 
 
 def test_the_pages_colours_are_those_of_the_scheme():
-    style = files("drake_haptics.cockpit").joinpath("page", "theme.css").read_text()
+    style = files("drake_haptics.web").joinpath("page", "theme.css").read_text()
     for name, color in {
         "handle": colors.HANDLE_GHOST,
         "force": colors.FORCE_INK,

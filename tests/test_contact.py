@@ -159,5 +159,7 @@ def test_a_contact_says_what_it_is() -> None:
 
 def test_who_takes_it_for_the_settings_of_a_scene_is_told() -> None:
     make: Any = Contact
-    with pytest.raises(TypeError, match=r"from drake_haptics\.scene import Contact"):
+    with pytest.raises(
+        TypeError, match=r"from drake_haptics\.scene\.schema import Contact"
+    ):
         make(stiffness_N_per_m=2e3)

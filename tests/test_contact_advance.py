@@ -28,13 +28,13 @@ from drake_haptics._core import (
     differentiate_contacts,
 )
 from drake_haptics.analysis.state_layout import find_state_layout
-from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.scene import Contact, Effects, SceneError
-from drake_haptics.simulation import run
-from drake_haptics.systems.contact_advance import ContactAdvance
-from drake_haptics.systems.contact_query import ContactObject
-from drake_haptics.systems.pose_sample import PoseSample
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.scene.schema import Contact, Effects, SceneError
+from drake_haptics.simulation.run import run
+from drake_haptics.systems.contact.contact_advance import ContactAdvance
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.contact.pose_sample import PoseSample
 
 T = 2e-3
 SLAB = box((0.2, 0.2, 0.02), (0, 0, -0.01))  # its top is z = 0

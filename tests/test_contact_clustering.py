@@ -9,8 +9,8 @@ from pydrake.math import RigidTransform
 from test_contact_query import TOLERANCE, box_core, query_at
 
 from drake_haptics._core import AutoDiffClusterSet
-from drake_haptics.systems.contact_clustering import ContactClustering
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.contact.contact_clustering import ContactClustering
+from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
 
 TOOL_SIZE = 0.02
 

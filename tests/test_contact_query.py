@@ -10,10 +10,10 @@ from pydrake.autodiffutils import AutoDiffXd, InitializeAutoDiff
 from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_haptics._core import AutoDiffContactSet
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import Mesh
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
 
 TOLERANCE = 2e-3
 

@@ -7,9 +7,9 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 from test_contact_query import box_core
 
-from drake_haptics.contact_systems import add_contact_systems, connect_by_name
-from drake_haptics.scene import Braking, Contact, Effects, Material
-from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.loop.contact import add_contact_systems, connect_by_name
+from drake_haptics.scene.schema import Braking, Contact, Effects, Material
+from drake_haptics.systems.contact.contact_query import ContactObject
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from pydrake.systems.analysis import (
 )
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.scene import Contact
+from drake_haptics.scene.schema import Contact
 
 TOLERANCE_M = 2e-3
 SPEED_M_PER_S = 1.0

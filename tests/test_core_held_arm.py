@@ -6,9 +6,9 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.tree import JacobianWrtVariable
 
 from drake_haptics._core import CouplingGains, HeldArm, PosePath, coupling_wrench
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.systems.simulated_arm import make_arm_plant
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.systems.arm.simulated_arm import make_arm_plant
 
 X_WB = RigidTransform(RollPitchYaw(0.4, -0.7, 1.2), [0.3, -0.2, 0.9])
 X_PH = RigidTransform(RollPitchYaw(0.2, 0.1, -0.3), [0.01, 0.02, -0.03])

@@ -17,8 +17,8 @@ from scipy.spatial.transform import Rotation
 from touching_poses import touching_pose
 
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import load_mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import load_mesh
 
 T = 2e-3
 UP = Rotation.identity()

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from solid_surface import Surface
 
 from drake_haptics import _core
-from drake_haptics.mesh import Mesh
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 CELL = 0.02
 T = 2e-3

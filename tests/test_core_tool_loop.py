@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mass_properties import calc_mass_properties
-from drake_haptics.mesh import Mesh
-from drake_haptics.shapes import SHAPES
+from drake_haptics.evaluation.shapes import SHAPES
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 _TICKS = 400
 _PERIOD_S = 1e-3

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from drake_haptics import _core
-from drake_haptics.coupling_check import HeldHandle, check_coupling
-from drake_haptics.scene import Coupling, load_scene
-from drake_haptics.systems.hand_grip import HAND_GRIPS, NOMINAL_GRIP
+from drake_haptics.bounds.coupling import HeldHandle, check_coupling
+from drake_haptics.scene.schema import Coupling, load_scene
+from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, NOMINAL_GRIP
 
 PERIOD = 1e-3
 SCENES = sorted((Path(__file__).parents[1] / "models" / "scenes").glob("*.yaml"))

@@ -8,11 +8,11 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from test_haptic_device import PERIOD, Slider
 from test_haptic_rendering import make_scene
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.coupling_gains import make_coupling_gains
-from drake_haptics.live_scene import write_live_values
-from drake_haptics.scene import Coupling
-from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.loop.coupling import make_coupling_gains
+from drake_haptics.scene.schema import Coupling
+from drake_haptics.simulation.live_scene import write_live_values
+from drake_haptics.systems.device.haptic_device import HapticDevice
 
 COUPLING = Coupling(stiffness_N_per_m=500.0)
 

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from mesh_samples import box, joined, l_prism, real_mesh
 
-from drake_haptics import SceneTracker, decomposition
-from drake_haptics.archive import read_archive, write_archive
-from drake_haptics.decomposition import Decomposition, decompose
-from drake_haptics.errors import DecompositionFileError, UserError
-from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics import SceneTracker
+from drake_haptics.common.errors import DecompositionFileError, UserError
+from drake_haptics.geometry.decomposition import decompose as decomposition
+from drake_haptics.geometry.decomposition.archive import read_archive, write_archive
+from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
+from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 
 
 def contains(piece, points, tolerance):
@@ -93,7 +94,7 @@ def test_without_coacd_the_error_says_what_to_install(monkeypatch):
     def missing(name):
         raise decomposition.coacd_parameters.__globals__["PackageNotFoundError"](name)
 
-    monkeypatch.setattr("drake_haptics.coacd_backend.version", missing)
+    monkeypatch.setattr("drake_haptics.geometry.decomposition.coacd.version", missing)
     with pytest.raises(UserError, match=r"pip install 'drake_haptics\[coacd\]'"):
         decompose(Mesh.from_arrays(*box()), "coacd", cache=False)
 

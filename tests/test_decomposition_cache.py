@@ -12,10 +12,15 @@ import pytest
 from large_cache_entry import MESH, PIECES
 from mesh_samples import box, joined, l_prism
 
-from drake_haptics import decomposition, decomposition_cache
-from drake_haptics.decomposition import decompose
-from drake_haptics.decomposition_cache import cache_folder, cache_key, load_cached
-from drake_haptics.mesh import Mesh
+from drake_haptics.geometry.decomposition import cache as decomposition_cache
+from drake_haptics.geometry.decomposition import decompose as decomposition
+from drake_haptics.geometry.decomposition.cache import (
+    cache_folder,
+    cache_key,
+    load_cached,
+)
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 
 @pytest.fixture
@@ -136,7 +141,7 @@ WRITER = textwrap.dedent(
     import sys
     sys.path.insert(0, sys.argv[2])
     from large_cache_entry import MESH, PIECES
-    from drake_haptics.decomposition_cache import load_cached, store_cached
+    from drake_haptics.geometry.decomposition.cache import load_cached, store_cached
 
     print("ready", flush=True)
     for _ in range(int(sys.argv[1])):

@@ -14,10 +14,10 @@ from struct_driver import ACTIVE, IDLE, StructDriver, unpack_command
 from struct_host import pack_command
 
 from drake_haptics.cli import main
-from drake_haptics.device import simulated_driver
 from drake_haptics.device.backend import DeviceCommand
 from drake_haptics.device.driver import DeviceDriver
-from drake_haptics.device_address import open_device
+from drake_haptics.loop import simulated_driver
+from drake_haptics.loop.open_device import open_device
 
 AT_REST = np.array([1.0, 0, 0, 0, 0, 0, 0])
 STILL = np.zeros(6)

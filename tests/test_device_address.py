@@ -3,12 +3,12 @@
 import pytest
 from pydrake.geometry import Meshcat
 
+from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.device.backend import DeviceError
-from drake_haptics.device_address import open_device
-from drake_haptics.device_site import find_device_site, wait_for_reading
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.loop.device_placement import find_device_site, wait_for_reading
+from drake_haptics.loop.open_device import open_device
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 
 @pytest.fixture(scope="module")

@@ -9,9 +9,9 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 from pydrake.systems.primitives import ConstantVectorSource
 
-from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.systems.device_io import DeviceIo
-from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.systems.device.device_io import DeviceIo
+from drake_haptics.systems.device.haptic_device import HapticDevice
 
 PERIOD = 1e-3
 X_WB = RigidTransform(RollPitchYaw(0.3, -0.8, 2.0), [0.4, -0.2, 0.1])

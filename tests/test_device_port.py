@@ -10,8 +10,8 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics import AddHapticRendering, make_device_port
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.scene import Contact, Coupling
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.scene.schema import Contact, Coupling
 
 LIMITS = {"period_s": 1e-3, "max_force_N": 5.0, "max_torque_Nm": 0.2}
 # The base stands turned in the world.

@@ -8,13 +8,13 @@ from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
 from fake_device import ScriptedDevice, make_reading
 from pydrake.math import RigidTransform
 
-from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.device.backend import DeviceError, LinkStatus
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.device_site import find_device_site, wait_for_reading
-from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.scene import Pose, Scene, Waypoint
-from drake_haptics.simulation import run
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.loop.device_placement import find_device_site, wait_for_reading
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.scene.schema import Pose, Scene, Waypoint
+from drake_haptics.simulation.run import run
 
 START = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
 

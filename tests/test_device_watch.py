@@ -7,7 +7,7 @@ import pytest
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.device.backend import Fault, GateState, LinkStatus
-from drake_haptics.device_watch import DeviceWatch, DriverSilence
+from drake_haptics.simulation.device_monitor import DeviceWatch, DriverSilence
 
 ACTIVE = (GateState.ACTIVE, Fault.NONE)
 STALE = (GateState.FAULT, Fault.STALE)

@@ -25,7 +25,7 @@ from twin_check import check_twin
 
 from drake_haptics import systems
 from drake_haptics._core import AutoDiffVector, CouplingGains, coupling_wrench
-from drake_haptics.systems.differentiable_system import DifferentiableSystem
+from drake_haptics.systems.framework.differentiable_system import DifferentiableSystem
 
 PERIOD, OFFSET = 0.01, 0.002
 A = np.array([[1.0, 2.0, -1.0], [0.5, -3.0, 4.0]])

@@ -5,7 +5,7 @@ import pytest
 from pydrake.autodiffutils import InitializeAutoDiff
 from twin_check import check_twin
 
-from drake_haptics.systems.display_force_hold import (
+from drake_haptics.systems.device.display_force_hold import (
     LIMITED,
     NOT_FINITE,
     SHOWN_AS_ASKED,

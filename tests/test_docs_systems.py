@@ -17,13 +17,20 @@ from test_haptic_rendering import make_scene
 
 import drake_haptics.systems
 from drake_haptics import BuildHapticDiagram, TickRecorder, load_scene, make_log_header
-from drake_haptics.scene import Braking, Coupling, Effects, Friction, Passivity, Shading
-from drake_haptics.systems.handle_model import HandleModel
-from drake_haptics.systems.haptic_command_receiver import HapticCommandReceiver
-from drake_haptics.systems.haptic_command_sender import HapticCommandSender
-from drake_haptics.systems.haptic_status_receiver import HapticStatusReceiver
-from drake_haptics.systems.haptic_status_sender import HapticStatusSender
-from drake_haptics.systems.replayed_handle import ReplayedHandle
+from drake_haptics.scene.schema import (
+    Braking,
+    Coupling,
+    Effects,
+    Friction,
+    Passivity,
+    Shading,
+)
+from drake_haptics.systems.device.replayed_handle import ReplayedHandle
+from drake_haptics.systems.lcm.haptic_command_receiver import HapticCommandReceiver
+from drake_haptics.systems.lcm.haptic_command_sender import HapticCommandSender
+from drake_haptics.systems.lcm.haptic_status_receiver import HapticStatusReceiver
+from drake_haptics.systems.lcm.haptic_status_sender import HapticStatusSender
+from drake_haptics.systems.tool.handle_model import HandleModel
 
 DOCS = Path(__file__).parents[1] / "docs"
 EVERY_KEY = DOCS / "reference" / "every-key.yaml"
@@ -69,8 +76,11 @@ def systems(tmp_path_factory):
 
 def list_all_systems() -> list[tuple[str, type[System]]]:
     """Returns the public systems by the names of their modules."""
-    modules = [m.name for m in pkgutil.iter_modules(drake_haptics.systems.__path__)]
-    paths = [f"systems.{name}" for name in modules] + ["haptic_rendering"]
+    package = drake_haptics.systems
+    modules = pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+    names = [m.name for m in modules if not m.ispkg]
+    paths = [name.removeprefix("drake_haptics.") for name in names]
+    paths.append("rendering.haptic_rendering")
     return [(path, system) for path in paths for system in find_systems(path).values()]
 
 

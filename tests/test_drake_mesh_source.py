@@ -8,8 +8,8 @@ import trimesh
 from pydrake.common import MemoryFile
 from pydrake.geometry import InMemoryMesh, Mesh, MeshSource
 
-from drake_haptics.drake_mesh_source import read_mesh_source
-from drake_haptics.errors import MeshError
+from drake_haptics.common.errors import MeshError
+from drake_haptics.geometry.parsing.mesh_source import read_mesh_source
 
 ONE = np.ones(3)
 

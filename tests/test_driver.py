@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from struct_host import ACTIVE, FAULT, IDLE, StructHost
 
+from drake_haptics.common.errors import UserError
 from drake_haptics.device.backend import GateState
 from drake_haptics.device.driver import DeviceDriver, read_clock_ns
-from drake_haptics.errors import UserError
 
 TTL_S = 0.05
 HANDLE = np.array([0.6, 0.0, 0.8, 0.0, 0.1, -0.2, 0.3])

@@ -4,8 +4,8 @@ import socket
 
 import pytest
 
+from drake_haptics.common.errors import UserError
 from drake_haptics.device.driver_socket import DriverSocket
-from drake_haptics.errors import UserError
 
 
 @pytest.fixture

@@ -13,8 +13,8 @@ from effect_child import CORE_CALLS, EFFECTS, SCENE
 from effect_costs import PAGE, Costs, with_figures
 from effect_rows import make_rows
 
-from drake_haptics.scene import Effects, load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import Effects, load_scene
 
 COSTS = Costs(
     bare=[100_000.0, 100_007.0, 99_990.0],

@@ -11,11 +11,11 @@ from box_scenes import TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import EnergyLedger
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.mass_properties import calc_mass_properties
-from drake_haptics.scene import Effects
-from drake_haptics.scene_effects import Braking, Friction, Gravity
-from drake_haptics.simulation import make_simulator, run
+from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.effects import Braking, Friction, Gravity
+from drake_haptics.scene.schema import Effects
+from drake_haptics.simulation.run import make_simulator, run
 
 H = 1e-3
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.01)

@@ -9,13 +9,13 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from drake_haptics.builder import AddHapticLoop, BuildHapticDiagram
-from drake_haptics.callback_timer import CallbackTimer
-from drake_haptics.explain import explain_tick
-from drake_haptics.scene import Effects
-from drake_haptics.simulation import run
-from drake_haptics.systems.contact_query import ContactObject
-from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.loop.builder import AddHapticLoop, BuildHapticDiagram
+from drake_haptics.scene.schema import Effects
+from drake_haptics.simulation.callback_timer import CallbackTimer
+from drake_haptics.simulation.explain import explain_tick
+from drake_haptics.simulation.run import run
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.device.haptic_device import HapticDevice
 
 
 class StillArm(LeafSystem):

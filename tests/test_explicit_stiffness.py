@@ -6,7 +6,7 @@ from plant_scenes import PLANTS, PlantScene
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.tree import RevoluteJoint, SpatialInertia
 
-from drake_haptics.explicit_stiffness import (
+from drake_haptics.bounds.explicit_step import (
     calc_explicit_stiffness,
     calc_largest_point_mobility,
     calc_spatial_mobility,

@@ -29,8 +29,8 @@ from drake_haptics import (
     decompose,
     load_mesh,
 )
-from drake_haptics.mesh import Mesh
-from drake_haptics.scene import Contact
+from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.scene.schema import Contact
 
 TILTS = [0.0, 1e-9, 1e-6, 1e-5, 1e-4, 1e-3]
 FLOOR_M = 0.003

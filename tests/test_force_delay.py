@@ -8,8 +8,8 @@ from pydrake.trajectories import PiecewisePolynomial
 from twin_check import check_twin
 from twin_rig import PERIOD, make_simulator
 
-from drake_haptics.systems.display_force_hold import DisplayForceHold
-from drake_haptics.systems.force_delay import ForceDelay
+from drake_haptics.systems.arm.force_delay import ForceDelay
+from drake_haptics.systems.device.display_force_hold import DisplayForceHold
 
 TICKS = 20
 

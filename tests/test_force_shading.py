@@ -10,11 +10,11 @@ from test_contact_query import TOLERANCE, box_core
 from twin_check import check_twin
 
 from drake_haptics._core import SceneTracker
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import Mesh
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.contact_query import ContactObject
-from drake_haptics.systems.force_shading import ForceShading
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.contact.force_shading import ForceShading
 
 RADIUS = 0.02
 OUT = np.array([0.36, 0.48, 0.8])  # where the tool touches: far from any vertex

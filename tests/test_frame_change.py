@@ -6,7 +6,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.math import SpatialVelocity
 
 from drake_haptics._core import FrameChange
-from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -9,8 +9,8 @@ from pydrake.math import RigidTransform
 from test_contact_query import box_core
 
 from drake_haptics._core import AutoDiffVector
-from drake_haptics.systems.contact_query import ContactObject
-from drake_haptics.systems.friction_reaction import FrictionReaction
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.contact.friction_reaction import FrictionReaction
 
 # Of which the first and the last move.
 NAMES = ("cart", "slab", "door")

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from drake_haptics.scene import Hand
-from drake_haptics.systems.hand_grip import HAND_GRIPS
+from drake_haptics.scene.schema import Hand
+from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
 
 PAGE = Path(__file__).parents[1] / "docs" / "device-twin.md"
 COLUMNS = (

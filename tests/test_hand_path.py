@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.systems.hand_path import HandPath
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.systems.arm.hand_path import HandPath
 
 
 def pose(x, y, z, *rpy_deg):

@@ -10,10 +10,10 @@ from pydrake.systems.primitives import ConstantVectorSource, LogVectorOutput
 from twin_check import check_twin
 
 from drake_haptics._core import CouplingGains
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulated_device import make_hand_path, make_simulated_device
-from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.systems.device.haptic_device import HapticDevice
 
 PERIOD = 1e-3
 MASS, DAMPING = 0.1, 0.5

@@ -26,10 +26,10 @@ from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_command,
     lcmt_haptic_status,
 )
-from drake_haptics.systems.haptic_command_receiver import HapticCommandReceiver
-from drake_haptics.systems.haptic_command_sender import HapticCommandSender
-from drake_haptics.systems.haptic_status_receiver import HapticStatusReceiver
-from drake_haptics.systems.haptic_status_sender import HapticStatusSender
+from drake_haptics.systems.lcm.haptic_command_receiver import HapticCommandReceiver
+from drake_haptics.systems.lcm.haptic_command_sender import HapticCommandSender
+from drake_haptics.systems.lcm.haptic_status_receiver import HapticStatusReceiver
+from drake_haptics.systems.lcm.haptic_status_sender import HapticStatusSender
 
 pytestmark = HANDLERS_MAY_CRASH
 

@@ -8,10 +8,10 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import LogVectorOutput
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import Effects
-from drake_haptics.simulation import run
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.schema import Effects
+from drake_haptics.simulation.run import run
 
 # The hand wants the cube's middle 5 mm above the plate, where half of it does not fit.
 PRESSED = [(0.0, 0.0, 0.0, 0.02), (0.3, 0.0, 0.0, 0.005)]

@@ -10,8 +10,8 @@ from pydrake.systems.primitives import ConstantVectorSource
 from test_haptic_device import make_device
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.scene import (
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.scene.schema import (
     Braking,
     Contact,
     Coupling,

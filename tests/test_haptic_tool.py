@@ -8,8 +8,8 @@ from pydrake.systems.analysis import Simulator
 from twin_check import check_twin
 
 from drake_haptics._core import RigidToolDynamics
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.haptic_tool import HapticTool
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.tool.haptic_tool import HapticTool
 
 PERIOD, MASS = 1e-3, 0.1
 X_WT = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [1.0, 2.0, 3.0])

@@ -24,10 +24,10 @@ from visualizer_rig import (
     make_visualizer,
 )
 
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems import haptic_visualizer
-from drake_haptics.systems.arrow_pool import ArrowPool
-from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.output import haptic_visualizer
+from drake_haptics.systems.output.arrow_pool import ArrowPool
 
 
 def test_ports_have_drakes_names_and_sizes():

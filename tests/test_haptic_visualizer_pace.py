@@ -11,7 +11,7 @@ from visualizer_rig import (
     make_visualizer,
 )
 
-from drake_haptics.systems import haptic_visualizer
+from drake_haptics.systems.output import haptic_visualizer
 
 
 def test_nothing_is_drawn_while_nobody_looks():

@@ -8,10 +8,10 @@ from box_scenes import over_a_plate
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.held_handle import calc_held_handle
-from drake_haptics.scene_check import SceneWarning
-from drake_haptics.systems.hand_grip import NOMINAL_GRIP
+from drake_haptics.bounds.held_handle import calc_held_handle
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.systems.arm.hand_grip import NOMINAL_GRIP
 
 START = (0.0, 0.0, 0.0, 0.05)
 

@@ -8,8 +8,8 @@ from pydrake.systems.primitives import TrajectorySource, ZeroOrderHold
 from pydrake.trajectories import PiecewisePolynomial
 from twin_rig import HANDLE_PATH, MOTORS, PERIOD, S, load_plant, make_simulator
 
-from drake_haptics.systems.hand_impedance import make_held_arm
-from drake_haptics.systems.joint_encoder import JointEncoder
+from drake_haptics.systems.arm.hand_impedance import make_held_arm
+from drake_haptics.systems.arm.joint_encoder import JointEncoder
 
 STEP = np.array(MOTORS.encoder_step_rad)
 TICKS = 60

@@ -6,7 +6,7 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import Adder, ConstantVectorSource
 from twin_rig import MOTORS, PERIOD, S, load_plant, make_simulator
 
-from drake_haptics.systems.joint_friction import JointFriction
+from drake_haptics.systems.arm.joint_friction import JointFriction
 
 COULOMB = np.array(MOTORS.coulomb_friction_Nm)
 

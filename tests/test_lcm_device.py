@@ -27,9 +27,9 @@ from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_status,
 )
 from drake_haptics.device.lcm.lcm_device import LcmDevice
-from drake_haptics.device_address import open_device
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.loop.open_device import open_device
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 pytestmark = HANDLERS_MAY_CRASH
 

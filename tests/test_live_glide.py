@@ -4,9 +4,9 @@ from itertools import pairwise
 
 import pytest
 
-from drake_haptics.live_glide import GLIDE_S, LiveGlide
-from drake_haptics.live_key import live_keys
-from drake_haptics.scene import Contact, Coupling, EnvironmentObject, Scene
+from drake_haptics.scene.schema import Contact, Coupling, EnvironmentObject, Scene
+from drake_haptics.simulation.live_key import live_keys
+from drake_haptics.simulation.live_ramp import GLIDE_S, LiveGlide
 
 PERIOD_S = 1e-3
 STEPS = round(GLIDE_S / PERIOD_S)

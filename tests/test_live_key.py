@@ -2,8 +2,8 @@
 
 from dataclasses import fields, replace
 
-from drake_haptics.live_key import live_keys
-from drake_haptics.scene import (
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import (
     Contact,
     Coupling,
     EnvironmentObject,
@@ -11,8 +11,8 @@ from drake_haptics.scene import (
     Scene,
     load_scene,
 )
-from drake_haptics.scene_check import check_values
-from drake_haptics.scene_library import find_scene
+from drake_haptics.scene.validation import check_values
+from drake_haptics.simulation.live_key import live_keys
 
 SOFT = Material(stiffness_N_per_m=300.0, damping_Ns_per_m=1.0)
 

@@ -17,11 +17,14 @@ from test_contact_query import box_core, query_at
 from test_virtual_coupling import BR, KR, X_HT, X_WH, B, K
 
 from drake_haptics._core import CouplingGains, cluster_contacts, share_stiffness
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.contact_clustering import ClusteringRule, ContactClustering
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
-from drake_haptics.systems.penalty_force import ContactGains, PenaltyForce
-from drake_haptics.systems.virtual_coupling import VirtualCoupling
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.contact.contact_clustering import (
+    ClusteringRule,
+    ContactClustering,
+)
+from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.contact.penalty_force import ContactGains, PenaltyForce
+from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 OTHER = CouplingGains(3 * K, 5 * B, 7 * KR, 11 * BR)
 OUTPUTS = ("wrench_model", "F_display")

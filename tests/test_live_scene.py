@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.carried_context import carry_on
-from drake_haptics.energy_ledger import EnergyLedger
-from drake_haptics.live_key import live_keys
-from drake_haptics.live_scene import is_live_change, write_live_values
-from drake_haptics.scene import Braking, Friction, Material, Passivity
-from drake_haptics.simulation import make_simulator
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.schema import Braking, Friction, Material, Passivity
+from drake_haptics.simulation.energy import EnergyLedger
+from drake_haptics.simulation.live_key import live_keys
+from drake_haptics.simulation.live_scene import is_live_change, write_live_values
+from drake_haptics.simulation.run import make_simulator
+from drake_haptics.simulation.transfer_state import carry_on
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.005)
 PRESSING = (0.15, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.01)

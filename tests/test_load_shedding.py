@@ -6,7 +6,7 @@ from hand_clock import HandClock
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from drake_haptics.systems.load_shedding import LoadShedding, TickEnd, TickMeter
+from drake_haptics.systems.contact.load_shedding import LoadShedding, TickEnd, TickMeter
 
 # Exact, so that each advance ends at a tick.
 PERIOD_S = 2.0**-10

@@ -10,12 +10,12 @@ import trimesh
 from surface_crossings import crossing_edges
 
 from drake_haptics import decompose
-from drake_haptics.mesh import Mesh
-from drake_haptics.shapes.machine_room import (
+from drake_haptics.evaluation.shapes.machine_room import (
     make_machine_room,
     make_wrench,
     wrench_path,
 )
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 # Kim, Otaduy, Lin and Manocha, section 6.1.
 PAPER_OBJECTS, PAPER_TRIANGLES, PAPER_TOUCHED = 897, 195_926, 17

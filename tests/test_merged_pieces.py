@@ -14,10 +14,10 @@ from solid_surface import Overlap, Surface
 from surface_distance import distances
 
 from drake_haptics import _core
-from drake_haptics.decomposition import Decomposition, decompose
-from drake_haptics.errors import UserError
-from drake_haptics.mesh import Mesh
-from drake_haptics.shapes import SHAPES
+from drake_haptics.common.errors import UserError
+from drake_haptics.evaluation.shapes import SHAPES
+from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 
 def shape(name):

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.mesh import Mesh
-from drake_haptics.mesh_centering import center, find_origin_beside
-from drake_haptics.scene import EnvironmentObject, Scene, Tool
-from drake_haptics.scene_pieces import cut_scene
+from drake_haptics.geometry.mesh.centering import center, find_origin_beside
+from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.scene.geometry import cut_scene
+from drake_haptics.scene.schema import EnvironmentObject, Scene, Tool
 
 CYLINDER = "package://drake/examples/kuka_iiwa_arm/models/objects/simple_cylinder.urdf"
 # Exact in binary, so that moving there and back rounds nothing away.

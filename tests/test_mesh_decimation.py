@@ -6,10 +6,10 @@ from mesh_samples import box, joined, real_mesh
 from surface_distance import distances
 
 from drake_haptics import _core
-from drake_haptics.errors import MeshError
-from drake_haptics.mesh import Mesh, load_mesh
-from drake_haptics.mesh_decimation import decimate
-from drake_haptics.shapes import SHAPES
+from drake_haptics.common.errors import MeshError
+from drake_haptics.evaluation.shapes import SHAPES
+from drake_haptics.geometry.mesh.decimation import decimate
+from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 
 
 def shape(name):

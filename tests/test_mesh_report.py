@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from mesh_samples import box, joined
 
-from drake_haptics.mesh import Mesh
-from drake_haptics.mesh_report import MeshReport, Severity, length
+from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.report import MeshReport, Severity, length
 
 
 @pytest.fixture

@@ -6,11 +6,11 @@ from hand_clock import HandClock
 from meshcat_page import MeshcatPage
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 
+from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.device import meshcat_device
 from drake_haptics.device.backend import DeviceCommand, DeviceError, GateState
 from drake_haptics.device.meshcat_device import MeshcatDevice
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.stage import open_meshcat
+from drake_haptics.visualization.meshcat import open_meshcat
 
 # A base that stands across, and a handle that is not straight in it.
 X_WB = RigidTransform(RollPitchYaw(0.3, -0.2, 1.8), [0.1, 0.2, -0.3])

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from drake_haptics.decomposition import decompose
-from drake_haptics.errors import MeshError
-from drake_haptics.mass_properties import calc_mass_properties
-from drake_haptics.model_file import is_model_file, load_model_mesh
+from drake_haptics.common.errors import MeshError
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
+from drake_haptics.geometry.parsing.model_file import is_model_file, load_model_mesh
 
 # A crank: a box, and a ball on a pin that stands 0.1 m beside it.
 _CRANK = """<?xml version="1.0"?>

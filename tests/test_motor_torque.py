@@ -7,8 +7,8 @@ from pydrake.multibody.tree import JacobianWrtVariable
 from twin_check import check_twin
 from twin_rig import HANDLE_PATH, MOTORS, S, load_plant
 
-from drake_haptics.systems.hand_impedance import HandImpedance, make_held_arm
-from drake_haptics.systems.motor_torque import MotorTorque
+from drake_haptics.systems.arm.hand_impedance import HandImpedance, make_held_arm
+from drake_haptics.systems.arm.motor_torque import MotorTorque
 
 PEAK = np.array(MOTORS.peak_torque_Nm)
 NO_LIMIT = np.full(6, 1e9)

@@ -7,8 +7,8 @@ from pydrake.systems.framework import LeafSystem
 from test_contact_query import box_core
 
 from drake_haptics._core import AutoDiffVector, ObjectFrames
-from drake_haptics.systems.contact_query import ContactObject
-from drake_haptics.systems.object_motions import ObjectMotions
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.contact.object_motions import ObjectMotions
 
 
 class Asking(LeafSystem):

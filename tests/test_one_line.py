@@ -7,7 +7,7 @@ from enum import Enum
 
 import numpy as np
 
-from drake_haptics.one_line import brief, count, one_line
+from drake_haptics.common.one_line import brief, count, one_line
 
 
 class Colour(Enum):

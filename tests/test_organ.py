@@ -8,9 +8,9 @@ from scipy.sparse.csgraph import connected_components
 from surface_crossings import crossing_edges
 
 from drake_haptics import decompose
-from drake_haptics.mesh import Mesh
-from drake_haptics.mesh_topology import winding_numbers
-from drake_haptics.shapes.organ import make_organ
+from drake_haptics.evaluation.shapes.organ import make_organ
+from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.topology import winding_numbers
 
 # The digestive system in Table 1 of Kim, Otaduy, Lin and Manocha.
 PAPER_TRIANGLES, PAPER_PIECES = 24_846, 9_913

@@ -33,13 +33,13 @@ def test_a_module_that_is_not_imported_yet_is_named_as_one() -> None:
     program = (
         "import drake_haptics\n"
         "try:\n"
-        "    drake_haptics.touch_height\n"
+        "    drake_haptics.geometry\n"
         "except AttributeError as error:\n"
         "    print(error)\n"
     )
     command = [sys.executable, "-c", program]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
-    assert "import drake_haptics.touch_height" in done.stdout
+    assert "import drake_haptics.geometry" in done.stdout
 
 
 def test_the_version_is_that_of_the_installed_package() -> None:

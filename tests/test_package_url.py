@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from drake_haptics import BuildHapticDiagram, MeshError, Scene, load_mesh
-from drake_haptics.model_file import load_model_mesh
-from drake_haptics.package_url import resolve_package_url
-from drake_haptics.scene import EnvironmentObject, Hand, HandPath, Tool, Waypoint
-from drake_haptics.tick_log.loop_log import make_log_header
+from drake_haptics.common.package_url import resolve_package_url
+from drake_haptics.geometry.parsing.model_file import load_model_mesh
+from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.scene.schema import EnvironmentObject, Hand, HandPath, Tool, Waypoint
 
 MODELS = Path(__file__).parents[1] / "models"
 PEG = "package://drake_haptics/models/meshes/peg.obj"

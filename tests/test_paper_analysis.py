@@ -6,11 +6,15 @@ import numpy as np
 import pytest
 
 from drake_haptics import ConvexPair, ConvexPolytope, SceneTracker
-from drake_haptics.bench.pair_motion import make_presses
-from drake_haptics.paper.depth_cost import TRIANGLES, make_balls, measure_depth_costs
-from drake_haptics.paper.force_scaling import measure_force_scaling
-from drake_haptics.paper.instruction_count import count_depths
-from drake_haptics.paper.pair_scaling import (
+from drake_haptics.evaluation.benchmark.pair_motion import make_presses
+from drake_haptics.evaluation.paper.depth_cost import (
+    TRIANGLES,
+    make_balls,
+    measure_depth_costs,
+)
+from drake_haptics.evaluation.paper.force_scaling import measure_force_scaling
+from drake_haptics.evaluation.paper.instruction_count import count_depths
+from drake_haptics.evaluation.paper.pair_scaling import (
     NUM_TEETH,
     make_brush,
     make_plate,

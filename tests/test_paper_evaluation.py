@@ -2,9 +2,9 @@
 
 import pytest
 
-from drake_haptics.paper import evaluation
-from drake_haptics.paper.evaluation import PARTS, Effort, evaluate_paper
-from drake_haptics.paper.scenarios import scenario_makers
+from drake_haptics.evaluation.paper import evaluation
+from drake_haptics.evaluation.paper.evaluation import PARTS, Effort, evaluate_paper
+from drake_haptics.evaluation.paper.scenarios import scenario_makers
 
 
 @pytest.fixture

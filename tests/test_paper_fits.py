@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from drake_haptics.paper.fits import fit_line, fit_power
+from drake_haptics.evaluation.paper.fits import fit_line, fit_power
 
 
 def test_a_line_is_found():

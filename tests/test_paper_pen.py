@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from drake_haptics.paper.pen_pass import (
+from drake_haptics.evaluation.paper.pen_pass import (
     OURS,
     RADIUS_M,
     measure_pen_pass,
     plan_pen_pass,
 )
-from drake_haptics.paper.pen_truth import ContactCurves, calc_sphere_contact
-from drake_haptics.paper.smoothness import measure_smoothness
-from drake_haptics.shapes.pen import make_pen
-from drake_haptics.shapes.sphere import make_sphere
+from drake_haptics.evaluation.paper.pen_truth import ContactCurves, calc_sphere_contact
+from drake_haptics.evaluation.paper.smoothness import measure_smoothness
+from drake_haptics.evaluation.shapes.pen import make_pen
+from drake_haptics.evaluation.shapes.sphere import make_sphere
 
 
 @pytest.fixture(scope="module")

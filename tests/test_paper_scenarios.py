@@ -5,15 +5,19 @@ import pytest
 from pydrake.math import RigidTransform
 
 from drake_haptics import SceneTracker
-from drake_haptics.paper.exploration import Place, plan_exploration
-from drake_haptics.paper.models import cut_shape
-from drake_haptics.paper.profile import measure_profile
-from drake_haptics.paper.profile_figures import sum_up
-from drake_haptics.paper.published import ROOM_OBJECTS, ROOM_TRIANGLES, TOUCHED_OBJECTS
-from drake_haptics.paper.scenario import PERIOD_S, build_loop, sample_handle
-from drake_haptics.paper.scenarios import scenario_makers
-from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.evaluation.paper.exploration import Place, plan_exploration
+from drake_haptics.evaluation.paper.models import cut_shape
+from drake_haptics.evaluation.paper.profile import measure_profile
+from drake_haptics.evaluation.paper.profile_figures import sum_up
+from drake_haptics.evaluation.paper.published import (
+    ROOM_OBJECTS,
+    ROOM_TRIANGLES,
+    TOUCHED_OBJECTS,
+)
+from drake_haptics.evaluation.paper.scenario import PERIOD_S, build_loop, sample_handle
+from drake_haptics.evaluation.paper.scenarios import scenario_makers
+from drake_haptics.systems.contact.contact_query import ContactObject
 
 
 @pytest.fixture(scope="module")
@@ -121,7 +125,7 @@ def test_a_run_is_what_the_loop_computes(makers):
 
 def follow_tool(haptic, seconds):
     """Returns the tool's poses as the simulator's monitor sees them."""
-    from drake_haptics.simulation import run
+    from drake_haptics.simulation.run import run
 
     port = haptic.loop.haptic_tool.get_pose_output_port()
     poses = []

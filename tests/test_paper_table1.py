@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import Mesh
-from drake_haptics.paper.models import MODELS, OWN, find_sources
-from drake_haptics.paper.published import TABLE_1
-from drake_haptics.paper.table1 import measure_table1
-from drake_haptics.shapes import SHAPES
-from drake_haptics.shapes.organ import make_organ
+from drake_haptics.evaluation.paper.models import MODELS, OWN, find_sources
+from drake_haptics.evaluation.paper.published import TABLE_1
+from drake_haptics.evaluation.paper.table1 import measure_table1
+from drake_haptics.evaluation.shapes import SHAPES
+from drake_haptics.evaluation.shapes.organ import make_organ
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 OWN_SHAPES = {
     "Torus": SHAPES["torus"],

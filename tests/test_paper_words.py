@@ -13,9 +13,9 @@ from paper_samples import (
     make_table1,
 )
 
-from drake_haptics.paper.pen_pass import OURS
-from drake_haptics.paper.profile_figures import sum_up
-from drake_haptics.paper.words import (
+from drake_haptics.evaluation.paper.pen_pass import OURS
+from drake_haptics.evaluation.paper.profile_figures import sum_up
+from drake_haptics.evaluation.paper.words import (
     judge_analysis,
     judge_figure12,
     judge_run,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from drake_haptics.passivity_bounds import (
+from drake_haptics.bounds.sampled_spring import (
     calc_passive_damping,
     calc_passive_stiffness,
     calc_quantized_stiffness,

@@ -6,9 +6,9 @@ from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.systems.framework import DiagramBuilder
 from twin_check import check_twin
 
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.display_force_hold import DisplayForceHold
-from drake_haptics.systems.passivity_control import PassivityControl
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.device.display_force_hold import DisplayForceHold
+from drake_haptics.systems.tool.passivity_control import PassivityControl
 
 PERIOD, MAX_B, MAX_BR, RESERVE = 1e-3, 20.0, 0.01, 0.1
 GOOD = {

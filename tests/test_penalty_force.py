@@ -16,8 +16,8 @@ from drake_haptics._core import (
     penalty_force,
     penalty_wrench_model,
 )
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
-from drake_haptics.systems.penalty_force import PenaltyForce
+from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.contact.penalty_force import PenaltyForce
 
 K, B = 2e4, 5.0
 AT_REST = np.zeros(6)
@@ -99,7 +99,7 @@ def test_tool_and_objects_share_one_answer(plate, clusters, monkeypatch):
     force.get_object_velocity_input_port("cart").FixValue(context, AT_REST)
     calls = []
     monkeypatch.setattr(
-        "drake_haptics.systems.penalty_force.penalty_force",
+        "drake_haptics.systems.contact.penalty_force.penalty_force",
         lambda *inputs: calls.append(0) or penalty_force(*inputs),
     )
     first = force.get_tool_wrench_output_port().Eval(context).copy()
@@ -124,7 +124,7 @@ def test_of_many_objects_at_rest_a_tick_reads_none(plate, clusters, monkeypatch)
     force, context = make_force(objects)
     asked = []
     monkeypatch.setattr(
-        "drake_haptics.systems.penalty_force.penalty_wrench_model",
+        "drake_haptics.systems.contact.penalty_force.penalty_wrench_model",
         lambda *inputs: asked.append(inputs[3:]) or penalty_wrench_model(*inputs),
     )
     port = force.get_wrench_model_output_port()

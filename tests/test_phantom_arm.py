@@ -9,8 +9,8 @@ import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.tree import SpatialInertia
 
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.systems.simulated_arm import make_arm_plant
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.systems.arm.simulated_arm import make_arm_plant
 
 L1, L2, L3 = 0.215, 0.170, 0.0325
 MA, MC = 0.0202, 0.0249

@@ -20,10 +20,13 @@ from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction
 from pydrake.multibody.tree import SpatialInertia
 from pydrake.systems.framework import DiagramBuilder
 
-from drake_haptics.decomposition import decompose
-from drake_haptics.errors import MeshError
-from drake_haptics.mesh import load_mesh
-from drake_haptics.plant_shapes import decompose_body, find_body_geometries
+from drake_haptics.common.errors import MeshError
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import load_mesh
+from drake_haptics.geometry.parsing.body_shapes import (
+    decompose_body,
+    find_body_geometries,
+)
 
 X_BG = RigidTransform(RollPitchYaw(0.3, -0.5, 1.1), [0.1, -0.2, 0.05])
 COLOR = [0.5, 0.5, 0.5, 1.0]

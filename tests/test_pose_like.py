@@ -11,7 +11,7 @@ from pydrake.autodiffutils import AutoDiffXd
 from pydrake.math import RigidTransform, RigidTransform_, RollPitchYaw
 
 from drake_haptics import ConvexPair, ConvexPolytope
-from drake_haptics.pose_vector import pose_to_vector
+from drake_haptics.common.pose_vector import pose_to_vector
 
 CUBE = ConvexPolytope(
     np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])

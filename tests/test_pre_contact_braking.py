@@ -12,9 +12,9 @@ from test_contact_query import at_height, box_core, query_at
 from twin_check import check_twin
 
 from drake_haptics._core import RigidToolDynamics, pre_contact_braking
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
-from drake_haptics.systems.haptic_tool import HapticTool
-from drake_haptics.systems.pre_contact_braking import PreContactBraking
+from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.contact.pre_contact_braking import PreContactBraking
+from drake_haptics.systems.tool.haptic_tool import HapticTool
 
 B, D = 8.0, 4e-3
 TOUCH = 0.02
@@ -120,7 +120,7 @@ def test_what_moves_is_pushed_on_and_what_does_not_has_no_place(
     braking.get_object_velocity_input_port("cart").FixValue(context, np.zeros(6))
     calls = []
     monkeypatch.setattr(
-        "drake_haptics.systems.pre_contact_braking.pre_contact_braking",
+        "drake_haptics.systems.contact.pre_contact_braking.pre_contact_braking",
         lambda *inputs: calls.append(0) or pre_contact_braking(*inputs),
     )
     F = braking.get_wrench_model_output_port().Eval(context)[:6]

@@ -14,12 +14,12 @@ from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
-from drake_haptics.builder import AddHapticLoop, BuildHapticDiagram
-from drake_haptics.device_preset import list_device_presets, load_device_preset
-from drake_haptics.device_site import make_device_port
-from drake_haptics.mass_properties import make_tool_dynamics
-from drake_haptics.scene import EnvironmentObject, Pose
-from drake_haptics.systems.contact_query import ContactObject
+from drake_haptics.geometry.mesh.mass_properties import make_tool_dynamics
+from drake_haptics.loop.builder import AddHapticLoop, BuildHapticDiagram
+from drake_haptics.loop.device_placement import make_device_port
+from drake_haptics.scene.device_preset import list_device_presets, load_device_preset
+from drake_haptics.scene.schema import EnvironmentObject, Pose
+from drake_haptics.systems.contact.contact_query import ContactObject
 
 PERIOD_S = 1e-3
 TURN_RAD, TURNED_IN, END_S = np.pi / 4, 200, 0.4
@@ -108,7 +108,7 @@ def test_there_are_devices_of_three_axes():
     assert set(THREE_AXES) == {"touch", "omni", "phantom_desktop", "omega_6", "falcon"}
 
 
-@pytest.mark.filterwarnings("ignore::drake_haptics.scene_check.SceneWarning")
+@pytest.mark.filterwarnings("ignore::drake_haptics.scene.validation.SceneWarning")
 @pytest.mark.parametrize("make", [build_scene, add_loop])
 @pytest.mark.parametrize("preset", THREE_AXES)
 def test_a_cube_is_not_pried_into_the_walls_of_a_slot(tmp_path, preset, make):

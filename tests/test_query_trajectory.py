@@ -21,7 +21,7 @@ from drake_haptics import (
     SceneTracker,
     decompose,
 )
-from drake_haptics.mesh import Mesh
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 COLUMNS = ("distance", "nhat_BA_W", "p_WCa", "p_WCb", "p_WC", "feature_A", "feature_B")
 PIECE_COLUMNS = (*COLUMNS, "status", "object_index", "piece_A", "piece_B")

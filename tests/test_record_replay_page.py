@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tick_log_samples import make_rows, pack_rows
 
-from drake_haptics.scene_library import list_scenes
+from drake_haptics.scene.library import list_scenes
 from drake_haptics.tick_log.tick_rows import COUNTS, REALS
 
 sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))

@@ -13,8 +13,8 @@ from pydrake.geometry import (
 from pydrake.math import RigidTransform
 from pydrake.multibody.tree import RevoluteJoint, SpatialInertia
 
-from drake_haptics.plant_shapes import find_body_geometries
-from drake_haptics.rendered_bodies import (
+from drake_haptics.geometry.parsing.body_shapes import find_body_geometries
+from drake_haptics.rendering.bodies import (
     exclude_own_contact,
     find_body,
     find_environment,

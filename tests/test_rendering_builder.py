@@ -16,8 +16,15 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantValueSource
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.scene import Contact, Coupling, Effects, Friction, Material, Shading
-from drake_haptics.scene_check import SceneWarning
+from drake_haptics.scene.schema import (
+    Contact,
+    Coupling,
+    Effects,
+    Friction,
+    Material,
+    Shading,
+)
+from drake_haptics.scene.validation import SceneWarning
 
 K, MASS, HALF = 1e3, 0.1, 0.02
 SOFT = Contact(stiffness_N_per_m=K, damping_Ns_per_m=3.0)

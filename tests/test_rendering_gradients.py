@@ -13,7 +13,7 @@ from pydrake.systems.framework import InputPortSelection, OutputPortSelection
 from pydrake.systems.primitives import Linearize
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.scene import Braking, Contact, Effects
+from drake_haptics.scene.schema import Braking, Contact, Effects
 
 CONTACT = Contact(stiffness_N_per_m=1e3, damping_Ns_per_m=3.0)
 K, MASS = 1e3, 0.1

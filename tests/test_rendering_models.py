@@ -11,7 +11,7 @@ from pydrake.multibody.tree import JacobianWrtVariable
 from pydrake.visualization import AddDefaultVisualization
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.scene import Contact
+from drake_haptics.scene.schema import Contact
 
 K = 2e3
 CONTACT = Contact(stiffness_N_per_m=K, damping_Ns_per_m=5.0)

@@ -7,8 +7,8 @@ from plant_scenes import PlantScene
 from pydrake.geometry import Box
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.scene import Contact
-from drake_haptics.scene_check import SceneWarning
+from drake_haptics.scene.schema import Contact
+from drake_haptics.scene.validation import SceneWarning
 
 SOFT = Contact(stiffness_N_per_m=10.0, damping_Ns_per_m=0.0)
 

@@ -7,9 +7,9 @@ from plant_scenes import PLANTS, PlantScene
 from pydrake.geometry import Role, Sphere
 from pydrake.multibody.tree import SpatialInertia
 
-from drake_haptics.rendered_bodies import make_rendered_bodies
-from drake_haptics.rendering_stiffness import check_rendering_stiffness
-from drake_haptics.scene import Contact, Coupling, Material
+from drake_haptics.rendering.bodies import make_rendered_bodies
+from drake_haptics.rendering.stiffness import check_rendering_stiffness
+from drake_haptics.scene.schema import Contact, Coupling, Material
 
 MASS, STEP = 0.1, 1e-3
 LIMIT = 4 * MASS / STEP**2

@@ -10,10 +10,10 @@ from pydrake.systems.analysis import Simulator
 from test_device_io import make_diagram
 from tick_log_samples import HEADER, make_rows, make_smooth_rows, write_log
 
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.device.backend import DeviceError, GateState
-from drake_haptics.device.replay_device import ReplayDevice
-from drake_haptics.device_address import open_device
-from drake_haptics.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.loop.open_device import open_device
+from drake_haptics.tick_log.replay_device import ReplayDevice
 from drake_haptics.tick_log.tick_log import Gap, TickLog
 from drake_haptics.tick_log.tick_log_error import TickLogError
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
 
-from drake_haptics.systems.replayed_handle import ReplayedHandle
+from drake_haptics.systems.device.replayed_handle import ReplayedHandle
 
 # No binary fraction, and one whose multiples round down.
 PERIODS = [1e-3, 1 / 3000, 0.1, 7e-4]

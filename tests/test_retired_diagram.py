@@ -7,9 +7,9 @@ from types import SimpleNamespace
 from box_scenes import over_a_plate
 from cockpit_rig import ABOVE, PRESSING, CockpitRig
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.retired_diagram import retire
-from drake_haptics.stage import open_meshcat
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.simulation.release_diagram import retire
+from drake_haptics.visualization.meshcat import open_meshcat
 
 TOGGLES = 4
 

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from drake_haptics import run_statistics
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.systems.display_force_hold import (
+from drake_haptics.simulation import statistics as run_statistics
+from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.systems.device.display_force_hold import (
     LIMITED,
     NOT_FINITE,
     SHOWN_AS_ASKED,

@@ -5,7 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_haptics.scene import (
+from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
+from drake_haptics.scene.library import find_scene, list_scenes
+from drake_haptics.scene.schema import (
     Braking,
     Contact,
     Coupling,
@@ -23,8 +25,6 @@ from drake_haptics.scene import (
     Waypoint,
     load_scene,
 )
-from drake_haptics.scene_library import find_scene, list_scenes
-from drake_haptics.simulated_device import make_hand_path, make_simulated_device
 
 GOOD = """
 description: A peg above a plate.

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_file import write_scene
-from drake_haptics.scene_library import find_scene, list_scenes
+from drake_haptics.scene.library import find_scene, list_scenes
+from drake_haptics.scene.scene_file import write_scene
+from drake_haptics.scene.schema import load_scene
 
 
 def resolve(scene):

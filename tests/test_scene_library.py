@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from drake_haptics import MeshError, find_mesh, find_scene, list_meshes, list_scenes
-from drake_haptics.errors import SceneError
+from drake_haptics.common.errors import SceneError
 
 MODELS = Path(__file__).parents[1] / "models"
 

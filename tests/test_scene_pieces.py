@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import Friction
-from drake_haptics.scene_pieces import cut_scene
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.geometry import cut_scene
+from drake_haptics.scene.schema import Friction
 
 
 @pytest.fixture(scope="module")

@@ -7,11 +7,13 @@ import pytest
 import trimesh
 from box_scenes import PLATE_TOP, over_a_plate, write
 
-from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.authoring.plausibility import question_scene
 from drake_haptics.device.backend import DeviceBackend, DeviceReading
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.mesh_report import length
-from drake_haptics.scene import (
+from drake_haptics.geometry.mesh.report import length
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.scene.library import list_scenes
+from drake_haptics.scene.schema import (
     EnvironmentObject,
     Pose,
     Scene,
@@ -19,8 +21,6 @@ from drake_haptics.scene import (
     Waypoint,
     load_scene,
 )
-from drake_haptics.scene_library import list_scenes
-from drake_haptics.scene_plausibility import question_scene
 
 PRESS = [(0.0, 0.0, 0.0, 0.03), (1.0, 0.0, 0.0, 0.005)]
 

@@ -5,8 +5,8 @@ import shutil
 import pytest
 from box_scenes import over_a_plate
 
-from drake_haptics.scene_check import SceneError
-from drake_haptics.scene_settings import change_scene
+from drake_haptics.scene.settings import change_scene
+from drake_haptics.scene.validation import SceneError
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from drake_haptics import ConvexPolytope
-from drake_haptics.shape_polytopes import (
+from drake_haptics.geometry.mesh.round_shapes import (
     make_box_corners,
     make_capsule_corners,
     make_cylinder_corners,

@@ -9,8 +9,8 @@ import pytest
 import trimesh
 from surface_crossings import crossing_edges
 
-from drake_haptics.shapes import SHAPES, Surface
-from drake_haptics.shapes.surface import SurfaceBuilder
+from drake_haptics.evaluation.shapes import SHAPES, Surface
+from drake_haptics.evaluation.shapes.surface import SurfaceBuilder
 
 # Triangles in Table 1 of Kim, Otaduy, Lin and Manocha.
 TABLE_1 = {"torus": 2000, "cup": 500, "spoon": 336, "hammer": 1692}
@@ -139,7 +139,12 @@ def test_shipped_files_are_what_the_code_makes(name):
 
 
 def test_regeneration_writes_every_shape(tmp_path):
-    command = [sys.executable, "-m", "drake_haptics.shapes", str(tmp_path / "new")]
+    command = [
+        sys.executable,
+        "-m",
+        "drake_haptics.evaluation.shapes",
+        str(tmp_path / "new"),
+    ]
     subprocess.run(command, check=True, capture_output=True)
     written = {path.stem for path in (tmp_path / "new").glob("*.obj")}
     assert written == set(SHAPES)

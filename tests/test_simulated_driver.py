@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 
-from drake_haptics.device.simulated_driver import SimulatedDriverArm
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import Pose, Waypoint, load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulated_device import make_hand_path
-from drake_haptics.systems.hand_grip import HAND_GRIPS
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.loop.simulated_device import make_hand_path
+from drake_haptics.loop.simulated_driver import SimulatedDriverArm
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import Pose, Waypoint, load_scene
+from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
 
 GRIP = HAND_GRIPS["firm"]
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.simulation import RunError, make_simulator, run
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.simulation.run import RunError, make_simulator, run
+from drake_haptics.simulation.statistics import RunStatistics
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
 # 1 cm into the plate, through a hand of 300 N/m.

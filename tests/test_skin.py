@@ -15,13 +15,13 @@ from pydrake.geometry import Box
 from pydrake.math import RigidTransform
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cli import failures, main, run_session
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene import Braking, Contact, Effects
-from drake_haptics.scene_check import SceneWarning
-from drake_haptics.scene_file import write_scene
-from drake_haptics.simulation import run
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.scene_file import write_scene
+from drake_haptics.scene.schema import Braking, Contact, Effects
+from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.simulation.run import run
+from drake_haptics.simulation.statistics import RunStatistics
 
 HALF = 0.01
 DEEP, SHALLOW = 0.015, 0.003

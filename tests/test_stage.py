@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cli.failures import failures_in_words
-from drake_haptics.errors import UserError
-from drake_haptics.scene import Pose, load_scene
-from drake_haptics.scene_library import list_scenes
-from drake_haptics.stage import (
+from drake_haptics.common.errors import UserError
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.library import list_scenes
+from drake_haptics.scene.schema import Pose, load_scene
+from drake_haptics.visualization.meshcat import (
     CAMERAS,
     aim_camera,
     clip_facet,

@@ -10,15 +10,15 @@ import pytest
 from fake_device import ScriptedDevice, make_reading
 from rich.console import Console
 
-from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cli.status_line import StatusLine, make_summary
 from drake_haptics.cockpit.taken_device import TakenDevice
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import Fault, GateState
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import run
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.simulation.run import run
+from drake_haptics.simulation.statistics import RunStatistics
 
 
 @pytest.fixture(scope="module")

@@ -19,13 +19,13 @@ from drake_haptics._core import (
     penalty_force,
     share_stiffness,
 )
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.contact_clustering import ContactClustering
-from drake_haptics.systems.contact_query import ContactObject, ContactQuery
-from drake_haptics.systems.haptic_tool import HapticTool
-from drake_haptics.systems.penalty_force import PenaltyForce
-from drake_haptics.systems.stick_slip_friction import StickSlipFriction
-from drake_haptics.systems.tool_gravity import ToolGravity
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.contact.contact_clustering import ContactClustering
+from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
+from drake_haptics.systems.contact.penalty_force import PenaltyForce
+from drake_haptics.systems.contact.stick_slip_friction import StickSlipFriction
+from drake_haptics.systems.tool.haptic_tool import HapticTool
+from drake_haptics.systems.tool.tool_gravity import ToolGravity
 
 PERIOD, TOLERANCE, STIFFNESS = 1e-3, 1e-3, 2e4
 MU, RATIO, BREAK_AWAY = 0.5, 1.2, 1e-4

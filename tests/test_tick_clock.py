@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.common.tick_clock import TickClock
 
 
 class Time:

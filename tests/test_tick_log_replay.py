@@ -8,11 +8,13 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from fake_device import ScriptedDevice
 from tick_log_samples import assert_same_bits, make_part
 
-from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import DeviceReading
-from drake_haptics.device_site import find_device_site
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.scene import (
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.loop.device_placement import find_device_site
+from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import (
     Braking,
     Effects,
     Friction,
@@ -21,12 +23,10 @@ from drake_haptics.scene import (
     Shading,
     load_scene,
 )
-from drake_haptics.scene_library import find_scene
-from drake_haptics.scene_settings import change_scene
-from drake_haptics.simulation import run
+from drake_haptics.scene.settings import change_scene
+from drake_haptics.simulation.replay_log import load_log_scene, replay
+from drake_haptics.simulation.run import run
 from drake_haptics.tick_log.log_diff import compare_logs
-from drake_haptics.tick_log.loop_log import make_log_header
-from drake_haptics.tick_log.replay import load_log_scene, replay
 from drake_haptics.tick_log.tick_log import Gap, TickLog, read_tick_log
 from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_recorder import TickRecorder

@@ -6,13 +6,13 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from fake_device import ScriptedDevice, make_reading
 from pydrake.systems.framework import EventStatus
 
-from drake_haptics.builder import BuildHapticDiagram
+from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import DeviceReading, Fault, GateState
-from drake_haptics.device_site import find_device_site
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.simulation import make_simulator
-from drake_haptics.systems.tick_log_sink import TickLogSink
-from drake_haptics.tick_log.loop_log import make_log_header
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.loop.device_placement import find_device_site
+from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.simulation.run import make_simulator
+from drake_haptics.systems.output.tick_log_sink import TickLogSink
 from drake_haptics.tick_log.tick_log import read_tick_log
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 

@@ -8,9 +8,9 @@ from pydrake.systems.framework import DiagramBuilder
 from twin_check import check_twin
 
 from drake_haptics._core import RigidToolDynamics
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.haptic_tool import HapticTool
-from drake_haptics.systems.tool_gravity import ToolGravity
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.tool.haptic_tool import HapticTool
+from drake_haptics.systems.tool.tool_gravity import ToolGravity
 
 MASS, P_TTCM = 0.1, np.array([0.01, -0.02, 0.05])
 G = 9.81

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.mesh import Mesh
-from drake_haptics.touch_height import TouchMap
+from drake_haptics.geometry.mesh.height_map import TouchMap
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 
 def intake(mesh, shift=(0, 0, 0)):

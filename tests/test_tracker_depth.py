@@ -19,7 +19,7 @@ from drake_haptics import (
     load_mesh,
 )
 from drake_haptics._core import ConvexPolytope, Decomposition, decompose_surface
-from drake_haptics.mesh import Mesh
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 T = 1e-3
 PLATE = (0.1, 0.1, 0.004)

@@ -15,7 +15,7 @@ from drake_haptics import (
     SceneTracker,
     decompose,
 )
-from drake_haptics.mesh import Mesh
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 
 def body(arrays: tuple[np.ndarray, np.ndarray]) -> Decomposition:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from drake_haptics.units import guess_unit
+from drake_haptics.geometry.mesh.units import guess_unit
 
 
 @pytest.mark.parametrize(

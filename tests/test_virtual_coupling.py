@@ -7,8 +7,8 @@ from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from twin_check import check_twin
 
 from drake_haptics._core import CouplingGains
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.virtual_coupling import VirtualCoupling
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 K, B, KR, BR = 800.0, 2.0, 1.5, 0.004
 AT_REST = np.zeros(6)

@@ -17,12 +17,13 @@ OPTION = re.compile(r"(?<![\w-])--[a-z]")
 COMMAND = "drake-haptics "
 # Files whose business is a command line, another program's, or a style sheet.
 ARE_OPTIONS = {
-    "accuracy/one_setting.py": "format_setting returns options",
-    "accuracy/page.py": "has variables of CSS",
-    "bench/valgrind.py": "calls valgrind",
-    "paper/report.py": "tells of the command `paper`",
-    "paper/words.py": "tells of the command `paper`",
+    "evaluation/accuracy/one_setting.py": "format_setting returns options",
+    "evaluation/accuracy/page.py": "has variables of CSS",
+    "evaluation/measuring/valgrind.py": "calls valgrind",
+    "evaluation/paper/report.py": "tells of the command `paper`",
+    "evaluation/paper/words.py": "tells of the command `paper`",
 }
+COUNTING = ("accuracy", "benchmark", "measuring", "paper")
 NOUNS = (
     "bytes|clusters|components|contacts|edges|files|packets|parts|pieces|readings|rims"
     "|solids|ticks|triangles|vertices"
@@ -70,7 +71,7 @@ def test_options_of_the_command_line_are_named_there_alone():
 @pytest.mark.parametrize(
     "path",
     # Pages of studies count their hundreds of ticks and triangles.
-    [x for x in SOURCES if x.parent.name not in ("accuracy", "bench", "paper")],
+    [x for x in SOURCES if x.parent.name not in COUNTING],
     ids=lambda path: path.name,
 )
 def test_numbers_agree_with_their_nouns(path):

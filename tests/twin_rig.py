@@ -11,12 +11,12 @@ from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics._core import CouplingGains
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.systems.arm_twin import ArmTwin
-from drake_haptics.systems.hand_grip import HAND_GRIPS
-from drake_haptics.systems.hand_path import HandPath
-from drake_haptics.systems.haptic_device import HapticDevice
-from drake_haptics.systems.simulated_arm import SimulatedArm, make_arm_plant
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.systems.arm.arm_twin import ArmTwin
+from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_path import HandPath
+from drake_haptics.systems.arm.simulated_arm import SimulatedArm, make_arm_plant
+from drake_haptics.systems.device.haptic_device import HapticDevice
 
 PERIOD = 1e-3
 PRESET = load_device_preset("phantom_premium_1_5_6dof")

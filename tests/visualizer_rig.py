@@ -7,9 +7,9 @@ import numpy as np
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform, RollPitchYaw
 
-from drake_haptics.pose_vector import pose_to_vector
-from drake_haptics.systems.haptic_picture import HapticPicture
-from drake_haptics.systems.haptic_visualizer import HapticVisualizer
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.output.haptic_picture import HapticPicture
+from drake_haptics.systems.output.haptic_visualizer import HapticVisualizer
 
 
 class FakeMeshcat:

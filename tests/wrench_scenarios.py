@@ -28,8 +28,8 @@ from wrench_chain import (
     wrench_at,
 )
 
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import Mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import Mesh
 
 K, T = STIFFNESS_N_PER_M, TOLERANCE_M
 X, Y, Z = np.eye(3)

@@ -22,10 +22,10 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from drake_haptics.device_preset import DevicePreset, load_device_preset
-from drake_haptics.live_key import live_keys
-from drake_haptics.live_scene import is_live_change
-from drake_haptics.scene import Scene, load_scene
+from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
+from drake_haptics.scene.schema import Scene, load_scene
+from drake_haptics.simulation.live_key import live_keys
+from drake_haptics.simulation.live_scene import is_live_change
 
 _EVERY_KEY = "reference/every-key.yaml"
 _LIVE = "[Live](../live-values.md):"

@@ -24,34 +24,16 @@ import drake_haptics
 _PACKAGE = "drake_haptics."
 _PREFIX = "modules-"
 # What is behind one command alone is no interface, and the command line has a page.
-_PROGRAMS = ["accuracy", "bench", "cli", "cockpit", "paper", "shapes"]
+_PROGRAMS = ["cli", "cockpit", "evaluation", "web"]
 LEFT_OUT = ""
 # A module is in the first group that has a pattern for it, without the package.
 _GROUPS = {
-    "Scenes": [
-        "scene*",
-        "automatic_scene",
-        "live_*",
-        "device_preset",
-        "coupling_check",
-    ],
-    "Geometry": [
-        "mesh*",
-        "decomposition*",
-        "merged_pieces",
-        "piece_*",
-        "coacd_backend",
-    ],
+    "Scenes": ["scene", "scene.*", "authoring", "authoring.*"],
+    "Geometry": ["geometry", "geometry.*"],
     "Parts of the systems": ["systems", "systems.*"],
-    "Devices": [
-        "device",
-        "device.*",
-        "device_*",
-        "held_handle",
-        "cockpit.mouse_device",
-    ],
-    "Recorded runs": ["tick_log", "tick_log.*", "recording"],
-    "Stability": ["analysis", "analysis.*", "passivity_bounds"],
+    "Devices": ["device", "device.*", "web.mouse_device"],
+    "Recorded runs": ["tick_log", "tick_log.*", "visualization.recording"],
+    "Stability": ["analysis", "analysis.*", "bounds", "bounds.*"],
     "The compiled core": ["_core"],
     LEFT_OUT: [*_PROGRAMS, *(f"{name}.*" for name in _PROGRAMS)],
     "Building and running": ["*"],

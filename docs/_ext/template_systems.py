@@ -20,7 +20,7 @@ def _is_instance(what: str, thing: Any) -> bool:
 
 def _name(app: Sphinx) -> None:
     """Gives such classes the names of the variables that hold them."""
-    from drake_haptics.systems.applied_wrenches import AppliedWrenches
+    from drake_haptics.systems.plant.applied_wrenches import AppliedWrenches
 
     AppliedWrenches.__name__ = AppliedWrenches.__qualname__ = "AppliedWrenches"
 

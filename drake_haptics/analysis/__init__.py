@@ -33,6 +33,10 @@ if TYPE_CHECKING:
         find_firmest_contact,
         hold_scene,
     )
+    from drake_haptics.analysis.jobs.error import StudyError
+    from drake_haptics.analysis.jobs.pool import SerialExecutor
+    from drake_haptics.analysis.jobs.progress import StudyProgress
+    from drake_haptics.analysis.jobs.study import run_study
     from drake_haptics.analysis.mode_plot import plot_poles
     from drake_haptics.analysis.modes import Mode, ModeKind, find_modes
     from drake_haptics.analysis.multirate import Monodromy, monodromy
@@ -62,10 +66,6 @@ if TYPE_CHECKING:
         StiffnessLimits,
         find_stiffness_limits,
     )
-    from drake_haptics.analysis.study import run_study
-    from drake_haptics.analysis.study_error import StudyError
-    from drake_haptics.analysis.study_pool import SerialExecutor
-    from drake_haptics.analysis.study_progress import StudyProgress
     from drake_haptics.analysis.transfer_function import make_spring_damper
     from drake_haptics.analysis.z_width_map import ZWidth, z_width
     from drake_haptics.analysis.z_width_plot import HeldBounds
@@ -149,11 +149,11 @@ _MODULE_OF = {
     "SampledLinearization": "sampled_linearization",
     "SampledWall": "sampled_wall",
     "SceneStability": "scene_stability",
-    "SerialExecutor": "study_pool",
+    "SerialExecutor": "jobs.pool",
     "StabilityLimit": "stability_limit",
     "StiffnessLimits": "stiffness_limits",
-    "StudyError": "study_error",
-    "StudyProgress": "study_progress",
+    "StudyError": "jobs.error",
+    "StudyProgress": "jobs.progress",
     "ZWidth": "z_width_map",
     "analyse_held_scene": "held_loop",
     "analyse_scene": "scene_stability",
@@ -181,7 +181,7 @@ _MODULE_OF = {
     "measure_growth": "simulated_growth",
     "monodromy": "multirate",
     "plot_poles": "mode_plot",
-    "run_study": "study",
+    "run_study": "jobs.study",
     "suggest_coupling": "coupling_design",
     "z_width": "z_width_map",
 }

@@ -14,12 +14,12 @@ from drake_haptics.analysis.sampled_wall import (
     calc_largest_delay,
     calc_largest_stiffness,
 )
-from drake_haptics.one_line import one_line
-from drake_haptics.passivity_bounds import (
+from drake_haptics.bounds.sampled_spring import (
     calc_passive_damping,
     calc_passive_stiffness,
     calc_stable_stiffness,
 )
+from drake_haptics.common.one_line import one_line
 
 # As B T/m. The laws that the gains come from are of first order in it.
 _LARGEST_BETA = 0.2

@@ -14,15 +14,15 @@ from drake_haptics.analysis.axis_design import (
     AxisHand,
     design_axis,
 )
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.coupling_plot import plot_axis_design
-from drake_haptics.coupling_check import HeldHandle
-from drake_haptics.device_preset import DevicePreset, load_device_preset
-from drake_haptics.held_handle import calc_held_handle
-from drake_haptics.one_line import one_line
-from drake_haptics.scene import Coupling
-from drake_haptics.systems.hand_grip import HAND_GRIPS, HandGrip
-from drake_haptics.systems.simulated_arm import make_arm_plant
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
+from drake_haptics.bounds.coupling import HeldHandle
+from drake_haptics.bounds.held_handle import calc_held_handle
+from drake_haptics.common.one_line import one_line
+from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
+from drake_haptics.scene.schema import Coupling
+from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, HandGrip
+from drake_haptics.systems.arm.simulated_arm import make_arm_plant
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

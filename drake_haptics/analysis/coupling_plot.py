@@ -9,7 +9,10 @@ import numpy as np
 
 from drake_haptics.analysis.axis_design import AxisDesign, AxisHand, make_wall
 from drake_haptics.analysis.sampled_wall import calc_largest_stiffness
-from drake_haptics.passivity_bounds import calc_passive_stiffness, calc_stable_stiffness
+from drake_haptics.bounds.sampled_spring import (
+    calc_passive_stiffness,
+    calc_stable_stiffness,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.sampled_wall import (
     SampledWall,
     calc_largest_delay,
     calc_largest_stiffness,
 )
-from drake_haptics.one_line import one_line
-from drake_haptics.passivity_bounds import calc_passive_stiffness, calc_stable_stiffness
+from drake_haptics.bounds.sampled_spring import (
+    calc_passive_stiffness,
+    calc_stable_stiffness,
+)
+from drake_haptics.common.one_line import one_line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

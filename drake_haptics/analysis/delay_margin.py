@@ -6,8 +6,8 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.held_loop import HeldLoop
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.stability_limit import calc_growth
 
 # Delays are tried so far apart, in periods or as a share, before the edge is

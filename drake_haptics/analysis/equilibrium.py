@@ -9,10 +9,10 @@ import numpy as np
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, System
 
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.derivative_check import calc_sizes
 from drake_haptics.analysis.diagram_systems import Timing, find_timings
 from drake_haptics.analysis.drake_errors import explain_drake_errors
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.sampled_map import (
     SampledMap,
     set_state,

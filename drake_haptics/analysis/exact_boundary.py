@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import brentq
 
-from drake_haptics.one_line import one_line
+from drake_haptics.common.one_line import one_line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

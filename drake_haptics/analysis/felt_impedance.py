@@ -9,12 +9,12 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable
 from pydrake.systems.framework import Context
 
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.delay_margin import find_shown_wrench
 from drake_haptics.analysis.held_loop import HeldLoop
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.one_line import one_line
-from drake_haptics.systems.hand_grip import HAND_GRIPS
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
+from drake_haptics.common.one_line import one_line
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
 
 
 @dataclass(frozen=True)

@@ -10,18 +10,18 @@ from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import Context
 
 from drake_haptics.analysis.aimed_hand import build_aimed
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.equilibrium import find_equilibrium
 from drake_haptics.analysis.held_scene import HeldScene, hold_scene
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.sampled_linearization import (
     SampledLinearization,
     linearize_sampled,
 )
 from drake_haptics.analysis.simulated_growth import measure_growth
 from drake_haptics.analysis.stability_limit import calc_growth, drop_neutral
-from drake_haptics.builder import HapticDiagram
-from drake_haptics.one_line import one_line
-from drake_haptics.scene import Coupling, Scene
+from drake_haptics.common.one_line import one_line
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.scene.schema import Coupling, Scene
 
 # A motion of 250 Hz turns by 0.3 rad in such a step of third order.
 _STEPS_PER_TICK = 5

@@ -11,16 +11,16 @@ import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.framework import Context
 
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.equilibrium import find_equilibrium
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.sampled_preconditions import check_conversion
-from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
-from drake_haptics.one_line import one_line
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import Coupling, HandPath, Pose, Scene, Waypoint
-from drake_haptics.scene_check import SceneWarning
-from drake_haptics.simulated_device import make_hand_path, place_base
-from drake_haptics.simulation import RunError, make_simulator, run
+from drake_haptics.common.one_line import one_line
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.loop.simulated_device import make_hand_path, place_base
+from drake_haptics.scene.schema import Coupling, HandPath, Pose, Scene, Waypoint
+from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.simulation.run import RunError, make_simulator, run
 
 # A hand comes to a stop in no less than this.
 _SHORTEST_STOP_S = 0.05
@@ -82,7 +82,7 @@ def find_firmest_contact(scene: Scene) -> float:
     at which it is nearest to something; where nothing is near, the path's end.
 
     Raises:
-        drake_haptics.simulation.RunError: The scene diverges before it touches.
+        drake_haptics.simulation.run.RunError: The scene diverges before it touches.
     """
     return _find_firm_places(scene)[0]
 

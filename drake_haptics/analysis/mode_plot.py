@@ -8,7 +8,7 @@ import numpy as np
 
 from drake_haptics.analysis.modes import Mode, ModeKind, find_modes
 from drake_haptics.analysis.period_map import PeriodMap
-from drake_haptics.colors import STABLE, UNSTABLE
+from drake_haptics.common.colors import STABLE, UNSTABLE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from scipy.linalg import block_diag, eig
 
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.motion_words import list_parts, shorten_path
 from drake_haptics.analysis.period_map import PeriodMap
-from drake_haptics.argument_kinds import require_kinds
-from drake_haptics.one_line import one_line
+from drake_haptics.common.one_line import one_line
+from drake_haptics.common.type_checks import require_kinds
 
 # An eigenvalue this near to 1 moves too slowly to be told from one that stays; the
 # two of a free mass, which are exactly 1, are found to the root of round-off.

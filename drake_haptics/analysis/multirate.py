@@ -16,7 +16,6 @@ from pydrake.systems.analysis import (
 from pydrake.systems.framework import Context, System
 
 from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.derivative_check import (
     calc_sizes,
     check_derivatives,
@@ -25,6 +24,7 @@ from drake_haptics.analysis.derivative_check import (
 from drake_haptics.analysis.diagram_systems import Timing, find_timings, walk_leaves
 from drake_haptics.analysis.drake_errors import explain_drake_errors
 from drake_haptics.analysis.hyperperiod import find_hyperperiod, snap_to_update
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.period_map import PeriodMap, check_return
 from drake_haptics.analysis.sampled_map import (
     extract_gradient,

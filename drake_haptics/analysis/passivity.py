@@ -25,9 +25,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.transfer_function import TransferFunction, as_transfer
-from drake_haptics.one_line import one_line
+from drake_haptics.common.one_line import one_line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
-from drake_haptics.one_line import one_line
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
+from drake_haptics.common.one_line import one_line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drake_haptics.one_line import one_line
-from drake_haptics.passivity_bounds import calc_quantized_stiffness
+from drake_haptics.bounds.sampled_spring import calc_quantized_stiffness
+from drake_haptics.common.one_line import one_line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

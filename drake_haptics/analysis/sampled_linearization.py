@@ -21,7 +21,6 @@ from pydrake.systems.framework import (
 from pydrake.systems.primitives import LinearSystem
 from scipy.linalg import expm
 
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.derivative_check import (
     calc_sizes,
     check_derivatives,
@@ -30,6 +29,7 @@ from drake_haptics.analysis.derivative_check import (
 )
 from drake_haptics.analysis.diagram_systems import find_timings
 from drake_haptics.analysis.drake_errors import explain_drake_errors
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.period_map import PeriodMap, check_return
 from drake_haptics.analysis.sampled_map import SampledMap, SampledValues
 from drake_haptics.analysis.sampled_preconditions import (
@@ -40,7 +40,7 @@ from drake_haptics.analysis.sampled_preconditions import (
     find_period,
 )
 from drake_haptics.analysis.state_layout import find_state_layout
-from drake_haptics.one_line import one_line
+from drake_haptics.common.one_line import one_line
 
 _Port = TypeVar("_Port", InputPort, OutputPort)
 

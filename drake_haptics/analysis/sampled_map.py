@@ -17,7 +17,7 @@ from pydrake.systems.framework import (
 
 from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
 from drake_haptics.analysis.diagram_systems import Timing, calc_path, walk_leaves
-from drake_haptics.one_line import one_line
+from drake_haptics.common.one_line import one_line
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from drake_haptics.analysis.diagram_systems import (
     calc_path,
     walk_leaves,
 )
-from drake_haptics.argument_kinds import require_kinds
+from drake_haptics.common.type_checks import require_kinds
 
 
 def check_system_and_context(diagram: System, context: Context) -> None:

@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.linalg import expm
 
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 
 # Stiffnesses are tried this factor apart before the edge is bisected.
 _STEP = 2.0 ** (1.0 / 8.0)

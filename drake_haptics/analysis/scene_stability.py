@@ -31,10 +31,10 @@ from drake_haptics.analysis.stiffness_limits import (
     none_unless_finite,
 )
 from drake_haptics.analysis.z_width_map import ZWidth, z_width
-from drake_haptics.coupling_check import HeldHandle
-from drake_haptics.held_handle import calc_scene_handle, check_scene_coupling
-from drake_haptics.one_line import one_line
-from drake_haptics.scene import Scene
+from drake_haptics.bounds.coupling import HeldHandle
+from drake_haptics.bounds.held_handle import calc_scene_handle, check_scene_coupling
+from drake_haptics.common.one_line import one_line
+from drake_haptics.scene.schema import Scene
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -162,7 +162,7 @@ def analyse_scene(
         ValueError: The tool does not come to rest, or there is no equilibrium, or
             `map_size` is 1 or negative.
         SceneError: The scene cannot be built.
-        drake_haptics.simulation.RunError: It diverges before the tool touches.
+        drake_haptics.simulation.run.RunError: It diverges before the tool touches.
     """
     if map_size < 0 or map_size == 1:
         raise ValueError(f"map_size must be 0 or at least 2, is {map_size}")

@@ -10,7 +10,13 @@ from drake_haptics.analysis.mode_plot import plot_poles
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
 from drake_haptics.analysis.z_width_plot import HeldBounds
-from drake_haptics.colors import EIGENVALUE, FORMULA, ONE_AXIS, PASSIVITY, SIMULATION
+from drake_haptics.common.colors import (
+    EIGENVALUE,
+    FORMULA,
+    ONE_AXIS,
+    PASSIVITY,
+    SIMULATION,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

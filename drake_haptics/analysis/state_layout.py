@@ -9,7 +9,7 @@ from pydrake.multibody.tree import QuaternionFloatingJoint
 from pydrake.systems.framework import Context, System
 
 from drake_haptics.analysis.diagram_systems import calc_path, walk_leaves
-from drake_haptics.one_line import one_line
+from drake_haptics.common.one_line import one_line
 
 
 @dataclass(frozen=True)

@@ -10,17 +10,17 @@ from typing import Any, Literal
 from scipy.optimize import brentq
 
 from drake_haptics.analysis.aimed_hand import build_aimed
-from drake_haptics.analysis.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.held_loop import HeldLoop, analyse_held_scene
 from drake_haptics.analysis.held_scene import HeldScene
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.modes import find_modes
 from drake_haptics.analysis.motion_words import describe_motion
 from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
 from drake_haptics.analysis.stability_limit import find_stability_limit
-from drake_haptics.coupling_check import HeldHandle
-from drake_haptics.held_handle import calc_force_delay, calc_scene_handle
-from drake_haptics.passivity_bounds import calc_stable_stiffness
-from drake_haptics.scene import Coupling
+from drake_haptics.bounds.coupling import HeldHandle
+from drake_haptics.bounds.held_handle import calc_force_delay, calc_scene_handle
+from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
+from drake_haptics.scene.schema import Coupling
 
 Kind = Literal["translation", "rotation"]
 Against = Literal["this contact", "a rigid wall"]

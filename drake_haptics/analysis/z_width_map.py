@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drake_haptics.analysis.study import run_study
-from drake_haptics.one_line import one_line
+from drake_haptics.analysis.jobs.study import run_study
+from drake_haptics.common.one_line import one_line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

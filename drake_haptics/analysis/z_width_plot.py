@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drake_haptics.colors import EIGENVALUE, FORMULA, PASSIVITY, STABLE, UNSTABLE
-from drake_haptics.passivity_bounds import (
+from drake_haptics.bounds.sampled_spring import (
     calc_passive_stiffness,
     calc_stable_stiffness,
 )
+from drake_haptics.common.colors import EIGENVALUE, FORMULA, PASSIVITY, STABLE, UNSTABLE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,19 +10,7 @@ from typing import Any
 
 import click
 
-from drake_haptics.accuracy.add_peers import add_peers
-from drake_haptics.accuracy.budget import RUNS, BudgetChoice, choose_setting
-from drake_haptics.accuracy.budget_words import describe_file, to_budget_data
-from drake_haptics.accuracy.figures import AccuracyStudy
-from drake_haptics.accuracy.fresh_run import measure_p99
-from drake_haptics.accuracy.knobs import list_settings
-from drake_haptics.accuracy.one_setting import apply_checked, parse_setting
-from drake_haptics.accuracy.page import write_accuracy_page
-from drake_haptics.accuracy.setting import Setting
-from drake_haptics.accuracy.study import run_accuracy_study
-from drake_haptics.accuracy.study_json import to_json_data
-from drake_haptics.accuracy.words import name_setting
-from drake_haptics.analysis.study_error import StudyError
+from drake_haptics.analysis.jobs.error import StudyError
 from drake_haptics.cli import lessons
 from drake_haptics.cli.accuracy_output import print_choice, print_study
 from drake_haptics.cli.complete import complete_knob, complete_scene
@@ -43,11 +31,23 @@ from drake_haptics.cli.scene_options import (
     set_option,
     write_call,
 )
-from drake_haptics.errors import UserError
-from drake_haptics.page_path import check_page_path
-from drake_haptics.scene import Scene
-from drake_haptics.scene_file import write_scene
-from drake_haptics.simulation import RunError
+from drake_haptics.common.errors import UserError
+from drake_haptics.evaluation.accuracy.add_peers import add_peers
+from drake_haptics.evaluation.accuracy.budget import RUNS, BudgetChoice, choose_setting
+from drake_haptics.evaluation.accuracy.budget_words import describe_file, to_budget_data
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
+from drake_haptics.evaluation.accuracy.fresh_run import measure_p99
+from drake_haptics.evaluation.accuracy.knobs import list_settings
+from drake_haptics.evaluation.accuracy.one_setting import apply_checked, parse_setting
+from drake_haptics.evaluation.accuracy.page import write_accuracy_page
+from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.evaluation.accuracy.study import run_accuracy_study
+from drake_haptics.evaluation.accuracy.study_json import to_json_data
+from drake_haptics.evaluation.accuracy.words import name_setting
+from drake_haptics.report.paths import check_page_path
+from drake_haptics.scene.scene_file import write_scene
+from drake_haptics.scene.schema import Scene
+from drake_haptics.simulation.run import RunError
 
 _FILE: dict[str, Any] = {
     "type": click.Path(dir_okay=False, path_type=Path),

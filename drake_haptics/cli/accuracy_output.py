@@ -6,14 +6,14 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from drake_haptics.accuracy.budget import BudgetChoice
-from drake_haptics.accuracy.budget_words import (
+from drake_haptics.evaluation.accuracy.budget import BudgetChoice
+from drake_haptics.evaluation.accuracy.budget_words import (
     describe_help,
     describe_outcome,
     describe_sacrifices,
 )
-from drake_haptics.accuracy.figures import AccuracyStudy
-from drake_haptics.accuracy.table import (
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
+from drake_haptics.evaluation.accuracy.table import (
     MODEL_MARK,
     SCENE_MARK,
     get_columns,
@@ -21,7 +21,7 @@ from drake_haptics.accuracy.table import (
     make_cells,
     make_label,
 )
-from drake_haptics.accuracy.words import (
+from drake_haptics.evaluation.accuracy.words import (
     describe_knees,
     describe_machine,
     describe_missing,
@@ -31,7 +31,7 @@ from drake_haptics.accuracy.words import (
     describe_verdict,
     make_front,
 )
-from drake_haptics.scene import Scene
+from drake_haptics.scene.schema import Scene
 
 
 def print_study(console: Console, study: AccuracyStudy) -> None:

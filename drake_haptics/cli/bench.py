@@ -7,19 +7,23 @@ from pathlib import Path
 import click
 from rich.table import Table as RichTable
 
-from drake_haptics.bench.benchmark import (
+from drake_haptics.cli import lessons
+from drake_haptics.cli.console import make_console
+from drake_haptics.cli.lesson import TaughtCommand
+from drake_haptics.cli.mesh_options import json_option, meshes_option, write_json
+from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.evaluation.benchmark.benchmark import (
     PARTS,
     QUICK,
     BenchFigures,
     Effort,
     run_benchmarks,
 )
-from drake_haptics.bench.report import machine_line, make_tables, missing_lines
-from drake_haptics.cli import lessons
-from drake_haptics.cli.console import make_console
-from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import json_option, meshes_option, write_json
-from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.evaluation.benchmark.report import (
+    machine_line,
+    make_tables,
+    missing_lines,
+)
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.BENCH)

@@ -8,13 +8,13 @@ from pydrake.geometry import Meshcat
 from rich.console import Console
 from rich.progress import Progress, TaskID
 
-from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.authoring.plausibility import question_scene
 from drake_haptics.cli.failures import warn
 from drake_haptics.cli.scene_options import name_scale_options
 from drake_haptics.device.backend import DeviceBackend
-from drake_haptics.scene import Scene
-from drake_haptics.scene_check import SceneWarning
-from drake_haptics.scene_plausibility import question_scene
+from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.scene.schema import Scene
+from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 

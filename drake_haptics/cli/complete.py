@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import click
 from click.shell_completion import CompletionItem
 
-from drake_haptics.units import METRES_PER_UNIT
+from drake_haptics.geometry.mesh.units import METRES_PER_UNIT
 
 _ADDRESSES = {
     "udp://127.0.0.1:7400": "a driver, as `drake-haptics device` is one",
@@ -23,7 +23,7 @@ def complete_scene(
     _: click.Context, __: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Completes names of shipped scenes, else files."""
-    from drake_haptics.scene_library import list_scenes
+    from drake_haptics.scene.library import list_scenes
 
     return _complete(list_scenes(), incomplete) or [
         CompletionItem(incomplete, type="file")
@@ -59,7 +59,7 @@ def complete_setting(
     _: click.Context, __: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Completes KEY=VALUE of a scene: keys, and what some of them may be."""
-    from drake_haptics.scene_settings import list_setting_keys
+    from drake_haptics.scene.settings import list_setting_keys
 
     return _complete_value(list_setting_keys(), incomplete)
 
@@ -68,8 +68,8 @@ def complete_knob(
     _: click.Context, __: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Completes KEY=VALUE where one key is that of all objects."""
-    from drake_haptics.scene import EnvironmentObject, Scene
-    from drake_haptics.scene_keys import list_keys
+    from drake_haptics.scene.keys import list_keys
+    from drake_haptics.scene.schema import EnvironmentObject, Scene
 
     each = list_keys(EnvironmentObject, "environment.")
     return _complete_value([*list_keys(Scene), *each], incomplete)
@@ -81,7 +81,7 @@ def _complete_value(keys: Iterable[str], incomplete: str) -> list[CompletionItem
         return _complete([f"{key}=" for key in keys], incomplete)
     if not incomplete.startswith("device.preset="):
         return []
-    from drake_haptics.device_preset import list_device_presets
+    from drake_haptics.scene.device_preset import list_device_presets
 
     return _complete(
         [f"device.preset={name}" for name in list_device_presets()], incomplete

@@ -10,7 +10,7 @@ from click.shell_completion import get_completion_class
 
 from drake_haptics.cli import lessons
 from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.errors import UserError
+from drake_haptics.common.errors import UserError
 
 _PROGRAM = "drake-haptics"
 _FISH = "~/.config/fish/completions/drake-haptics.fish"

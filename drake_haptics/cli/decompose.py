@@ -22,11 +22,15 @@ from drake_haptics.cli.mesh_options import (
 )
 from drake_haptics.cli.page_words import describe_page
 from drake_haptics.cli.progress_bar import progress_bar
-from drake_haptics.decomposition import METHODS, Decomposition, Method
-from drake_haptics.decomposition import decompose as decompose_mesh
-from drake_haptics.merged_pieces import check_error
-from drake_haptics.mesh import Mesh
-from drake_haptics.mesh_report import Severity, length
+from drake_haptics.geometry.decomposition.decompose import (
+    METHODS,
+    Decomposition,
+    Method,
+)
+from drake_haptics.geometry.decomposition.decompose import decompose as decompose_mesh
+from drake_haptics.geometry.decomposition.merge import check_error
+from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.report import Severity, length
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.DECOMPOSE)
@@ -132,7 +136,9 @@ def _print_report(result: Decomposition) -> None:
 
 
 def _view(result: Decomposition, show: bool, html: str | None) -> None:
-    from drake_haptics.viewer import DecompositionViewer  # starts a web server
+    from drake_haptics.geometry.decomposition.viewer import (
+        DecompositionViewer,  # starts a web server
+    )
 
     with contextlib.closing(DecompositionViewer(result)) as viewer:
         if html is not None:

@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from drake_haptics.cockpit.taken_device import TakenDevice
+from drake_haptics.common.one_line import count
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceReading,
     GateState,
     LinkStatus,
 )
-from drake_haptics.one_line import count
 
 _STYLES = {
     GateState.IDLE: "dim",

@@ -11,7 +11,7 @@ from drake_haptics.cli import lessons
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
-from drake_haptics.device_preset import (
+from drake_haptics.scene.device_preset import (
     DevicePreset,
     list_device_presets,
     load_device_preset,

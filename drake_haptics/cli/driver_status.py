@@ -12,8 +12,8 @@ from rich.table import Table
 
 from drake_haptics.cli.device_words import describe_gate, describe_lateness
 from drake_haptics.cli.live_line import LiveLine
+from drake_haptics.common.one_line import count
 from drake_haptics.device.driver import DeviceDriver
-from drake_haptics.one_line import count
 
 # What ends a fault of a driver.
 DRIVER_REMEDY = "until the host disables it"

@@ -15,7 +15,7 @@ import click
 
 import drake_haptics
 from drake_haptics.cli.exit_codes import ExitCode
-from drake_haptics.errors import UserError
+from drake_haptics.common.errors import UserError
 
 _REMEDIES = {
     errno.ENOSPC: "free some space, or write to another disk",

@@ -12,7 +12,7 @@ from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.log_words import warn_of_gaps
 from drake_haptics.cli.mesh_options import require_folder, require_writable
 from drake_haptics.cli.progress_bar import progress_bar
-from drake_haptics.errors import UserError
+from drake_haptics.common.errors import UserError
 from drake_haptics.tick_log.csv_export import write_csv
 from drake_haptics.tick_log.tick_log import TickLogReader
 

@@ -12,7 +12,7 @@ from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.log_words import print_diff, warn_of_gaps
 from drake_haptics.cli.mesh_options import json_option, require_folder, write_json
 from drake_haptics.cli.progress_bar import progress_bar
-from drake_haptics.errors import UserError
+from drake_haptics.common.errors import UserError
 from drake_haptics.tick_log.log_diff import compare_logs
 from drake_haptics.tick_log.tick_log import read_tick_log
 

@@ -13,7 +13,7 @@ from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
-from drake_haptics.one_line import count
+from drake_haptics.common.one_line import count
 from drake_haptics.tick_log.log_summary import LogSummary, summarize_log
 
 

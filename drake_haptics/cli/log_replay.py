@@ -14,14 +14,14 @@ from drake_haptics.cli.log_words import print_diff, warn_of_gaps
 from drake_haptics.cli.mesh_options import json_option, write_json
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.cli.scene_options import set_option, set_values
-from drake_haptics.errors import UserError
-from drake_haptics.one_line import count
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.common.errors import UserError
+from drake_haptics.common.one_line import count
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.simulation.replay_log import load_log_scene
+from drake_haptics.simulation.replay_log import replay as replay_log
 from drake_haptics.tick_log.log_diff import compare_logs
 from drake_haptics.tick_log.mesh_digest import find_changed_meshes
-from drake_haptics.tick_log.replay import load_log_scene
-from drake_haptics.tick_log.replay import replay as replay_log
 from drake_haptics.tick_log.tick_log import read_tick_log
 
 

@@ -9,7 +9,7 @@ import click
 from rich.table import Table
 
 from drake_haptics.cli.console import make_console
-from drake_haptics.one_line import count
+from drake_haptics.common.one_line import count
 from drake_haptics.tick_log.log_diff import LogDiff
 
 # Of two scenes that differ, more are told by --json.

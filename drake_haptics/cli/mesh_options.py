@@ -12,10 +12,10 @@ from typing import Any, TypeVar
 import click
 
 from drake_haptics.cli.complete import complete_unit
-from drake_haptics.errors import UserError
-from drake_haptics.mesh import Mesh, load_mesh
-from drake_haptics.mesh_decimation import decimate
-from drake_haptics.units import METRES_PER_UNIT
+from drake_haptics.common.errors import UserError
+from drake_haptics.geometry.mesh.decimation import decimate
+from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+from drake_haptics.geometry.mesh.units import METRES_PER_UNIT
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 

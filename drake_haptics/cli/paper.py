@@ -19,8 +19,7 @@ from drake_haptics.cli.mesh_options import (
     write_json,
 )
 from drake_haptics.cli.progress_bar import progress_bar
-from drake_haptics.page_path import check_page_path
-from drake_haptics.paper.evaluation import (
+from drake_haptics.evaluation.paper.evaluation import (
     PARTS,
     QUICK,
     Effort,
@@ -28,8 +27,9 @@ from drake_haptics.paper.evaluation import (
     Part,
     evaluate_paper,
 )
-from drake_haptics.paper.page import summarize, write_paper_page
-from drake_haptics.paper.report import describe_machine_line, make_sections
+from drake_haptics.evaluation.paper.page import summarize, write_paper_page
+from drake_haptics.evaluation.paper.report import describe_machine_line, make_sections
+from drake_haptics.report.paths import check_page_path
 
 _STYLES = {
     "agrees": "green",

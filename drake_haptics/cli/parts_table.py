@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rich.table import Table
 
-from drake_haptics.explain import Part
+from drake_haptics.simulation.explain import Part
 
 
 def make_parts_table(parts: Sequence[Part]) -> Table:
@@ -31,7 +31,7 @@ def describe_skin(speed_m_per_s: float) -> str:
     """Returns above which speed a step skips the skin of contact.
 
     Args:
-        speed_m_per_s: Of `drake_haptics.builder.HapticDiagram`.
+        speed_m_per_s: Of `drake_haptics.loop.builder.HapticDiagram`.
     """
     return (
         f"Above {speed_m_per_s:g} m/s the tool crosses contact.tolerance_m in one step:"

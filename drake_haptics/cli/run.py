@@ -13,8 +13,8 @@ from drake_haptics.cli.finite_range import FiniteRange
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.cli.mesh_options import require_folder, unit_option
 from drake_haptics.cli.scene_options import set_option
-from drake_haptics.errors import UserError
-from drake_haptics.units import metres_per_unit
+from drake_haptics.common.errors import UserError
+from drake_haptics.geometry.mesh.units import metres_per_unit
 
 _EXPLAINED_S = 2.0
 

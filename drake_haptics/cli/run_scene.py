@@ -11,7 +11,7 @@ import click
 from pydrake.geometry import Meshcat
 from rich.console import Console
 
-from drake_haptics.builder import HapticDiagram
+from drake_haptics.authoring.speedup import find_tick_relief
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.device_words import describe_fault
 from drake_haptics.cli.exit_codes import ExitCode
@@ -27,14 +27,14 @@ from drake_haptics.cli.scene_options import (
     set_values,
 )
 from drake_haptics.cli.status_line import make_summary
-from drake_haptics.cockpit.page_port import open_page_port
-from drake_haptics.errors import UserError
-from drake_haptics.recording import write_recording
-from drake_haptics.scene import Scene, SceneError
-from drake_haptics.scene_file import write_scene
-from drake_haptics.stage import open_meshcat, set_stage
-from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
-from drake_haptics.tick_relief import find_tick_relief
+from drake_haptics.common.errors import UserError
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.scene.scene_file import write_scene
+from drake_haptics.scene.schema import Scene, SceneError
+from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
+from drake_haptics.visualization.meshcat import open_meshcat, set_stage
+from drake_haptics.visualization.recording import write_recording
+from drake_haptics.web.port import open_page_port
 
 _MESH_OPTIONS = {
     "tool.mesh": "--tool",

@@ -14,8 +14,6 @@ from pydrake.geometry import Meshcat
 from pydrake.systems.framework import Context
 from rich.console import Console
 
-from drake_haptics.builder import HapticDiagram
-from drake_haptics.callback_timer import CallbackTimer
 from drake_haptics.cli.build_scene import build_scene
 from drake_haptics.cli.change_log import ChangeLog
 from drake_haptics.cli.device_words import describe_held
@@ -28,17 +26,19 @@ from drake_haptics.cockpit.taken_device import (
     TakenDevice,
     take_device,
 )
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import DeviceBackend, DeviceError
-from drake_haptics.device_address import NoPageError, open_device
-from drake_haptics.device_watch import DeviceWatch
-from drake_haptics.explain import Part, explain_tick
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene import Scene
-from drake_haptics.simulation import RunError, run
-from drake_haptics.skin import calc_skin_speed
-from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
-from drake_haptics.tick_clock import TickClock
-from drake_haptics.tick_log.loop_log import make_log_header
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.loop.open_device import NoPageError, open_device
+from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.scene.schema import Scene
+from drake_haptics.scene.skin import calc_skin_speed
+from drake_haptics.simulation.callback_timer import CallbackTimer
+from drake_haptics.simulation.device_monitor import DeviceWatch
+from drake_haptics.simulation.explain import Part, explain_tick
+from drake_haptics.simulation.run import RunError, run
+from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from drake_haptics.cli.complete import complete_setting
-from drake_haptics.errors import SceneError, UserError
+from drake_haptics.common.errors import SceneError, UserError
 
 if TYPE_CHECKING:
-    from drake_haptics.scene import Scene
+    from drake_haptics.scene.schema import Scene
 
 # A scale that the library asks for, as a key of a scene or an argument.
 _SCALE = re.compile(r"(tool|environment)(?:\[0\]\.|\.|_)scale(?:: |=)([\d.e-]+)")
@@ -46,8 +46,8 @@ def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
         SceneError: There is no such scene, or it cannot be used.
         UserError: As `set_values`.
     """
-    from drake_haptics.scene import load_scene
-    from drake_haptics.scene_library import find_scene
+    from drake_haptics.scene.library import find_scene
+    from drake_haptics.scene.schema import load_scene
 
     return set_values(load_scene(find_scene(scene)), settings)
 
@@ -58,7 +58,7 @@ def set_values(scene: Scene, settings: Sequence[str]) -> Scene:
     Raises:
         UserError: It is no key, or an impossible value.
     """
-    from drake_haptics.scene_settings import change_scene
+    from drake_haptics.scene.settings import change_scene
 
     if not settings:
         return scene

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 from rich.table import Table
 
+from drake_haptics.analysis.jobs.study import StudyError
 from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
 from drake_haptics.analysis.stability_page import (
     describe_delay,
@@ -16,7 +17,6 @@ from drake_haptics.analysis.stability_page import (
     write_stability_page,
 )
 from drake_haptics.analysis.stiffness_limits import format_limit
-from drake_haptics.analysis.study import StudyError
 from drake_haptics.cli import lessons
 from drake_haptics.cli.complete import complete_scene
 from drake_haptics.cli.console import make_console
@@ -30,9 +30,9 @@ from drake_haptics.cli.mesh_options import (
 )
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.cli.scene_options import load_set_scene, set_option
-from drake_haptics.errors import UserError
-from drake_haptics.page_path import check_page_path
-from drake_haptics.simulation import RunError
+from drake_haptics.common.errors import UserError
+from drake_haptics.report.paths import check_page_path
+from drake_haptics.simulation.run import RunError
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.STABILITY)

@@ -11,7 +11,6 @@ from pydrake.systems.framework import Context
 from rich.console import Console
 from rich.table import Table
 
-from drake_haptics.builder import HapticDiagram
 from drake_haptics.cli.device_words import (
     describe_device,
     describe_gate,
@@ -20,11 +19,12 @@ from drake_haptics.cli.device_words import (
     describe_link,
 )
 from drake_haptics.cli.live_line import LiveLine
+from drake_haptics.common.one_line import count
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import DeviceReading, GateState
-from drake_haptics.device_watch import SILENT_S, DriverSilence
-from drake_haptics.one_line import count
-from drake_haptics.systems.load_shedding import SHED_STAGES
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.simulation.device_monitor import SILENT_S, DriverSilence
+from drake_haptics.systems.contact.load_shedding import SHED_STAGES
 
 # Energies below are rounding: a nanojoule lifts a milligram by a tenth of a
 # millimeter.

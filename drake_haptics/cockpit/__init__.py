@@ -1,5 +1,5 @@
 """The cockpit: the page on which a run is seen, felt and changed.
 
-The page is served by a process of its own, `page_process`, so that drawing and talking
-delay no tick. The loop's end of the way to it is a `PageLink`.
+The page is served by a process of its own, `drake_haptics.web.process`, so that drawing
+and talking delay no tick. The loop's end of the way to it is a `PageLink`.
 """

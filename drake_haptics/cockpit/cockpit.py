@@ -7,22 +7,22 @@ from time import monotonic
 
 from pydrake.systems.framework import Context
 
-from drake_haptics.builder import HapticDiagram
+from drake_haptics.authoring.plausibility import question_start
+from drake_haptics.authoring.speedup import find_key_that_helps
 from drake_haptics.cockpit.coupling_advice import CouplingAdvice
 from drake_haptics.cockpit.greeting import make_greeting
 from drake_haptics.cockpit.holding import Holding
-from drake_haptics.cockpit.live_page import LivePage, Outlook
 from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import SceneChanges
 from drake_haptics.cockpit.steering import Steering
-from drake_haptics.cockpit.telemetry import ACTIVE, SIMULATED, WAITING
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import DeviceReading, GateState
-from drake_haptics.device_watch import DriverSilence
-from drake_haptics.live_key import LiveKey
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene_plausibility import question_start
-from drake_haptics.tick_clock import TickClock
-from drake_haptics.tick_relief import find_key_that_helps
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.simulation.device_monitor import DriverSilence
+from drake_haptics.simulation.live_key import LiveKey
+from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.web.live_page import LivePage, Outlook
+from drake_haptics.web.telemetry import ACTIVE, SIMULATED, WAITING
 
 # Pages are told of changes no oftener: a slider that is dragged makes one per frame.
 _TELL_PERIOD_S = 0.1

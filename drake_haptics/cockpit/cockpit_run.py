@@ -9,22 +9,22 @@ from contextlib import ExitStack, closing
 from pydrake.geometry import Meshcat
 from pydrake.systems.framework import Context
 
-from drake_haptics.builder import HapticDiagram
 from drake_haptics.cockpit.cockpit import Cockpit
 from drake_haptics.cockpit.coupling_advice import CouplingAdvice
 from drake_haptics.cockpit.holding import Holding
-from drake_haptics.cockpit.live_page import LivePage
-from drake_haptics.cockpit.page_camera import look_from_the_front
 from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import SceneChanges
 from drake_haptics.cockpit.segments import Segments
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import DeviceBackend
-from drake_haptics.device_site import find_device_site
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene import Scene
-from drake_haptics.simulation import RunError
-from drake_haptics.systems.picture_views import SHOWN_AT_FIRST
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.loop.device_placement import find_device_site
+from drake_haptics.scene.schema import Scene
+from drake_haptics.simulation.run import RunError
+from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
+from drake_haptics.web.camera import look_from_the_front
+from drake_haptics.web.live_page import LivePage
 
 # Until a page tells, the camera is this many radii in front of the workspace: at -y.
 _FIRST_DISTANCE = 4.0

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import warnings
 
-from drake_haptics.coupling_check import (
+from drake_haptics.bounds.coupling import (
     BrokenBound,
     find_broken_bounds,
     find_exceeded_ratings,
 )
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.held_handle import (
+from drake_haptics.bounds.held_handle import (
     calc_force_delay,
     calc_loosely_held,
     calc_scene_handle,
     find_real_bounds,
 )
-from drake_haptics.scene import Scene, SceneError
-from drake_haptics.scene_check import SceneWarning
-from drake_haptics.simulated_device import make_hand_path, make_simulated_device
+from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.scene.schema import Scene, SceneError
+from drake_haptics.scene.validation import SceneWarning
 
 
 class CouplingAdvice:

@@ -12,11 +12,11 @@ from drake_haptics.cockpit.scene_changes import (
     EFFECTS,
     SceneChanges,
 )
-from drake_haptics.colors import make_legend
-from drake_haptics.device_site import DeviceSite
-from drake_haptics.stage import CAMERAS
-from drake_haptics.systems.load_shedding import SHED_STAGES
-from drake_haptics.systems.picture_views import PICTURE_VIEWS
+from drake_haptics.common.colors import make_legend
+from drake_haptics.loop.device_placement import DeviceSite
+from drake_haptics.systems.contact.load_shedding import SHED_STAGES
+from drake_haptics.systems.output.picture_views import PICTURE_VIEWS
+from drake_haptics.visualization.meshcat import CAMERAS
 
 _LONGEST_DESCRIPTION = 2000
 _CLUSTERING_HELP = (

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 
-from drake_haptics.cockpit.page_handle import PageHandle
 from drake_haptics.cockpit.taken_device import TakenDevice, take_device
 from drake_haptics.device.backend import DeviceBackend, DeviceError, GateState
 from drake_haptics.device.meshcat_device import MeshcatDevice
-from drake_haptics.device_address import open_device
-from drake_haptics.device_site import find_device_site, wait_for_reading
-from drake_haptics.scene import Scene
+from drake_haptics.loop.device_placement import find_device_site, wait_for_reading
+from drake_haptics.loop.open_device import open_device
+from drake_haptics.scene.schema import Scene
+from drake_haptics.web.handle import PageHandle
 
 HAND, MOUSE, SLIDERS, DEVICE = "hand", "mouse", "sliders", "device"
 _LABELS = {HAND: "Simulated hand", MOUSE: "Mouse", SLIDERS: "Sliders, gamepad"}

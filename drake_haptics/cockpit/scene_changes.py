@@ -5,9 +5,8 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-from drake_haptics.errors import UserError
-from drake_haptics.live_key import LiveKey, live_keys
-from drake_haptics.scene import (
+from drake_haptics.common.errors import UserError
+from drake_haptics.scene.schema import (
     Braking,
     Effects,
     Friction,
@@ -17,6 +16,7 @@ from drake_haptics.scene import (
     Scene,
     Shading,
 )
+from drake_haptics.simulation.live_key import LiveKey, live_keys
 
 SCENE_VERBS = ("set", "choose", "effect", "reset")
 CLUSTERING = "contact.clustering"

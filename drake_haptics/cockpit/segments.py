@@ -9,17 +9,17 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context
 
-from drake_haptics.builder import BuildHapticDiagram, HapticDiagram
-from drake_haptics.carried_context import carry_on, find_handle
 from drake_haptics.cockpit.cockpit import Cockpit
 from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.steering import Change
-from drake_haptics.errors import UserError
-from drake_haptics.retired_diagram import retire
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene_check import SceneWarning
-from drake_haptics.simulation import RunError, run
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.common.errors import UserError
+from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
+from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.simulation.release_diagram import retire
+from drake_haptics.simulation.run import RunError, run
+from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.simulation.transfer_state import carry_on, find_handle
 
 
 class Segments:

@@ -10,18 +10,18 @@ from typing import Any
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context
 
-from drake_haptics.builder import HapticDiagram
 from drake_haptics.cockpit.holding import DEVICE, HAND, Holding
 from drake_haptics.cockpit.page_picture import PagePicture
-from drake_haptics.cockpit.page_request import REFUSED
 from drake_haptics.cockpit.scene_changes import (
     SCENE_VERBS,
     ChangeError,
     SceneChanges,
 )
-from drake_haptics.errors import UserError
-from drake_haptics.live_glide import LiveGlide
-from drake_haptics.live_scene import is_live_change, put_live_values
+from drake_haptics.common.errors import UserError
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.simulation.live_ramp import LiveGlide
+from drake_haptics.simulation.live_scene import is_live_change, put_live_values
+from drake_haptics.web.request import REFUSED
 
 # A slider that needs another diagram builds it when it has rested for so long.
 _REST_S = 0.25

@@ -15,8 +15,8 @@ from drake_haptics.device.backend import (
     GateState,
     LinkStatus,
 )
-from drake_haptics.device_site import find_device_site
-from drake_haptics.scene import Scene
+from drake_haptics.loop.device_placement import find_device_site
+from drake_haptics.scene.schema import Scene
 
 # Of the largest force and torque: what may set in without surprising a hand. The weight
 # of a tool is less, what presses a tool out of a wall more.

@@ -164,22 +164,24 @@ void BindConvexPair(nb::module_& m) {
       .def_prop_ro("depth", &ConvexPair::depth, "'tracked' or 'global'.")
       .def("query", &ConvexPair::Query, nb::arg("X_WA").none(),
            nb::arg("X_WB").none(),
-           nb::sig("def query(self, X_WA: drake_haptics.pose_like.PoseLike, "
-                   "X_WB: drake_haptics.pose_like.PoseLike) -> Contact"),
+           nb::sig(
+               "def query(self, X_WA: drake_haptics.common.pose_like.PoseLike, "
+               "X_WB: drake_haptics.common.pose_like.PoseLike) -> Contact"),
            "`Contact` of the pair at the poses X_WA and X_WB.\n\n"
            "Raises:\n    ValueError: a pose is not finite or not rigid.")
-      .def("query_trajectory", &ConvexPair::QueryTrajectory,
-           nb::arg("X_WA").none(), nb::arg("X_WB").none(),
-           nb::sig("def query_trajectory(self, X_WA: "
-                   "drake_haptics.pose_like.PoseLike, X_WB: "
-                   "drake_haptics.pose_like.PoseLike) -> PairTrajectory"),
-           "What n single queries would give, in one call without the GIL.\n\n"
-           "Args:\n"
-           "    X_WA: (n, 4, 4) or (n, 7) poses of A in turn, or one pose if A "
-           "rests.\n"
-           "    X_WB: the same of B.\n\n"
-           "Raises:\n    ValueError: a pose is not finite or not rigid, or "
-           "numbers of poses differ; nothing was asked then.")
+      .def(
+          "query_trajectory", &ConvexPair::QueryTrajectory,
+          nb::arg("X_WA").none(), nb::arg("X_WB").none(),
+          nb::sig("def query_trajectory(self, X_WA: "
+                  "drake_haptics.common.pose_like.PoseLike, X_WB: "
+                  "drake_haptics.common.pose_like.PoseLike) -> PairTrajectory"),
+          "What n single queries would give, in one call without the GIL.\n\n"
+          "Args:\n"
+          "    X_WA: (n, 4, 4) or (n, 7) poses of A in turn, or one pose if A "
+          "rests.\n"
+          "    X_WB: the same of B.\n\n"
+          "Raises:\n    ValueError: a pose is not finite or not rigid, or "
+          "numbers of poses differ; nothing was asked then.")
       .def("reset", &ConvexPair::Reset, "Forgets what earlier queries found.")
       .def("__deepcopy__",
            [](const ConvexPair& self, nb::handle) { return ConvexPair(self); })

@@ -295,9 +295,11 @@ void BindContactTracker(nb::module_& m) {
            nb::arg("A").none(), nb::arg("B").none(),
            nb::arg("tolerance").none(), nb::arg("depth").none() = "tracked",
            nb::arg("max_walk_steps").none() = WalkBounds{}.max_steps,
-           nb::sig("def __init__(self, A: drake_haptics.decomposition."
-                   "Decomposition | Decomposition, B: drake_haptics."
-                   "decomposition.Decomposition | Decomposition, tolerance: "
+           nb::sig("def __init__(self, A: "
+                   "drake_haptics.geometry.decomposition.decompose."
+                   "Decomposition | Decomposition, B: "
+                   "drake_haptics.geometry.decomposition.decompose."
+                   "Decomposition | Decomposition, tolerance: "
                    "float, depth: typing.Literal['tracked', 'global'] = "
                    "'tracked', max_walk_steps: int = 1024) -> None"),
            "Watches A against B for contacts up to `tolerance` "
@@ -306,15 +308,17 @@ void BindContactTracker(nb::module_& m) {
            "negative or not finite, no such depth, or max_walk_steps below 1.")
       .def("query", &PairTracker::Query, nb::arg("X_WA").none(),
            nb::arg("X_WB").none(),
-           nb::sig("def query(self, X_WA: drake_haptics.pose_like.PoseLike, "
-                   "X_WB: drake_haptics.pose_like.PoseLike) -> ContactSet"),
+           nb::sig(
+               "def query(self, X_WA: drake_haptics.common.pose_like.PoseLike, "
+               "X_WB: drake_haptics.common.pose_like.PoseLike) -> ContactSet"),
            "`ContactSet` of the bodies at the poses X_WA and X_WB.\n\n"
            "Raises:\n    ValueError: a pose is not finite or not rigid.")
       .def("query_trajectory", &PairTracker::QueryTrajectory,
            nb::arg("X_WA").none(), nb::arg("X_WB").none(),
-           nb::sig("def query_trajectory(self, X_WA: "
-                   "drake_haptics.pose_like.PoseLike, X_WB: "
-                   "drake_haptics.pose_like.PoseLike) -> ContactTrajectory"),
+           nb::sig(
+               "def query_trajectory(self, X_WA: "
+               "drake_haptics.common.pose_like.PoseLike, X_WB: "
+               "drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory"),
            "What k single queries would give, in one call without the GIL.\n\n"
            "Args:\n"
            "    X_WA: (k, 4, 4) or (k, 7) poses of A in turn, or one pose if A "
@@ -341,9 +345,11 @@ void BindSceneTracker(nb::module_& m) {
            nb::arg("tool").none(), nb::arg("objects").none(),
            nb::arg("tolerance").none(), nb::arg("depth").none() = "tracked",
            nb::arg("max_walk_steps").none() = WalkBounds{}.max_steps,
-           nb::sig("def __init__(self, tool: drake_haptics.decomposition."
+           nb::sig("def __init__(self, tool: "
+                   "drake_haptics.geometry.decomposition.decompose."
                    "Decomposition | Decomposition, objects: collections.abc."
-                   "Sequence[drake_haptics.decomposition.Decomposition | "
+                   "Sequence[drake_haptics.geometry.decomposition.decompose."
+                   "Decomposition | "
                    "Decomposition], tolerance: float, depth: typing.Literal["
                    "'tracked', 'global'] = 'tracked', max_walk_steps: int = "
                    "1024) -> None"),
@@ -359,13 +365,14 @@ void BindSceneTracker(nb::module_& m) {
       .def("set_object_pose", &SceneTracker::SetObjectPose, nb::arg("i"),
            nb::arg("X_WO").none(),
            nb::sig("def set_object_pose(self, i: int, X_WO: "
-                   "drake_haptics.pose_like.PoseLike) -> None"),
+                   "drake_haptics.common.pose_like.PoseLike) -> None"),
            "Poses object i.\n\n"
            "Raises:\n    ValueError: not a pose; the object stays where it is."
            "\n    IndexError: no such object.")
       .def("query", &SceneTracker::Query, nb::arg("X_WTool").none(),
            nb::arg("tolerance") = nb::none(),
-           nb::sig("def query(self, X_WTool: drake_haptics.pose_like.PoseLike, "
+           nb::sig("def query(self, X_WTool: "
+                   "drake_haptics.common.pose_like.PoseLike, "
                    "tolerance: float | None = None) -> ContactSet"),
            "`ContactSet` of the tool at the pose X_WTool. With a `tolerance` "
            "(m) smaller than the tracker's only of contacts up to that, for "
@@ -374,8 +381,9 @@ void BindSceneTracker(nb::module_& m) {
            "the tolerance not within 0 and the tracker's.")
       .def("query_trajectory", &SceneTracker::QueryTrajectory,
            nb::arg("X_WTool").none(),
-           nb::sig("def query_trajectory(self, X_WTool: "
-                   "drake_haptics.pose_like.PoseLike) -> ContactTrajectory"),
+           nb::sig(
+               "def query_trajectory(self, X_WTool: "
+               "drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory"),
            "What k single queries would give, in one call without the GIL; the "
            "objects rest.\n\n"
            "Args:\n"

@@ -14,8 +14,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_haptics.errors import UserError
-from drake_haptics.one_line import count, one_line
+from drake_haptics.common.errors import UserError
+from drake_haptics.common.one_line import count, one_line
 
 _Backend = TypeVar("_Backend", bound="DeviceBackend")
 

@@ -13,10 +13,10 @@ from typing import Any, Protocol
 import numpy as np
 
 from drake_haptics import _core
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import DeviceReading, Fault, GateState
 from drake_haptics.device.driver_socket import DriverSocket, Peer
 from drake_haptics.device.driver_statistics import DriverStatistics
-from drake_haptics.tick_clock import TickClock
 
 # A tick looks at so many packets and leaves the rest: a host sends one or two, and a
 # flood must not keep the loop from its next tick.

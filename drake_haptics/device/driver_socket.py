@@ -6,7 +6,7 @@ import errno
 import socket
 from collections.abc import Iterator
 
-from drake_haptics.errors import UserError
+from drake_haptics.common.errors import UserError
 
 Peer = tuple[str, int]
 # More than any packet of the protocol: what is longer is cut, and refused for it.

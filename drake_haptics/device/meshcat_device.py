@@ -9,6 +9,7 @@ import numpy as np
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 
+from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceCommand,
@@ -17,7 +18,6 @@ from drake_haptics.device.backend import (
 )
 from drake_haptics.device.followed_handle import FollowedHandle
 from drake_haptics.device.gamepad import GamepadReader
-from drake_haptics.pose_vector import pose_to_vector
 
 # Label, and the keys that make it less and more.
 _SLIDERS = (

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from drake_haptics.one_line import count
+from drake_haptics.common.one_line import count
 from drake_haptics.tick_log.log_scanner import Damage, EndMark, scan_blocks
 from drake_haptics.tick_log.tick_log_header import TickLogHeader, read_header
 from drake_haptics.tick_log.tick_rows import TickRows, join_rows

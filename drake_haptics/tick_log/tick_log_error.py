@@ -1,6 +1,6 @@
 """What is wrong with a log, for the person who has it."""
 
-from drake_haptics.errors import UserError
+from drake_haptics.common.errors import UserError
 
 
 class TickLogError(UserError):

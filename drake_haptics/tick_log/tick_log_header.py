@@ -9,7 +9,7 @@ import zlib
 from dataclasses import asdict, dataclass, fields
 from typing import BinaryIO
 
-from drake_haptics.one_line import one_line
+from drake_haptics.common.one_line import one_line
 from drake_haptics.tick_log.tick_log_error import TickLogError
 
 FILE_MAGIC = b"\x89DHLOG\r\n"

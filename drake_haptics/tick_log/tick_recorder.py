@@ -12,7 +12,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from drake_haptics.one_line import count
+from drake_haptics.common.one_line import count
 from drake_haptics.tick_log.tick_block import MAX_BLOCK_TICKS, pack_block
 from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_log_header import TickLogHeader, pack_header

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drake_haptics.one_line import one_line
+from drake_haptics.common.one_line import one_line
 
 POSE = ("qw", "qx", "qy", "qz", "x_m", "y_m", "z_m")
 VELOCITY = (

@@ -5,7 +5,7 @@ import pytest
 from accuracy_samples import make_peers, make_study
 from headless_browser import HeadlessBrowser, find_browser
 
-from drake_haptics.accuracy.page import write_accuracy_page
+from drake_haptics.evaluation.accuracy.page import write_accuracy_page
 
 
 @pytest.mark.parametrize(("width", "is_phone"), [(1280, False), (390, True)])

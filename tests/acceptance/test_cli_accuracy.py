@@ -11,11 +11,11 @@ import pytest
 from accuracy_samples import make_peers, make_study
 from click.testing import CliRunner
 
-from drake_haptics.accuracy.study_json import from_json_data
 from drake_haptics.cli import accuracy as command
 from drake_haptics.cli import main
-from drake_haptics.scene import load_scene
-from drake_haptics.simulation import RunError
+from drake_haptics.evaluation.accuracy.study_json import from_json_data
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.simulation.run import RunError
 
 # The installed command, beside the interpreter.
 COMMAND = Path(sys.executable).with_name("drake-haptics")

@@ -9,8 +9,8 @@ from click.shell_completion import get_completion_class
 from click.testing import CliRunner
 
 from drake_haptics.cli import main
-from drake_haptics.device_preset import list_device_presets
-from drake_haptics.scene_library import list_scenes
+from drake_haptics.scene.device_preset import list_device_presets
+from drake_haptics.scene.library import list_scenes
 
 BIN = Path(sys.executable).parent
 

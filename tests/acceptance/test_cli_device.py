@@ -7,7 +7,7 @@ import socket
 from click.testing import CliRunner
 
 from drake_haptics.cli import main
-from drake_haptics.scene_library import find_scene
+from drake_haptics.scene.library import find_scene
 
 
 def invoke(*arguments):

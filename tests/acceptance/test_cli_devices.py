@@ -9,7 +9,7 @@ from pathlib import Path
 from click.testing import CliRunner
 
 from drake_haptics.cli import main
-from drake_haptics.device_preset import list_device_presets
+from drake_haptics.scene.device_preset import list_device_presets
 
 # The installed command, beside the interpreter.
 COMMAND = Path(sys.executable).with_name("drake-haptics")

@@ -10,9 +10,10 @@ import pytest
 import trimesh
 from click.testing import CliRunner
 
-from drake_haptics import coacd_backend, decomposition
 from drake_haptics.cli import main, mesh_options
-from drake_haptics.scene_library import list_scenes
+from drake_haptics.geometry.decomposition import coacd as coacd_backend
+from drake_haptics.geometry.decomposition import decompose as decomposition
+from drake_haptics.scene.library import list_scenes
 
 SCENE = """\
 tool: {mesh: tool.obj}

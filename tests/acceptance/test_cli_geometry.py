@@ -13,8 +13,8 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from mesh_samples import box, l_prism, real_mesh
 
-from drake_haptics.decomposition import Decomposition
-from drake_haptics.shapes import SHAPES
+from drake_haptics.evaluation.shapes import SHAPES
+from drake_haptics.geometry.decomposition.decompose import Decomposition
 
 PROGRAM = [str(Path(sys.executable).with_name("drake-haptics"))]
 
@@ -156,7 +156,7 @@ def test_drake_is_never_imported(environment, l_file, subcommand):
         "from drake_haptics.cli import main\n"
         f"main([{subcommand!r}, {str(l_file)!r}], standalone_mode=False)\n"
         "assert 'pydrake' not in sys.modules\n"
-        "assert 'drake_haptics.mesh' in sys.modules\n"
+        "assert 'drake_haptics.geometry.mesh.mesh' in sys.modules\n"
     )
     result = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, timeout=180

@@ -12,8 +12,8 @@ from click.testing import CliRunner
 
 from drake_haptics.cli import main
 from drake_haptics.cli.lazy_group import LazyGroup
-from drake_haptics.scene_library import list_scenes
-from drake_haptics.shapes import SHAPES
+from drake_haptics.evaluation.shapes import SHAPES
+from drake_haptics.scene.library import list_scenes
 
 
 def find_commands(group=main, words=()):

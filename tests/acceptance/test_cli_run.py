@@ -15,10 +15,10 @@ import websocket
 from click.testing import CliRunner
 
 from drake_haptics.cli import main, run_session
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene_library import list_scenes
-from drake_haptics.shapes import SHAPES
-from drake_haptics.simulation import RunError
+from drake_haptics.evaluation.shapes import SHAPES
+from drake_haptics.scene.library import list_scenes
+from drake_haptics.simulation.run import RunError
+from drake_haptics.simulation.statistics import RunStatistics
 
 # The installed command, beside the interpreter.
 COMMAND = Path(sys.executable).with_name("drake-haptics")

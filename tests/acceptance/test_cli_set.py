@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 from drake_haptics import find_scene, load_scene
 from drake_haptics.cli import accuracy, main, stability
-from drake_haptics.scene import Scene
-from drake_haptics.tick_log.replay import load_log_scene
+from drake_haptics.scene.schema import Scene
+from drake_haptics.simulation.replay_log import load_log_scene
 from drake_haptics.tick_log.tick_log import read_tick_log
 
 SOFT = ["--set", "contact.stiffness_N_per_m=400"]

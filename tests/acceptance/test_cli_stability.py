@@ -14,7 +14,7 @@ from held_samples import analyse_sample, make_limits
 from drake_haptics.analysis import scene_stability
 from drake_haptics.cli import main
 from drake_haptics.cli import stability as command
-from drake_haptics.simulation import RunError
+from drake_haptics.simulation.run import RunError
 
 # The installed command, beside the interpreter.
 COMMAND = Path(sys.executable).with_name("drake-haptics")

@@ -12,7 +12,7 @@ from markdown_page import find_spans
 import drake_haptics
 from drake_haptics import _core
 from drake_haptics.device import local_gate
-from drake_haptics.scene import Scene
+from drake_haptics.scene.schema import Scene
 
 DOCS = Path(__file__).parents[2] / "docs"
 TEXT = (DOCS / "concepts.md").read_text(encoding="utf-8")

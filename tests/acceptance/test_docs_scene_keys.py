@@ -10,10 +10,10 @@ from markdown_page import find_blocks, find_spans
 from pydrake.common.yaml import yaml_load
 
 from drake_haptics import Contact
-from drake_haptics.device_preset import DevicePreset
-from drake_haptics.scene import Scene
-from drake_haptics.scene_check import SceneError
-from drake_haptics.yaml_keys import check_keys
+from drake_haptics.scene.device_preset import DevicePreset
+from drake_haptics.scene.schema import Scene
+from drake_haptics.scene.validation import SceneError
+from drake_haptics.scene.yaml_loading import check_keys
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md"])

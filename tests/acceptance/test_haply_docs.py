@@ -6,7 +6,7 @@ from pathlib import Path
 
 from haply_service import HaplyService, Inverse3
 
-from drake_haptics.device.haply_device import HaplyDevice
+from drake_haptics.device.haply.haply_device import HaplyDevice
 
 TEXT = (Path(__file__).parents[2] / "docs" / "haply.md").read_text(encoding="utf-8")
 (SNIPPET,) = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from drake_haptics.scene import Contact
-from drake_haptics.systems.contact_clustering import ContactClustering
-from drake_haptics.systems.contact_query import ContactQuery
-from drake_haptics.systems.penalty_force import PenaltyForce
-from drake_haptics.systems.virtual_coupling import VirtualCoupling
+from drake_haptics.scene.schema import Contact
+from drake_haptics.systems.contact.contact_clustering import ContactClustering
+from drake_haptics.systems.contact.contact_query import ContactQuery
+from drake_haptics.systems.contact.penalty_force import PenaltyForce
+from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 TEXT = (Path(__file__).parents[2] / "docs" / "live-values.md").read_text("utf-8")
 SNIPPETS = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)

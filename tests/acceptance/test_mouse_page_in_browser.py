@@ -9,10 +9,10 @@ from headless_browser import HeadlessBrowser, find_browser
 from pydrake.geometry import Box, Rgba, Sphere
 from pydrake.math import RigidTransform, RotationMatrix
 
-from drake_haptics.cockpit.mouse_device import MouseDevice
+from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.device.backend import DeviceCommand
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.stage import open_meshcat
+from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.web.mouse_device import MouseDevice
 
 BOUND_S = 180.0
 X_WB = RigidTransform(RotationMatrix.MakeZRotation(2.0), [0.3, 0.0, 0.1])

@@ -13,7 +13,7 @@ import numpy as np
 import websocket
 
 from drake_haptics import find_scene, load_scene
-from drake_haptics.scene import Gravity
+from drake_haptics.scene.schema import Gravity
 
 BOUND_S = 180.0
 PROGRAM = "from drake_haptics.cli import main; main()"

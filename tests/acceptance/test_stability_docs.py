@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from drake_haptics.passivity_bounds import calc_stable_stiffness
+from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "stability.md").read_text(encoding="utf-8")

@@ -15,18 +15,22 @@ from contextlib import ExitStack, closing
 
 from pydrake.systems.framework import Context
 
-from drake_haptics.bench.valgrind import count_by_library, counted, require_valgrind
-from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cockpit import cockpit
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.cockpit.page_port import open_page_port
-from drake_haptics.errors import UserError
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import run
-from drake_haptics.stage import open_meshcat
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.common.errors import UserError
+from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.evaluation.measuring.valgrind import (
+    count_by_library,
+    counted,
+    require_valgrind,
+)
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.simulation.run import run
+from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.web.port import open_page_port
 
 _KINDS = ("without", "with")
 # The shipped hands are in contact then.

@@ -22,16 +22,16 @@ from typing import Any
 
 from pydrake.systems.framework import Context
 
-from drake_haptics.builder import BuildHapticDiagram
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.cockpit.page_port import open_page_port
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene import Scene, load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import run
-from drake_haptics.stage import open_meshcat, set_stage
-from drake_haptics.systems.haptic_visualizer import HapticVisualizer
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import Scene, load_scene
+from drake_haptics.simulation.run import run
+from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.systems.output.haptic_visualizer import HapticVisualizer
+from drake_haptics.visualization.meshcat import open_meshcat, set_stage
+from drake_haptics.web.port import open_page_port
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from headless_browser import HeadlessBrowser, find_browser

@@ -19,11 +19,11 @@ from dataclasses import fields
 from typing import Any
 
 from drake_haptics import _core
-from drake_haptics.bench.valgrind import counted
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import Effects, Material, Scene, load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import make_simulator
+from drake_haptics.evaluation.measuring.valgrind import counted
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import Effects, Material, Scene, load_scene
+from drake_haptics.simulation.run import make_simulator
 
 SCENE = "rubbed_sphere"
 # Until then the tool touches, and slides on.
@@ -32,14 +32,14 @@ TICKS = 2000
 EFFECTS = [field.name for field in fields(Effects)]
 # Where a system gets what it calls: (its module, name there, method of it if a class).
 CORE_CALLS = {
-    "query": ("contact_query", "SceneTracker", "query"),
-    "clustering": ("contact_clustering", "share_stiffness", None),
-    "force": ("penalty_force", "penalty_force", None),
-    "shading": ("force_shading", "ContactShading", "shade"),
-    "friction": ("stick_slip_friction", "StickSlipModel", "step"),
-    "braking": ("pre_contact_braking", "pre_contact_braking", None),
-    "gravity": ("tool_gravity", "tool_weight", None),
-    "passivity": ("passivity_control", "passivity_control", None),
+    "query": ("contact.contact_query", "SceneTracker", "query"),
+    "clustering": ("contact.contact_clustering", "share_stiffness", None),
+    "force": ("contact.penalty_force", "penalty_force", None),
+    "shading": ("contact.force_shading", "ContactShading", "shade"),
+    "friction": ("contact.stick_slip_friction", "StickSlipModel", "step"),
+    "braking": ("contact.pre_contact_braking", "pre_contact_braking", None),
+    "gravity": ("tool.tool_gravity", "tool_weight", None),
+    "passivity": ("tool.passivity_control", "passivity_control", None),
 }
 
 

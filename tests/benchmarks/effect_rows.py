@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.scene import (
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.scene.schema import (
     Braking,
     Contact,
     Device,

@@ -21,8 +21,13 @@ from pathlib import Path
 import numpy as np
 
 from drake_haptics import ConvexPair, ConvexPolytope
-from drake_haptics.bench.pair_motion import make_presses
-from drake_haptics.bench.pair_shapes import KINDS, SIZES, PairShape, make_pair
+from drake_haptics.evaluation.benchmark.pair_motion import make_presses
+from drake_haptics.evaluation.benchmark.pair_shapes import (
+    KINDS,
+    SIZES,
+    PairShape,
+    make_pair,
+)
 
 _MORE = 300
 _CHILD = """

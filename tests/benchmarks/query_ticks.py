@@ -3,10 +3,10 @@
 python tests/benchmarks/query_ticks.py [SCENARIO ...]
 
 Needs valgrind and gcc; some minutes for each scenario. The poses are those of the tool
-in the scenario's loop (drake_haptics/paper/scenarios.py). Every tick is queried, and
-every 29th is counted, so that all parts of the way are among them: the core and its
-binding alone, not Python. What depth adds is the row of ticks in depth beside that of
-ticks with contacts apart; how even the ticks are is p99 by p50.
+in the scenario's loop (drake_haptics/evaluation/paper/scenarios.py). Every tick is
+queried, and every 29th is counted, so that all parts of the way are among them: the
+core and its binding alone, not Python. What depth adds is the row of ticks in depth
+beside that of ticks with contacts apart; how even the ticks are is p99 by p50.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ _MARKS = Path(__file__).with_name("callgrind_marks.c")
 
 def record(name: str, file: Path) -> None:
     """Writes shapes and poses of a scenario to an .npz file."""
-    from drake_haptics.paper.scenario import build_loop
-    from drake_haptics.paper.scenarios import scenario_makers
-    from drake_haptics.simulation import run
+    from drake_haptics.evaluation.paper.scenario import build_loop
+    from drake_haptics.evaluation.paper.scenarios import scenario_makers
+    from drake_haptics.simulation.run import run
 
     scenario = scenario_makers(None)[name]()
     haptic = build_loop(scenario, scenario.path.duration_s)

@@ -13,14 +13,14 @@ import sys
 import time
 from contextlib import suppress
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.device_address import open_device
-from drake_haptics.device_watch import DeviceWatch
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import run
-from drake_haptics.tick_clock import TickClock
+from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.loop.open_device import open_device
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.simulation.device_monitor import DeviceWatch
+from drake_haptics.simulation.run import run
+from drake_haptics.simulation.statistics import RunStatistics
 
 # Some people are slower to see that the force is gone.
 PATIENCE_S = 0.5

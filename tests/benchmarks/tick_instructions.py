@@ -21,14 +21,18 @@ from contextlib import ExitStack
 
 from pydrake.systems.framework import Context
 
-from drake_haptics.bench.loop.problem import make_problem
-from drake_haptics.bench.loop.this_package import ThisLoop
-from drake_haptics.bench.valgrind import count_by_library, counted, require_valgrind
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.errors import UserError
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import make_simulator, run
+from drake_haptics.common.errors import UserError
+from drake_haptics.evaluation.benchmark.loop.problem import make_problem
+from drake_haptics.evaluation.benchmark.loop.this_package import ThisLoop
+from drake_haptics.evaluation.measuring.valgrind import (
+    count_by_library,
+    counted,
+    require_valgrind,
+)
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.simulation.run import make_simulator, run
 
 LOOPS = ("recorded", "simulated", "run")
 # The shipped hands are in contact then.

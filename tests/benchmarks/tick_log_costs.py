@@ -21,13 +21,13 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from page_stamp import amend_page, write_page
 
-from drake_haptics.bench.valgrind import count_instructions, counted
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene, list_scenes
-from drake_haptics.simulation import make_simulator
+from drake_haptics.evaluation.measuring.valgrind import count_instructions, counted
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.scene.library import find_scene, list_scenes
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.simulation.run import make_simulator
 from drake_haptics.tick_log import tick_recorder
-from drake_haptics.tick_log.loop_log import make_log_header
 from drake_haptics.tick_log.tick_block import pack_block
 from drake_haptics.tick_log.tick_log import read_tick_log
 from drake_haptics.tick_log.tick_recorder import TickRecorder

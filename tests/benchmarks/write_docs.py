@@ -13,8 +13,12 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from page_stamp import write_page
 
-from drake_haptics.bench.benchmark import BenchFigures
-from drake_haptics.bench.report import machine_line, make_tables, missing_lines
+from drake_haptics.evaluation.benchmark.benchmark import BenchFigures
+from drake_haptics.evaluation.benchmark.report import (
+    machine_line,
+    make_tables,
+    missing_lines,
+)
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
 _BEGIN = "<!-- figures: written by tests/benchmarks/write_docs.py -->\n"

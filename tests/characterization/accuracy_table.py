@@ -50,9 +50,8 @@ from drake_haptics.accuracy.words import (
     describe_verdict,
     make_front,
 )
-from drake_haptics.cli.progress_bar import progress_bar
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_library import find_scene
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
 
 _DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = _DOCS / "accuracy.md"

@@ -22,7 +22,10 @@ from drake_haptics.analysis.exact_boundary import (
     calc_exact_boundary,
 )
 from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
-from drake_haptics.passivity_bounds import calc_passive_stiffness, calc_stable_stiffness
+from drake_haptics.bounds.sampled_spring import (
+    calc_passive_stiffness,
+    calc_stable_stiffness,
+)
 
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "stability-theory.md"

@@ -26,9 +26,9 @@ from mesh_samples import REAL_MESHES  # noqa: E402
 from page_stamp import write_page  # noqa: E402
 
 from drake_haptics import Mesh, decompose, load_mesh  # noqa: E402
-from drake_haptics.mesh_decimation import decimate  # noqa: E402
-from drake_haptics.shapes import SHAPES  # noqa: E402
-from drake_haptics.shapes.organ import make_organ  # noqa: E402
+from drake_haptics.evaluation.shapes import SHAPES  # noqa: E402
+from drake_haptics.evaluation.shapes.organ import make_organ  # noqa: E402
+from drake_haptics.geometry.mesh.decimation import decimate  # noqa: E402
 
 PAGE = TESTS.parent / "docs" / "decomposition.md"
 # Table 1 of Kim, Otaduy, Lin and Manocha, for meshes of the same kind and size.

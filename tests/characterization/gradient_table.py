@@ -26,8 +26,8 @@ from press_tools import MODELS
 from touching_poses import touching_pose
 
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import load_mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import load_mesh
 
 PAGE = Path(__file__).parents[2] / "docs" / "gradients.md"
 BEGIN = "<!-- chain: written by tests/characterization/gradient_table.py -->\n"

@@ -19,9 +19,13 @@ from PIL import Image
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from page_stamp import amend_page, write_page
 
-from drake_haptics.paper.evaluation import QUICK, PaperEvaluation, evaluate_paper
-from drake_haptics.paper.page import render, summarize
-from drake_haptics.paper.report import (
+from drake_haptics.evaluation.paper.evaluation import (
+    QUICK,
+    PaperEvaluation,
+    evaluate_paper,
+)
+from drake_haptics.evaluation.paper.page import render, summarize
+from drake_haptics.evaluation.paper.report import (
     Picture,
     Section,
     describe_machine_line,

@@ -16,8 +16,8 @@ from press_verdict import Verdict, judge
 from solid_surface import Overlap, Surface
 
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 
 SHIPPED = ("block", "cup", "hammer", "peg", "pen", "sphere", "spoon", "torus")
 REAL = ("cup_500.obj", "torus_2000.obj", "hammer_1692.obj")

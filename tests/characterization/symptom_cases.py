@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symptom_run import Case
 
-from drake_haptics.scene import (
+from drake_haptics.scene.schema import (
     Encoder,
     ForceDelay,
     Friction,

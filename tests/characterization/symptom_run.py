@@ -12,8 +12,8 @@ import numpy as np
 from pydrake.systems.framework import Context, OutputPort
 
 from drake_haptics import BuildHapticDiagram, find_scene, load_scene, run
-from drake_haptics.pose_vector import vector_to_pose
-from drake_haptics.scene import HandPath, Scene
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.scene.schema import HandPath, Scene
 
 # The end of a run, in which a hand that has stopped is at rest.
 _END_S = 0.3

@@ -21,9 +21,9 @@ from page_stamp import write_page
 from symptom_cases import CASES
 from symptom_run import Case
 
-from drake_haptics.scene import Encoder
-from drake_haptics.scene_check import SceneWarning
-from drake_haptics.scene_file import write_scene
+from drake_haptics.scene.scene_file import write_scene
+from drake_haptics.scene.schema import Encoder
+from drake_haptics.scene.validation import SceneWarning
 
 PAGE = Path(__file__).parents[2] / "docs" / "troubleshooting.md"
 BEGIN = "<!-- {}: written by tests/characterization/symptom_table.py -->\n"

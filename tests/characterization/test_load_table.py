@@ -3,8 +3,8 @@
 import load_table
 import pytest
 
-from drake_haptics.bench.scenes import scene_makers
-from drake_haptics.systems import load_shedding
+from drake_haptics.evaluation.benchmark.scenes import scene_makers
+from drake_haptics.systems.contact import load_shedding
 
 
 def read_rows():

@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 
 import drake_haptics
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import load_mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import load_mesh
 
 MESHES = Path(drake_haptics.__file__).parent / "models" / "meshes"
 

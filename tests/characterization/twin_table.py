@@ -25,8 +25,9 @@ from page_stamp import write_page
 from drake_haptics.analysis.held_scene import build_quietly, stop_hand
 from drake_haptics.analysis.sampled_linearization import linearize_sampled
 from drake_haptics.analysis.stability_limit import calc_growth, find_stability_limit
-from drake_haptics.builder import HapticDiagram
-from drake_haptics.scene import (
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import (
     Encoder,
     ForceDelay,
     HandPath,
@@ -36,7 +37,6 @@ from drake_haptics.scene import (
     Twin,
     load_scene,
 )
-from drake_haptics.scene_library import find_scene
 
 PAGE = Path(__file__).parents[2] / "docs" / "device-twin.md"
 BEGIN = "<!-- costs: written by tests/characterization/twin_table.py -->\n"

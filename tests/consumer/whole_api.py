@@ -68,8 +68,8 @@ from drake_haptics import (
     run,
     write_live_values,
 )
-from drake_haptics.run_statistics import RunStatistics
-from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.systems.device.haptic_device import HapticDevice
 
 
 class Still(DeviceBackend):

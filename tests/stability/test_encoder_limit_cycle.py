@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from twin_rig import MOTORS, PERIOD, CoupledArm, S, make_arm, make_twin
 
-from drake_haptics.passivity_bounds import calc_quantized_stiffness
+from drake_haptics.bounds.sampled_spring import calc_quantized_stiffness
 
 STEP = np.array(MOTORS.encoder_step_rad)
 COULOMB = np.array(MOTORS.coulomb_friction_Nm)

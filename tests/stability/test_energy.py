@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import Effects, load_scene
-from drake_haptics.scene_effects import Braking, Friction, Gravity
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import run
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.effects import Braking, Friction, Gravity
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import Effects, load_scene
+from drake_haptics.simulation.run import run
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate

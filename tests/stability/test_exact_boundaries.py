@@ -14,7 +14,7 @@ from drake_haptics.analysis.exact_boundary import (
     make_loop_polynomial,
 )
 from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
-from drake_haptics.passivity_bounds import calc_stable_stiffness
+from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
 
 MASS, T = 0.1, 1e-3
 # Largest K T²/m of any damping, and the B T/m that it takes, by periods of delay.

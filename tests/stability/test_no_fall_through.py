@@ -25,8 +25,8 @@ from press_verdict import Verdict, judge
 from solid_surface import Overlap, Surface
 
 from drake_haptics import _core
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import Mesh, load_mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 
 SEED = 0
 # Each meets seams, edges and both walls of thin shells.

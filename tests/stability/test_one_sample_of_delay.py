@@ -18,7 +18,7 @@ from drake_haptics._core import CouplingGains
 from drake_haptics.analysis.sampled_linearization import linearize_sampled
 from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
 from drake_haptics.analysis.stability_limit import calc_growth, find_stability_limit
-from drake_haptics.systems.haptic_device import HapticDevice
+from drake_haptics.systems.device.haptic_device import HapticDevice
 
 PERIOD = 1e-3
 MASS, DAMPING = 0.1, 0.5

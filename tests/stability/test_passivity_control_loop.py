@@ -11,13 +11,13 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import AffineSystem, LogVectorOutput
 
 from drake_haptics._core import CouplingGains
-from drake_haptics.device_preset import load_device_preset
-from drake_haptics.passivity_bounds import calc_stable_stiffness
-from drake_haptics.systems.hand_path import HandPath
-from drake_haptics.systems.haptic_device import HapticDevice
-from drake_haptics.systems.passivity_control import PassivityControl
-from drake_haptics.systems.simulated_arm import SimulatedArm
-from drake_haptics.systems.vector_ports import export_parts
+from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.systems.arm.hand_path import HandPath
+from drake_haptics.systems.arm.simulated_arm import SimulatedArm
+from drake_haptics.systems.device.haptic_device import HapticDevice
+from drake_haptics.systems.framework.vector_ports import export_parts
+from drake_haptics.systems.tool.passivity_control import PassivityControl
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from coupled_device import add_device_on_fixed_tool

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.simulation import run
-from drake_haptics.systems.hand_grip import HAND_GRIPS
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.simulation.run import run
+from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from box_scenes import TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate

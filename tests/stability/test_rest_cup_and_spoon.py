@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_effects import Effects, Friction, Gravity, Shading
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import run
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.effects import Effects, Friction, Gravity, Shading
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.simulation.run import run
 
 SETTLED_S, END_S = 3.0, 63.0
 LAST_WAYPOINT_S = 1.2

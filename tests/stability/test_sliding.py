@@ -23,8 +23,8 @@ from slide_scenes import (
 )
 from wrench_chain import METHODS
 
-from drake_haptics.decomposition import decompose
-from drake_haptics.mesh import load_mesh
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import load_mesh
 
 TOOLS = make_slide_tools()
 UP = np.array([0.0, 0.0, 1.0])

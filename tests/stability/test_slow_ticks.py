@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from hand_clock import HandClock
 
-from drake_haptics import SceneTracker, builder
-from drake_haptics.builder import BuildHapticDiagram
-from drake_haptics.scene import load_scene
-from drake_haptics.scene_effects import Braking, Effects, Friction
-from drake_haptics.scene_library import find_scene
-from drake_haptics.simulation import run
-from drake_haptics.systems.load_shedding import TickMeter
+from drake_haptics import SceneTracker
+from drake_haptics.loop import builder
+from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.effects import Braking, Effects, Friction
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import load_scene
+from drake_haptics.simulation.run import run
+from drake_haptics.systems.contact.load_shedding import TickMeter
 
 BUDGET_S = 5e-4
 # Slow while the spoon scrapes along the cup's wall.

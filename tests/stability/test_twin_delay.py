@@ -14,7 +14,7 @@ from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.analysis.sampled_linearization import linearize_sampled
 from drake_haptics.analysis.stability_limit import calc_growth, find_stability_limit
 from drake_haptics.analysis.stiffness_limits import find_stiffness_limits
-from drake_haptics.scene import ForceDelay, Twin
+from drake_haptics.scene.schema import ForceDelay, Twin
 
 # A light hand's damping, 1 N·s/m, holds: 2 b/T = 2000 N/m without any delay.
 GRIP = "light"

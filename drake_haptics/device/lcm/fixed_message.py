@@ -11,7 +11,7 @@ import struct
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, TypeVar
 
-from drake_haptics.one_line import count
+from drake_haptics.common.one_line import count
 
 _STRUCT_CODES = {
     "int8_t": "b",

@@ -1,0 +1,258 @@
+"""Computes a function for many tasks, on the cores of this machine or on a cluster."""
+
+from __future__ import annotations
+
+import os
+import traceback
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from contextlib import AbstractContextManager, closing, nullcontext
+from itertools import islice
+from queue import SimpleQueue
+from typing import Any
+
+from drake_haptics.analysis.jobs.blas_threads import one_blas_thread
+from drake_haptics.analysis.jobs.chunk import (
+    Outcome,
+    StudyChunk,
+    is_in_task,
+)
+from drake_haptics.analysis.jobs.error import StudyError, TaskFailure
+from drake_haptics.analysis.jobs.exact_json import from_exact_json, to_exact_json
+from drake_haptics.analysis.jobs.function import StudyFunction
+from drake_haptics.analysis.jobs.pool import (
+    SerialExecutor,
+    check_not_importing,
+    explain_broken_pool,
+    local_processes,
+)
+from drake_haptics.analysis.jobs.store import StudyStore
+
+# Chunks that an executor has at a time: enough for a cluster of as many cores, and
+# little memory however many tasks there are.
+_IN_FLIGHT = 1024
+
+
+def run_study(
+    function: Callable[[Any], Any],
+    tasks: Iterable[Any],
+    *,
+    executor: Executor | None = None,
+    store: str | os.PathLike[str] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    chunk_size: int = 1,
+) -> list[Any]:
+    """Calls a function once for each task and returns the results in their order.
+
+    Tasks and results are data that JSON can keep exactly: None, bool, int, float
+    (infinities and NaN too), complex, str, NumPy arrays, and lists, tuples and dicts of
+    these. Each task is computed on its own, from a copy of itself and with BLAS on one
+    thread, and each result goes through the same text. So the results do not depend on
+    executor, number of workers, order, or on what a store already had: bit for bit on
+    processors of one kind, if the function depends on nothing but its task. A task that
+    is there twice is computed once.
+
+    Args:
+        function: Of one task. Without an executor it must pickle: of the top level of
+            a module, a functools.partial of such, or a callable dataclass. A store
+            needs the same, and that what is bound to it is data.
+        tasks: What to call it with.
+        executor: Any concurrent.futures.Executor, for instance
+            `distributed.Client(...).get_executor()` of a Dask cluster. It stays open.
+            None opens a process for each core that this process may use, and closes
+            them in the end; inside of another study's task it computes in place.
+        store: File that keeps each result as soon as it is there. A call with the same
+            function and file computes only what is not in it yet, also after the
+            program was killed. See docs/studies.md.
+        progress: Called with the numbers of distinct tasks that are done (with a
+            result or failed) and of all, first with what the store had.
+        chunk_size: Tasks that travel to a worker together: more than 1 for tasks of
+            less than some milliseconds. Those of a chunk are kept when all are done.
+
+    Returns:
+        A result for each task.
+
+    Raises:
+        StudyError: Tasks raised, or workers died. It has the results of the others.
+        KeyboardInterrupt: At Ctrl-C; tells how many are done.
+        ValueError: An argument cannot be used, or the store is of another study.
+        RuntimeError: The program lacks its ``if __name__ == "__main__":``.
+        OSError: The store cannot be written.
+    """
+    check_not_importing()
+    _check_arguments(function, executor, chunk_size)
+    keys = [_to_key(index, task) for index, task in enumerate(tasks)]
+    with _open_store(store, function) as kept:
+        study = _Study(function, keys, kept, progress)
+        try:
+            study.compute(executor, chunk_size)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(study.tell("Stopped.")) from None
+        except BrokenExecutor as error:
+            why = explain_broken_pool()
+            raise study.make_error(f"The executor broke: {why}.") from error
+        except CancelledError as error:
+            why = "The executor was closed, or canceled what it had."
+            raise study.make_error(why) from error
+    if study.failures:
+        raise study.make_error(f"{len(study.failures)} of the tasks failed.")
+    return study.take_results()
+
+
+class _Study:
+    """What is done of a study. Tasks are known by their exact JSON.
+
+    Args:
+        function: Of one task.
+        keys: The tasks.
+        store: What to begin from and where to keep results, or None.
+        progress: As `run_study` has it.
+    """
+
+    def __init__(
+        self,
+        function: Callable[[Any], Any],
+        keys: Sequence[str],
+        store: StudyStore | None,
+        progress: Callable[[int, int], None] | None,
+    ):
+        self.failures: dict[str, Outcome] = {}
+        self._function = function
+        self._keys = keys
+        self._store = store
+        self._progress = progress
+        self._distinct = dict.fromkeys(keys)
+        self._results = store.load(self._distinct) if store is not None else {}
+
+    def compute(self, executor: Executor | None, chunk_size: int) -> None:
+        """Computes what is not done, and keeps it."""
+        self._report()
+        pending = [key for key in self._distinct if key not in self._results]
+        if not pending:
+            return
+        chunks = -(-len(pending) // chunk_size)
+        with (
+            # The threads of an executor share this process's BLAS: where each held it
+            # for its own chunk, the first to end would free it for the others.
+            one_blas_thread(),
+            _open_executor(executor, self._function, chunks) as workers,
+            closing(_compute(workers, self._function, pending, chunk_size)) as done,
+        ):
+            for key, outcome in done:
+                self._keep(key, outcome)
+                self._report()
+
+    def tell(self, why: str) -> str:
+        """Returns why the study has ended, what is done and how to go on."""
+        done = f"{len(self._results)} of {len(self._distinct)} tasks are done"
+        if self._store is None:
+            return f"{why} {done}; a store would keep them for the next call"
+        return f"{why} {done} and kept in {self._store.path}: the next call goes on"
+
+    def make_error(self, why: str) -> StudyError:
+        """Returns the error to raise."""
+        failures = [
+            TaskFailure(i, from_exact_json(key), outcome.reason, outcome.traceback)
+            for i, key in enumerate(self._keys)
+            if (outcome := self.failures.get(key)) is not None
+        ]
+        return StudyError(self.tell(why), self.take_results(), failures)
+
+    def take_results(self) -> list[Any]:
+        """Returns a new object for each task; None where there is no result."""
+        return [from_exact_json(self._results.get(key, "null")) for key in self._keys]
+
+    def _keep(self, key: str, outcome: Outcome) -> None:
+        if outcome.result is None:
+            self.failures[key] = outcome
+            return
+        if self._store is not None:
+            self._store.add(key, outcome.result)
+        self._results[key] = outcome.result
+
+    def _report(self) -> None:
+        if self._progress is not None:
+            done = len(self._results) + len(self.failures)
+            self._progress(done, len(self._distinct))
+
+
+def _compute(
+    executor: Executor,
+    function: Callable[[Any], Any],
+    pending: Iterable[str],
+    chunk_size: int,
+) -> Generator[tuple[str, Outcome], None, None]:
+    """Yields tasks with their outcomes as they come; cancels the rest when closed."""
+    finished: SimpleQueue[Future[list[Outcome]]] = SimpleQueue()
+    in_flight: dict[Future[list[Outcome]], list[str]] = {}
+    rest = iter(pending)
+    try:
+        while chunk := list(islice(rest, chunk_size)):
+            future = executor.submit(StudyChunk(function, chunk))
+            in_flight[future] = chunk
+            future.add_done_callback(finished.put)
+            while len(in_flight) >= _IN_FLIGHT or not finished.empty():
+                yield from _take(in_flight, finished.get())
+        while in_flight:
+            yield from _take(in_flight, finished.get())
+    except BrokenExecutor:
+        for future in [f for f in in_flight if f.done() and f.exception() is None]:
+            yield from _take(in_flight, future)
+        raise
+    finally:
+        for future in in_flight:
+            future.cancel()
+
+
+def _take(
+    in_flight: dict[Future[list[Outcome]], list[str]], future: Future[list[Outcome]]
+) -> Iterator[tuple[str, Outcome]]:
+    """Yields the tasks of a chunk that has come back."""
+    chunk = in_flight.pop(future)
+    try:
+        outcomes = future.result()
+    except (BrokenExecutor, CancelledError):
+        raise
+    except Exception as error:  # the chunk did not get there or not back
+        reason = f"{type(error).__name__}: {error}"
+        outcomes = [Outcome(None, reason, traceback.format_exc())] * len(chunk)
+    yield from zip(chunk, outcomes, strict=True)
+
+
+def _open_executor(
+    executor: Executor | None, function: Callable[[Any], Any], chunks: int
+) -> AbstractContextManager[Executor]:
+    if executor is not None:
+        return nullcontext(executor)
+    if is_in_task():  # the cores are at other tasks already
+        return nullcontext(SerialExecutor())
+    return local_processes(function, chunks)
+
+
+def _open_store(
+    store: str | os.PathLike[str] | None, function: Callable[[Any], Any]
+) -> AbstractContextManager[StudyStore | None]:
+    if store is None:
+        return nullcontext()
+    return StudyStore(store, StudyFunction.of(function))
+
+
+def _check_arguments(
+    function: Callable[[Any], Any], executor: Executor | None, chunk_size: int
+) -> None:
+    if not callable(function):
+        raise ValueError(f"function must be callable, is {function!r}")
+    if not (executor is None or isinstance(executor, Executor)):
+        raise ValueError(
+            "executor must be a concurrent.futures.Executor (of a Dask client:"
+            f" client.get_executor()), is a {type(executor).__name__}"
+        )
+    if chunk_size < 1:
+        raise ValueError(f"chunk_size must be at least 1, is {chunk_size}")
+
+
+def _to_key(index: int, task: Any) -> str:
+    try:
+        return to_exact_json(task)
+    except ValueError as error:
+        raise ValueError(f"task {index} cannot be kept: {error}") from error

@@ -1,0 +1,1 @@
+"""Helps with writing scenes: a first one, questions about it, a faster one."""

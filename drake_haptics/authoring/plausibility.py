@@ -1,0 +1,271 @@
+"""Questions about a scene that can be run, but hardly does what is wanted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from pydrake.math import RigidTransform
+
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.geometry.decomposition.decompose import Decomposition
+from drake_haptics.geometry.mesh.centering import (
+    describe_origin_beside,
+    find_origin_beside,
+)
+from drake_haptics.geometry.mesh.checks import (
+    LARGEST_USUAL_EXTENT_M,
+    SMALLEST_USUAL_EXTENT_M,
+)
+from drake_haptics.geometry.mesh.plausible_size import question_tolerance
+from drake_haptics.geometry.mesh.report import length
+from drake_haptics.geometry.mesh.topology import winding_numbers
+from drake_haptics.geometry.mesh.units import METRES_PER_UNIT, guess_unit
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.loop.device_placement import find_device_site
+from drake_haptics.loop.simulated_device import make_hand_path
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.scene.schema import EnvironmentObject, Tool
+
+# A tool is held in one hand.
+_LARGEST_USUAL_TOOL_M = 1.0
+# So many places of the hand's path, and vertices of the tool, are looked at.
+_PLACES = 100
+_VERTICES = 16
+
+
+def question_scene(haptic: HapticDiagram) -> list[str]:
+    """Returns what is probably not meant in a scene, in sentences.
+
+    Args:
+        haptic: The scene, built.
+    """
+    return [
+        *_question_sizes(haptic),
+        *question_tolerance(
+            haptic.scene.contact.tolerance_m,
+            "the tool",
+            max(haptic.tool.mesh.report.extent),
+        ),
+        *_question_origin(haptic),
+        *_question_reach(haptic),
+        *_question_device(haptic),
+        *question_start(haptic),
+    ]
+
+
+def _question_sizes(haptic: HapticDiagram) -> list[str]:
+    """Asks for the unit of what is unlike anything that a hand touches."""
+    scene = haptic.scene
+    objects = zip(scene.environment, haptic.environment, strict=True)
+    sentences = [
+        _question_size("tool", scene.tool, haptic.tool, _LARGEST_USUAL_TOOL_M)
+    ] + [
+        _question_size(f"environment[{i}]", item, part, LARGEST_USUAL_EXTENT_M)
+        for i, (item, part) in enumerate(objects)
+    ]
+    return [sentence for sentence in sentences if sentence]
+
+
+def _question_size(
+    key: str,
+    item: Tool | EnvironmentObject,
+    part: Decomposition,
+    largest_m: float,
+) -> str:
+    extent_m = max(part.mesh.report.extent)
+    if SMALLEST_USUAL_EXTENT_M <= extent_m <= largest_m:
+        return ""
+    size = f"{key}: {Path(item.mesh).name} is {length(extent_m)} wide"
+    unit = guess_unit(extent_m / item.scale, SMALLEST_USUAL_EXTENT_M, largest_m)
+    if unit is None:
+        return f"{size}; is its scale ({item.scale:g}) right?"
+    factor = METRES_PER_UNIT[unit]
+    return f"{size}; if the file is in {unit}: {key}.scale: {factor:g}"
+
+
+def _question_origin(haptic: HapticDiagram) -> list[str]:
+    """Asks about a tool that is not where its mesh has its origin.
+
+    The coupling pulls at the origin: with a long lever to the hand its force is mostly
+    torque, and what it pulls at is light.
+    """
+    beside_m = find_origin_beside(haptic.tool.mesh)
+    if beside_m is None:
+        return []
+    return [
+        f"tool: {describe_origin_beside(Path(haptic.scene.tool.mesh).name, beside_m)},"
+        " and the coupling pulls there: force on the hand becomes torque, and may"
+        " shake;"
+        " tool.center: true moves the middle of the mesh to the origin (tool.grasp and"
+        " hand.path are then those of the middle)"
+    ]
+
+
+def _question_reach(haptic: HapticDiagram) -> list[str]:
+    """Asks whether there is anything to touch."""
+    if haptic.backend is None:
+        where = "where the hand's path leads the tool"
+        p_WT, radius_m = _sample_tool_box(haptic), 0.0
+    else:
+        where = "where the device's workspace lets the tool go"
+        p_WT, radius_m = _find_workspace(haptic)
+    gap_m = min(
+        (
+            _calc_gap(p_WT, item.pose.to_rigid_transform(), part)
+            for item, part in zip(
+                haptic.scene.environment, haptic.environment, strict=True
+            )
+        ),
+    )
+    gap_m -= radius_m
+    if gap_m <= haptic.scene.contact.tolerance_m:
+        return []
+    return [
+        f"no object is within reach {where}; the nearest is {length(gap_m)} away:"
+        " nothing will be felt. Is environment[...].pose, a scale or"
+        " hand.path.waypoints as meant?"
+    ]
+
+
+def _sample_tool_box(haptic: HapticDiagram) -> np.ndarray:
+    """Returns corners of the tool's box along the hand's path, (n, 8, 3), m."""
+    path = make_hand_path(haptic.scene.hand.path)
+    times = np.linspace(0.0, path.duration_s, _PLACES)
+    poses = [vector_to_pose(path.calc(t)[0]) for t in times]
+    return np.array([_find_corners(haptic.tool, X_WT) for X_WT in poses])
+
+
+def _find_corners(tool: Decomposition, X_WT: RigidTransform) -> np.ndarray:
+    """Returns corners of the tool's box, (8, 3), m in the world."""
+    box = zip(*_find_box(tool.mesh.vertices), strict=True)
+    corners = np.array(np.meshgrid(*box)).reshape(3, -1)
+    return (X_WT @ corners).T
+
+
+def _find_workspace(haptic: HapticDiagram) -> tuple[np.ndarray, float]:
+    """Returns the middle of the workspace, (1, 1, 3), and how far the tool gets, m."""
+    scene = haptic.scene
+    site = find_device_site(scene)
+    center = load_device_preset(scene.device.preset).workspace_center_m
+    X_HT = scene.tool.grasp.to_rigid_transform()
+    p_HTv = haptic.tool.mesh.vertices @ X_HT.rotation().matrix().T + X_HT.translation()
+    reach_m = site.workspace_radius_m + np.linalg.norm(p_HTv, axis=1).max()
+    return (site.X_WB @ np.array(center)).reshape(1, 1, 3), float(reach_m)
+
+
+def _calc_gap(p_WT: np.ndarray, X_WO: RigidTransform, part: Decomposition) -> float:
+    """Returns the least gap between boxes of points and an object's box, m.
+
+    Args:
+        p_WT: (n, k, 3) points; of each k the box is taken, in the object's frame.
+        X_WO: Pose of the object.
+        part: Its mesh.
+    """
+    low, high = _find_box(part.mesh.vertices)
+    R_OW = X_WO.rotation().matrix().T
+    p_OT = (p_WT - X_WO.translation()) @ R_OW.T
+    apart = np.maximum(p_OT.min(axis=1) - high, low - p_OT.max(axis=1))
+    return float(np.linalg.norm(np.maximum(apart, 0.0), axis=1).min())
+
+
+def _find_box(vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return vertices.min(axis=0), vertices.max(axis=0)
+
+
+def _question_device(haptic: HapticDiagram) -> list[str]:
+    """Asks whether the scene's preset is that of the device."""
+    device, backend = haptic.scene.device, haptic.backend
+    preset = load_device_preset(device.preset)
+    sentences = []
+    for key, unit in [("max_force_N", "N"), ("max_torque_Nm", "N·m")]:
+        asked, rated = getattr(device, key), getattr(preset, key)
+        if asked is not None and asked > rated:
+            sentences.append(
+                f"device.{key} is {asked:g}: more than the {rated:g} {unit} that"
+                f" '{device.preset}' is rated for"
+            )
+    reading = None if backend is None else backend.read()
+    if backend is None or reading is None:
+        return sentences
+    if haptic.scene.device.base is None and not backend.is_placed:
+        return sentences
+    away_m = float(
+        np.linalg.norm(reading.X_BH[4:] - np.array(preset.workspace_center_m))
+    )
+    if away_m > preset.workspace_radius_m:
+        sentences.append(
+            f"the handle is {length(away_m)} from the middle of the workspace of"
+            f" '{device.preset}', whose radius is {length(preset.workspace_radius_m)}:"
+            " is that the device? device.preset names it, device.base says where it"
+            " stands"
+        )
+    return sentences
+
+
+def question_start(haptic: HapticDiagram) -> list[str]:
+    """Returns in sentences where the tool starts inside an object, if it does.
+
+    Args:
+        haptic: The scene, built; a device's handle is taken where it is now.
+    """
+    scene = haptic.scene
+    if haptic.backend is None:
+        X_WT = make_hand_path(scene.hand.path).start
+        # A scene's own hand may begin pressed, but not against all of its device.
+        allowed_m = (
+            find_device_site(scene).max_force_N / scene.contact.stiffness_N_per_m
+        )
+        remedy = "move hand.path.waypoints[0] to a place beside it"
+    else:
+        reading = haptic.backend.read()
+        if reading is None:
+            return []
+        X_WH = haptic.X_WB @ vector_to_pose(reading.X_BH)
+        X_WT = X_WH @ scene.tool.grasp.to_rigid_transform()
+        allowed_m = scene.contact.tolerance_m
+        remedy = "lead the device's handle to a place beside it and start again"
+    depths_m = _calc_depths(haptic, X_WT)
+    sentences = []
+    for item, part, depth_m in zip(
+        scene.environment, haptic.environment, depths_m, strict=True
+    ):
+        if depth_m > allowed_m:
+            how = f"{length(depth_m)} deep in '{item.name}'"
+        elif _is_inside(
+            haptic.tool, part, item.pose.to_rigid_transform().inverse() @ X_WT
+        ):
+            how = f"inside '{item.name}', out of which nothing leads it"
+        else:
+            continue
+        sentences.append(f"the tool starts {how}: {remedy}")
+    return sentences
+
+
+def _calc_depths(haptic: HapticDiagram, X_WT: RigidTransform) -> list[float]:
+    """Returns how deep the tool is in each object, m; 0 where there is no contact.
+
+    The run's own query is asked, in a Context of its own, so that the depth is that
+    which the run begins with.
+    """
+    query = haptic.loop.contact_query
+    context = query.CreateDefaultContext()
+    query.get_tool_pose_input_port().FixValue(context, pose_to_vector(X_WT))
+    if query.HasInputPort("relief"):
+        query.get_relief_input_port().FixValue(context, np.ones(3))
+    contacts = query.get_contacts_output_port().Eval(context)
+    depths_m = np.zeros(len(haptic.environment))
+    np.maximum.at(depths_m, contacts.object_index, -contacts.distance)
+    return depths_m.tolist()
+
+
+def _is_inside(tool: Decomposition, part: Decomposition, X_OT: RigidTransform) -> bool:
+    """Whether all of the tool is in the solid, where no surface is near to push it."""
+    solid = part.mesh.triangles[part.mesh.solid.astype(bool)]
+    step = max(1, len(tool.mesh.vertices) // _VERTICES)
+    p_TV = tool.mesh.vertices[::step]
+    p_OV = p_TV @ X_OT.rotation().matrix().T + X_OT.translation()
+    low, high = _find_box(part.mesh.vertices)
+    if not len(solid) or not np.all((p_OV > low) & (p_OV < high)):
+        return False
+    return bool(np.all(winding_numbers(p_OV, part.mesh.vertices, solid) > 0.5))

@@ -1,0 +1,179 @@
+"""A scene for two meshes that nobody has written a scene for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from drake_haptics.geometry.mesh.centering import center, find_origin_beside
+from drake_haptics.geometry.mesh.height_map import TouchMap
+from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+from drake_haptics.geometry.mesh.report import length
+from drake_haptics.geometry.mesh.units import METRES_PER_UNIT, guess_unit
+from drake_haptics.scene.schema import (
+    Contact,
+    EnvironmentObject,
+    Hand,
+    HandPath,
+    Pose,
+    Scene,
+    SceneError,
+    Tool,
+    Waypoint,
+)
+from drake_haptics.systems.arm.hand_grip import NOMINAL_GRIP
+
+_PRESS_N = 2.0
+_LARGEST_TOOL_M = 1.0
+# Beyond, coordinates are too coarse for contacts of micrometres.
+_LARGEST_ENVIRONMENT_M = 1e3
+_SMALLEST_EXTENT_M = 2e-3
+# The path keeps well inside a workspace of 12 cm radius.
+_CLEARANCE_M = 0.03
+_LARGEST_CIRCLE_M = 0.025
+_SMALLEST_CIRCLE_M = 1e-3
+_LARGEST_RISE_M = 0.03
+_CIRCLE_POINTS = 16
+_APPROACH_S = 1.5
+_CIRCLE_STEP_S = 0.4
+# What nobody feels is left out of a scene that people read: a nanometre, a microsecond.
+_DECIMALS_M = 9
+_DECIMALS_S = 6
+
+
+def make_scene_for_meshes(
+    tool_path: Path,
+    environment_path: Path,
+    tool_scale: float,
+    environment_scale: float,
+) -> Scene:
+    """Makes what `Scene.for_meshes` documents."""
+    tool = load_mesh(tool_path, scale=tool_scale)
+    environment = load_mesh(environment_path, scale=environment_scale)
+    _check_extent("tool", tool_path, tool, tool_scale, _LARGEST_TOOL_M)
+    _check_extent(
+        "environment",
+        environment_path,
+        environment,
+        environment_scale,
+        _LARGEST_ENVIRONMENT_M,
+    )
+    is_far = find_origin_beside(tool) is not None
+    if is_far:
+        tool = center(tool)
+    tip = _find_tip(tool)
+    # The handle is above the tip, at half the tool's height: pressing straight down
+    # then turns it little.
+    grip_point = tip.copy()
+    grip_point[2] = (tool.vertices[:, 2].min() + tool.vertices[:, 2].max()) / 2.0
+    tolerance = min(
+        Contact().tolerance_m, 0.02 * min(map(_calc_diagonal, (tool, environment)))
+    )
+    return Scene(
+        description=f"{tool_path.name} scrapes {environment_path.name}",
+        tool=Tool(
+            mesh=str(tool_path.resolve()),
+            scale=tool_scale,
+            center=is_far,
+            grasp=Pose(position_m=_round_position(-grip_point)),
+        ),
+        environment=[
+            EnvironmentObject(
+                name="environment",
+                mesh=str(environment_path.resolve()),
+                scale=environment_scale,
+            )
+        ],
+        contact=Contact(tolerance_m=float(f"{tolerance:.2g}")),
+        hand=Hand(grip="nominal", path=_make_path(tool, environment, tip)),
+    )
+
+
+def _check_extent(
+    name: str, path: Path, mesh: Mesh, scale: float, largest_m: float
+) -> None:
+    """Refuses a size with which nothing could be felt: most often a wrong unit."""
+    extent = max(mesh.report.extent)
+    if _SMALLEST_EXTENT_M <= extent <= largest_m:
+        return
+    unit = guess_unit(extent / scale, _SMALLEST_EXTENT_M, _LARGEST_TOOL_M)
+    hint = (
+        ""
+        if unit is None
+        else f". If {path.name} is in {unit}: {name}_scale={METRES_PER_UNIT[unit]:g}"
+    )
+    raise SceneError(
+        f"the {name} {path.name} is {length(extent)} long, and must be between"
+        f" {length(_SMALLEST_EXTENT_M)} and {length(largest_m)}{hint}"
+    )
+
+
+def _calc_diagonal(mesh: Mesh) -> float:
+    return float(np.linalg.norm(mesh.report.extent))
+
+
+def _find_tip(tool: Mesh) -> np.ndarray:
+    """Returns the middle of the tool's lowest end, in its frame, m."""
+    z = tool.vertices[:, 2]
+    low = z <= z.min() + 0.01 * np.ptp(z)
+    return tool.vertices[low].mean(axis=0)
+
+
+def _find_place(environment: Mesh) -> np.ndarray:
+    """Returns x, y of the place facing up that is nearest to the middle, m."""
+    a, b, c = np.swapaxes(environment.vertices[environment.triangles], 0, 1)
+    normal = np.cross(b - a, c - a)
+    up = normal[:, 2] > 0.5 * np.linalg.norm(normal, axis=1)
+    if not up.any():
+        up[:] = True
+    centroid = ((a + b + c) / 3.0)[up]
+    middle = (environment.vertices.min(axis=0) + environment.vertices.max(axis=0)) / 2.0
+    distance = np.linalg.norm((centroid - middle)[:, :2], axis=1)
+    return centroid[distance.argmin(), :2]
+
+
+def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPath:
+    """Returns a path that comes down, goes round pressing, and goes up again."""
+    place = _find_place(environment) - tip[:2]
+    radius = min(_LARGEST_CIRCLE_M, 0.2 * min(environment.report.extent[:2]))
+    angles = np.linspace(0.0, 2.0 * np.pi, _CIRCLE_POINTS + 1)
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    touch_map = TouchMap(tool, environment, place, radius)
+    while True:
+        touch = np.array([touch_map.calc_height(radius * p) for p in circle])
+        seen = np.isfinite(touch)
+        if not seen.any():
+            raise SceneError("the tool, lowered onto the environment, passes it by")
+        # Where there is nothing below, the hand goes on at the height of the rest.
+        touch[~seen] = touch[seen].mean()
+        if np.ptp(touch) <= _LARGEST_RISE_M:
+            break
+        # At the edge of a cliff no circle is small enough: press in place.
+        radius = 0.5 * radius if radius > _SMALLEST_CIRCLE_M else 0.0
+    xy = place + radius * circle
+    press = _PRESS_N / NOMINAL_GRIP.stiffness_N_per_m
+    above = [*xy[0], touch[0] + _CLEARANCE_M]
+    times = _APPROACH_S + _CIRCLE_STEP_S * np.arange(len(xy))
+    around = [
+        Waypoint(round(float(t), _DECIMALS_S), _round_position([*p, z - press]))
+        for t, p, z in zip(times, xy, touch, strict=True)
+    ]
+    end = round(float(times[-1]) + _APPROACH_S, _DECIMALS_S)
+    start = _round_position(above)
+    return HandPath(
+        periodic=True,
+        waypoints=[
+            Waypoint(0.0, start),
+            *around,
+            Waypoint(end, start),
+        ],
+    )
+
+
+def _round_position(position: ArrayLike) -> list[float]:
+    """Returns a position (3,), m, as numbers that are short to read."""
+    # 0 is added so that none is minus nothing.
+    rounded: list[float] = (np.asarray(position).round(_DECIMALS_M) + 0.0).tolist()
+    return rounded

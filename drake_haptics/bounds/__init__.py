@@ -1,0 +1,1 @@
+"""Limits of stiffness and damping in closed form."""

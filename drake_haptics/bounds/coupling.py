@@ -1,0 +1,247 @@
+"""Checks whether a coupling is passive, stable and rated for on a device in a hand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from drake_haptics.bounds.sampled_spring import (
+    calc_passive_damping,
+    calc_sampled_damping,
+    calc_stable_stiffness,
+)
+from drake_haptics.scene.device_preset import DevicePreset
+
+
+class SpringAndDamper(Protocol):
+    """Six-axis gains, as `CouplingGains` and a scene's `Coupling` have them."""
+
+    @property
+    def stiffness_N_per_m(self) -> float: ...  # noqa: D102
+
+    @property
+    def damping_Ns_per_m(self) -> float: ...  # noqa: D102
+
+    @property
+    def rotational_stiffness_Nm_per_rad(self) -> float: ...  # noqa: D102
+
+    @property
+    def rotational_damping_Nms_per_rad(self) -> float: ...  # noqa: D102
+
+
+@dataclass(frozen=True)
+class HeldHandle:
+    """What device and hand are at the handle, together.
+
+    Attributes:
+        mass_kg: The least in any direction, kg.
+        damping_Ns_per_m: Physical damping, N·s/m.
+        inertia_kgm2: The least about any axis, kg·m².
+        rotational_damping_Nms_per_rad: N·m·s/rad.
+        stiffness_N_per_m: Of the hand's spring, N/m.
+        rotational_stiffness_Nm_per_rad: N·m/rad.
+    """
+
+    mass_kg: float
+    damping_Ns_per_m: float
+    inertia_kgm2: float
+    rotational_damping_Nms_per_rad: float
+    stiffness_N_per_m: float = 0.0
+    rotational_stiffness_Nm_per_rad: float = 0.0
+
+
+@dataclass(frozen=True)
+class BrokenBound:
+    """A bound that a coupling breaks.
+
+    Attributes:
+        key: Of the value to be changed, one of `SpringAndDamper`.
+        words: What comes of it and what to do, without symbols.
+        sentence: Which value, which bound by which law, what to change.
+    """
+
+    key: str
+    words: str
+    sentence: str
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """Names and units of translation or of rotation."""
+
+    stiffness: str
+    stiffness_unit: str
+    damping: str
+    damping_unit: str
+    mass_unit: str
+
+
+_TRANSLATION = _Kind("stiffness_N_per_m", "N/m", "damping_Ns_per_m", "N·s/m", "kg")
+_ROTATION = _Kind(
+    "rotational_stiffness_Nm_per_rad",
+    "N·m/rad",
+    "rotational_damping_Nms_per_rad",
+    "N·m·s/rad",
+    "kg·m²",
+)
+
+
+def check_coupling(
+    coupling: SpringAndDamper,
+    handle: HeldHandle,
+    period_s: float,
+    delay_s: float = 0.0,
+) -> list[str]:
+    """Returns the sentences of `find_broken_bounds`, with the same arguments."""
+    found = find_broken_bounds(coupling, handle, period_s, delay_s)
+    return [bound.sentence for bound in found]
+
+
+def find_broken_bounds(
+    coupling: SpringAndDamper,
+    handle: HeldHandle,
+    period_s: float,
+    delay_s: float = 0.0,
+) -> list[BrokenBound]:
+    """Checks a coupling against the bounds of `drake_haptics.bounds.sampled_spring`.
+
+    Args:
+        coupling: K and B of both kinds.
+        handle: What they act on.
+        period_s: The tick T, s.
+        delay_s: Delay t_d on top of the hold's half period, s.
+
+    Returns:
+        Each bound that is broken. Empty if the loop is stable by
+        `calc_stable_stiffness` and `calc_sampled_damping`, and passive by
+        `calc_passive_damping`, in which the damping of the hand counts.
+
+    Raises:
+        ValueError: The period, the mass or the inertia is not positive.
+    """
+    for name, value in [
+        ("period_s", period_s),
+        ("mass_kg", handle.mass_kg),
+        ("inertia_kgm2", handle.inertia_kgm2),
+    ]:
+        if not value > 0.0:
+            raise ValueError(f"{name} must be positive, is {value}")
+    found: list[BrokenBound] = []
+    for kind, m, b in [
+        (_TRANSLATION, handle.mass_kg, handle.damping_Ns_per_m),
+        (_ROTATION, handle.inertia_kgm2, handle.rotational_damping_Nms_per_rad),
+    ]:
+        K, B = getattr(coupling, kind.stiffness), getattr(coupling, kind.damping)
+        found += [
+            *_check_stiffness(kind, K, B, b, period_s, delay_s),
+            *_check_damping(kind, K, B, m, period_s),
+            *_check_passivity(kind, K, B, b, period_s, delay_s),
+        ]
+    return found
+
+
+def find_exceeded_ratings(
+    coupling: SpringAndDamper, preset: DevicePreset
+) -> list[BrokenBound]:
+    """Compares a coupling with what its device is rated for.
+
+    Args:
+        coupling: K and B of both kinds.
+        preset: The device; a rating that is not known is exceeded by nothing.
+
+    Returns:
+        Each rating that is exceeded.
+    """
+    found: list[BrokenBound] = []
+    for kind in (_TRANSLATION, _ROTATION):
+        for key, unit in (
+            (kind.stiffness, kind.stiffness_unit),
+            (kind.damping, kind.damping_unit),
+        ):
+            value, rating = getattr(coupling, key), getattr(preset, f"max_{key}")
+            if rating is not None and value > rating:
+                found.append(
+                    BrokenBound(
+                        key,
+                        f"This may shake: the device is rated for {rating:.3g} {unit}."
+                        " Lower it.",
+                        f"{key} is {value:g}, but the device, {preset.description}, is"
+                        f" rated for {rating:g} {unit}: lower it",
+                    )
+                )
+    return found
+
+
+def _check_stiffness(
+    kind: _Kind, K: float, B: float, b: float, period_s: float, delay_s: float
+) -> list[BrokenBound]:
+    """Checks K against the law of Gil et al."""
+    bound = calc_stable_stiffness(b, B, period_s, delay_s)
+    if K <= bound:
+        return []
+    return [
+        BrokenBound(
+            kind.stiffness,
+            f"This will shake: device and hand bear {bound:.3g} {kind.stiffness_unit}"
+            " at this rate. Lower it, raise the damping, or hold more firmly.",
+            f"{kind.stiffness} is {K:g}, but stable only up to {bound:.5g}"
+            f" {kind.stiffness_unit}, (b + B) / (T/2 + t_d) (Gil et al.), with"
+            f" b = {b:.3g} {kind.damping_unit} of device and hand at"
+            f" {1.0 / period_s:g} Hz: lower it, raise {kind.damping} or the rate, or"
+            " hold the device more firmly",
+        )
+    ]
+
+
+def _check_damping(
+    kind: _Kind, K: float, B: float, m: float, period_s: float
+) -> list[BrokenBound]:
+    """Checks B against Jury's criterion."""
+    bound = calc_sampled_damping(m, K, period_s)
+    if B <= bound:
+        return []
+    if bound == 0.0:
+        return [
+            BrokenBound(
+                kind.stiffness,
+                f"This will shake, whatever the damping: device and hand have {m:.2g}"
+                f" {kind.mass_unit}, too little at this rate. Lower it.",
+                f"{kind.stiffness} is {K:g}, too stiff for any damping (Jury's"
+                f" criterion) on {m:.3g} {kind.mass_unit} of device and hand at"
+                f" {1.0 / period_s:g} Hz: lower it or raise the rate",
+            )
+        ]
+    return [
+        BrokenBound(
+            kind.damping,
+            f"This will shake: device and hand bear {bound:.3g} {kind.damping_unit} at"
+            " this rate. Lower it.",
+            f"{kind.damping} is {B:g}, but stable only up to {bound:.5g}"
+            f" {kind.damping_unit}, below 2 m/T (Jury's criterion), on {m:.3g}"
+            f" {kind.mass_unit} of device and hand at {1.0 / period_s:g} Hz: lower it"
+            " or raise the rate",
+        )
+    ]
+
+
+def _check_passivity(
+    kind: _Kind, K: float, B: float, b: float, period_s: float, delay_s: float
+) -> list[BrokenBound]:
+    """Checks K and B against the bound of Colgate and Schenkel."""
+    bound = calc_passive_damping(K, B, period_s, delay_s)
+    if b >= bound:
+        return []
+    name, value = (kind.damping, B) if 2.0 * B > K * period_s else (kind.stiffness, K)
+    return [
+        BrokenBound(
+            name,
+            f"A loose grip may vibrate: device and hand damp by {b:.3g}"
+            f" {kind.damping_unit}, stiffness and damping together ask for"
+            f" {bound:.3g}. Lower one of them, or hold more firmly.",
+            f"{name} is {value:g}: not passive, because device and hand damp"
+            f" by b = {b:.3g} {kind.damping_unit} and K (T/2 + t_d) + |B| is"
+            f" {bound:.5g} (Colgate and Schenkel), so that some grips may vibrate:"
+            f" lower {kind.damping} or {kind.stiffness}, raise the rate, or hold the"
+            " device more firmly",
+        )
+    ]

@@ -1,0 +1,207 @@
+"""What an arm in a hand is at its handle, and a scene's coupling on it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
+from pydrake.systems.framework import Context
+
+from drake_haptics.bounds.coupling import (
+    BrokenBound,
+    HeldHandle,
+    check_coupling,
+    find_broken_bounds,
+    find_exceeded_ratings,
+)
+from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
+from drake_haptics.scene.schema import Scene, SceneError
+from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, LOOSEST_GRIP, HandGrip
+from drake_haptics.systems.arm.simulated_arm import make_arm_plant, weld_hand
+from drake_haptics.systems.device.haptic_device import HapticDevice
+
+
+def check_scene_coupling(scene: Scene, device: HapticDevice) -> list[str]:
+    """Checks a scene's coupling on its simulated device in its hand.
+
+    Args:
+        scene: Gains, grip and rate.
+        device: What `make_simulated_device` returned for it.
+
+    Returns:
+        A sentence for each bound that is broken, as `check_coupling` has it.
+    """
+    held = calc_scene_handle(scene, device)
+    period_s = 1.0 / scene.device.rate_hz
+    return check_coupling(scene.coupling, held, period_s, calc_force_delay(scene))
+
+
+def check_real_coupling(scene: Scene) -> list[str]:
+    """Checks a scene's coupling on a real device of the scene's preset.
+
+    It is held to what the device is rated for and, where the preset has a model, to
+    the bounds on its twin. Nobody knows how firmly a real device is held: the bounds
+    are those in the loosest grip.
+
+    Args:
+        scene: Gains, preset and rate.
+
+    Returns:
+        A sentence for each rating that is exceeded, then as `check_scene_coupling`.
+
+    Raises:
+        SceneError: There is no such preset, or its model is no arm.
+    """
+    preset = load_device_preset(scene.device.preset)
+    found = find_real_bounds(scene, preset, calc_loosely_held(scene, preset))
+    return [bound.sentence for bound in found]
+
+
+def find_real_bounds(
+    scene: Scene, preset: DevicePreset, loosely_held: HeldHandle | None
+) -> list[BrokenBound]:
+    """Returns what `check_real_coupling` checks.
+
+    Args:
+        scene: Gains and rate.
+        preset: The scene's.
+        loosely_held: What `calc_loosely_held` returned for them.
+    """
+    found = find_exceeded_ratings(scene.coupling, preset)
+    if loosely_held is not None:
+        period_s = 1.0 / scene.device.rate_hz
+        found += [
+            replace(bound, sentence=f"{bound.sentence} (in a {LOOSEST_GRIP} grip)")
+            for bound in find_broken_bounds(
+                scene.coupling, loosely_held, period_s, calc_force_delay(scene)
+            )
+        ]
+    return found
+
+
+def calc_loosely_held(scene: Scene, preset: DevicePreset) -> HeldHandle | None:
+    """Returns what a preset's arm at its default angles is in the loosest grip.
+
+    Args:
+        scene: Its tool is grasped.
+        preset: The scene's; None is returned for one without a model.
+
+    Raises:
+        SceneError: Its model is no arm.
+    """
+    if not preset.has_model:
+        return None
+    grip = HAND_GRIPS[LOOSEST_GRIP]
+    assert grip is not None
+    try:
+        plant = make_arm_plant(preset.model_path, RigidTransform())
+        handle = plant.GetBodyByName(preset.handle_link)
+        weld_hand(plant, handle, grip)
+        plant.Finalize()
+    except RuntimeError as error:  # Of Drake's parser, or there is no such link.
+        raise SceneError(
+            f"device.preset '{scene.device.preset}', with handle_link"
+            f" '{preset.handle_link}' of the model {preset.model_path}: {error}"
+        ) from error
+    p_HQ = np.array(scene.tool.grasp.position_m)
+    return calc_held_handle(plant, handle, grip, p_HQ=p_HQ)
+
+
+def calc_force_delay(scene: Scene) -> float:
+    """Returns how late a scene's simulated device shows a wrench, s.
+
+    That is the delay t_d on top of the hold, as the laws of stability count it.
+    """
+    delay = scene.device.twin.delay
+    return 0.0 if delay is None else delay.samples / scene.device.rate_hz
+
+
+def calc_scene_handle(
+    scene: Scene, device: HapticDevice, root: Context | None = None
+) -> HeldHandle:
+    """Returns what a scene's simulated device in its hand is where it holds the tool.
+
+    Args:
+        scene: Names preset, grip and grasp.
+        device: What `make_simulated_device` returned for it.
+        root: Where the arm stands; at its default angles if not given.
+    """
+    plant = device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
+    handle = plant.GetBodyByName(load_device_preset(scene.device.preset).handle_link)
+    return calc_held_handle(
+        plant,
+        handle,
+        HAND_GRIPS[scene.hand.grip],
+        p_HQ=np.array(scene.tool.grasp.position_m),
+        context=None if root is None else plant.GetMyContextFromRoot(root),
+    )
+
+
+def calc_held_handle(
+    plant: MultibodyPlant,
+    handle: RigidBody,
+    grip: HandGrip | None,
+    *,
+    p_HQ: np.ndarray | None = None,
+    context: Context | None = None,
+) -> HeldHandle:
+    """Calculates the least inertia, damping and stiffness at a point of the handle.
+
+    Where all joints are free, a force at the point meets the apparent inertia
+    (J M⁻¹ Jᵀ)⁻¹, and in the same way damping and stiffness of joints and hand. The
+    least of it in any direction is the worst case for a coupling. Far from the hand all
+    of it is less: the handle turns.
+
+    Args:
+        plant: The arm, its hand welded to it.
+        handle: The body that is held at its origin.
+        grip: Its spring and damper count; None where the arm is free.
+        p_HQ: The point, (3,), m: where a coupling pulls. The origin if not given.
+        context: The plant's; at the default angles if not given.
+    """
+    context = context or plant.CreateDefaultContext()
+    J_WH = _calc_jacobian(plant, handle, context, np.zeros(3))
+    J_WQ = _calc_jacobian(plant, handle, context, np.zeros(3) if p_HQ is None else p_HQ)
+    joints = [plant.get_joint(i) for i in plant.GetJointIndices()]
+    damping = np.diag(np.concatenate([j.default_damping_vector() for j in joints]))
+    stiffness = np.zeros_like(damping)
+    if grip is not None:
+        dampers = [grip.rotational_damping_Nms_per_rad] * 3
+        springs = [grip.rotational_stiffness_Nm_per_rad] * 3
+        dampers += [grip.damping_Ns_per_m] * 3
+        springs += [grip.stiffness_N_per_m] * 3
+        damping += J_WH.T @ np.diag(dampers) @ J_WH
+        stiffness += J_WH.T @ np.diag(springs) @ J_WH
+    M = plant.CalcMassMatrix(context)
+    return HeldHandle(
+        mass_kg=_calc_least(J_WQ[3:], M),
+        damping_Ns_per_m=_calc_least(J_WQ[3:], damping),
+        inertia_kgm2=_calc_least(J_WQ[:3], M),
+        rotational_damping_Nms_per_rad=_calc_least(J_WQ[:3], damping),
+        stiffness_N_per_m=_calc_least(J_WQ[3:], stiffness),
+        rotational_stiffness_Nm_per_rad=_calc_least(J_WQ[:3], stiffness),
+    )
+
+
+def _calc_jacobian(
+    plant: MultibodyPlant, handle: RigidBody, context: Context, p_HQ: np.ndarray
+) -> np.ndarray:
+    """Returns J (6, n): spatial velocity of the handle at Q in the world, by joints."""
+    return plant.CalcJacobianSpatialVelocity(
+        context,
+        JacobianWrtVariable.kV,
+        handle.body_frame(),
+        p_HQ,
+        plant.world_frame(),
+        plant.world_frame(),
+    )
+
+
+def _calc_least(J: np.ndarray, of_joints: np.ndarray) -> float:
+    """Returns the least of (J X⁻¹ Jᵀ)⁻¹ in any direction; 0 where X leaves one free."""
+    if np.linalg.matrix_rank(of_joints, hermitian=True) < len(of_joints):
+        return 0.0
+    return float(1.0 / np.linalg.norm(J @ np.linalg.solve(of_joints, J.T), 2))

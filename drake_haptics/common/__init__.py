@@ -1,0 +1,1 @@
+"""Shared by every part of the package: errors, words, poses, colors, time."""

@@ -1,0 +1,1 @@
+"""Haply's Inverse3 behind the interface of a device."""

@@ -1,0 +1,188 @@
+"""What is answered to each message of Haply's Inverse Service; time is an argument."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from drake_haptics.device.backend import (
+    DeviceCommand,
+    DeviceReading,
+    Fault,
+    GateState,
+)
+from drake_haptics.device.haply.messages import (
+    ASK_FOR_DEVICES,
+    ForceField,
+    HaplyMessageError,
+    HaplyState,
+    format_force,
+    parse_state,
+)
+from drake_haptics.device.local_gate import LocalGate
+from drake_haptics.device.silent_reading import make_silent
+from drake_haptics.device.turn_rate import TurnRate
+
+# A service that says nothing usable for so long is at fault.
+SILENT_NS = 100_000_000
+_TURN_RATE_TIME_CONSTANT_S = 0.01
+
+
+class HaplyExchange:
+    """One device's side of the conversation: a message in, a message out.
+
+    Args:
+        gate: Decides what force is shown.
+        device_id: Of the Inverse3; the first one listed where None.
+        grip_id: Of the VerseGrip, likewise.
+        force_field: What the service calls the force.
+    """
+
+    def __init__(
+        self,
+        gate: LocalGate,
+        device_id: str | None,
+        grip_id: str | None,
+        force_field: ForceField,
+    ):
+        self._gate = gate
+        self._device_id = device_id
+        self._grip_id = grip_id
+        self._force_field = force_field
+        self._turn_rate = TurnRate(_TURN_RATE_TIME_CONSTANT_S)
+        self._orientation: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
+        self._named = ""
+        self._heard_ns = 0
+        self._obeyed: DeviceCommand | None = None
+        # The gate must be released before it can be enabled for the first time.
+        self._releases = True
+        self.reading: DeviceReading | None = None
+        """The newest one."""
+        self.has_grip = False
+        """Whether a grip told its orientation in the newest message."""
+        self.rejected = 0
+        """Messages that could not be used."""
+        self.complaint = "it has said nothing"
+        """What is wrong with what the service said last."""
+
+    @property
+    def is_released(self) -> bool:
+        """Whether no force is shown or asked for."""
+        return self._gate.state is not GateState.ACTIVE
+
+    def release(self) -> None:
+        """Ramps the force out, or leaves a fault, in the answers to come.
+
+        After that, a command that is new ramps it in again.
+        """
+        self._releases = True
+
+    def answer(
+        self, text: str | bytes, command: DeviceCommand | None, now_ns: int
+    ) -> str:
+        """Takes a message in and returns the answer.
+
+        Args:
+            text: What the service said.
+            command: The newest one there is; each is obeyed once.
+            now_ns: The time, ns; never goes back.
+        """
+        try:
+            state = parse_state(text, self._device_id, self._grip_id)
+        except HaplyMessageError as error:
+            self.rejected += 1
+            self.complaint = str(error)
+            state = None
+        else:
+            if state is None:
+                self.complaint = f"it has no Inverse3 {self._device_id or ''}".rstrip()
+        if state is None:
+            return self._answer_blindly(command, now_ns)
+        self._fail_after_silence(now_ns)
+        self._heard_ns = now_ns
+        X_BH, V_BH = self._calc_motion(state, 1e-9 * now_ns)
+        F_BH = self._pass(command, X_BH, V_BH, now_ns)
+        self.reading = DeviceReading(
+            sequence=1 if self.reading is None else self.reading.sequence + 1,
+            time_s=1e-9 * now_ns,
+            X_BH=X_BH,
+            V_BH=V_BH,
+            F_BH=F_BH,
+            buttons=state.buttons,
+            gate=self._gate.state,
+            fault=self._gate.fault,
+        )
+        self._named = state.device_id
+        return self._format(F_BH)
+
+    def end(self) -> str:
+        """Ends all force at once and returns the message that says so.
+
+        For a service that gives no turn any more, of which a later one must not go on
+        with the force of the last.
+        """
+        self._gate.fail()
+        return self._format(np.zeros(6))
+
+    def fall_silent(self) -> None:
+        """Has the reading say that the service says nothing usable."""
+        if self.reading is not None and self.reading.fault is not Fault.DEVICE:
+            self.reading = make_silent(self.reading)
+
+    def _answer_blindly(self, command: DeviceCommand | None, now_ns: int) -> str:
+        """Returns the answer to what told nothing of the device."""
+        reading = self.reading
+        if reading is None:
+            return ASK_FOR_DEVICES
+        is_silent = self._fail_after_silence(now_ns)
+        if is_silent:
+            self.fall_silent()
+            self._obeyed = command  # What is asked of nobody is never shown.
+        # For a while the handle is taken to be where it was: one message that is lost
+        # must not be felt.
+        F_BH = self._pass(command, reading.X_BH, reading.V_BH, now_ns)
+        return ASK_FOR_DEVICES if is_silent else self._format(F_BH)
+
+    def _fail_after_silence(self, now_ns: int) -> bool:
+        """Returns whether the service was silent; then force ends, and is a fault."""
+        is_silent = now_ns - self._heard_ns > SILENT_NS
+        if is_silent and not self.is_released:
+            self._gate.fail()
+        return is_silent
+
+    def _calc_motion(
+        self, state: HaplyState, time_s: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Returns X_BH (7,) and V_BH (6,)."""
+        self.has_grip = state.orientation is not None
+        turning = [0.0, 0.0, 0.0]
+        if state.orientation is not None:
+            self._orientation = state.orientation
+            turning = self._turn_rate.update(state.orientation, time_s)
+        return (
+            np.array([*self._orientation, *state.position]),
+            np.array([*turning, *state.velocity]),
+        )
+
+    def _pass(
+        self,
+        command: DeviceCommand | None,
+        X_BH: np.ndarray,
+        V_BH: np.ndarray,
+        now_ns: int,
+    ) -> np.ndarray:
+        """Returns the wrench (6,) that the gate lets pass."""
+        if self._releases:
+            self._gate.release(now_ns)
+            self._obeyed = command
+        elif command is not self._obeyed:
+            self._obeyed = command
+            if command is not None:
+                self._gate.show(command.F_BH, now_ns)
+        F_BH = self._gate.step(X_BH, V_BH, now_ns)
+        if self._gate.state is GateState.IDLE:
+            self._releases = False
+        return F_BH
+
+    def _format(self, F_BH: np.ndarray) -> str:
+        """Returns the message that shows a wrench's force."""
+        return format_force(self._named, F_BH[3:].tolist(), self._force_field)

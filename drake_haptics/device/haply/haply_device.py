@@ -1,0 +1,232 @@
+"""Haply's Inverse3 with a VerseGrip, through Haply's Inverse Service."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any, get_args
+from urllib.parse import parse_qsl
+
+import numpy as np
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import ClientConnection, connect
+
+from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceCommand,
+    DeviceError,
+    DeviceReading,
+    LinkStatus,
+)
+from drake_haptics.device.haply.exchange import SILENT_NS, HaplyExchange
+from drake_haptics.device.haply.messages import ASK_FOR_DEVICES, ForceField
+from drake_haptics.device.local_gate import LocalGate
+
+_RETRY_S = 0.1
+_CONNECT_S = 1.0
+# Ticks over which the lateness is told: a second of them.
+_LATENESS_TICKS = 1000
+# What an address may say.
+_OPTIONS: dict[str, Callable[[str], Any]] = {
+    "device_id": str,
+    "grip_id": str,
+    "force_field": str,
+    "max_force_N": float,
+}
+# Much more than a force takes to ramp out, and a connection to be given up.
+_CLOSING_S = 3.0
+
+
+class HaplyDevice(DeviceBackend):
+    """An Inverse3, which shows force but no torque, and the grip that turns on it.
+
+    A thread of its own speaks with the service: strictly in turn, a force for each
+    state. What it sends has passed the same gate as on any device. `read` and `write`
+    only exchange values with that thread.
+
+    Frame B is the service's own: x to the right, y forward, z up. The position and the
+    linear velocity are those of the cursor. The orientation is the grip's and the
+    angular velocity the smoothed difference of its orientations (see `TurnRate`).
+    Without a grip the orientation is the identity, or the last one that was known, and
+    `has_grip` is False.
+
+    A service that says nothing usable for 0.1 s, or has gone, is `Fault.DEVICE` in
+    the readings. When it is back, a device that showed force stays at fault until
+    `recover`.
+    """
+
+    def __init__(
+        self,
+        uri: str = "ws://127.0.0.1:10001",
+        *,
+        device_id: str | None = None,
+        grip_id: str | None = None,
+        force_field: ForceField = "vector",
+        max_force_N: float = 2.0,
+        ttl_s: float = 0.1,
+        rate_hz: float = 1000.0,
+        timeout_s: float = 2.0,
+    ):
+        """Connects, and waits for the first state.
+
+        Args:
+            uri: Where the service is.
+            device_id: Of the Inverse3; the first one listed where not given.
+            grip_id: Of the VerseGrip, likewise.
+            force_field: What the service calls the force: `values` before version 3.5.
+            max_force_N: Largest force ever shown, N.
+            ttl_s: How long a written wrench holds without a newer one, s.
+            rate_hz: Exchanges per second, Hz, as far as the service keeps up.
+            timeout_s: How long to wait, s.
+
+        Raises:
+            DeviceError: There is no service, or it has no such device.
+            ValueError: A limit or rate is out of range, or there is no such field.
+        """
+        if force_field not in get_args(ForceField):
+            raise ValueError(
+                f"force_field must be vector or values, is {force_field!r}"
+            )
+        if not rate_hz > 0.0:
+            raise ValueError(f"rate_hz must be positive, is {rate_hz}")
+        self._uri = uri
+        self._exchange = HaplyExchange(
+            LocalGate(max_force_N=max_force_N, max_torque_Nm=0.0, ttl_s=ttl_s),
+            device_id,
+            grip_id,
+            force_field,
+        )
+        self._clock = TickClock(1.0 / rate_hz)
+        # Handed to the thread; replaced as a whole, never changed.
+        self._command: DeviceCommand | None = None
+        self._closes = False
+        self._has_reading = threading.Event()
+        self._connection = f"{uri} does not answer"
+        self._thread = threading.Thread(
+            target=self._run, name="haply_device", daemon=True
+        )
+        self._thread.start()
+        if not self._has_reading.wait(timeout_s):
+            self.close()
+            raise DeviceError(
+                f"no Haply device: {self._connection}. Start Haply's Inverse Service,"
+                " plug in the Inverse3 and see that the demos of Haply Hub move"
+            )
+
+    @staticmethod
+    def open(uri: str, options: str = "") -> HaplyDevice:
+        """Returns the device at an address that a person wrote.
+
+        Args:
+            uri: Where the service is.
+            options: Arguments of the constructor, like
+                `max_force_N=4&device_id=049D`: any of `device_id`, `grip_id`,
+                `force_field` and `max_force_N`.
+
+        Raises:
+            DeviceError: There is no such device or option, or a value is impossible.
+        """
+        arguments: dict[str, Any] = {}
+        try:
+            for name, value in parse_qsl(options, keep_blank_values=True):
+                if name not in _OPTIONS:
+                    raise ValueError(f"{name} is not one of {', '.join(_OPTIONS)}")
+                arguments[name] = _read_option(name, value)
+            return HaplyDevice(uri, **arguments)
+        except DeviceError:
+            raise
+        except ValueError as error:
+            raise DeviceError(
+                f"options of the Haply device, {options}: {error}"
+            ) from error
+
+    @property
+    def has_grip(self) -> bool:
+        """Whether a VerseGrip tells the orientation."""
+        return self._exchange.has_grip
+
+    def read(self) -> DeviceReading | None:
+        """Returns the newest reading; its time is this computer's monotonic clock."""
+        return self._exchange.reading
+
+    def write(self, command: DeviceCommand) -> None:
+        """Asks for a wrench; the torque and the slopes are not used.
+
+        Raises:
+            ValueError: The wrench is not of six numbers.
+        """
+        if np.shape(command.F_BH) != (6,):
+            raise ValueError(f"F_BH must be (6,), is {np.shape(command.F_BH)}")
+        self._command = command
+
+    def recover(self) -> None:
+        """Leaves a fault of the gate; the next `write` ramps the force in."""
+        self._exchange.release()
+
+    def close(self) -> None:
+        """Ramps the force out, which takes 20 ms, and disconnects."""
+        self._exchange.release()
+        self._closes = True
+        self._thread.join(_CLOSING_S)
+
+    def get_link_status(self) -> LinkStatus:
+        """Returns the counts; the protocol has no numbers to tell losses by."""
+        reading = self._exchange.reading
+        return LinkStatus(
+            received=0 if reading is None else reading.sequence,
+            rejected=self._exchange.rejected,
+            lateness_s=self._clock.calc_lateness(_LATENESS_TICKS),
+        )
+
+    def _run(self) -> None:
+        """Connects again and again, until the device is closed."""
+        try:
+            while not self._closes:
+                try:
+                    with connect(
+                        self._uri,
+                        compression=None,
+                        proxy=None,
+                        ping_interval=None,
+                        open_timeout=_CONNECT_S,
+                        close_timeout=_RETRY_S,
+                    ) as socket:
+                        self._converse(socket)
+                except (OSError, WebSocketException) as error:
+                    self._connection = f"{self._uri}: {error}"
+                    self._exchange.fall_silent()
+                    time.sleep(_RETRY_S)
+        finally:
+            self._exchange.fall_silent()
+
+    def _converse(self, socket: ClientConnection) -> None:
+        """Answers each message in turn, until the device is closed."""
+        while not (self._closes and self._exchange.is_released):
+            try:
+                text = socket.recv(timeout=1e-9 * SILENT_NS)
+            except TimeoutError:
+                if self._closes:
+                    # Out of turn, since there is no time left to wait for one.
+                    socket.send(self._exchange.end())
+                    return
+                self._connection = f"{self._uri} says nothing"
+                self._exchange.fall_silent()
+                continue
+            answer = self._exchange.answer(text, self._command, time.monotonic_ns())
+            socket.send(answer)
+            if answer == ASK_FOR_DEVICES:
+                self._connection = f"{self._uri}: {self._exchange.complaint}"
+                time.sleep(_RETRY_S)
+            else:
+                self._has_reading.set()
+                self._clock.wait()
+
+
+def _read_option(name: str, text: str) -> Any:
+    """Returns the value of an option as a person wrote it."""
+    try:
+        return _OPTIONS[name](text)
+    except ValueError as error:
+        raise ValueError(f"{name} must be a number, is {text!r}") from error

@@ -1,0 +1,1 @@
+"""Measures this package: accuracy, speed, and the paper's figures."""

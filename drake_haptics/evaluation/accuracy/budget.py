@@ -1,0 +1,192 @@
+"""Picks the most accurate setting of a scene that holds a time budget."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from drake_haptics.common.errors import UserError
+from drake_haptics.evaluation.accuracy.combinations import (
+    Combination,
+    list_combinations,
+)
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors
+from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.scene.schema import Scene
+
+# A budget is kept if later runs keep it within this factor.
+PROMISE = 1.1
+RUNS = 5
+# Something else may disturb one in so many runs.
+_SPARED = 5
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Fresh runs of a combination in turns with the scene as it is.
+
+    Attributes:
+        combination: What was run.
+        p99_us: 99th percentile of the tick in each of its runs, µs.
+        scene_p99_us: The same of the scene's.
+    """
+
+    combination: Combination
+    p99_us: tuple[float, ...]
+    scene_p99_us: tuple[float, ...]
+
+    @property
+    def middle_us(self) -> float:
+        """The median of its runs, µs."""
+        return statistics.median(self.p99_us)
+
+    @property
+    def scene_us(self) -> float:
+        """The median of the scene's runs, µs; NaN if there are none."""
+        return statistics.median(self.scene_p99_us or (math.nan,))
+
+    def holds(self, budget_us: float) -> bool:
+        """Whether it keeps a budget, and will in later runs but for 10 %.
+
+        The median of the runs must keep it, and four fifths of them must within 10 %.
+        """
+        nearly_worst_us = sorted(self.p99_us)[-1 - len(self.p99_us) // _SPARED]
+        return self.middle_us <= budget_us and nearly_worst_us <= PROMISE * budget_us
+
+
+@dataclass(frozen=True)
+class BudgetChoice:
+    """What came of a budget.
+
+    Attributes:
+        budget_us: For the whole tick at its 99th percentile, µs.
+        scene: With the choice's settings; with those of the fastest if none holds it.
+        trial: The runs of the choice, or of the fastest.
+        holds: Whether the budget is kept.
+        trials: All that were run, the scene as it is first.
+        errors: Of all that is given up together; None where it is less than two
+            settings, or where nothing holds.
+    """
+
+    budget_us: float
+    scene: Scene
+    trial: Trial
+    holds: bool
+    trials: tuple[Trial, ...] = field(repr=False)
+    errors: Errors | None = None
+
+    @property
+    def is_scene(self) -> bool:
+        """Whether the scene is left as it is."""
+        return not self.trial.combination.rows
+
+
+def choose_setting(
+    scene: Scene,
+    budget_us: float,
+    *,
+    make_study: Callable[[list[Setting] | None], AccuracyStudy],
+    measure_p99: Callable[[Scene], float],
+    progress: Callable[[str, float], None] | None = None,
+    runs: int = RUNS,
+) -> BudgetChoice:
+    """Picks the most accurate combination of settings that holds a time budget.
+
+    The scene as it is comes first. If it does not hold the budget, the study says which
+    combination ought to; that is run again and again, in turns with the scene, until
+    runs of it hold the budget while those of the next more accurate one do not.
+
+    Args:
+        scene: What is to be made faster.
+        budget_us: For the whole tick, 99th percentile, µs.
+        make_study: Measures settings, all of them for None; called only if the scene
+            does not hold, and in the end with what is given up together.
+        measure_p99: Runs a scene anew and returns the 99th percentile of its ticks, µs.
+        progress: Called with what is done now and the share of it, in [0, 1].
+        runs: Of each combination.
+
+    Raises:
+        ValueError: The budget or the number of runs is not positive.
+    """
+    if not (math.isfinite(budget_us) and budget_us > 0.0):
+        raise ValueError(f"budget_us must be positive and finite, is {budget_us}")
+    if runs < 1:
+        raise ValueError(f"runs must be at least 1, is {runs}")
+    report = progress or (lambda what, share: None)
+    p99_us = []
+    for i in range(runs):
+        report(f"the scene as it is: run {i + 1} of {runs}", i / runs)
+        p99_us.append(measure_p99(scene))
+    as_it_is = Trial(Combination((), math.nan), tuple(p99_us), tuple(p99_us))
+    if as_it_is.holds(budget_us):
+        return BudgetChoice(budget_us, scene, as_it_is, True, (as_it_is,))
+    chain = list_combinations(make_study(None), scene)
+    scale = as_it_is.middle_us / chain[0].p99_us
+    done = {0: as_it_is}
+
+    def hold(index: int) -> bool:
+        """Whether a combination holds, by runs of it."""
+        if index not in done:
+            what = f"combination {index} of {len(chain) - 1}"
+            done[index] = _try_out(
+                chain[index],
+                scene,
+                measure_p99,
+                runs,
+                lambda i: report(f"{what}: run {i + 1} of {runs}", i / runs),
+            )
+            done[0] = _add_scene_runs(done[0], done[index])
+        return done[index].holds(budget_us)
+
+    last = len(chain) - 1
+    index = next(
+        (i for i in range(1, last + 1) if scale * chain[i].p99_us <= budget_us), last
+    )
+    while index < last and not hold(index):
+        index += 1
+    # What ought not to hold may do so; the scene itself too, after further runs of it.
+    while hold(index) and index > 0 and hold(index - 1):
+        index -= 1
+    if done[0].holds(budget_us):
+        index = 0
+    trial = done[index]
+    errors = None
+    if trial.holds(budget_us) and len(trial.combination.rows) > 1:
+        errors = make_study([trial.combination.setting]).rows[-1].errors
+    return BudgetChoice(
+        budget_us,
+        trial.combination.setting.apply(scene),
+        trial,
+        trial.holds(budget_us),
+        tuple(done.values()),
+        errors,
+    )
+
+
+def _add_scene_runs(as_it_is: Trial, other: Trial) -> Trial:
+    """Returns the trial of the scene with the runs that it had beside another."""
+    p99_us = (*as_it_is.p99_us, *other.scene_p99_us)
+    return Trial(as_it_is.combination, p99_us, p99_us)
+
+
+def _try_out(
+    combination: Combination,
+    scene: Scene,
+    measure_p99: Callable[[Scene], float],
+    runs: int,
+    begin_run: Callable[[int], None],
+) -> Trial:
+    """Runs a combination and the scene in turns; what cannot be run holds nothing."""
+    changed = combination.setting.apply(scene)
+    own: list[float] = []
+    scenes: list[float] = []
+    for i in range(runs):
+        begin_run(i)
+        try:
+            own.append(measure_p99(changed))
+        except UserError:
+            return Trial(combination, (math.inf,), tuple(scenes))
+        scenes.append(measure_p99(scene))
+    return Trial(combination, tuple(own), tuple(scenes))

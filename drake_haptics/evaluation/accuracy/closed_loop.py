@@ -1,0 +1,143 @@
+"""What a setting does to the loop: energy from nothing, and how stiff it may be."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_scene import HeldScene, hold_scene
+from drake_haptics.analysis.stability_limit import find_stability_limit
+from drake_haptics.evaluation.accuracy.built_scenes import build_once
+from drake_haptics.scene.schema import Scene
+from drake_haptics.simulation.run import RunError, run
+
+# The whole; all other accounts are its parts.
+_WHOLE = "device"
+# In words of the scene; the linearization's are those of its systems.
+_TWO_RATES = (
+    "contacts are looked for at another rate than the tick's, and a linear map has one"
+)
+# Stiffnesses are tried within this factor of the scene's, and told to this share.
+_RANGE = 1e4
+_TOLERANCE = 1e-2
+
+
+@dataclass(frozen=True)
+class PressedPlace:
+    """Where a scene's hand stops, or why there is no such place.
+
+    Attributes:
+        time_s: When it stops on its path, s; None where the tool rests nowhere.
+        near_N_per_m: The scene's own largest stable stiffness there, from which those
+            of other settings are not far, N/m.
+        why_not: Why there is none; empty where there is one.
+    """
+
+    time_s: float | None
+    near_N_per_m: float = math.inf
+    why_not: str = ""
+
+
+@dataclass(frozen=True)
+class StableStiffness:
+    """The largest stable stiffness of a coupling, or why none is told.
+
+    Attributes:
+        stiffness_N_per_m: N/m; infinite where there is no limit, None where it is not
+            known.
+        why_not: Why; empty where it is known.
+    """
+
+    stiffness_N_per_m: float | None
+    why_not: str = ""
+
+
+def measure_created_energy(scene: Scene, duration_s: float) -> float:
+    """Returns the energy that a scene's loop makes of nothing in a run, J.
+
+    It is the sum over all parts of the loop of what an `EnergyLedger` says they have
+    created. What the sampling of forces explains is in it, because a slower rate makes
+    more of it; the account of the whole loop is not, because there dampers hide what
+    another part makes.
+
+    Args:
+        scene: Runs in its simulated hand.
+        duration_s: Simulated time, s.
+
+    Returns:
+        J; infinite where the loop diverges.
+
+    Raises:
+        KeyboardInterrupt: At Ctrl-C.
+    """
+    try:
+        statistics = run(build_once(scene), duration_s, energy=True)
+    except RunError:
+        return math.inf
+    books = statistics.to_dict()["energy_J"]
+    assert isinstance(books, dict)
+    return float(
+        sum(account["created"] for name, account in books.items() if name != _WHOLE)
+    )
+
+
+def find_pressed_place(scene: Scene) -> PressedPlace:
+    """Returns where a scene's tool is pressed most and comes to rest."""
+    try:
+        held = hold_scene(scene)
+        limit = _find_limit(scene, held, scene.coupling.stiffness_N_per_m)
+    except (ValueError, RunError) as error:
+        return PressedPlace(None, why_not=str(error))
+    return PressedPlace(held.time_s, limit)
+
+
+def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
+    """Finds the largest stable stiffness of a coupling, held against its contact.
+
+    It is the translation's, at which an eigenvalue of one tick reaches magnitude 1.
+
+    Args:
+        scene: Its other gains stay.
+        place: Where its hand stops.
+    """
+    if place.time_s is None:
+        return StableStiffness(None, place.why_not)
+    if scene.contact.query_rate_hz is not None:
+        return StableStiffness(None, _TWO_RATES)
+    try:
+        held = hold_scene(scene, place.time_s)
+        return StableStiffness(_find_limit(scene, held, place.near_N_per_m))
+    except (ValueError, RunError) as error:
+        return StableStiffness(None, str(error))
+
+
+def _find_limit(scene: Scene, held: HeldScene, near_N_per_m: float) -> float:
+    """Returns the largest stable stiffness, N/m, looked for from one near it.
+
+    Raises:
+        ValueError: No stiffness is stable of which anything can be told.
+    """
+    stiffness = scene.coupling.stiffness_N_per_m
+    lowest, highest = stiffness / _RANGE, stiffness * _RANGE
+    reasons: list[str] = []
+
+    def growth(value: float) -> float:
+        coupling = replace(scene.coupling, stiffness_N_per_m=value)
+        try:
+            return analyse_held_scene(held, coupling).growth
+        except ValueError as error:
+            # Where it is stable below, that is the limit.
+            reasons.append(str(error))
+            return math.nan
+
+    limit = find_stability_limit(
+        growth,
+        min(max(near_N_per_m, lowest), highest),
+        lowest=lowest,
+        highest=highest,
+        relative_tolerance=_TOLERANCE,
+    ).value
+    if limit == 0.0 and reasons:
+        raise ValueError(reasons[0])
+    return limit

@@ -1,0 +1,189 @@
+"""Runs a scene's recorded motion through other libraries."""
+
+from __future__ import annotations
+
+import copy
+import importlib
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, version
+
+import numpy as np
+
+from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.common.errors import UserError
+from drake_haptics.evaluation.accuracy.figures import Errors, PeerRow, TickTimes
+from drake_haptics.evaluation.accuracy.knobs import make_reference
+from drake_haptics.evaluation.accuracy.open_loop import compare
+from drake_haptics.evaluation.accuracy.peers.problem import (
+    Answer,
+    PeerAnswers,
+    PeerProblem,
+    make_peer_problem,
+)
+from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
+from drake_haptics.evaluation.accuracy.truth import Truth, find_truth, shift_wrench
+from drake_haptics.scene.effects import Effects
+from drake_haptics.scene.schema import Scene
+
+
+@dataclass(frozen=True)
+class PeerMethod:
+    """One way to a contact wrench.
+
+    Attributes:
+        library: Its name.
+        package: That is installed with pip.
+        module: Of this folder; imports the library.
+        function: In it, an `Answer`.
+        words: What is asked, for the report.
+        for_pieces: Whether it is another method's where the tool is one piece.
+    """
+
+    library: str
+    package: str
+    module: str
+    function: str
+    words: str
+    for_pieces: bool = False
+
+    def load(self) -> Answer:
+        """Returns the function.
+
+        Raises:
+            ImportError: The library is not installed.
+        """
+        path = f"drake_haptics.evaluation.accuracy.peers.{self.module}"
+        answer: Answer = getattr(importlib.import_module(path), self.function)
+        return answer
+
+
+METHODS = (
+    PeerMethod(
+        "coal",
+        "coal",
+        "with_coal",
+        "answer",
+        "signed distances of the same pieces, this package's law",
+    ),
+    PeerMethod(
+        "MuJoCo",
+        "mujoco",
+        "with_mujoco",
+        "answer",
+        "mj_collision of the same pieces, this package's law",
+    ),
+    PeerMethod(
+        "Drake",
+        "drake",
+        "with_drake_point",
+        "answer_by_distances",
+        "signed distances of the same pieces, this package's law",
+    ),
+    PeerMethod(
+        "Drake",
+        "drake",
+        "with_drake_point",
+        "answer_on_pieces",
+        "point contact of the same pieces, without a tolerance",
+    ),
+    PeerMethod(
+        "Drake",
+        "drake",
+        "with_drake_point",
+        "answer_on_meshes",
+        "point contact of meshes as it takes them: convex hulls",
+    ),
+    PeerMethod(
+        "Drake",
+        "drake",
+        "with_drake_hydroelastic",
+        "answer_with_hull",
+        "hydroelastic without a tolerance: tool's hull compliant, objects rigid",
+    ),
+    PeerMethod(
+        "Drake",
+        "drake",
+        "with_drake_hydroelastic",
+        "answer_with_pieces",
+        "hydroelastic without a tolerance: tool's pieces compliant, objects rigid",
+        for_pieces=True,
+    ),
+)
+
+
+def run_peers(
+    scene: Scene,
+    motion: RecordedMotion,
+    truth: Truth,
+    *,
+    progress: Callable[[str, float], None] | None = None,
+) -> tuple[PeerRow, ...]:
+    """Compares other libraries' contact wrenches with the truth.
+
+    The tool is put where it was, with its velocity, at each tick; objects rest. All
+    have the scene's stiffness and damping and no friction. Effects are left out, of
+    the truth too. Times are those inside the library: in C++ around its query (this
+    package's law is not counted), from Python around the one call to Drake. A tick's is
+    the middle of several passes.
+
+    Args:
+        scene: What was recorded.
+        motion: Of its tool.
+        truth: On that motion.
+        progress: Called with what is done now and the share of all, in [0, 1].
+
+    Returns:
+        A row for each of `METHODS`, with why not where a library is absent or fails.
+    """
+    report = progress or (lambda what, share: None)
+    if scene.effects != Effects():
+        report("finding the truth without effects", 0.0)
+        scene = _leave_out_effects(scene)
+        truth = find_truth(make_reference(scene).apply(scene), motion)
+    problem = make_peer_problem(build_quietly(scene), motion, truth)
+    rows = []
+    for done, method in enumerate(METHODS):
+        report(f"{method.library}: {method.words}", done / len(METHODS))
+        rows.append(run_peer(method, problem, truth))
+    return tuple(rows)
+
+
+def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
+    """Returns the row of one method, see `run_peers`."""
+    if method.for_pieces and len(problem.tool.pieces) == 1:
+        return _explain(method.library, method, "the tool is one piece: its hull")
+    try:
+        library = f"{method.library} {version(method.package)}"
+        answers = method.load()(problem)
+    except PackageNotFoundError:
+        return _explain(method.library, method, f"{method.package} is not installed")
+    except (ImportError, UserError, RuntimeError, ValueError) as error:
+        return _explain(library, method, str(error))
+    remark = f", {answers.remark}" if answers.remark else ""
+    median, p99, p99_9 = (1e6 * np.percentile(answers.seconds, [50, 99, 99.9])).tolist()
+    return PeerRow(
+        library=library,
+        method=method.words + remark,
+        native=TickTimes(median, p99, p99_9),
+        errors=_find_errors(answers, problem, truth),
+    )
+
+
+def _leave_out_effects(scene: Scene) -> Scene:
+    """Returns a copy of a scene without effects, and materials that name none."""
+    bare = copy.deepcopy(scene)
+    bare.effects = Effects()
+    for item in bare.environment:
+        item.material.friction_coefficient = item.material.shading = None
+    return bare
+
+
+def _find_errors(answers: PeerAnswers, problem: PeerProblem, truth: Truth) -> Errors:
+    F_Tcm_W = shift_wrench(answers.F_Tool_W, problem.motion.X_WTool, truth.p_TTcm)
+    errors = compare(F_Tcm_W, answers.distance, answers.tolerance_m, truth)
+    return Errors(**asdict(errors), energy_created_J=float("nan"))
+
+
+def _explain(library: str, method: PeerMethod, why_not: str) -> PeerRow:
+    return PeerRow(library, method.words, None, None, why_not)

@@ -1,0 +1,91 @@
+"""MuJoCo: its collision detection on the same pieces."""
+
+from __future__ import annotations
+
+import ctypes
+import tempfile
+from functools import cache
+
+import numpy as np
+
+from drake_haptics.evaluation.accuracy.peers.native_contacts import (
+    REALS,
+    copy_contacts,
+    declare_copy,
+)
+from drake_haptics.evaluation.accuracy.peers.our_law import apply_law
+from drake_haptics.evaluation.accuracy.peers.problem import (
+    PASSES,
+    PeerAnswers,
+    PeerProblem,
+)
+from drake_haptics.evaluation.measuring.mujoco_native import load_mujoco_native
+from drake_haptics.evaluation.measuring.mujoco_pieces import (
+    listed,
+    mesh_assets,
+    mesh_geoms,
+)
+
+
+def answer(problem: PeerProblem) -> PeerAnswers:
+    """Asks `mj_collision`, with poses and trees brought up to date, in C.
+
+    For one contact of each pair of pieces, as this package's law has it.
+    """
+    native = _load()
+    error = ctypes.create_string_buffer(1000)
+    with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
+        file.write(_make_mjcf(problem))
+        file.flush()
+        scene = native.mujoco_contacts_new(file.name.encode(), error, len(error))
+    if not scene:
+        raise RuntimeError(f"MuJoCo refused the scene: {error.value.decode()}")
+    try:
+        X_WTool = np.ascontiguousarray(problem.motion.X_WTool)
+        n, seconds = len(X_WTool), np.empty((PASSES, len(X_WTool)))
+        for one_pass in seconds:
+            count = native.mujoco_contacts_run(scene, n, X_WTool, one_pass)
+        found = copy_contacts(native.mujoco_contacts_copy, scene, count, seconds)
+    finally:
+        native.mujoco_contacts_delete(scene)
+    return apply_law(problem, found)
+
+
+def _make_mjcf(problem: PeerProblem) -> str:
+    """Returns a body for each object, and a free one, the last, for the tool."""
+    parts = {f"object{i}": part for i, part in enumerate(problem.objects)}
+    assets = [mesh_assets(name, part) for name, part in parts.items()]
+    objects = [
+        f'<body pos="{listed(X_WO[4:])}" quat="{listed(X_WO[:4])}">'
+        + mesh_geoms(name, part, 'contype="1" conaffinity="0"')
+        + "</body>"
+        for (name, part), X_WO in zip(parts.items(), problem.part.X_WO, strict=True)
+    ]
+    reach = f'contype="0" conaffinity="1" margin="{problem.tolerance_m!r}"'
+    return f"""
+<mujoco>
+  <option><flag multiccd="disable"/></option>
+  <size memory="64M"/>
+  <asset>{mesh_assets("tool", problem.tool)} {" ".join(assets)}</asset>
+  <worldbody>
+    {" ".join(objects)}
+    <body>
+      <freejoint/>
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      {mesh_geoms("tool", problem.tool, reach)}
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@cache
+def _load() -> ctypes.CDLL:
+    native = load_mujoco_native("mujoco_contacts")
+    handle, text, integer = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int
+    native.mujoco_contacts_new.restype = handle
+    native.mujoco_contacts_new.argtypes = [text, text, integer]
+    native.mujoco_contacts_delete.argtypes = [handle]
+    native.mujoco_contacts_run.argtypes = [handle, integer, REALS, REALS]
+    declare_copy(native.mujoco_contacts_copy)
+    return native

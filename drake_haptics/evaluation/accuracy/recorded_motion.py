@@ -1,0 +1,117 @@
+"""How handle and tool moved in a run: what all settings are compared on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.systems.framework import Context
+
+from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.loop.simulated_device import make_hand_path
+from drake_haptics.scene.schema import Scene
+from drake_haptics.simulation.run import run
+
+# Ticks at the same time differ by round-off of their numbers.
+_SAME_TICK = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedMotion:
+    """How handle H and tool moved in the world W, tick by tick.
+
+    Poses are [qw qx qy qz x y z], m; velocities are [ω; v] of the frame's origin in the
+    world, rad/s and m/s. Row k is what the updates of tick k + 1 of the run saw.
+
+    Attributes:
+        period_s: The tick, s.
+        X_WTool: (n, 7) poses of the tool.
+        V_WTool: (n, 6) its spatial velocities.
+        X_WH: (n, 7) poses of the handle.
+        V_WH: (n, 6) its spatial velocities.
+    """
+
+    period_s: float
+    X_WTool: np.ndarray
+    V_WTool: np.ndarray
+    X_WH: np.ndarray
+    V_WH: np.ndarray
+
+    def __len__(self) -> int:
+        """Returns the number of ticks n."""
+        return len(self.X_WTool)
+
+    @property
+    def times_s(self) -> np.ndarray:
+        """(n,) times, s, the first row's is 0."""
+        return self.period_s * np.arange(len(self))
+
+    def find_ticks(self, period_s: float) -> list[tuple[int, int]]:
+        """Returns which ticks of a loop fall on this motion.
+
+        Args:
+            period_s: The tick of the loop, s.
+
+        Returns:
+            The row and the number of the last tick of the loop up to it, for each row
+            at which that is another one than at the row before.
+        """
+        numbers = (self.times_s / period_s + _SAME_TICK).astype(int)
+        rows = np.flatnonzero(np.diff(numbers, prepend=-1))
+        return list(zip(rows.tolist(), numbers[rows].tolist(), strict=True))
+
+    def sample(self, period_s: float) -> RecordedMotion:
+        """Returns the rows at which a loop of another tick has one, s."""
+        rows = [row for row, _ in self.find_ticks(period_s)]
+        return self._take(rows, max(period_s, self.period_s))
+
+    def cut(self, first: int, end: int) -> RecordedMotion:
+        """Returns the rows from the first to the one before the end."""
+        return self._take(list(range(first, end)), self.period_s)
+
+    def _take(self, rows: list[int], period_s: float) -> RecordedMotion:
+        arrays = (self.X_WTool, self.V_WTool, self.X_WH, self.V_WH)
+        return RecordedMotion(period_s, *(array[rows] for array in arrays))
+
+
+def choose_duration(scene: Scene, longest_s: float = 4.0) -> float:
+    """Returns the time of one lap of the hand's path, s, or of a longer one a part.
+
+    Some thousand ticks show what a setting does. Where the hand goes nowhere they are
+    those in which the tool comes to rest.
+    """
+    return min(make_hand_path(scene.hand.path).duration_s or longest_s, longest_s)
+
+
+def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMotion:
+    """Runs a scene in its simulated hand and records how handle and tool move.
+
+    Args:
+        scene: What to run. The same scene gives the same motion, bit for bit.
+        duration_s: Simulated time, s; that of `choose_duration` where not given.
+
+    Raises:
+        SceneError: The scene cannot be built.
+        MeshError: A mesh cannot be treated.
+        drake_haptics.simulation.run.RunError: The loop diverges.
+        KeyboardInterrupt: At Ctrl-C.
+    """
+    if duration_s is None:
+        duration_s = choose_duration(scene)
+    haptic = build_quietly(scene)
+    loop = haptic.loop
+    ports = [
+        loop.haptic_tool.get_pose_output_port(),
+        loop.haptic_tool.get_velocity_output_port(),
+        loop.device.get_handle_pose_output_port(),
+        loop.device.get_handle_velocity_output_port(),
+    ]
+    readers = [(port, port.get_system().GetMyContextFromRoot) for port in ports]
+    rows: list[np.ndarray] = []
+
+    def note(root: Context) -> None:
+        rows.append(np.concatenate([port.Eval(find(root)) for port, find in readers]))
+
+    run(haptic, duration_s, on_tick=note)
+    X_WTool, V_WTool, X_WH, V_WH = np.split(np.array(rows), [7, 13, 20], axis=1)
+    return RecordedMotion(haptic.period_s, X_WTool, V_WTool, X_WH, V_WH)

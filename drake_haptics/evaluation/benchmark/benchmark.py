@@ -1,0 +1,213 @@
+"""Runs the benchmarks and holds their figures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import asdict, dataclass, field
+from importlib.metadata import version
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from drake_haptics.evaluation.benchmark.libraries import find_libraries
+from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures
+from drake_haptics.evaluation.benchmark.pair_runs import PairFigures, run_pair
+from drake_haptics.evaluation.benchmark.pair_shapes import KINDS, SIZES, make_pair
+from drake_haptics.evaluation.benchmark.python_figures import PythonFigures
+from drake_haptics.evaluation.benchmark.scene_problem import SceneProblem
+from drake_haptics.evaluation.benchmark.scene_runs import (
+    NAME,
+    DrakeHapticsScene,
+    SceneFigures,
+    SceneQuery,
+    run_scene,
+)
+from drake_haptics.evaluation.benchmark.scenes import scene_makers
+from drake_haptics.evaluation.measuring.machine import describe_machine
+from drake_haptics.evaluation.measuring.native_build import NativeBuildError
+
+PARTS = ("pairs", "python", "scenes", "loop")
+# Called with what is done next and the share of the part that is done.
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much is measured.
+
+    Attributes:
+        sizes: of the bodies of convex pairs, vertices.
+        presses: of each pair.
+        motions: of each scene.
+        repeats: of each of these; at least 3, so that interruptions fall out.
+        large_scenes: whether scenes of 1000 pieces and more are run.
+        loop_s: of the loops' motion, s.
+    """
+
+    sizes: tuple[int, ...] = SIZES
+    presses: int = 6
+    motions: int = 6
+    repeats: int = 8
+    large_scenes: bool = True
+    loop_s: float = 4.0
+
+
+QUICK = Effort(
+    sizes=(42, 2562),
+    presses=1,
+    motions=1,
+    repeats=3,
+    large_scenes=False,
+    loop_s=1.2,
+)
+_LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room")
+
+
+@dataclass(frozen=True)
+class BenchFigures:
+    """All figures of a run.
+
+    Attributes:
+        machine: see `describe_machine`.
+        libraries: name -> version of those that were measured on pairs or in loops.
+        missing: name -> why it was not measured.
+        pairs: figures of convex pairs, those of a pair together.
+        python: figures of single queries from Python.
+        scenes: figures of scenes, those of a scene together.
+        loop: figures of whole loops.
+    """
+
+    machine: dict[str, Any]
+    libraries: dict[str, str] = field(default_factory=dict)
+    missing: dict[str, str] = field(default_factory=dict)
+    pairs: list[PairFigures] = field(default_factory=list)
+    python: list[PythonFigures] = field(default_factory=list)
+    scenes: list[SceneFigures] = field(default_factory=list)
+    loop: list[LoopFigures] = field(default_factory=list)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns everything as plain data; None stands for NaN."""
+        plain: dict[str, Any] = _without_nan(asdict(self))
+        return plain
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> BenchFigures:
+        """Returns what `to_dict` was called on."""
+        rest = {name: data[name] for name in ("machine", "libraries", "missing")}
+        return BenchFigures(
+            **rest,
+            pairs=[PairFigures.from_dict(d) for d in data["pairs"]],
+            python=[PythonFigures(**d) for d in data["python"]],
+            scenes=[SceneFigures.from_dict(d) for d in data["scenes"]],
+            loop=[LoopFigures.from_dict(d) for d in data["loop"]],
+        )
+
+
+def run_benchmarks(
+    parts: Collection[str] = PARTS,
+    effort: Effort = Effort(),
+    meshes: Path | None = None,
+    progress: Progress = lambda what, share: None,
+) -> BenchFigures:
+    """Measures this package and the libraries that are installed, in this thread.
+
+    Args:
+        parts: of `PARTS`.
+        effort: how much.
+        meshes: a folder of real meshes for the scenes, see `scene_makers`.
+        progress: called before each step.
+
+    Raises:
+        UserError: The folder has none of the meshes.
+    """
+    makers = scene_makers(effort.motions, meshes)  # first, as it may refuse the folder
+    figures = BenchFigures(machine=describe_machine())
+    if "pairs" in parts:
+        _run_pairs(figures, effort, progress)
+    if "python" in parts:
+        _run_python(figures, effort, progress)
+    if "scenes" in parts:
+        _run_scenes(figures, effort, makers, progress)
+    if "loop" in parts:
+        _run_loop(figures, effort, progress)
+    return figures
+
+
+def _run_pairs(figures: BenchFigures, effort: Effort, progress: Progress) -> None:
+    progress("looking for libraries, and compiling what calls them", 0.0)
+    libraries, missing = find_libraries()
+    figures.libraries.update({library.name: library.version for library in libraries})
+    figures.missing.update(missing)
+    pairs = [(kind, size) for kind in KINDS for size in effort.sizes]
+    for done, (kind, size) in enumerate(pairs):
+        progress(f"pairs: {kind}, {size} vertices", done / len(pairs))
+        pair = make_pair(kind, size)
+        figures.pairs.extend(run_pair(pair, libraries, effort.presses, effort.repeats))
+
+
+def _run_python(figures: BenchFigures, effort: Effort, progress: Progress) -> None:
+    if find_spec("coal") is None:
+        figures.missing["coal"] = "No module named 'coal'"
+        return
+    from drake_haptics.evaluation.benchmark.python_runs import run_python_pair
+
+    pairs = [(kind, size) for kind in KINDS for size in effort.sizes]
+    for done, (kind, size) in enumerate(pairs):
+        progress(f"from Python: {kind}, {size} vertices", done / len(pairs))
+        pair = make_pair(kind, size)
+        figures.python.append(run_python_pair(pair, 1, effort.repeats))
+
+
+def _run_scenes(
+    figures: BenchFigures,
+    effort: Effort,
+    makers: Mapping[str, Callable[[], SceneProblem]],
+    progress: Progress,
+) -> None:
+    if not effort.large_scenes:
+        makers = {n: make for n, make in makers.items() if n not in _LARGE_SCENES}
+    for done, (name, make) in enumerate(makers.items()):
+        progress(f"scenes: {name}", done / len(makers))
+        problem = make()
+        queries: dict[str, SceneQuery] = {NAME: DrakeHapticsScene(problem)}
+        queries.update(_scene_peer(figures, problem))
+        figures.scenes.extend(run_scene(problem, queries, effort.repeats))
+
+
+def _run_loop(figures: BenchFigures, effort: Effort, progress: Progress) -> None:
+    from drake_haptics.evaluation.benchmark.loop.problem import make_problem
+    from drake_haptics.evaluation.benchmark.loop.runs import make_loops, run_loops
+
+    progress("loop: recording the hand", 0.0)
+    problem = make_problem(duration_s=effort.loop_s)
+    loops, missing = make_loops(problem)
+    figures.missing.update(missing)
+    for library in ("Drake", "MuJoCo"):
+        if any(name.startswith(library) for name in loops):
+            figures.libraries[library] = version(library.lower())
+    figures.loop.extend(
+        run_loops(
+            problem,
+            loops,
+            effort.repeats,
+            lambda share: progress("loop: in turns", share),
+        )
+    )
+
+
+def _scene_peer(figures: BenchFigures, problem: SceneProblem) -> dict[str, SceneQuery]:
+    try:
+        from drake_haptics.evaluation.benchmark import scene_peer
+
+        return {scene_peer.NAME: scene_peer.CoalScene(problem)}
+    except (ImportError, NativeBuildError) as error:
+        figures.missing["coal"] = str(error)
+        return {}
+
+
+def _without_nan(data: Any) -> Any:
+    if isinstance(data, dict):
+        return {key: _without_nan(value) for key, value in data.items()}
+    if isinstance(data, list):
+        return [_without_nan(value) for value in data]
+    return None if data != data else data  # NaN alone differs from itself

@@ -1,0 +1,59 @@
+"""Convex pairs in FCL, through python-fcl: `distance` with signed distances."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+
+import fcl
+import numpy as np
+
+from drake_haptics._core import ConvexPolytope
+from drake_haptics.evaluation.benchmark.pair_library import (
+    PairAnswers,
+    PairLibrary,
+    normals_between,
+)
+from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.measuring.timing import CallTimer
+
+
+class FclQuery:
+    """One pair, less what the same call costs for two spheres."""
+
+    def __init__(self, pair: PairShape):
+        self._A = fcl.CollisionObject(_convex(pair.A_vertices))
+        self._B = fcl.CollisionObject(_convex(pair.B_vertices))
+        self._request = fcl.DistanceRequest(
+            enable_nearest_points=True, enable_signed_distance=True
+        )
+        trivial = [
+            fcl.CollisionObject(fcl.Sphere(0.01), fcl.Transform(np.full(3, x)))
+            for x in (0.0, 0.1)
+        ]
+        self._timer = CallTimer(
+            fcl.distance, (*trivial, self._request, fcl.DistanceResult())
+        )
+
+    def run(self, X_WA: np.ndarray) -> PairAnswers:
+        """See `PairQuery.run`."""
+        distance, p_WCa, p_WCb, seconds = [], [], [], []
+        for X in X_WA:
+            self._A.setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
+            result = fcl.DistanceResult()
+            d, time_s = self._timer.call((self._A, self._B, self._request, result))
+            distance.append(d)
+            p_WCa.append(result.nearest_points[0])
+            p_WCb.append(result.nearest_points[1])
+            seconds.append(time_s)
+        found = np.array(distance)
+        normals = normals_between(np.array(p_WCa), np.array(p_WCb), found)
+        return PairAnswers(found, normals, np.array(seconds))
+
+
+def _convex(vertices: np.ndarray) -> fcl.Convex:
+    hull = ConvexPolytope(vertices)
+    faces = [index for loop in hull.facets for index in (len(loop), *loop)]
+    return fcl.Convex(np.asarray(hull.vertices), len(hull.facets), np.array(faces))
+
+
+LIBRARIES = [PairLibrary("FCL", version("python-fcl"), False, FclQuery)]

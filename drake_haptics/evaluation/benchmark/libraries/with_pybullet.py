@@ -1,0 +1,106 @@
+"""Convex pairs in Bullet, through pybullet: `getClosestPoints` of two hulls."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import weakref
+from collections.abc import Iterator
+from importlib.metadata import version
+
+import numpy as np
+
+from drake_haptics.evaluation.benchmark.pair_library import PairAnswers, PairLibrary
+from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.measuring.timing import CallTimer
+
+# Far enough for every pose of the motion; Bullet gives no points beyond.
+_REACH_M = 1.0
+_DISTANCE, _NORMAL_ON_B = 8, 7
+
+
+@contextlib.contextmanager
+def _without_banner() -> Iterator[None]:
+    """Keeps what pybullet's C code prints on import off the terminal."""
+    kept = [os.dup(stream) for stream in (1, 2)]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (1, 2):
+        os.dup2(nowhere, stream)
+    try:
+        yield
+    finally:
+        ctypes.CDLL(None).fflush(None)  # what C still holds back goes nowhere too
+        for stream, own in zip((1, 2), kept, strict=True):
+            os.dup2(own, stream)
+            os.close(own)
+        os.close(nowhere)
+
+
+with _without_banner():
+    import pybullet
+
+
+class BulletQuery:
+    """One pair, less what the same call costs for two spheres.
+
+    Of the up to four points that Bullet returns the deepest is its answer.
+    """
+
+    def __init__(self, pair: PairShape):
+        self._client = pybullet.connect(pybullet.DIRECT)
+        weakref.finalize(self, pybullet.disconnect, self._client)  # there are few
+        self._A, self._B = (
+            self._add(pybullet.GEOM_MESH, vertices=vertices.tolist())
+            for vertices in (pair.A_vertices, pair.B_vertices)
+        )
+        trivial = [self._add(pybullet.GEOM_SPHERE, radius=0.01) for _ in range(2)]
+        self._place(trivial[0], [0.1, 0.0, 0.0], np.eye(3))
+        self._timer = CallTimer(self._closest_points, tuple(trivial))
+
+    def run(self, X_WA: np.ndarray) -> PairAnswers:
+        """See `PairQuery.run`."""
+        distance, normal, seconds = [], [], []
+        for X in X_WA:
+            self._place(self._A, X[:3, 3].tolist(), X[:3, :3])
+            points, time_s = self._timer.call((self._A, self._B))
+            deepest = min(points, key=lambda point: point[_DISTANCE])
+            distance.append(deepest[_DISTANCE])
+            normal.append(deepest[_NORMAL_ON_B])
+            seconds.append(time_s)
+        return PairAnswers(np.array(distance), np.array(normal), np.array(seconds))
+
+    def _closest_points(self, body_A: int, body_B: int) -> list[tuple]:
+        points: list[tuple] = pybullet.getClosestPoints(
+            body_A, body_B, _REACH_M, physicsClientId=self._client
+        )
+        return points
+
+    def _add(self, kind: int, **shape: object) -> int:
+        client = self._client
+        hull = pybullet.createCollisionShape(kind, physicsClientId=client, **shape)
+        body: int = pybullet.createMultiBody(1.0, hull, physicsClientId=client)
+        pybullet.changeDynamics(body, -1, collisionMargin=0.0, physicsClientId=client)
+        return body
+
+    def _place(self, body: int, p_WB: list[float], R_WB: np.ndarray) -> None:
+        pybullet.resetBasePositionAndOrientation(
+            body, p_WB, _quaternion(R_WB), physicsClientId=self._client
+        )
+
+
+def _quaternion(R: np.ndarray) -> list[float]:
+    """[x, y, z, w] of a rotation, from its largest component."""
+    K = np.array(
+        [
+            [R[0, 0] - R[1, 1] - R[2, 2], 0, 0, 0],
+            [R[0, 1] + R[1, 0], R[1, 1] - R[0, 0] - R[2, 2], 0, 0],
+            [R[0, 2] + R[2, 0], R[1, 2] + R[2, 1], R[2, 2] - R[0, 0] - R[1, 1], 0],
+            [R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], np.trace(R)],
+        ]
+    )
+    quaternion: list[float] = np.linalg.eigh(K, UPLO="L")[1][:, -1].tolist()
+    return quaternion
+
+
+LIBRARIES = [PairLibrary("Bullet", version("pybullet"), False, BulletQuery)]

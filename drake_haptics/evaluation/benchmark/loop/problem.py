@@ -1,0 +1,119 @@
+"""A tool that is drawn along a recorded way of the hand, for the loops."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from pydrake.math import RigidTransform
+
+from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.evaluation.accuracy.recorded_motion import (
+    RecordedMotion,
+    record_motion,
+)
+from drake_haptics.geometry.decomposition.decompose import Decomposition
+from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.schema import Scene, load_scene
+
+
+@dataclass(frozen=True, eq=False)
+class LoopProblem:
+    """What every loop is given.
+
+    Attributes:
+        name: Of the scene.
+        scene: Its gains, and where its objects are; without effects.
+        motion: Of the handle, tick by tick; where the tool was is not used.
+        tool: In convex pieces.
+        objects: In convex pieces, at rest.
+    """
+
+    name: str
+    scene: Scene
+    motion: RecordedMotion
+    tool: Decomposition
+    objects: tuple[Decomposition, ...]
+
+    @property
+    def X_HT(self) -> RigidTransform:
+        """Pose of the tool in the handle at rest."""
+        return self.scene.tool.grasp.to_rigid_transform()
+
+    @property
+    def X_WO(self) -> list[RigidTransform]:
+        """Pose of each object."""
+        return [item.pose.to_rigid_transform() for item in self.scene.environment]
+
+    @property
+    def X_WG(self) -> np.ndarray:
+        """(n, 7) poses to which the handle draws the tool, [qw qx qy qz x y z], m."""
+        return np.array(
+            [pose_to_vector(vector_to_pose(X) @ self.X_HT) for X in self.motion.X_WH]
+        )
+
+    def mass_properties(self) -> tuple[np.ndarray, np.ndarray]:
+        """Returns p_TTcm (3,), m, and I_TTcm_T (3, 3), kg·m², of the tool."""
+        return calc_mass_properties(self.tool.mesh, self.scene.tool.mass_kg)
+
+    def spring_force(self, p_WTo: np.ndarray) -> np.ndarray:
+        """Returns the force of the coupling's spring at each tick.
+
+        Args:
+            p_WTo: (n, 3) positions of the tool's origin, m.
+
+        Returns:
+            (n,) N.
+        """
+        stretch_m = np.linalg.norm(self.X_WG[:, 4:] - p_WTo, axis=1)
+        return self.scene.coupling.stiffness_N_per_m * stretch_m
+
+
+@dataclass(frozen=True, eq=False)
+class LoopCourse:
+    """What happened in a loop, at the beginning of each of n ticks.
+
+    Attributes:
+        X_WTool: (n, 7) poses of the tool, m.
+        num_contacts: (n,) pairs of pieces that push each other.
+        nearest_m: (n,) smallest signed distance of them, m; 0 where there is none.
+        force_N: (n,) of the spring between handle and tool, N.
+    """
+
+    X_WTool: np.ndarray
+    num_contacts: np.ndarray
+    nearest_m: np.ndarray
+    force_N: np.ndarray
+
+
+class Loop(Protocol):
+    """A loop, ready to be run."""
+
+    def observe(self) -> LoopCourse:
+        """Runs the motion from its start and tells what happened."""
+        ...
+
+    def time(self) -> np.ndarray:
+        """Runs the motion from its start; (n,) what each tick took, s."""
+        ...
+
+
+def make_problem(name: str = "cup_spoon", duration_s: float = 4.0) -> LoopProblem:
+    """Returns a shipped scene without effects, with the motion of its hand.
+
+    Args:
+        name: Of the scene.
+        duration_s: Of the motion, s.
+    """
+    scene = load_scene(find_scene(name))
+    haptic = build_quietly(scene)
+    motion = record_motion(scene, duration_s)
+    return LoopProblem(name, scene, motion, haptic.tool, haptic.environment)
+
+
+def moments_and_products(I_BP: np.ndarray) -> np.ndarray:
+    """Returns an inertia (3, 3) as six numbers: xx, yy, zz, xy, xz, yz."""
+    return I_BP[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]

@@ -1,0 +1,112 @@
+"""Runs the loops in turns, in this thread."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures, LoopTimes
+from drake_haptics.evaluation.benchmark.loop.names import (
+    MUJOCO,
+    NATIVE,
+    OURS,
+    PACED,
+    STOCK,
+)
+from drake_haptics.evaluation.benchmark.loop.problem import (
+    Loop,
+    LoopCourse,
+    LoopProblem,
+)
+from drake_haptics.evaluation.benchmark.loop.stock_drake import StockLoop, has_solver
+from drake_haptics.evaluation.benchmark.loop.this_package import NativeLoop, ThisLoop
+from drake_haptics.evaluation.measuring.native_build import NativeBuildError
+from drake_haptics.evaluation.measuring.timing import typical
+
+
+def make_loops(problem: LoopProblem) -> tuple[dict[str, Loop], dict[str, str]]:
+    """Returns name -> loop, this package's first; and library -> why it is missing."""
+    loops: dict[str, Loop] = {
+        PACED: ThisLoop(problem, paced=True),
+        OURS: ThisLoop(problem),
+        NATIVE: NativeLoop(problem),
+    }
+    missing: dict[str, str] = {}
+    for name, solver in STOCK.items():
+        if has_solver(solver):
+            loops[name] = StockLoop(problem, solver)
+        else:
+            missing[name] = f"this Drake has no contact solver '{solver}'"
+    try:
+        from drake_haptics.evaluation.benchmark.loop.with_mujoco import MujocoLoop
+
+        loops[MUJOCO] = MujocoLoop(problem)
+    except (ImportError, NativeBuildError) as error:
+        missing["mujoco"] = str(error)
+    return loops, missing
+
+
+def run_loops(
+    problem: LoopProblem,
+    loops: Mapping[str, Loop],
+    repeats: int,
+    progress: Callable[[float], None] = lambda share: None,
+) -> list[LoopFigures]:
+    """Returns the figures of each loop.
+
+    Each runs the whole motion, then the next one does, in an order that rotates. What
+    a tick takes is the mean of the middle half of its repeats, so that interruptions
+    fall out.
+
+    Args:
+        problem: What they were made of.
+        loops: Name -> loop, this package's whole tick among them.
+        repeats: Of each; at least 3.
+        progress: Called with the share that is done, in [0, 1].
+    """
+    names = list(loops)
+    courses = {name: loops[name].observe() for name in names}
+    seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}
+    for repeat in range(repeats):
+        for turn in range(len(names)):
+            progress((repeat + turn / len(names)) / repeats)
+            name = names[(turn + repeat) % len(names)]
+            # The first tick starts from nothing.
+            seconds[name].append(loops[name].time()[1:])
+    touching = np.all([c.num_contacts[1:] > 0 for c in courses.values()], axis=0)
+    return [
+        _make_figures(
+            problem,
+            name,
+            typical(np.array(seconds[name])),
+            touching,
+            courses[name],
+            courses[OURS],
+        )
+        for name in names
+    ]
+
+
+def _make_figures(
+    problem: LoopProblem,
+    name: str,
+    seconds: np.ndarray,
+    touching: np.ndarray,
+    course: LoopCourse,
+    ours: LoopCourse,
+) -> LoopFigures:
+    count, force_N = course.num_contacts[1:], course.force_N[1:]
+    apart_m = np.linalg.norm(course.X_WTool[1:, 4:] - ours.X_WTool[1:, 4:], axis=1)
+    return LoopFigures(
+        scene=problem.name,
+        loop=name,
+        in_contact=LoopTimes.of(seconds[touching]),
+        all_ticks=LoopTimes.of(seconds),
+        median_contacts=float(np.median(count[touching])) if touching.any() else 0.0,
+        max_contacts=int(count.max()),
+        deepest_m=float(-course.nearest_m.min(initial=0.0)),
+        force_N=float(np.median(force_N[touching])) if touching.any() else 0.0,
+        max_force_N=float(force_N.max()),
+        apart_m=float(np.median(apart_m)),
+    )

@@ -1,0 +1,183 @@
+"""What Drake itself offers: a bushing, and point contact on the same pieces."""
+
+from __future__ import annotations
+
+import gc
+import time
+from collections.abc import Callable
+
+import numpy as np
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import (
+    AddMultibodyPlant,
+    DiscreteContactApproximation,
+    MultibodyPlantConfig,
+)
+from pydrake.multibody.tree import (
+    FixedOffsetFrame,
+    LinearBushingRollPitchYaw,
+    RotationalInertia,
+    SpatialInertia,
+)
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import Context, DiagramBuilder, EventStatus
+
+from drake_haptics.evaluation.benchmark.loop.problem import (
+    LoopCourse,
+    LoopProblem,
+    moments_and_products,
+)
+from drake_haptics.evaluation.measuring.drake_pieces import (
+    make_surface,
+    register_pieces,
+)
+from drake_haptics.evaluation.measuring.quiet_stderr import quiet_stderr
+
+# So heavy that the bushing does not move the handle within a tick: 1 µm/s at 1 kN.
+_HANDLE_KG = 1e6
+_HANDLE_RADIUS_M = 1.0
+
+
+def has_solver(solver: str) -> bool:
+    """Returns whether this Drake has a contact solver.
+
+    Args:
+        solver: Drake's name of a contact approximation: "tamsi", which newer releases
+            lack, or one of SAP.
+    """
+    return hasattr(DiscreteContactApproximation, f"k{solver.capitalize()}")
+
+
+class StockLoop:
+    """A discrete `MultibodyPlant`: a bushing, and point contact.
+
+    The handle is a heavy free body whose position and velocity are set between two
+    ticks, which is not timed: a `TrajectorySource` on joints with PD control would
+    need SAP, the slower solver, and six joints more. The bushing has the scene's
+    gains, but for the rotational damping: Drake takes a bushing's forces at the
+    beginning of the step, which diverges from 2 I / h on.
+    """
+
+    def __init__(self, problem: LoopProblem, solver: str):
+        """Builds the diagram.
+
+        Args:
+            problem: What is asked.
+            solver: One that `has_solver`.
+        """
+        self._problem = problem
+        builder = DiagramBuilder()
+        config = MultibodyPlantConfig(
+            time_step=problem.motion.period_s,
+            contact_model="point",
+            discrete_contact_approximation=solver,
+        )
+        # Drake warns that TAMSI will go. Qhull tells of flat pieces.
+        with quiet_stderr():
+            self._plant, _ = AddMultibodyPlant(config, builder)
+            self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
+            self._add_bodies()
+            self._plant.Finalize()
+            self._diagram = builder.Build()
+
+    def observe(self) -> LoopCourse:
+        """See `Loop.observe`."""
+        plant, problem = self._plant, self._problem
+        results = plant.get_contact_results_output_port()
+        poses: list[np.ndarray] = []
+        contacts: list[tuple[int, float]] = []
+
+        def note(context: Context) -> None:
+            poses.append(plant.GetPositions(context)[7:])
+            found = results.Eval(context)
+            depths = [
+                found.point_pair_contact_info(i).point_pair().depth
+                for i in range(found.num_point_pair_contacts())
+            ]
+            contacts.append((len(depths), -max(depths, default=0.0)))
+
+        self._run(note)
+        X_WTool, (count, nearest_m) = np.array(poses), np.array(contacts).T
+        force_N = problem.spring_force(X_WTool[:, 4:])
+        return LoopCourse(X_WTool, count.astype(int), nearest_m, force_N)
+
+    def time(self) -> np.ndarray:
+        """See `Loop.time`."""
+        return self._run(lambda context: None)
+
+    def _run(self, note: Callable[[Context], None]) -> np.ndarray:
+        """Calls `note` before each tick; (n,) what each tick took, s."""
+        plant, motion = self._plant, self._problem.motion
+        simulator = Simulator(self._diagram)
+        context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+        state = np.concatenate([motion.X_WH[0], self._problem.X_WG[0], np.zeros(12)])
+        # All positions, then all velocities.
+        handle_rows = np.r_[0:7, 14:20]
+        handle = np.hstack([motion.X_WH, motion.V_WH])
+        state[handle_rows] = handle[0]
+        plant.SetPositionsAndVelocities(context, state)
+        n, tick = len(motion), 0
+        clock, seconds = time.perf_counter, np.zeros(len(motion))
+        begin = 0.0
+
+        def between(root: Context) -> EventStatus:
+            nonlocal tick, begin
+            seconds[tick] = clock() - begin
+            tick += 1
+            if tick < n:
+                state = plant.GetPositionsAndVelocities(context)
+                state[handle_rows] = handle[tick]
+                plant.SetPositionsAndVelocities(context, state)
+                note(context)
+            begin = clock()
+            return EventStatus.Succeeded()
+
+        gc.collect()
+        gc.freeze()
+        try:
+            simulator.Initialize()
+            note(context)
+            simulator.set_monitor(between)
+            begin = clock()
+            simulator.AdvanceTo((n - 0.5) * motion.period_s)
+        finally:
+            gc.unfreeze()
+        return seconds
+
+    def _add_bodies(self) -> None:
+        problem, plant = self._problem, self._plant
+        handle = plant.AddRigidBody(
+            "handle", SpatialInertia.SolidSphereWithMass(_HANDLE_KG, _HANDLE_RADIUS_M)
+        )
+        p_TTcm, I_T = problem.mass_properties()
+        tool = plant.AddRigidBody(
+            "tool",
+            SpatialInertia.MakeFromCentralInertia(
+                problem.scene.tool.mass_kg,
+                p_TTcm,
+                RotationalInertia(*moments_and_products(I_T)),
+            ),
+        )
+        contact = problem.scene.contact
+        surface = make_surface(contact.stiffness_N_per_m, contact.damping_Ns_per_m)
+        register_pieces(plant, tool, RigidTransform(), problem.tool, surface)
+        for part, X_WO in zip(problem.objects, problem.X_WO, strict=True):
+            register_pieces(plant, plant.world_body(), X_WO, part, surface)
+        grip = plant.AddFrame(
+            FixedOffsetFrame("grip", handle.body_frame(), problem.X_HT)
+        )
+        gains = problem.scene.coupling
+        damping = min(
+            gains.rotational_damping_Nms_per_rad,
+            float(np.linalg.eigvalsh(I_T).min()) / problem.motion.period_s,
+        )
+        plant.AddForceElement(
+            LinearBushingRollPitchYaw(
+                grip,
+                tool.body_frame(),
+                [gains.rotational_stiffness_Nm_per_rad] * 3,
+                [damping] * 3,
+                [gains.stiffness_N_per_m] * 3,
+                [gains.damping_Ns_per_m] * 3,
+            )
+        )

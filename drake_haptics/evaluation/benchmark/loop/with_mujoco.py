@@ -1,0 +1,141 @@
+"""The same in MuJoCo: a free tool, welded to a mocap body that is the handle."""
+
+from __future__ import annotations
+
+import ctypes
+import tempfile
+import weakref
+from functools import cache
+
+import numpy as np
+
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.evaluation.benchmark.loop.problem import (
+    LoopCourse,
+    LoopProblem,
+    moments_and_products,
+)
+from drake_haptics.evaluation.measuring.mujoco_native import load_mujoco_native
+from drake_haptics.evaluation.measuring.mujoco_pieces import (
+    listed,
+    mesh_assets,
+    mesh_geoms,
+)
+from drake_haptics.evaluation.measuring.timing import clock_interval
+
+# MuJoCo's d, how near to rigid a constraint is: f = d m (k r + b v) where it is alone
+# and 1 / (1 - d) of that where it holds another one. Small: a spring and damper.
+_IMPEDANCE = 0.05
+_SOLIMP = f"{_IMPEDANCE} {_IMPEDANCE} 0.001"
+
+
+class MujocoLoop:
+    """`mj_step` at each tick, timed in C around the call.
+
+    The weld and the contacts have the scene's stiffness and damping where the whole
+    mass of the tool moves: MuJoCo's are per mass. Its torques are as stiff as the
+    scene's about an axis of mean inertia. Pieces are meshes in single precision; flat
+    ones are 20 µm thick. A pair of them has one contact, as elsewhere, which is
+    also faster than several.
+    """
+
+    def __init__(self, problem: LoopProblem):
+        self._X_WG = np.ascontiguousarray(problem.X_WG)
+        self._native = _load()
+        error = ctypes.create_string_buffer(1000)
+        with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
+            file.write(make_mjcf(problem))
+            file.flush()
+            name = file.name.encode()
+            self._loop = self._native.mujoco_loop_new(name, error, len(error))
+        if not self._loop:
+            raise RuntimeError(f"MuJoCo refused the scene: {error.value.decode()}")
+        weakref.finalize(self, self._native.mujoco_loop_delete, self._loop)
+
+    def observe(self) -> LoopCourse:
+        """See `Loop.observe`."""
+        return self._run()[0]
+
+    def time(self) -> np.ndarray:
+        """See `Loop.time`."""
+        return self._run()[1] - clock_interval()
+
+    def _run(self) -> tuple[LoopCourse, np.ndarray]:
+        n = len(self._X_WG)
+        poses, num_contacts = np.empty((n, 7)), np.empty(n, dtype=np.int32)
+        nearest, force, seconds = np.empty(n), np.empty(n), np.empty(n)
+        self._native.mujoco_loop_run(
+            self._loop, n, self._X_WG, poses, num_contacts, nearest, force, seconds
+        )
+        return LoopCourse(poses, num_contacts, nearest, force), seconds
+
+
+def make_mjcf(problem: LoopProblem) -> str:
+    """Returns the scene as a model of MuJoCo."""
+    scene, mass_kg = problem.scene, problem.scene.tool.mass_kg
+    p_TTcm, I_T = problem.mass_properties()
+    start = problem.X_WG[0]
+    placed = f'pos="{listed(start[4:])}" quat="{listed(start[:4])}"'
+    coupling, contact = scene.coupling, scene.contact
+    # Angles count times the torquescale, halved as in a quaternion.
+    mean = float(np.mean(1.0 / np.linalg.eigvalsh(I_T)))
+    softness = mean * mass_kg / coupling.stiffness_N_per_m
+    torquescale = 2.0 * np.sqrt(coupling.rotational_stiffness_Nm_per_rad * softness)
+    weld = _solref(coupling.stiffness_N_per_m, coupling.damping_Ns_per_m, mass_kg)
+    touch = _solref(contact.stiffness_N_per_m, contact.damping_Ns_per_m, mass_kg)
+    names = [f"object{i}" for i in range(len(problem.objects))]
+    surface = f'condim="1" solref="{touch}" solimp="{_SOLIMP}"'
+    objects = "\n".join(
+        f'<body pos="{listed(X[4:])}" quat="{listed(X[:4])}">'
+        + mesh_geoms(name, part, f'contype="1" conaffinity="0" {surface}')
+        + "</body>"
+        for name, part, X in zip(
+            names, problem.objects, map(pose_to_vector, problem.X_WO), strict=True
+        )
+    )
+    assets = [mesh_assets("tool", problem.tool)]
+    assets += [mesh_assets(n, p) for n, p in zip(names, problem.objects, strict=True)]
+    return f"""
+<mujoco>
+  <option timestep="{problem.motion.period_s}" integrator="implicitfast"
+          gravity="0 0 0"><flag multiccd="disable"/></option>
+  <size memory="64M"/>
+  <asset>{" ".join(assets)}</asset>
+  <worldbody>
+    {objects}
+    <body name="handle" mocap="true" {placed}/>
+    <body name="tool" {placed}>
+      <freejoint/>
+      <inertial pos="{listed(p_TTcm)}" mass="{mass_kg}"
+                fullinertia="{listed(moments_and_products(I_T))}"/>
+      {mesh_geoms("tool", problem.tool, f'contype="0" conaffinity="1" {surface}')}
+    </body>
+  </worldbody>
+  <equality>
+    <weld body1="handle" body2="tool" relpose="0 0 0 1 0 0 0" solref="{weld}"
+          solimp="{_SOLIMP}" torquescale="{torquescale:.17g}"/>
+  </equality>
+</mujoco>
+"""
+
+
+def _solref(stiffness: float, damping: float, mass_kg: float) -> str:
+    """Returns MuJoCo's words for a spring and damper, per mass."""
+    scale = (1.0 - _IMPEDANCE) / mass_kg
+    return f"{-stiffness * scale:.17g} {-damping * scale:.17g}"
+
+
+@cache
+def _load() -> ctypes.CDLL:
+    native = load_mujoco_native("mujoco_loop")
+    reals = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
+    integers = np.ctypeslib.ndpointer(dtype=np.int32, flags="C_CONTIGUOUS")
+    handle, text, integer = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int
+    native.mujoco_loop_new.restype = handle
+    native.mujoco_loop_new.argtypes = [text, text, integer]
+    native.mujoco_loop_delete.argtypes = [handle]
+    native.mujoco_loop_run.argtypes = [
+        *(handle, integer, reals),
+        *(reals, integers, reals, reals, reals),
+    ]
+    return native

@@ -1,0 +1,71 @@
+"""What a collision library must do to be measured on a convex pair."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+
+
+@dataclass(frozen=True)
+class PairAnswers:
+    """A library's answers along a motion.
+
+    Attributes:
+        distance: (n,) signed distances, m; negative is the penetration depth.
+        nhat_BA_W: (n, 3) unit normals out of B into A, in the world.
+        seconds: (n,) what each answer cost inside the library, s.
+    """
+
+    distance: np.ndarray
+    nhat_BA_W: np.ndarray
+    seconds: np.ndarray
+
+
+class PairQuery(Protocol):
+    """One pair in one library, ready to be queried."""
+
+    def run(self, X_WA: np.ndarray) -> PairAnswers:
+        """Forgets earlier queries, then answers one pose of A after the other.
+
+        Args:
+            X_WA: (n, 4, 4) poses of A; B is at the world's origin.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class PairLibrary:
+    """A library in one of its modes.
+
+    Attributes:
+        name: as tables show it.
+        version: of the library.
+        ours: whether it is this package.
+        make_query: builds the bodies of a pair in the library.
+    """
+
+    name: str
+    version: str
+    ours: bool
+    make_query: Callable[[PairShape], PairQuery]
+
+
+def normals_between(
+    p_WCa: np.ndarray, p_WCb: np.ndarray, distance: np.ndarray
+) -> np.ndarray:
+    """Returns (n, 3) nhat_BA_W for libraries that give witness points only.
+
+    Args:
+        p_WCa: (n, 3) witness points on A, m.
+        p_WCb: (n, 3) witness points on B, m.
+        distance: (n,) signed distances, m. Where the points coincide the normal is
+            NaN.
+    """
+    along = np.copysign(1.0, distance)[:, None] * (p_WCa - p_WCb)
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    return np.divide(along, length, out=np.full_like(along, np.nan), where=length > 0)

@@ -1,0 +1,161 @@
+"""Measures the libraries on a convex pair, side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from drake_haptics.evaluation.benchmark.pair_library import (
+    PairAnswers,
+    PairLibrary,
+    PairQuery,
+)
+from drake_haptics.evaluation.benchmark.pair_motion import Press, make_presses
+from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.benchmark.pair_truth import PairTruth, find_truth
+from drake_haptics.evaluation.measuring.timing import Times, typical
+
+# Relative errors are of frames whose distance is at least this, m.
+_JUDGED_M = 1e-6
+# A depth is the global one within this share, which round-off stays below.
+_EXACT = 1e-9
+# A frame is wrong beyond this relative error: no tolerance explains it.
+_WRONG = 1e-3
+_STEADY_RAD = np.radians(1.0)
+
+
+@dataclass(frozen=True)
+class PairFigures:
+    """What one library cost on one pair, and how right it was.
+
+    Attributes:
+        kind: of the pair.
+        size: vertices of each body.
+        library: its name.
+        ours: whether it is this package.
+        apart: times of the frames in which the bodies are apart.
+        in_depth: times of the others.
+        max_relative_error: of the distance, over the frames of at least 1 µm.
+        wrong_share: of the frames, that is wrong by more than 0.1 %.
+        exact_depth_share: of the frames in depth, that has the global depth.
+        max_jump_deg: largest turn of the normal in a frame in which the exact one
+            turns by less than 1°.
+        failed_frames: frames without an answer.
+    """
+
+    kind: str
+    size: int
+    library: str
+    ours: bool
+    apart: Times
+    in_depth: Times
+    max_relative_error: float
+    wrong_share: float
+    exact_depth_share: float
+    max_jump_deg: float
+    failed_frames: int
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> PairFigures:
+        """Returns what `dataclasses.asdict` made plain data of."""
+        times = {name: Times.from_dict(data[name]) for name in ("apart", "in_depth")}
+        return PairFigures(**{**data, **times})
+
+
+def run_pair(
+    pair: PairShape,
+    libraries: Sequence[PairLibrary],
+    presses: int,
+    repeats: int,
+    progress: Callable[[], None] = lambda: None,
+) -> list[PairFigures]:
+    """Returns the figures of each library on one pair.
+
+    The libraries take turns on each press, in rotating order, all in this thread.
+    The first frame of a press starts from nothing and is left out.
+
+    Args:
+        pair: the bodies.
+        libraries: what is measured.
+        presses: how many presses, see `make_presses`.
+        repeats: how often each press is run.
+        progress: called after each press.
+    """
+    queries = [library.make_query(pair) for library in libraries]
+    seconds, answers, truths = [], [], []
+    for press in make_presses(pair, presses):
+        times, last = _run_press(press, queries, repeats)
+        truths.append(find_truth(pair, press.X_WA, last))
+        seconds.append(times)
+        answers.append(last)
+        progress()
+    return [
+        _figures(
+            pair, library, [t[i] for t in seconds], [a[i] for a in answers], truths
+        )
+        for i, library in enumerate(libraries)
+    ]
+
+
+def _run_press(
+    press: Press, queries: Sequence[PairQuery], repeats: int
+) -> tuple[list[np.ndarray], list[PairAnswers]]:
+    """Typical times (n,) and answers of each query."""
+    seconds: list[list[np.ndarray]] = [[] for _ in queries]
+    answers: dict[int, PairAnswers] = {}
+    for repeat in range(repeats):
+        for turn in range(len(queries)):
+            i = (turn + repeat) % len(queries)
+            answers[i] = queries[i].run(press.X_WA)
+            seconds[i].append(answers[i].seconds)
+    times = [typical(np.array(repeated)) for repeated in seconds]
+    return times, [answers[i] for i in range(len(queries))]
+
+
+def _figures(
+    pair: PairShape,
+    library: PairLibrary,
+    seconds: list[np.ndarray],
+    answers: list[PairAnswers],
+    truths: list[PairTruth],
+) -> PairFigures:
+    time_s = np.concatenate([s[1:] for s in seconds])
+    distance = np.concatenate([a.distance[1:] for a in answers])
+    exact = np.concatenate([t.distance[1:] for t in truths])
+    jumps = [
+        _jumps(a.nhat_BA_W, t.nhat_BA_W) for a, t in zip(answers, truths, strict=True)
+    ]
+    deep = exact < 0
+    judged = (np.abs(exact) >= _JUDGED_M) & np.isfinite(distance)
+    error = np.abs(distance - exact)[judged] / np.abs(exact)[judged]
+    right = np.abs(distance - exact) <= _EXACT * np.abs(exact) + _EXACT * _JUDGED_M
+    return PairFigures(
+        kind=pair.kind,
+        size=pair.size,
+        library=library.name,
+        ours=library.ours,
+        apart=Times.of(time_s[~deep]),
+        in_depth=Times.of(time_s[deep]),
+        max_relative_error=float(error.max(initial=0.0)),
+        wrong_share=float((error > _WRONG).mean()) if len(error) else 0.0,
+        exact_depth_share=float(right[deep].mean()) if deep.any() else 1.0,
+        max_jump_deg=float(np.degrees(np.concatenate(jumps).max(initial=0.0))),
+        failed_frames=int((~np.isfinite(distance)).sum()),
+    )
+
+
+def _jumps(normals: np.ndarray, exact: np.ndarray) -> np.ndarray:
+    """Turns (m,), rad, of the normals where the exact ones turn steadily."""
+    steady = _turns(exact) < _STEADY_RAD
+    turns = _turns(normals)[steady]
+    return turns[np.isfinite(turns)]
+
+
+def _turns(normals: np.ndarray) -> np.ndarray:
+    """Angles (n - 1,) between successive (n, 3) unit vectors, rad."""
+    before, after = normals[:-1], normals[1:]
+    sine = np.linalg.norm(np.cross(before, after), axis=1)
+    return np.arctan2(sine, (before * after).sum(axis=1))

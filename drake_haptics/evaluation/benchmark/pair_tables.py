@@ -1,0 +1,162 @@
+"""Tables of what convex pairs cost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from drake_haptics.evaluation.benchmark.pair_ratios import (
+    COLUMNS,
+    Column,
+    geometric_mean,
+    growth,
+    ratios_to_fastest,
+)
+from drake_haptics.evaluation.benchmark.pair_runs import PairFigures
+from drake_haptics.evaluation.benchmark.python_figures import PythonFigures
+from drake_haptics.report.table import Table
+
+_SMALL, _LARGE = 42, 2562
+
+
+def ratio_table(figures: Sequence[PairFigures]) -> Table:
+    """Returns ratios to the fastest library, and the growth with size."""
+    ratios = {name: ratios_to_fastest(figures, c) for name, c in COLUMNS.items()}
+
+    def row(library: str) -> tuple[str, ...]:
+        means = [
+            f"{geometric_mean(ratios[name][library]):.3f}"
+            if library in ratios[name]
+            else "–"
+            for name in COLUMNS
+        ]
+        grows = [
+            f"{growth(figures, library, COLUMNS[name], _SMALL, _LARGE):.1f}"
+            for name in ("apart median", "in depth median")
+        ]
+        return (library, *means, *grows)
+
+    return Table(
+        title="Convex pairs: time, to the fastest other library of each pair",
+        note=(
+            "Geometric means over the pairs, each column by itself: 1 is the fastest "
+            "library, this package aside. Growth is that of the median from "
+            f"{_SMALL} to {_LARGE} vertices."
+        ),
+        header=("library", *COLUMNS, "growth apart", "growth in depth"),
+        rows=[row(library) for library in _libraries(figures)],
+    )
+
+
+def error_table(figures: Sequence[PairFigures]) -> Table:
+    """Returns how right the libraries are."""
+
+    def row(library: str) -> tuple[str, ...]:
+        own = [f for f in figures if f.library == library]
+        frames = sum(f.apart.frames + f.in_depth.frames for f in own)
+        deep = sum(f.in_depth.frames for f in own)
+        wrong = sum(
+            f.wrong_share * (f.apart.frames + f.in_depth.frames) for f in own
+        ) / max(frames, 1)
+        exact = sum(f.exact_depth_share * f.in_depth.frames for f in own) / max(deep, 1)
+        return (
+            library,
+            f"{max(f.max_relative_error for f in own):.0e}",
+            f"{100 * wrong:.2f} %",
+            f"{100 * exact:.2f} %",
+            f"{max(f.max_jump_deg for f in own):.1f}°",
+            str(sum(f.failed_frames for f in own)),
+        )
+
+    return Table(
+        title="Convex pairs: errors",
+        note=(
+            "Against the largest support gap of any library's normal. Wrong: by more "
+            "than 0.1 % of the distance. Exact depth: of the frames in depth, those "
+            "with the global depth to round-off. Jump: largest turn of the normal in "
+            "a frame in which the exact one turns by less than 1°."
+        ),
+        header=(
+            "library",
+            "largest relative error",
+            "wrong",
+            "exact depth",
+            "largest jump",
+            "no answer",
+        ),
+        rows=[row(library) for library in _libraries(figures)],
+    )
+
+
+def time_table(figures: Sequence[PairFigures]) -> Table:
+    """Returns times of each pair, this package's and the fastest other library's."""
+    ours = [f for f in _libraries(figures) if any(g.ours for g in _of(figures, f))]
+    pairs = list(dict.fromkeys((f.kind, f.size) for f in figures))
+    others = {f.library for f in figures if not f.ours}
+    # One that is alone is named once, in the heads.
+    alone = next(iter(others)) if len(others) == 1 else None
+
+    def cells(kind: str, size: int, median: Column, p99: Column) -> list[str]:
+        here = [f for f in figures if (f.kind, f.size) == (kind, size)]
+        texts = [
+            f"{median(f):.2f} / {p99(f):.2f}" for name in ours for f in _of(here, name)
+        ]
+        peers = [f for f in here if not f.ours]
+        if not peers:
+            return [*texts, "–"]
+        fastest = min(peers, key=median)
+        times = f"{median(fastest):.2f} / {p99(fastest):.2f}"
+        return [*texts, times if alone else f"{times} {fastest.library}"]
+
+    headings = [name.removeprefix("drake_haptics, ") for name in ours]
+    headings.append(alone or "fastest")
+    return Table(
+        title="Convex pairs: times in µs, median / p99",
+        note="Beside the one other library that is installed."
+        if alone
+        else "Fastest: the other library with the smallest median.",
+        header=(
+            "pair, vertices",
+            *(f"apart: {heading}" for heading in headings),
+            *(f"in depth: {heading}" for heading in headings),
+        ),
+        rows=[
+            (
+                f"{kind}, {size}",
+                *cells(kind, size, COLUMNS["apart median"], COLUMNS["apart p99"]),
+                *cells(kind, size, COLUMNS["in depth median"], COLUMNS["in depth p99"]),
+            )
+            for kind, size in pairs
+        ],
+    )
+
+
+def python_table(figures: Sequence[PythonFigures]) -> Table:
+    """Returns what single queries cost from Python."""
+    mean = geometric_mean([f.ratio for f in figures]) if figures else np.nan
+    return Table(
+        title="One pair query from Python",
+        note=(
+            "Medians over whole presses, from the (4, 4) pose to the distance; coal "
+            f"in the fastest of its starts. Geometric mean of the ratio: {mean:.2f}."
+        ),
+        header=("pair, vertices", "drake_haptics, µs", "coal, µs", "ratio"),
+        rows=[
+            (
+                f"{f.kind}, {f.size}",
+                f"{f.ours_us:.2f}",
+                f"{f.coal_us:.2f}",
+                f"{f.ratio:.2f}",
+            )
+            for f in figures
+        ],
+    )
+
+
+def _libraries(figures: Sequence[PairFigures]) -> list[str]:
+    return list(dict.fromkeys(f.library for f in figures))
+
+
+def _of(figures: Sequence[PairFigures], library: str) -> list[PairFigures]:
+    return [f for f in figures if f.library == library]

@@ -1,0 +1,155 @@
+"""Measures this package and coal on a scene, side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from drake_haptics._core import SceneTracker
+from drake_haptics.evaluation.benchmark.scene_problem import SceneAnswers, SceneProblem
+from drake_haptics.evaluation.measuring.timing import Times, clock_interval, typical
+
+NAME = "drake_haptics"
+
+
+class SceneQuery(Protocol):
+    """A scene in a library, ready to be queried."""
+
+    def run(self, X_WTool: np.ndarray) -> SceneAnswers:
+        """Answers one pose of the tool, (n, 4, 4) in all, after the other."""
+        ...
+
+
+class DrakeHapticsScene:
+    """A scene in this package, timed inside the core."""
+
+    def __init__(self, problem: SceneProblem):
+        self._tolerance_m = problem.tolerance_m
+        self._tracker = SceneTracker(problem.tool, problem.objects, problem.tolerance_m)
+        for i, X_WO in enumerate(problem.X_WO):
+            self._tracker.set_object_pose(i, X_WO)
+
+    def run(self, X_WTool: np.ndarray) -> SceneAnswers:
+        """See `SceneQuery.run`; forgets earlier queries first."""
+        self._tracker.reset()
+        contacts = self._tracker.query_trajectory(X_WTool)
+        count = np.diff(contacts.start)
+        tick = np.repeat(np.arange(len(X_WTool)), count)
+        nearest = np.full(len(X_WTool), self._tolerance_m)
+        np.minimum.at(nearest, tick, contacts.distance)
+        return SceneAnswers(count, nearest, contacts.seconds - clock_interval())
+
+
+@dataclass(frozen=True)
+class SceneFigures:
+    """What one library cost in one scene.
+
+    Attributes:
+        scene: its name.
+        library: its name.
+        triangles: of all meshes.
+        tool_pieces: convex pieces of the tool.
+        object_pieces: convex pieces of all objects.
+        objects: how many there are.
+        near: times of the ticks in which both libraries find a contact.
+        all_ticks: times of all ticks.
+        median_contacts: pairs of pieces within the tolerance, over the near ticks.
+        max_contacts: the same.
+        deepest_m: largest penetration depth, m.
+    """
+
+    scene: str
+    library: str
+    triangles: int
+    tool_pieces: int
+    object_pieces: int
+    objects: int
+    near: Times
+    all_ticks: Times
+    median_contacts: float
+    max_contacts: int
+    deepest_m: float
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> SceneFigures:
+        """Returns what `dataclasses.asdict` made plain data of."""
+        times = {name: Times.from_dict(data[name]) for name in ("near", "all_ticks")}
+        return SceneFigures(**{**data, **times})
+
+
+def run_scene(
+    problem: SceneProblem,
+    queries: dict[str, SceneQuery],
+    repeats: int,
+    progress: Callable[[], None] = lambda: None,
+) -> list[SceneFigures]:
+    """Returns the figures of each library in one scene.
+
+    The libraries take turns on each motion, in rotating order, all in this thread.
+    The first tick of a motion starts from nothing and is left out.
+
+    Args:
+        problem: the scene.
+        queries: library name -> the scene in it.
+        repeats: how often each motion is run.
+        progress: called after each motion.
+    """
+    names = list(queries)
+    seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}
+    answers: dict[str, list[SceneAnswers]] = {name: [] for name in names}
+    for X_WTool in problem.motions:
+        repeated: dict[str, list[np.ndarray]] = {name: [] for name in names}
+        last: dict[str, SceneAnswers] = {}
+        for repeat in range(repeats):
+            for turn in range(len(names)):
+                name = names[(turn + repeat) % len(names)]
+                last[name] = queries[name].run(X_WTool)
+                repeated[name].append(last[name].seconds[1:])
+        for name in names:
+            seconds[name].append(typical(np.array(repeated[name])))
+            answers[name].append(last[name])
+        progress()
+    contacts = {n: _joined(answers[n], "num_contacts") for n in names}
+    near = np.all([contacts[n] > 0 for n in names], axis=0)
+    return [
+        _figures(
+            problem,
+            name,
+            np.concatenate(seconds[name]),
+            near,
+            contacts[name],
+            _joined(answers[name], "nearest_m"),
+        )
+        for name in names
+    ]
+
+
+def _joined(answers: list[SceneAnswers], column: str) -> np.ndarray:
+    return np.concatenate([getattr(a, column)[1:] for a in answers])
+
+
+def _figures(
+    problem: SceneProblem,
+    library: str,
+    seconds: np.ndarray,
+    near: np.ndarray,
+    contacts: np.ndarray,
+    nearest_m: np.ndarray,
+) -> SceneFigures:
+    tool_pieces, object_pieces = problem.num_pieces
+    return SceneFigures(
+        scene=problem.name,
+        library=library,
+        triangles=problem.num_triangles,
+        tool_pieces=tool_pieces,
+        object_pieces=object_pieces,
+        objects=len(problem.objects),
+        near=Times.of(seconds[near]),
+        all_ticks=Times.of(seconds),
+        median_contacts=float(np.median(contacts[near])) if near.any() else 0.0,
+        max_contacts=int(contacts.max(initial=0)),
+        deepest_m=float(max(0.0, -nearest_m.min(initial=0.0))),
+    )

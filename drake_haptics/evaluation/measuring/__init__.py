@@ -1,0 +1,1 @@
+"""Measures times and instructions, and builds adapters of other libraries."""

@@ -1,0 +1,102 @@
+"""Counts the instructions of a part of a Python program.
+
+No other program disturbs such a count. What comes before and after the part is run but
+not counted, so that importing and building do not blur it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from drake_haptics.common.errors import UserError
+
+
+def require_valgrind() -> None:
+    """Checks that instructions can be counted.
+
+    Raises:
+        UserError: valgrind is not installed.
+    """
+    if shutil.which("valgrind") is None:
+        raise UserError(
+            "instructions are counted with valgrind, which is not installed here:"
+            " install it (apt-get install valgrind), or do without instructions"
+        )
+
+
+def count_instructions(arguments: Sequence[str]) -> int:
+    """Runs this Python with these arguments and counts what `counted` encloses.
+
+    Turning the count on and off is in it, some 6e5 instructions.
+
+    Raises:
+        subprocess.CalledProcessError: the program failed.
+        RuntimeError: valgrind counted nothing.
+    """
+    said = _run(arguments, "/dev/null")
+    found = re.search(r"Collected : (\d+)", said)
+    if found is None:
+        raise RuntimeError(f"valgrind counted nothing:\n{said}")
+    return int(found[1])
+
+
+def count_by_library(arguments: Sequence[str]) -> dict[str, int]:
+    """Counts as `count_instructions` does, by the path of each library.
+
+    Raises:
+        subprocess.CalledProcessError: the program failed.
+    """
+    counts: dict[str, int] = {}
+    paths: dict[str, str] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "profile"
+        _run(arguments, str(file))
+        path, of_callee = "", False
+        for line in file.read_text(errors="replace").splitlines():
+            if named := re.match(r"(c?ob)=\((\d+)\)(?: (.*))?$", line):
+                kind, number, name = named.groups()
+                paths.setdefault(number, name)
+                path = paths[number] if kind == "ob" else path
+            elif line.startswith("calls="):
+                # The next line tells what the callee took, which tells so itself.
+                of_callee = True
+            elif cost := re.match(r"[+*\-\d]\S* (\d+)$", line):
+                if not of_callee:
+                    counts[path] = counts.get(path, 0) + int(cost[1])
+                of_callee = False
+    return counts
+
+
+def _run(arguments: Sequence[str], profile: str) -> str:
+    """Runs this Python under callgrind; returns what that said."""
+    command = [
+        *("valgrind", "--tool=callgrind", "--instr-atstart=no"),
+        *(f"--callgrind-out-file={profile}", sys.executable, *arguments),
+    ]
+    environment = {**os.environ, "PYTHONHASHSEED": "0"}
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=True, env=environment
+    )
+    return done.stderr
+
+
+@contextmanager
+def counted() -> Iterator[None]:
+    """Counts its block, in a program under `count_instructions`."""
+    _switch("on")
+    yield
+    _switch("off")
+
+
+def _switch(state: str) -> None:
+    """Tells the valgrind that this program runs under."""
+    command = ["callgrind_control", "-i", state, str(os.getpid())]
+    subprocess.run(command, capture_output=True, check=True)

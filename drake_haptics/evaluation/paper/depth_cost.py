@@ -1,0 +1,130 @@
+"""What a penetration depth costs, over the triangles of the bodies (section 6.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from drake_haptics._core import ConvexPair, ConvexPolytope
+from drake_haptics.evaluation.benchmark.pair_motion import make_presses
+from drake_haptics.evaluation.benchmark.pair_shapes import RADIUS_M, PairShape
+from drake_haptics.evaluation.measuring.timing import clock_interval, typical
+from drake_haptics.evaluation.paper.fits import PowerFit, fit_power
+from drake_haptics.evaluation.paper.instruction_count import count_depths
+
+TRIANGLES = (42, 100, 250, 500, 1_000, 2_500, 5_000, 10_000)
+_GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
+_REPEATS = 5
+
+
+@dataclass(frozen=True)
+class DepthCost:
+    """A pair of convex bodies in penetration.
+
+    Attributes:
+        triangles: Of each body.
+        queries: How many were timed, warm.
+        median_us: Of them, µs.
+        p99_us: Of them, µs.
+        instructions: Mean; None where they were not counted.
+    """
+
+    triangles: int
+    queries: int
+    median_us: float
+    p99_us: float
+    instructions: float | None = None
+
+
+@dataclass(frozen=True)
+class DepthCosts:
+    """How the cost grows with the bodies.
+
+    Attributes:
+        rows: By triangles.
+        growth: Of the median time with the triangles.
+        instruction_growth: Of the instructions; None where they were not counted.
+    """
+
+    rows: tuple[DepthCost, ...]
+    growth: PowerFit
+    instruction_growth: PowerFit | None
+
+    @property
+    def typical_us(self) -> float:
+        """Median of the rows' medians, µs."""
+        return float(np.median([row.median_us for row in self.rows]))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns the figures ready for JSON."""
+        return {**asdict(self), "typical_us": self.typical_us}
+
+
+def measure_depth_costs(
+    presses: int, with_instructions: bool, progress: Callable[[str, float], None]
+) -> DepthCosts:
+    """Measures the depth of pairs of round bodies, each query warm.
+
+    Args:
+        presses: Of each pair: from outside to 20 % deep and out again, in some
+            direction at a hand's speed.
+        with_instructions: Whether to count them, by valgrind, if it is there.
+        progress: Called with what is measured and the share done, in [0, 1].
+    """
+    rows, motions = [], {}
+    for k, triangles in enumerate(TRIANGLES):
+        progress(f"depth of {triangles:,} triangles", k / (len(TRIANGLES) + 1))
+        pair = make_balls(triangles)
+        deep = [_measure(pair, press.X_WA) for press in make_presses(pair, presses)]
+        seconds = np.concatenate([seconds for seconds, _ in deep])
+        motions[triangles] = (pair, np.concatenate([X_WA for _, X_WA in deep[:2]]))
+        median, p99 = 1e6 * np.percentile(seconds, [50, 99])
+        rows.append(DepthCost(triangles, len(seconds), float(median), float(p99)))
+    progress("instructions of a depth", 1.0 - 1.0 / (len(TRIANGLES) + 1))
+    counts = count_depths(motions) if with_instructions else None
+    if counts is not None:
+        rows = [replace(row, instructions=counts[row.triangles]) for row in rows]
+    sizes = np.array([row.triangles for row in rows])
+    return DepthCosts(
+        rows=tuple(rows),
+        growth=fit_power(sizes, np.array([row.median_us for row in rows])),
+        instruction_growth=(
+            None
+            if counts is None
+            else fit_power(sizes, np.array([counts[n] for n in sizes]))
+        ),
+    )
+
+
+def make_balls(triangles: int) -> PairShape:
+    """Returns two balls of that many triangles, the second one slightly smaller.
+
+    Args:
+        triangles: An even number, at least 4: of n vertices on a sphere, spread as a
+            spiral spreads them, 2 n - 4 triangles have no fourth one beside.
+    """
+    count = triangles // 2 + 2
+    height = 1.0 - (2.0 * np.arange(count) + 1.0) / count
+    angle = _GOLDEN_ANGLE * np.arange(count)
+    across = np.sqrt(1.0 - height**2)
+    unit = np.column_stack([across * np.cos(angle), across * np.sin(angle), height])
+    # So that no facet has more corners than three by symmetry.
+    B = unit[:, [1, 2, 0]]
+    return PairShape("ball", count, RADIUS_M * unit, 0.9 * RADIUS_M * B)
+
+
+def _measure(pair: PairShape, X_WA: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the times of the queries that are deep, s, and their poses."""
+    query = ConvexPair(ConvexPolytope(pair.A_vertices), ConvexPolytope(pair.B_vertices))
+    seconds = []
+    for _ in range(_REPEATS):
+        query.reset()
+        answers = query.query_trajectory(X_WA, np.eye(4))
+        seconds.append(answers.seconds - clock_interval())
+    deep = answers.distance < 0.0
+    # The first one still comes from outside.
+    deep[: int(deep.argmax()) + 1] = False
+    return typical(np.array(seconds))[deep], X_WA[deep]

@@ -1,0 +1,218 @@
+"""Makes the paper's evaluation again: all parts of it, or some."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+from drake_haptics.evaluation.measuring.machine import describe_machine
+from drake_haptics.evaluation.paper.depth_cost import DepthCosts, measure_depth_costs
+from drake_haptics.evaluation.paper.force_scaling import (
+    ForceScaling,
+    measure_force_scaling,
+)
+from drake_haptics.evaluation.paper.models import check_folder
+from drake_haptics.evaluation.paper.pair_scaling import (
+    PairScaling,
+    measure_pair_scaling,
+)
+from drake_haptics.evaluation.paper.pen_pass import PenPass, measure_pen_pass
+from drake_haptics.evaluation.paper.profile import Profile, measure_profile
+from drake_haptics.evaluation.paper.profile_figures import ProfileFigures, sum_up
+from drake_haptics.evaluation.paper.scenarios import scenario_makers
+from drake_haptics.evaluation.paper.table1 import ModelFigures, measure_table1
+from drake_haptics.evaluation.shapes.sphere import make_sphere
+
+Part = Literal["table1", "figure11", "figure12", "analysis"]
+PARTS: tuple[Part, ...] = get_args(Part)
+Progress = Callable[[str, float], None]
+
+# How long the parts take, about, for the progress that is shown.
+_WEIGHTS = {"table1": 1.0, "figure11": 6.0, "figure12": 1.0, "analysis": 3.0}
+_FINE_DIVISIONS = 5
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much is measured.
+
+    Attributes:
+        profile_s: Of each path of Figure 11, s; all of it if not given.
+        pen_s: How long the pen takes for its pass, s.
+        presses: Of each pair whose depth is timed.
+        slide_ticks: Of each motion of a brush.
+        force_repeats: Of each force computation.
+        instructions: Whether to count those of a depth.
+    """
+
+    profile_s: float | None = None
+    pen_s: float = 3.0
+    presses: int = 20
+    slide_ticks: int = 1000
+    force_repeats: int = 1000
+    instructions: bool = True
+
+
+QUICK = Effort(
+    profile_s=1.0,
+    pen_s=1.0,
+    presses=2,
+    slide_ticks=100,
+    force_repeats=50,
+    instructions=False,
+)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run of a scenario of Figure 11.
+
+    Attributes:
+        profile: Tick by tick.
+        figures: What it comes to.
+    """
+
+    profile: Profile
+    figures: ProfileFigures
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What section 6.3 is about.
+
+    Attributes:
+        depths: Cost of a depth over triangles.
+        pairs: Cost of a query over pairs.
+        forces: Cost of force computation over contacts, for each way of clustering.
+    """
+
+    depths: DepthCosts
+    pairs: PairScaling
+    forces: tuple[ForceScaling, ...]
+
+
+@dataclass(frozen=True)
+class PaperEvaluation:
+    """All figures; empty or None where a part was not asked for.
+
+    Attributes:
+        machine: See `drake_haptics.evaluation.measuring.machine.describe_machine`.
+        table1: Rows of Table 1.
+        figure11: Runs, those of the paper first.
+        figure12: Passes of the pen over a coarse and a fine sphere.
+        analysis: Of section 6.3.
+        is_cut_short: Whether only the beginnings of Figure 11's paths were run.
+    """
+
+    machine: dict[str, str | int]
+    table1: tuple[ModelFigures, ...] = ()
+    figure11: tuple[Run, ...] = ()
+    figure12: tuple[PenPass, ...] = ()
+    analysis: Analysis | None = None
+    is_cut_short: bool = False
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns the figures, without the curves, ready for JSON."""
+        analysis = None
+        if self.analysis is not None:
+            analysis = {
+                "depths": self.analysis.depths.to_dict(),
+                "pairs": self.analysis.pairs.to_dict(),
+                "forces": [forces.to_dict() for forces in self.analysis.forces],
+            }
+        return {
+            "machine": self.machine,
+            "is_cut_short": self.is_cut_short,
+            "table1": [row.to_dict() for row in self.table1],
+            "figure11": [run.figures.to_dict() for run in self.figure11],
+            "figure12": [passed.to_dict() for passed in self.figure12],
+            "analysis": analysis,
+        }
+
+
+def evaluate_paper(
+    parts: Sequence[Part] = PARTS,
+    effort: Effort | None = None,
+    meshes: Path | None = None,
+    progress: Progress | None = None,
+) -> PaperEvaluation:
+    """Makes the paper's evaluation again on this machine.
+
+    Args:
+        parts: Which.
+        effort: How much is measured; the usual if not given.
+        meshes: A folder of real meshes (torus_2000.obj, cup_500.obj, spoon_336.obj,
+            hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply), as many as
+            there are.
+        progress: Called with what is done and its share, in [0, 1].
+
+    Raises:
+        UserError: The folder has none of them.
+    """
+    check_folder(meshes)
+    effort = effort or Effort()
+    report = progress or (lambda what, share: None)
+    chosen = [part for part in PARTS if part in parts]
+    whole = sum(_WEIGHTS[part] for part in chosen)
+    found: dict[Part, Any] = {}
+    done = 0.0
+    for part in chosen:
+
+        def show(
+            what: str, share: float, part: Part = part, done: float = done
+        ) -> None:
+            report(f"{part}: {what}", (done + share * _WEIGHTS[part]) / whole)
+
+        found[part] = _MEASURE[part](effort, meshes, show)
+        done += _WEIGHTS[part]
+    is_cut_short = "figure11" in found and effort.profile_s is not None
+    return PaperEvaluation(describe_machine(), is_cut_short=is_cut_short, **found)
+
+
+def _measure_table1(
+    effort: Effort, meshes: Path | None, show: Progress
+) -> tuple[ModelFigures, ...]:
+    return measure_table1(meshes, show)
+
+
+def _measure_figure11(
+    effort: Effort, meshes: Path | None, show: Progress
+) -> tuple[Run, ...]:
+    makers = scenario_makers(meshes)
+    runs = []
+    for k, (name, make) in enumerate(makers.items()):
+        show(name, k / len(makers))
+        profile = measure_profile(make(), effort.profile_s)
+        runs.append(Run(profile, sum_up(profile)))
+    return tuple(runs)
+
+
+def _measure_figure12(
+    effort: Effort, meshes: Path | None, show: Progress
+) -> tuple[PenPass, ...]:
+    show("a pen on a sphere", 0.0)
+    coarse = measure_pen_pass(seconds=effort.pen_s)
+    show("a pen on a fine sphere", 0.5)
+    return coarse, measure_pen_pass(make_sphere(_FINE_DIVISIONS), effort.pen_s)
+
+
+def _measure_analysis(effort: Effort, meshes: Path | None, show: Progress) -> Analysis:
+    depths = measure_depth_costs(
+        effort.presses,
+        effort.instructions,
+        lambda what, share: show(what, 0.8 * share),
+    )
+    show("pairs that penetrate", 0.8)
+    pairs = measure_pair_scaling(effort.slide_ticks)
+    show("forces", 0.9)
+    return Analysis(depths, pairs, measure_force_scaling(effort.force_repeats))
+
+
+_MEASURE: dict[Part, Callable[[Effort, Path | None, Progress], Any]] = {
+    "table1": _measure_table1,
+    "figure11": _measure_figure11,
+    "figure12": _measure_figure12,
+    "analysis": _measure_analysis,
+}

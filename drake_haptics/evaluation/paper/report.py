@@ -1,0 +1,182 @@
+"""The evaluation in sections, before it is known where they are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from drake_haptics.evaluation.paper.analysis_plot import draw_analysis
+from drake_haptics.evaluation.paper.evaluation import PaperEvaluation, Part, Run
+from drake_haptics.evaluation.paper.pen_pass import PenPass
+from drake_haptics.evaluation.paper.pen_plot import draw_pen_pass
+from drake_haptics.evaluation.paper.profile_plot import draw_profile
+from drake_haptics.evaluation.paper.published import MACHINE
+from drake_haptics.evaluation.paper.statement import Statement
+from drake_haptics.evaluation.paper.tables import (
+    make_analysis_tables,
+    make_pen_table,
+    make_profile_table,
+    make_run_table,
+    make_table1,
+)
+from drake_haptics.evaluation.paper.words import (
+    judge_analysis,
+    judge_figure12,
+    judge_run,
+    judge_table1,
+)
+from drake_haptics.report.table import Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+_CUT_SHORT = " Only the beginnings of Figure 11's paths were run (--quick)."
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture that can be drawn.
+
+    Attributes:
+        key: Part of a file's name.
+        alt: What it shows, in words.
+        draw: Returns it as a figure.
+    """
+
+    key: str
+    alt: str
+    draw: Callable[[], Figure]
+
+
+@dataclass(frozen=True)
+class Block:
+    """What belongs together in a section.
+
+    Attributes:
+        title: A line; empty where the section's is enough.
+        statements: Where we agree and differ.
+        pictures: The curves.
+    """
+
+    title: str
+    statements: tuple[Statement, ...]
+    pictures: tuple[Picture, ...]
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the evaluation.
+
+    Attributes:
+        part: Which.
+        title: A line.
+        blocks: One or more.
+        tables: The figures.
+    """
+
+    part: Part
+    title: str
+    blocks: tuple[Block, ...]
+    tables: tuple[Table, ...]
+
+    @property
+    def statements(self) -> list[Statement]:
+        """Those of all blocks."""
+        return [statement for block in self.blocks for statement in block.statements]
+
+    @property
+    def pictures(self) -> list[Picture]:
+        """Those of all blocks."""
+        return [picture for block in self.blocks for picture in block.pictures]
+
+
+def make_sections(evaluation: PaperEvaluation) -> list[Section]:
+    """Returns a section for each part that was measured."""
+    sections = []
+    if evaluation.table1:
+        sections.append(_section_table1(evaluation))
+    if evaluation.figure11:
+        sections.append(_section_figure11(evaluation))
+    if evaluation.figure12:
+        sections.append(_section_figure12(evaluation))
+    if evaluation.analysis is not None:
+        analysis = evaluation.analysis
+        picture = Picture(
+            "analysis",
+            "Depth over triangles, query over pairs and force over contacts",
+            lambda: draw_analysis(analysis),
+        )
+        statements = tuple(judge_analysis(analysis))
+        sections.append(
+            Section(
+                "analysis",
+                "Section 6.3: what grows with what",
+                (Block("", statements, (picture,)),),
+                tuple(make_analysis_tables(analysis)),
+            )
+        )
+    return sections
+
+
+def describe_machine_line(evaluation: PaperEvaluation) -> str:
+    """Says what the figures were taken on, and how far they go."""
+    machine = evaluation.machine
+    return (
+        f"{machine['processor']}, {machine['cores']} cores, {machine['system']}, Python"
+        f" {machine['python']}, drake_haptics {machine['drake_haptics']}; one thread."
+        f" The paper: {MACHINE}; all times compare processors two decades apart."
+        + (_CUT_SHORT if evaluation.is_cut_short else "")
+    )
+
+
+def _section_table1(evaluation: PaperEvaluation) -> Section:
+    return Section(
+        "table1",
+        "Table 1: convex pieces",
+        (Block("", tuple(judge_table1(evaluation.table1)), ()),),
+        (make_table1(evaluation.table1),),
+    )
+
+
+def _section_figure11(evaluation: PaperEvaluation) -> Section:
+    runs = evaluation.figure11
+    return Section(
+        "figure11",
+        "Figure 11: time of each tick",
+        tuple(_block_of_run(run, evaluation.is_cut_short) for run in runs),
+        (make_run_table(runs), make_profile_table(runs)),
+    )
+
+
+def _block_of_run(run: Run, is_cut_short: bool) -> Block:
+    figures = run.figures
+    picture = Picture(
+        f"figure11-{figures.name.replace(', ', '-').replace(' ', '-')}",
+        f"{figures.name}: time of each tick above, number of contacts below",
+        lambda: draw_profile(run.profile, figures),
+    )
+    like = f", as Figure {figures.figure}" if figures.figure else ""
+    title = f"{figures.name[0].upper()}{figures.name[1:]}{like}"
+    statements = judge_run(figures, is_cut_short=is_cut_short)
+    return Block(title, tuple(statements), (picture,))
+
+
+def _section_figure12(evaluation: PaperEvaluation) -> Section:
+    passes = evaluation.figure12
+    return Section(
+        "figure12",
+        "Figure 12: a pen passes over a sphere",
+        (Block("", tuple(judge_figure12(passes)), tuple(map(_draw_pass, passes))),),
+        (make_pen_table(passes),),
+    )
+
+
+def _draw_pass(passed: PenPass) -> Picture:
+    return Picture(
+        f"figure12-{passed.triangles}-triangles",
+        "Contact point, normal and distance of a pen that passes over a sphere of"
+        f" {passed.triangles:,} triangles",
+        lambda: draw_pen_pass(passed),
+    )

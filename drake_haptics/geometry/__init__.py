@@ -1,0 +1,1 @@
+"""Meshes, their convex pieces, and the shapes of Drake's bodies."""

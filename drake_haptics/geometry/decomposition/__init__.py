@@ -1,0 +1,1 @@
+"""Convex pieces of a mesh: cut, merged, stored, shown. No module here needs Drake."""

@@ -1,0 +1,113 @@
+"""The geometry layer's viewer: a decomposition in the browser, without Drake."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+from collections.abc import Callable
+
+import meshcat
+import meshcat.geometry
+import meshcat.transformations
+import numpy as np
+
+from drake_haptics.common.colors import BACKGROUND_BOTTOM, BACKGROUND_TOP, VIRTUAL_FACET
+from drake_haptics.geometry.decomposition.decompose import Decomposition
+from drake_haptics.geometry.decomposition.surfaces import (
+    ColoredTriangles,
+    piece_surfaces,
+)
+
+# The mesh is drawn with this largest extent, since the viewer's camera suits
+# objects of about a meter, and ours range from a peg to a room.
+_DRAWN_EXTENT_M = 1.5
+# How far the pieces of the exploded copy move out, as a share of their distance
+# from the middle.
+_EXPLOSION = 0.5
+
+
+class DecompositionViewer:
+    """Shows a decomposition on a web page.
+
+    On the left the pieces in place, colored, as they cover the mesh; on the
+    right the same pieces moved apart, with their virtual facets (those that are
+    not on the mesh) in translucent gray. The page's own controls hide each.
+
+    Args:
+        decomposition: what to show.
+    """
+
+    def __init__(self, decomposition: Decomposition) -> None:
+        with contextlib.redirect_stdout(io.StringIO()):  # it announces itself there
+            self._meshcat = meshcat.Visualizer()
+        self._draw(decomposition)
+
+    def close(self) -> None:
+        """Stops the web server; the page in the browser stays as it is."""
+        server = self._meshcat.window.server_proc
+        server.terminate()
+        server.communicate()
+
+    @property
+    def url(self) -> str:
+        """The address of the page."""
+        return str(self._meshcat.url())
+
+    def write_html(self, path: str | os.PathLike[str]) -> None:
+        """Writes the page as one self-contained file."""
+        with open(path, "w", encoding="utf-8") as stream:
+            stream.write(self._meshcat.static_html())
+
+    def _draw(self, decomposition: Decomposition) -> None:
+        on_mesh, virtual = piece_surfaces(decomposition.pieces)
+        vertices = decomposition.mesh.vertices
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        middle = (low + high) / 2
+        scale = _DRAWN_EXTENT_M / float((high - low).max())
+        width = float((high - low)[1]) * scale
+        centroids = np.array([piece.centroid for piece in decomposition.pieces])
+
+        def in_place(drawn: ColoredTriangles) -> np.ndarray:
+            return (drawn.vertices - middle) * scale
+
+        def exploded(drawn: ColoredTriangles) -> np.ndarray:
+            outward = (centroids - middle)[drawn.piece] * _EXPLOSION
+            return (drawn.vertices + outward - middle) * scale
+
+        self._set_scene()
+        root = self._meshcat["drake_haptics"]
+        gap = width * (1 + _EXPLOSION / 2) / 2 + 0.15
+        self._add(root["in place"], on_mesh, in_place, -gap)
+        self._add(root["apart"]["facets on the mesh"], on_mesh, exploded, gap)
+        self._add(root["apart"]["virtual facets"], virtual, exploded, gap)
+
+    def _set_scene(self) -> None:
+        background = self._meshcat["/Background"]
+        background.set_property("top_color", list(BACKGROUND_TOP[:3]))
+        background.set_property("bottom_color", list(BACKGROUND_BOTTOM[:3]))
+        for path in ("/Grid", "/Axes"):
+            self._meshcat[path].set_property("visible", False)
+        camera = self._meshcat["/Cameras/default/rotated/<object>"]
+        camera.set_property("position", [2.4, 0.9, 0.0])  # y is up in this frame
+
+    def _add(
+        self,
+        node: meshcat.Visualizer,
+        drawn: ColoredTriangles,
+        place: Callable[[ColoredTriangles], np.ndarray],
+        y: float,
+    ) -> None:
+        if len(drawn.vertices) == 0:
+            return
+        translucent = node.path.lower().endswith("virtual facets")
+        material = meshcat.geometry.MeshPhongMaterial(
+            vertexColors=True,
+            transparent=translucent,
+            opacity=VIRTUAL_FACET[3] if translucent else 1.0,
+        )
+        geometry = meshcat.geometry.TriangularMeshGeometry(
+            place(drawn), drawn.faces, color=drawn.colors
+        )
+        node.set_object(geometry, material)
+        node.set_transform(meshcat.transformations.translation_matrix([0, y, 0]))

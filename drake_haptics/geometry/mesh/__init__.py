@@ -1,0 +1,1 @@
+"""Triangle meshes: reading, checks, repair, measures. No module here needs Drake."""

@@ -1,0 +1,164 @@
+"""Findings on what a mesh still is after the repairs: nothing is changed here."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from drake_haptics.common.one_line import count
+from drake_haptics.geometry.mesh.report import Finding, Severity, length
+from drake_haptics.geometry.mesh.topology import Edges, connected_labels, find_edges
+from drake_haptics.geometry.mesh.units import guess_unit
+
+# A hand holds the tool: beyond these sizes the unit is more likely wrong than not.
+LARGEST_USUAL_EXTENT_M = 10.0
+SMALLEST_USUAL_EXTENT_M = 1e-3
+# What closes holes; trimesh does it where they are triangles or quadrilaterals.
+_HOLES = "MeshLab (Close Holes) or Blender (Fill Holes)"
+_SMALL_HOLES = (
+    'pip install networkx, then in Python m = trimesh.load("old.stl"); m.fill_holes();'
+    ' m.export("new.stl")'
+)
+
+
+def check_branching(triangles: np.ndarray, findings: list[Finding]) -> None:
+    """Reports edges with three or more triangles, before the parts are cut there."""
+    branching = int((find_edges(triangles).count > 2).sum())
+    if branching:
+        findings.append(
+            Finding(
+                "non-manifold-edges",
+                Severity.DEFECT,
+                branching,
+                count(
+                    branching,
+                    "edge joins three or more triangles",
+                    "edges join three or more triangles",
+                ),
+                "the surface is cut there into separate parts",
+            )
+        )
+
+
+def check_holes(
+    triangles: np.ndarray, component: np.ndarray, findings: list[Finding]
+) -> None:
+    """Reports open edges and their loops; components must share no vertex."""
+    edges = find_edges(triangles)
+    is_open = edges.count == 1
+    num_open = int(is_open.sum())
+    if not num_open:
+        return
+    rims = _measure_rims(edges, is_open)
+    open_parts = len(
+        np.unique(component[is_open[edges.of_halfedge.reshape(-1, 3)].any(axis=1)])
+    )
+    findings.append(
+        Finding(
+            "holes",
+            Severity.DEFECT,
+            num_open,
+            f"{count(num_open, 'open edge')} {'forms' if num_open == 1 else 'form'} "
+            f"{count(len(rims), 'rim')} of holes or sheets in "
+            f"{count(open_parts, 'part')}",
+            "left open; these parts bound no solid, their pieces are one-sided. To "
+            f"close holes: {_SMALL_HOLES if max(rims) <= 4 else _HOLES}",
+        )
+    )
+
+
+def _measure_rims(edges: Edges, is_open: np.ndarray) -> np.ndarray:
+    """Returns the number of edges of each rim."""
+    ends = edges.ends[is_open]
+    vertices, links = np.unique(ends, return_inverse=True)
+    links = links.reshape(-1, 2)
+    label = connected_labels(len(vertices), links)
+    return np.unique(label[links[:, 0]], return_counts=True)[1]
+
+
+def check_components(
+    orientable: np.ndarray,
+    closed: np.ndarray,
+    solid: np.ndarray,
+    findings: list[Finding],
+) -> None:
+    """Reports many components, one-sided surfaces and solids without volume."""
+    twisted = int((~orientable).sum())
+    if twisted:
+        findings.append(
+            Finding(
+                "not-orientable",
+                Severity.DEFECT,
+                twisted,
+                f"{count(twisted, 'part')} {'has' if twisted == 1 else 'have'} only"
+                " one side, as a Möbius strip",
+                "left as wound; they bound no solid, their pieces are one-sided",
+            )
+        )
+    hollow = int((closed & ~solid).sum())
+    if hollow:
+        findings.append(
+            Finding(
+                "no-volume",
+                Severity.DEFECT,
+                hollow,
+                f"{count(hollow, 'closed part')} "
+                f"{'encloses' if hollow == 1 else 'enclose'} no volume (a sheet folded"
+                " on itself)",
+                "left as they are; they bound no solid, their pieces are one-sided",
+            )
+        )
+    if len(closed) > 1:
+        findings.append(
+            Finding(
+                "many-parts",
+                Severity.NOTE,
+                len(closed),
+                f"{count(len(closed), 'part')} are not connected to each other",
+                "each is treated as a body of its own",
+            )
+        )
+
+
+def check_size(
+    extent: np.ndarray,
+    metres_per_unit: float,
+    ignored_unit: str | None,
+    findings: list[Finding],
+) -> None:
+    """Questions the unit when the size is unlike anything that a hand touches.
+
+    Args:
+        extent: (3,) of the bounding box, m.
+        metres_per_unit: that was used.
+        ignored_unit: that the file states where the user stated none.
+        findings: appended to.
+    """
+    if ignored_unit not in (None, "m"):
+        findings.append(
+            Finding(
+                "unit-ignored",
+                Severity.QUESTION,
+                1,
+                f"the file states its unit as {ignored_unit}, but was read as meters",
+                f"nothing was changed; state the unit {ignored_unit} if that is right",
+            )
+        )
+    largest = float(extent.max())
+    if SMALLEST_USUAL_EXTENT_M <= largest <= LARGEST_USUAL_EXTENT_M:
+        return
+    size = "large" if largest > LARGEST_USUAL_EXTENT_M else "small"
+    unit = guess_unit(
+        largest / metres_per_unit, SMALLEST_USUAL_EXTENT_M, LARGEST_USUAL_EXTENT_M
+    )
+    findings.append(
+        Finding(
+            "suspicious-size",
+            Severity.QUESTION,
+            1,
+            f"{length(largest)} is {size} for something to touch "
+            f"(1 unit of the file was taken as {length(metres_per_unit)})",
+            "nothing was changed; is the unit right?"
+            if unit is None
+            else f"nothing was changed; state the unit {unit} if the file is in {unit}",
+        )
+    )

@@ -1,0 +1,194 @@
+"""Repairs of a mesh's tables: vertices and faces written more than once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from drake_haptics.common.one_line import count
+from drake_haptics.geometry.mesh.report import Finding, Severity
+from drake_haptics.geometry.mesh.topology import connected_labels, find_edges
+
+
+def equal_vertices(vertices: np.ndarray) -> np.ndarray:
+    """Returns (n,) the first vertex with bit-equal coordinates for each vertex.
+
+    Joining by a distance would weld thin gaps shut, so that is left to the
+    program that wrote the mesh. The sign of zero does not tell vertices apart.
+    """
+    _, first, index = np.unique(
+        vertices + 0.0,  # -0.0 + 0.0 is 0.0
+        axis=0,
+        return_index=True,
+        return_inverse=True,
+    )
+    return first[index]
+
+
+def join_open_parts(
+    triangles: np.ndarray, twin: np.ndarray, findings: list[Finding]
+) -> np.ndarray:
+    """Joins bit-equal vertices, except those of parts that are closed as written.
+
+    A closed part needs no joining, and joining it to another that it touches
+    would make one branching surface of two bodies.
+
+    Args:
+        triangles: (m, 3) as written.
+        twin: (n,) from `equal_vertices`.
+        findings: appended to.
+    """
+    edges = find_edges(triangles)
+    label = connected_labels(len(triangles), edges.pairs)
+    sound = (edges.count == 2)[edges.of_halfedge.reshape(-1, 3)].all(axis=1)
+    sound &= (triangles != triangles[:, [1, 2, 0]]).all(axis=1)
+    is_open = np.zeros(len(triangles), dtype=bool)
+    is_open[label[~sound]] = True
+    joined = np.where(is_open[label][:, None], twin[triangles], triangles)
+    merged = len(np.unique(triangles)) - len(np.unique(joined))
+    if merged:
+        findings.append(
+            Finding(
+                "duplicate-vertices",
+                Severity.NOTE,
+                merged,
+                count(
+                    merged,
+                    "vertex is a bit-equal copy of another",
+                    "vertices are bit-equal copies of others",
+                ),
+                "joined",
+            )
+        )
+    return joined
+
+
+def drop_unused_vertices(
+    vertices: np.ndarray, triangles: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Drops vertices of no triangle, keeping the order of the others."""
+    used = np.zeros(len(vertices), dtype=bool)
+    used[triangles] = True
+    renumbered = np.cumsum(used) - 1
+    return vertices[used], renumbered[triangles]
+
+
+def separate_components(
+    vertices: np.ndarray, triangles: np.ndarray, component: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Gives each component vertices of its own.
+
+    Where components touch they then stay apart for every later step. The order
+    of the vertices is kept if none was shared, else it is that of first use.
+    """
+    key = triangles + component[:, None] * len(vertices)
+    own, first, index = np.unique(key, return_index=True, return_inverse=True)
+    if len(own) == len(vertices):
+        return vertices, triangles
+    order = np.argsort(first, kind="stable")
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return vertices[own[order] % len(vertices)], rank[index].reshape(-1, 3)
+
+
+def distinct_faces(triangles: np.ndarray, findings: list[Finding]) -> np.ndarray:
+    """Finds which triangles to keep of those repeated, wound alike or opposite.
+
+    Of triangles wound alike the first stays. A pair wound oppositely is either
+    a sheet written once for each side, of which the first triangle stays, or
+    the wall between two solids that were glued together, which is inside
+    their union and goes: there, each edge of the wall's rim has two more faces.
+
+    Args:
+        triangles: (m, 3) with equal vertices joined.
+        findings: appended to.
+
+    Returns:
+        Ascending indices of the triangles to keep.
+    """
+    rotated = _smallest_first(triangles)
+    _, first = np.unique(rotated, axis=0, return_index=True)
+    keep = np.sort(first)
+    repeated = len(triangles) - len(keep)
+    if repeated:
+        findings.append(
+            Finding(
+                "duplicate-faces",
+                Severity.REPAIRED,
+                repeated,
+                count(
+                    repeated,
+                    "triangle is written more than once",
+                    "triangles are written more than once",
+                ),
+                "the first of each was kept",
+            )
+        )
+    triangles, rotated = triangles[keep], rotated[keep]
+    _, first, group, size = np.unique(
+        np.sort(rotated, axis=1),
+        axis=0,
+        return_index=True,
+        return_inverse=True,
+        return_counts=True,
+    )
+    opposed = size[group] == 2
+    if not opposed.any():
+        return keep
+    is_first = first[group] == np.arange(len(triangles))
+    wall = _is_inner_wall(triangles, opposed & is_first, ~opposed)
+    num_wall = int(wall.sum())
+    num_sheet = int(opposed.sum()) // 2 - num_wall
+    if num_wall:
+        findings.append(
+            Finding(
+                "inner-walls",
+                Severity.REPAIRED,
+                num_wall,
+                f"{num_wall:,} pairs of opposite triangles are a wall between solids "
+                f"that were glued together",
+                "removed, so that the solids are one",
+            )
+        )
+    if num_sheet:
+        findings.append(
+            Finding(
+                "opposite-faces",
+                Severity.REPAIRED,
+                num_sheet,
+                f"{count(num_sheet, 'triangle is', 'triangles are')} written a second"
+                " time with the opposite winding",
+                "the first of each was kept",
+            )
+        )
+    in_wall = np.zeros(len(first), dtype=bool)
+    in_wall[group[wall]] = True
+    return keep[(~opposed | is_first) & ~in_wall[group]]
+
+
+def _smallest_first(triangles: np.ndarray) -> np.ndarray:
+    """Rotates each triangle so that its lowest index comes first."""
+    shift = triangles.argmin(axis=1)
+    columns = (shift[:, None] + np.arange(3)) % 3
+    return np.take_along_axis(triangles, columns, axis=1)
+
+
+def _is_inner_wall(
+    triangles: np.ndarray, paired: np.ndarray, single: np.ndarray
+) -> np.ndarray:
+    """Marks those of the `paired` triangles whose sheet is a wall in a solid."""
+    sheet = np.flatnonzero(paired)
+    edges = find_edges(np.concatenate([triangles[sheet], triangles[single]]))
+    in_sheet = edges.of_halfedge[: 3 * len(sheet)]
+    num_edges = len(edges.count)
+    sheet_count = np.bincount(in_sheet, minlength=num_edges)
+    single_count = edges.count - sheet_count
+    label = connected_labels(len(sheet), find_edges(triangles[sheet]).pairs)
+    rim = sheet_count[in_sheet] == 1
+    label_of_halfedge = np.repeat(label, 3)
+    has_rim = np.zeros(len(sheet), dtype=bool)
+    has_rim[label_of_halfedge[rim]] = True
+    loose = np.zeros(len(sheet), dtype=bool)
+    loose[label_of_halfedge[rim & (single_count[in_sheet] != 2)]] = True
+    result = np.zeros(len(triangles), dtype=bool)
+    result[sheet] = (has_rim & ~loose)[label]
+    return result

@@ -1,0 +1,158 @@
+"""Meshes with fewer triangles, and how far their surface then is from the true one.
+
+meshoptimizer collapses edges in the order of their quadric errors (Garland and
+Heckbert, "Surface Simplification Using Quadric Error Metrics", 1997). The corners
+that remain are corners of the original, where they were. What a collapse can leave
+behind, folded and branching triangles, is cleaned up or makes the count one that does
+not work.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from drake_haptics import _core
+from drake_haptics.common.errors import MeshError
+from drake_haptics.common.one_line import count
+from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.report import Finding, Severity, length
+
+# A count that leaves a clean surface is mostly found at once.
+_TRIES_BELOW = 12
+_GROWTH_ABOVE = 1.1
+# Of meshoptimizer: none, and SimplifyRegularize, which takes other ways.
+_OPTIONS = (0, 16)
+
+
+def decimate(mesh: Mesh, max_triangles: int) -> Mesh:
+    """Returns the mesh with at most so many triangles, as alike as they allow.
+
+    What is closed stays closed, and no solid is lost. The report of the
+    result has the `decimation_error_m`, and the finding "decimated".
+
+    Args:
+        mesh: From `load_mesh` or `Mesh.from_arrays`. It is returned as it is if it has
+            no more triangles.
+        max_triangles: 4 or more.
+
+    Raises:
+        ValueError: `max_triangles` is below 4.
+        MeshError: With so few triangles the mesh would not be what it is. The message
+            names the nearest count that works.
+    """
+    if max_triangles < 4:
+        raise ValueError(f"max_triangles must be 4 or more, is {max_triangles}")
+    if len(mesh.triangles) <= max_triangles:
+        return mesh
+    all_triangles = len(mesh.triangles)
+    fewer, nearest = (
+        _first_sound(mesh, _counts_below(max_triangles))
+        or _first_sound(mesh, _counts_above(max_triangles, all_triangles))
+        or (mesh, all_triangles)
+    )
+    # Few enough may come even where more are asked for.
+    if len(fewer.triangles) <= max_triangles:
+        return _report_error(mesh, fewer)
+    raise MeshError(
+        f"{mesh.report.source}: cannot be reduced to {count(max_triangles, 'triangle')}"
+        f" without tearing or folding it: take max_triangles = {nearest:,}, the nearest"
+        f" count that works"
+    )
+
+
+def _counts_below(most: int) -> Iterator[int]:
+    for k in range(_TRIES_BELOW):
+        yield max(4, most - k - k * k * most // 2000)
+
+
+def _counts_above(least: int, end: int) -> Iterator[int]:
+    count = least
+    while (count := max(count + 1, int(count * _GROWTH_ABOVE))) < end:
+        yield count
+
+
+def _first_sound(mesh: Mesh, counts: Iterator[int]) -> tuple[Mesh, int] | None:
+    """Returns what the first count that works gives, and that count.
+
+    It may give fewer triangles, and the number of those need not be one that works.
+    """
+    for number in counts:
+        for options in _OPTIONS:
+            fewer = _collapse(mesh, number, options)
+            if fewer is not None:
+                return fewer, number
+    return None
+
+
+def _collapse(mesh: Mesh, count: int, options: int) -> Mesh | None:
+    """Returns the mesh with at most `count` triangles, None if that broke it."""
+    import meshoptimizer  # only for those who want it
+
+    # Only the errors are found in single precision: corners keep their coordinates.
+    middle = mesh.vertices.mean(axis=0)
+    indices = np.ascontiguousarray(mesh.triangles.ravel(), dtype=np.uint32)
+    kept = np.empty_like(indices)
+    num_indices = meshoptimizer.simplify(
+        kept,
+        indices,
+        np.ascontiguousarray(mesh.vertices - middle, dtype=np.float32),
+        target_index_count=3 * count,
+        target_error=1.0,  # share of the size: the count decides
+        options=options,
+    )
+    triangles = kept[:num_indices].reshape(-1, 3).astype(np.int64)
+    triangles = _drop_folded(triangles)
+    if not 0 < len(triangles) <= count:
+        return None
+    name = mesh.report.source
+    try:
+        repaired = Mesh.from_arrays(mesh.vertices, triangles, name=name)
+        fewer = Mesh.from_arrays(repaired.vertices, repaired.triangles, name=name)
+    except MeshError:
+        return None
+    return fewer if _is_alike(mesh, fewer) else None
+
+
+def _drop_folded(triangles: np.ndarray) -> np.ndarray:
+    """Removes pairs of triangles that lie on each other, back to back."""
+    key = np.sort(triangles, axis=1)
+    _, group, size = np.unique(key, axis=0, return_inverse=True, return_counts=True)
+    return triangles[size[group.ravel()] == 1]
+
+
+def _is_alike(mesh: Mesh, fewer: Mesh) -> bool:
+    """Whether a mesh still has all parts and no defect that is new."""
+    known = {finding.code for finding in mesh.report.unclean}
+    is_open = bool(mesh.report.one_sided_triangles)
+    return (
+        # A scan's crumbs may go.
+        (is_open or fewer.report.components == mesh.report.components)
+        and fewer.report.solids == mesh.report.solids
+        and bool(fewer.report.one_sided_triangles) == is_open
+        and {finding.code for finding in fewer.report.unclean} <= known
+    )
+
+
+def _report_error(mesh: Mesh, fewer: Mesh) -> Mesh:
+    error_m = _core.surface_distance(
+        mesh.vertices, mesh.triangles, fewer.vertices, fewer.triangles
+    )
+    finding = Finding(
+        "decimated",
+        Severity.NOTE,
+        len(fewer.triangles),
+        f"decimated from {len(mesh.triangles):,} to"
+        f" {count(len(fewer.triangles), 'triangle')}",
+        f"the surface is within {length(error_m)} of the original one",
+    )
+    findings = (*mesh.report.findings, finding)
+    report = replace(
+        fewer.report,
+        metres_per_unit=mesh.report.metres_per_unit,
+        findings=findings,
+        decimation_error_m=error_m,
+    )
+    return replace(fewer, report=report)

@@ -1,0 +1,271 @@
+"""Mesh intake: from a file or arrays to a mesh that the core can treat.
+
+What is wrong beyond use is refused with a `MeshError`; every other defect is
+repaired or left as it is, and named in the mesh's report. Self-intersections
+are not looked for: the surface counts, not what encloses it.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_haptics.common.errors import MeshError
+from drake_haptics.common.one_line import count
+from drake_haptics.geometry.mesh.arrays import checked_arrays
+from drake_haptics.geometry.mesh.checks import (
+    check_branching,
+    check_components,
+    check_holes,
+    check_size,
+)
+from drake_haptics.geometry.mesh.cleanup import (
+    distinct_faces,
+    drop_unused_vertices,
+    equal_vertices,
+    join_open_parts,
+    separate_components,
+)
+from drake_haptics.geometry.mesh.reader import read_mesh_file
+from drake_haptics.geometry.mesh.report import Finding, MeshReport, Severity
+from drake_haptics.geometry.mesh.slivers import remove_zero_area_faces
+from drake_haptics.geometry.mesh.units import metres_per_unit
+from drake_haptics.geometry.mesh.winding import Winding, wind_components
+
+__all__ = ["Component", "Mesh", "MeshError", "load_mesh"]
+
+
+@dataclass(frozen=True)
+class Component:
+    """A connected part of a mesh.
+
+    Attributes:
+        triangles: how many it has.
+        closed: every edge has a triangle on both sides, coherently wound.
+        orientable: it has two sides.
+        solid: it bounds a solid: closed, with volume, and wound outward (away
+            from the material, so the wall of a cavity faces into the cavity).
+        cavity: it is the wall of a cavity in another component.
+        volume: m³, negative for a cavity; None unless closed.
+        area: m².
+        bounds: ((x, y, z) lowest, (x, y, z) highest), m.
+    """
+
+    triangles: int
+    closed: bool
+    orientable: bool
+    solid: bool
+    cavity: bool
+    volume: float | None
+    area: float
+    bounds: tuple[tuple[float, float, float], tuple[float, float, float]]
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A triangle mesh that passed the intake; all arrays are read-only.
+
+    Attributes:
+        vertices: (n, 3) float64, m.
+        triangles: (m, 3) int32, counter-clockwise seen from outside.
+        component_of_triangle: (m,) int32.
+        solid: (m,) uint8, 1 where the triangle's component bounds a solid.
+        components: in order of their first triangles.
+        report: what was found and done.
+    """
+
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    component_of_triangle: NDArray[np.int32]
+    solid: NDArray[np.uint8]
+    components: tuple[Component, ...]
+    report: MeshReport
+
+    def __repr__(self) -> str:
+        size_mm = " × ".join(f"{1e3 * side:.4g}" for side in self.report.extent)
+        return (
+            f"Mesh({self.report.source!r}, "
+            f"{count(len(self.vertices), 'vertex', 'vertices')}, "
+            f"{count(len(self.triangles), 'triangle')}, {size_mm} mm)"
+        )
+
+    @staticmethod
+    def from_arrays(
+        vertices: Any, triangles: Any, *, name: str = "mesh", strict: bool = False
+    ) -> Mesh:
+        """Takes in arrays.
+
+        Args:
+            vertices: (n, 3) real numbers, m.
+            triangles: (m, 3) integers, indices of vertices.
+            name: for messages.
+            strict: refuse a mesh that has a defect, repairable or not.
+
+        Raises:
+            MeshError: if the arrays have wrong shapes or types, hold NaN or Inf or
+                an index out of range, have no triangle with an area; or if
+                `strict` and there is a defect.
+        """
+        findings: list[Finding] = []
+        return _take_in(vertices, triangles, name, 1.0, findings, strict)
+
+
+def load_mesh(
+    path: str | os.PathLike[str],
+    *,
+    unit: str | None = None,
+    scale: float | None = None,
+    strict: bool = False,
+) -> Mesh:
+    """Reads a mesh file; the parts of a scene are merged where they are placed.
+
+    Args:
+        path: any format that trimesh reads, or .npz with V (n, 3) and F (m, 3);
+            `package://...` names a file of this package or of Drake.
+        unit: length unit of the file ("m", "mm", "cm", "in", ...).
+        scale: meters per unit of the file, instead of `unit`. Without either,
+            the file is in meters.
+        strict: refuse a mesh that has a defect, repairable or not.
+
+    Raises:
+        MeshError: if the file cannot be read, or as `Mesh.from_arrays`.
+    """
+    factor = metres_per_unit(unit, scale)
+    raw = read_mesh_file(path)
+    findings: list[Finding] = []
+    if raw.parts > 1:
+        findings.append(
+            Finding(
+                "scene",
+                Severity.NOTE,
+                raw.parts,
+                f"the file is a scene of {raw.parts} placed geometries",
+                "merged into one mesh, each where it is placed",
+            )
+        )
+    stated = unit is not None or scale is not None
+    return _take_in(
+        raw.vertices,
+        raw.triangles,
+        os.fspath(path),
+        factor,
+        findings,
+        strict,
+        None if stated else raw.unit,
+    )
+
+
+def _take_in(
+    vertices: Any,
+    triangles: Any,
+    name: str,
+    factor: float,
+    findings: list[Finding],
+    strict: bool,
+    ignored_unit: str | None = None,
+) -> Mesh:
+    try:
+        V, F = checked_arrays(vertices, triangles, factor)
+        num_unused = len(V) - len(np.unique(F))
+        twin = equal_vertices(V)
+        F = F[distinct_faces(twin[F], findings)]
+        F = join_open_parts(F, twin, findings)
+        F = remove_zero_area_faces(V, F, findings)
+    except MeshError as error:
+        raise MeshError(f"{name}: {error}") from None
+    if num_unused:
+        findings.append(
+            Finding(
+                "unused-vertices",
+                Severity.NOTE,
+                num_unused,
+                count(
+                    num_unused,
+                    "vertex belongs to no triangle",
+                    "vertices belong to no triangle",
+                ),
+                "dropped",
+            )
+        )
+    V, F = drop_unused_vertices(V, F)
+    check_branching(F, findings)
+    winding = wind_components(V, F, findings)
+    V, F = separate_components(V, winding.triangles, winding.component)
+    check_holes(F, winding.component, findings)
+    check_components(winding.orientable, winding.closed, winding.solid, findings)
+    extent = V.max(axis=0) - V.min(axis=0)
+    check_size(extent, factor, ignored_unit, findings)
+    mesh = _freeze(V, F, winding, name, factor, extent, findings)
+    if strict and mesh.report.unclean:
+        raise MeshError(mesh.report.refusal)
+    return mesh
+
+
+def _freeze(
+    V: np.ndarray,
+    F: np.ndarray,
+    winding: Winding,
+    name: str,
+    factor: float,
+    extent: np.ndarray,
+    findings: list[Finding],
+) -> Mesh:
+    components = _describe_components(V, F, winding)
+    solid = winding.solid[winding.component]
+    x, y, z = extent.tolist()
+    report = MeshReport(
+        source=name,
+        metres_per_unit=factor,
+        vertices=len(V),
+        triangles=len(F),
+        components=len(components),
+        solids=sum(c.solid for c in components),
+        one_sided_triangles=int((~solid).sum()),
+        extent=(x, y, z),
+        area=float(winding.area.sum()),
+        volume=float(winding.volume[winding.solid].sum()),
+        findings=tuple(findings),
+    )
+    return Mesh(
+        _read_only(V, np.float64),
+        _read_only(F, np.int32),
+        _read_only(winding.component, np.int32),
+        _read_only(solid, np.uint8),
+        components,
+        report,
+    )
+
+
+def _describe_components(
+    V: np.ndarray, F: np.ndarray, winding: Winding
+) -> tuple[Component, ...]:
+    k = len(winding.closed)
+    low = np.full((k, 3), np.inf)
+    high = np.full((k, 3), -np.inf)
+    of_corner = np.repeat(winding.component, 3)
+    np.minimum.at(low, of_corner, V[F.ravel()])
+    np.maximum.at(high, of_corner, V[F.ravel()])
+    count = np.bincount(winding.component, minlength=k)
+    return tuple(
+        Component(
+            triangles=int(count[c]),
+            closed=bool(winding.closed[c]),
+            orientable=bool(winding.orientable[c]),
+            solid=bool(winding.solid[c]),
+            cavity=bool(winding.cavity[c]),
+            volume=float(winding.volume[c]) if winding.closed[c] else None,
+            area=float(winding.area[c]),
+            bounds=(tuple(low[c].tolist()), tuple(high[c].tolist())),
+        )
+        for c in range(k)
+    )
+
+
+def _read_only(array: np.ndarray, dtype: Any) -> np.ndarray:
+    result = np.array(array, dtype=dtype, order="C")  # a copy: the caller's is not ours
+    result.flags.writeable = False
+    return result

@@ -1,0 +1,190 @@
+"""Reads triangles from files, as they are, before any check or repair."""
+
+from __future__ import annotations
+
+import logging
+import os
+import struct
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from drake_haptics.common.errors import MeshError
+from drake_haptics.common.missing_file import describe_missing
+from drake_haptics.common.one_line import count
+from drake_haptics.common.package_url import resolve_package_url
+from drake_haptics.geometry.mesh.units import unit_of_name
+
+# Bytes of a binary STL: 80 of anything and the number of triangles; each triangle.
+_STL_HEADER = 84
+_STL_TRIANGLE = 50
+# So much of the beginning tells whether a file is text.
+_TEXT = 1000
+
+
+@dataclass(frozen=True)
+class RawMesh:
+    """What a file holds, in the file's own unit.
+
+    Attributes:
+        vertices: (n, 3) positions in the file's unit.
+        triangles: (m, 3) vertex indices.
+        parts: how many placed geometries were merged.
+        unit: the unit that the file itself states, None if it states none.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    parts: int = 1
+    unit: str | None = None
+
+
+def read_mesh_file(path: str | os.PathLike[str]) -> RawMesh:
+    """Reads every triangle of a file, scenes with their transforms applied.
+
+    Args:
+        path: any format that trimesh reads (obj, stl, ply, off, glb, gltf, ...),
+            or .npz with arrays V (n, 3) and F (m, 3); `package://...` names one of
+            this package or of Drake.
+
+    Raises:
+        MeshError: if the file is absent, unreadable or has no triangles.
+    """
+    path = Path(resolve_package_url(path))
+    if not path.exists():
+        raise MeshError(describe_missing(path))
+    if path.is_dir():
+        raise MeshError(f"{path}: is a folder; name a mesh file inside it")
+    try:
+        with open(path, "rb") as stream:
+            is_empty = not stream.read(1)
+    except OSError as error:
+        raise MeshError(f"{path}: cannot be opened: {error.strerror}") from error
+    if is_empty:
+        raise MeshError(f"{path}: is empty (0 bytes): export it again")
+    if path.suffix.lower() == ".npz":
+        return _read_npz(path)
+    return _read_with_trimesh(path)
+
+
+def _read_npz(path: Path) -> RawMesh:
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            missing = [key for key in ("V", "F") if key not in archive]
+            if missing:
+                raise MeshError(
+                    f"{path}: holds no array {' and no array '.join(missing)}; a mesh "
+                    f"in .npz needs V (n, 3) and F (m, 3), this one has "
+                    f"{', '.join(archive.files) or 'nothing'}"
+                )
+            return RawMesh(archive["V"], archive["F"])
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        if isinstance(error, MeshError):
+            raise
+        raise MeshError(f"{path}: cannot be read as .npz: {error}") from error
+
+
+def _read_with_trimesh(path: Path) -> RawMesh:
+    import trimesh  # half a second: only for those who read such a file
+
+    formats = trimesh.available_formats()
+    if path.suffix.lower().lstrip(".") not in formats:
+        raise MeshError(
+            f"{path}: trimesh reads no format {path.suffix or '(no suffix)'} here; "
+            f"it reads {', '.join(sorted(formats))} and this program .npz. Convert "
+            f"the file, or install the reader that trimesh asks for"
+        )
+    try:
+        with _silent_trimesh():
+            scene = trimesh.load_scene(path, process=False)
+    except Exception as error:  # each of trimesh's readers raises what it likes
+        raise MeshError(
+            f"{path}: cannot be read as {path.suffix} "
+            f"({type(error).__name__}: {error}); the file is damaged or is not what "
+            f"its name says: export it again"
+        ) from error
+    return _merge_scene(path, scene)
+
+
+@contextmanager
+def _silent_trimesh() -> Iterator[None]:
+    """Keeps trimesh from logging what our own error says."""
+    logger = logging.getLogger("trimesh")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
+
+
+def _describe_missing_triangles(path: Path) -> str:
+    """Returns why trimesh finds no triangle in a file.
+
+    It takes what is no whole STL for one without facets.
+    """
+    if path.suffix.lower() != ".stl":
+        return "has no triangles; point clouds and curves have no surface"
+    data = path.read_bytes()
+    # The count of a binary file's triangles has a zero byte below 16 million.
+    if b"\0" not in data[:_TEXT]:
+        if not data.lstrip().lower().startswith(b"solid"):
+            return "is a text file, and no STL: its content is not what its name says"
+        if b"endsolid" not in data.lower():
+            return (
+                "is cut off: a text STL ends with 'endsolid': export or copy it again"
+            )
+    elif len(data) < _STL_HEADER:
+        return f"is cut off after {count(len(data), 'byte')}: export or copy it again"
+    else:
+        (promised,) = struct.unpack_from("<I", data, _STL_HEADER - 4)
+        size = _STL_HEADER + _STL_TRIANGLE * promised
+        if size != len(data):
+            fault = "is cut off" if size > len(data) else "is damaged"
+            return (
+                f"{fault}: its header promises {count(promised, 'triangle')}, which are"
+                f" {count(size, 'byte')}, and the file has {len(data):,}: export or"
+                " copy it again"
+            )
+    return "has no triangles"
+
+
+def _merge_scene(path: Path, scene: Any) -> RawMesh:
+    vertices: list[np.ndarray] = []
+    triangles: list[np.ndarray] = []
+    start = 0
+    for node in scene.graph.nodes_geometry:
+        X_WG, name = scene.graph[node]
+        geometry = scene.geometry[name]
+        faces = getattr(geometry, "faces", None)
+        if faces is None or len(faces) == 0:
+            continue  # point clouds and paths have no triangles
+        p_GV = np.asarray(geometry.vertices, dtype=np.float64)
+        F = np.asarray(faces, dtype=np.int64)
+        if not np.array_equal(X_WG, np.eye(4)):
+            p_GV = p_GV @ X_WG[:3, :3].T + X_WG[:3, 3]
+            if np.linalg.det(X_WG[:3, :3]) < 0:
+                F = F[:, ::-1]  # a mirror turns the winding round
+        if F.min() < 0 or F.max() >= len(p_GV):
+            raise MeshError(
+                f"{path}: a triangle names vertex "
+                f"{int(F.max() if F.max() >= len(p_GV) else F.min())}, but there are "
+                f"only {count(len(p_GV), 'vertex', 'vertices')}; the file is damaged:"
+                " export it again"
+            )
+        vertices.append(p_GV)
+        triangles.append(F + start)
+        start += len(p_GV)
+    if not triangles:
+        raise MeshError(f"{path}: {_describe_missing_triangles(path)}")
+    return RawMesh(
+        np.concatenate(vertices),
+        np.concatenate(triangles),
+        len(triangles),
+        unit_of_name(scene.units),
+    )

@@ -1,0 +1,250 @@
+"""The report on a mesh: what was found, what was done, in words and as data."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.table import Table
+from rich.text import Text
+
+from drake_haptics.common.one_line import count
+
+
+class Severity(str, Enum):
+    """How much a finding matters.
+
+    NOTE: says something about the file; its surface is unchanged.
+    QUESTION: possibly a mistake that only its author can judge.
+    REPAIRED: a defect of the surface, repaired.
+    DEFECT: a defect of the surface, left as it is.
+    """
+
+    NOTE = "note"
+    QUESTION = "question"
+    REPAIRED = "repaired"
+    DEFECT = "defect"
+
+
+_COLORS = {
+    Severity.DEFECT: "red",
+    Severity.QUESTION: "magenta",
+    Severity.REPAIRED: "yellow",
+    Severity.NOTE: "cyan",
+}
+
+
+_NOT_LOOKED_FOR = (
+    "Not looked for: places where the surface passes through itself; depth is not"
+    " defined there."
+)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing found in a mesh.
+
+    Attributes:
+        code: stable name, such as "duplicate-faces".
+        severity: how much it matters.
+        count: how many of them.
+        message: what was found.
+        action: what was done about it.
+    """
+
+    code: str
+    severity: Severity
+    count: int
+    message: str
+    action: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns plain data for JSON."""
+        return {
+            "code": self.code,
+            "severity": self.severity.value,
+            "count": self.count,
+            "message": self.message,
+            "action": self.action,
+        }
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> Finding:
+        """Reads what `to_dict` returned."""
+        return Finding(**{**data, "severity": Severity(data["severity"])})
+
+
+@dataclass(frozen=True)
+class MeshReport:
+    """What a mesh is, and every finding of its intake.
+
+    Attributes:
+        source: file or name of the mesh.
+        metres_per_unit: factor from the file's unit to meters.
+        vertices: count after intake.
+        triangles: count after intake.
+        components: count of connected parts.
+        solids: how many of them bound a solid.
+        one_sided_triangles: triangles of parts that bound no solid.
+        extent: (x, y, z) size of the bounding box, m.
+        area: of the surface, m².
+        volume: of the solids, m³, counted once for each; cavities subtract.
+        findings: in the order in which they were made.
+        decimation_error_m: largest distance between this surface and that of the
+            file, m; 0 where no triangles were taken away.
+    """
+
+    source: str
+    metres_per_unit: float
+    vertices: int
+    triangles: int
+    components: int
+    solids: int
+    one_sided_triangles: int
+    extent: tuple[float, float, float]
+    area: float
+    volume: float
+    findings: tuple[Finding, ...]
+    decimation_error_m: float = 0.0
+
+    @property
+    def unclean(self) -> tuple[Finding, ...]:
+        """The findings that a strict intake refuses: repairs and defects."""
+        refused = (Severity.REPAIRED, Severity.DEFECT)
+        return tuple(f for f in self.findings if f.severity in refused)
+
+    @property
+    def refusal(self) -> str:
+        """Why a strict intake refuses the mesh; for one that is unclean."""
+        found = "; ".join(finding.message for finding in self.unclean)
+        return (
+            f"{self.source}: refused, because a strict intake repairs nothing: "
+            f"{found}. Repair the file, or read it without strict"
+        )
+
+    @property
+    def verdict(self) -> str:
+        """One sentence: what the mesh is good for."""
+        if self.solids == self.components:
+            plural = "one solid" if self.solids == 1 else count(self.solids, "solid")
+            return f"Usable as {plural}: closed and wound outward."
+        if self.solids == 0:
+            return (
+                "Usable as an open surface: no part of it bounds a solid, so every "
+                "piece is one-sided and nothing can be inside."
+            )
+        share = self.one_sided_triangles / self.triangles
+        return (
+            f"Usable in part as a solid: {self.solids} of "
+            f"{count(self.components, 'part')} bound a solid; the others "
+            f"({share:.0%} of the triangles) are open surfaces whose pieces are "
+            "one-sided."
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns plain data for JSON; lengths in m, areas in m², volumes in m³."""
+        return {
+            "source": self.source,
+            "metres_per_unit": self.metres_per_unit,
+            "vertices": self.vertices,
+            "triangles": self.triangles,
+            "components": self.components,
+            "solids": self.solids,
+            "one_sided_triangles": self.one_sided_triangles,
+            "extent_m": list(self.extent),
+            "area_m2": self.area,
+            "volume_m3": self.volume,
+            "verdict": self.verdict,
+            "findings": [finding.to_dict() for finding in self.findings],
+            "decimation_error_m": self.decimation_error_m,
+        }
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> MeshReport:
+        """Reads what `to_dict` returned."""
+        x, y, z = data["extent_m"]
+        return MeshReport(
+            source=data["source"],
+            metres_per_unit=data["metres_per_unit"],
+            vertices=data["vertices"],
+            triangles=data["triangles"],
+            components=data["components"],
+            solids=data["solids"],
+            one_sided_triangles=data["one_sided_triangles"],
+            extent=(x, y, z),
+            area=data["area_m2"],
+            volume=data["volume_m3"],
+            findings=tuple(map(Finding.from_dict, data["findings"])),
+            decimation_error_m=data.get("decimation_error_m", 0.0),
+        )
+
+    def __rich_console__(
+        self, console: Console, options: ConsoleOptions
+    ) -> RenderResult:
+        yield Text(self.source, style="bold")
+        yield self._facts()
+        yield Text()
+        if self.findings:
+            yield self._findings()
+            yield Text()
+        yield Text(self.verdict, style="bold")
+        if self.solids:
+            yield Text(_NOT_LOOKED_FOR, style="dim")
+
+    def _facts(self) -> Table:
+        table = Table.grid(padding=(0, 2))
+        table.add_row("  size", "{} x {} x {}".format(*map(length, self.extent)))
+        table.add_row(
+            "  surface",
+            f"{count(self.triangles, 'triangle')}, "
+            f"{count(self.vertices, 'vertex', 'vertices')}, "
+            f"{count(self.components, 'part')}, {_power(self.area, 2)}",
+        )
+        if self.solids:
+            table.add_row("  volume", _power(self.volume, 3))
+        return table
+
+    def _findings(self) -> Table:
+        """The findings, the most important first."""
+        table = Table.grid(padding=(0, 2))
+        order = list(_COLORS)
+        for finding in sorted(self.findings, key=lambda f: order.index(f.severity)):
+            sentence = Text(f"{finding.message}: {finding.action} ")
+            sentence.append(f"[{finding.code}]", style="dim")
+            severity = Text(f"  {finding.severity.value}", _COLORS[finding.severity])
+            table.add_row(severity, sentence)
+        return table
+
+    def __str__(self) -> str:
+        out = io.StringIO()
+        # In a notebook rich would show it at once and leave nothing to return.
+        console = Console(file=out, width=80, color_system=None, force_jupyter=False)
+        console.print(self)
+        return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
+
+
+def length(meters: float) -> str:
+    """Writes a length in the unit that people would use for it."""
+    if meters >= 1 or meters == 0:
+        return f"{meters:.4g} m"
+    if meters >= 1e-3:
+        return f"{meters * 1e3:.4g} mm"
+    return f"{meters * 1e6:.4g} µm"
+
+
+def _power(value: float, exponent: int) -> str:
+    """Writes an area or a volume in the unit that people would use for it.
+
+    Args:
+        value: In m² or m³.
+        exponent: 2 or 3.
+    """
+    mark = {2: "²", 3: "³"}[exponent]
+    # From a litre on, 1000 cm³ are better said as 0.001 m³.
+    for least_m, unit, per_m in ((0.1, "m", 1), (0.01, "cm", 100)):
+        if value >= least_m**exponent or value == 0:
+            return f"{value * per_m**exponent:.4g} {unit}{mark}"
+    return f"{value * 1000**exponent:.4g} mm{mark}"

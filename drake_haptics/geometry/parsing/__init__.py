@@ -1,0 +1,1 @@
+"""Shapes that Drake knows, as meshes and convex pieces."""

@@ -1,0 +1,205 @@
+"""The shapes that a plant's body has in Drake, as pieces for the contact query."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from pydrake.geometry import (
+    Box,
+    Capsule,
+    Convex,
+    Cylinder,
+    Ellipsoid,
+    GeometryId,
+    HalfSpace,
+    Mesh,
+    MeshcatCone,
+    Role,
+    SceneGraphInspector,
+    Shape,
+    Sphere,
+)
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import RigidBody
+
+from drake_haptics import _core
+from drake_haptics.common.errors import MeshError
+from drake_haptics.geometry.decomposition.decompose import Progress, decompose
+from drake_haptics.geometry.mesh.mesh import Mesh as IntakeMesh
+from drake_haptics.geometry.mesh.round_shapes import (
+    make_box_corners,
+    make_capsule_corners,
+    make_cylinder_corners,
+    make_ellipsoid_corners,
+)
+from drake_haptics.geometry.parsing.mesh_source import read_mesh_source
+
+_ROLE_NAMES = {Role.kProximity: "proximity", Role.kIllustration: "illustration"}
+
+
+def find_body_geometries(
+    plant: MultibodyPlant,
+    inspector: SceneGraphInspector,
+    body: RigidBody,
+    role: Role = Role.kProximity,
+) -> list[GeometryId]:
+    """Returns the geometries of a body that have a role, in order of registration."""
+    frame_id = plant.GetBodyFrameIdIfExists(body.index())
+    return [] if frame_id is None else list(inspector.GetGeometries(frame_id, role))
+
+
+def decompose_body(
+    plant: MultibodyPlant,
+    inspector: SceneGraphInspector,
+    body: RigidBody,
+    *,
+    role: Role = Role.kProximity,
+    chord_error_m: float = 1e-4,
+    progress: Progress | None = None,
+) -> _core.Decomposition:
+    """Returns all shapes of a body as one set of convex pieces in the body's frame.
+
+    A `Mesh` keeps its true, possibly non-convex shape, where Drake's point contact
+    takes its convex hull; it is cut into pieces by `decompose`. `Box` is exact,
+    `Convex` the hull of its points, and `Sphere`, `Cylinder`, `Capsule` and
+    `Ellipsoid` are convex polytopes (`drake_haptics.geometry.mesh.round_shapes`): one
+    piece each. Where shapes of a body overlap, each keeps its own surface.
+
+    Args:
+        plant: Registered with a scene graph.
+        inspector: Of that scene graph's model.
+        body: Of the plant.
+        role: Which of its shapes: those for proximity or for illustration.
+        chord_error_m: Largest distance of a polytope from the round shape that it
+            stands for, m.
+        progress: Called while meshes are cut with the share done, from 0 to 1.
+
+    Raises:
+        ValueError: The body has no such shapes, one of them is unbounded or cannot be
+            touched, the role is another one, or the chord error is out of range. A
+            mesh that cannot be treated is a `MeshError`.
+    """
+    if role not in _ROLE_NAMES:
+        raise ValueError(f"role must be kProximity or kIllustration, is {role.name}")
+    geometries = find_body_geometries(plant, inspector, body, role)
+    if not geometries:
+        other = "kIllustration" if role == Role.kProximity else "kProximity"
+        raise ValueError(
+            f"body {body.name()!r} has no shape with the role {_ROLE_NAMES[role]}: give"
+            f" it a {'collision' if role == Role.kProximity else 'visual'} geometry, or"
+            f" use role=Role.{other}"
+        )
+    parts = []
+    for n, geometry_id in enumerate(geometries):
+        shape = inspector.GetShape(geometry_id)
+        step = _share_of_all(progress, n, len(geometries)) if progress else None
+        try:
+            parts.append(
+                _decompose_shape(
+                    shape,
+                    inspector.GetPoseInFrame(geometry_id).GetAsMatrix4(),
+                    chord_error_m,
+                    step,
+                )
+            )
+        except ValueError as error:
+            where = f"{inspector.GetName(geometry_id)!r} of body {body.name()!r}"
+            kind = MeshError if isinstance(error, MeshError) else ValueError
+            raise kind(f"geometry {where}: {error}") from error
+    return parts[0] if len(parts) == 1 else _unite(parts)
+
+
+def _share_of_all(progress: Progress, done: int, count: int) -> Progress:
+    return lambda share: progress((done + share) / count)
+
+
+def _decompose_shape(
+    shape: Shape,
+    X_BG: np.ndarray,
+    chord_error_m: float,
+    progress: Progress | None,
+) -> _core.Decomposition:
+    """Returns the pieces of one shape at X_BG (4, 4)."""
+    if not isinstance(shape, Mesh):
+        p_GV = _find_corners(shape, chord_error_m)
+        return _make_convex(p_GV @ X_BG[:3, :3].T + X_BG[:3, 3])
+    raw = read_mesh_source(shape.source(), shape.scale3())
+    mesh = IntakeMesh.from_arrays(
+        raw.vertices, raw.triangles, name=shape.source().description()
+    )
+    # Cut in its own frame, so that it is cut alike, and once, wherever it is put.
+    pieces = decompose(mesh, progress=progress).core
+    return _core.assemble_surface_pieces(
+        pieces.vertices @ X_BG[:3, :3].T + X_BG[:3, 3],
+        pieces.triangles,
+        pieces.piece_of_triangle,
+    )
+
+
+def _find_corners(shape: Shape, chord_error_m: float) -> np.ndarray:
+    """Returns points (n, 3) in the shape's frame whose hull stands for it, m."""
+    find: dict[type, Callable[..., np.ndarray]] = {
+        Convex: _find_hull_corners,
+        Box: lambda s: make_box_corners(s.size()),
+        Sphere: lambda s: make_ellipsoid_corners((s.radius(),) * 3, chord_error_m),
+        Ellipsoid: lambda s: make_ellipsoid_corners(
+            (s.a(), s.b(), s.c()), chord_error_m
+        ),
+        Cylinder: lambda s: make_cylinder_corners(
+            s.radius(), s.length(), chord_error_m
+        ),
+        Capsule: lambda s: make_capsule_corners(s.radius(), s.length(), chord_error_m),
+    }
+    if isinstance(shape, HalfSpace):
+        raise ValueError("is a HalfSpace, which has no end: use a large Box instead")
+    if isinstance(shape, MeshcatCone):
+        raise ValueError("is a MeshcatCone, which is only drawn: use a Mesh instead")
+    if type(shape) not in find:
+        known = ", ".join(kind.__name__ for kind in (Mesh, *find))
+        raise ValueError(f"is a {type(shape).__name__}; known shapes are {known}")
+    return find[type(shape)](shape)
+
+
+def _find_hull_corners(shape: Convex) -> np.ndarray:
+    """Returns the corners (n, 3) of a hull; Drake finds those of a file or points."""
+    try:
+        hull = shape.GetConvexHull()
+    except RuntimeError as error:
+        raise MeshError(f"has no convex hull: {error}") from error
+    return np.array([hull.vertex(i) for i in range(hull.num_vertices())])
+
+
+def _make_convex(corners: np.ndarray) -> _core.Decomposition:
+    """Returns the hull of points (n, 3), m, as one piece."""
+    hull = _core.ConvexPolytope(corners)
+    if hull.dimension < 3:
+        raise ValueError("has no volume, so that nothing can be inside of it")
+    triangles = [
+        (loop[0], loop[k], loop[k + 1])
+        for loop in hull.facets
+        for k in range(1, len(loop) - 1)
+    ]
+    return _core.assemble_surface_pieces(
+        hull.vertices,
+        np.array(triangles, dtype=np.int32),
+        np.zeros(len(triangles), dtype=np.int32),
+    )
+
+
+def _unite(parts: list[_core.Decomposition]) -> _core.Decomposition:
+    """Returns all pieces as those of one object."""
+    first_vertex = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    first_piece = np.cumsum([0, *(len(part.pieces) for part in parts)])
+    return _core.assemble_surface_pieces(
+        np.concatenate([part.vertices for part in parts]),
+        np.concatenate(
+            [part.triangles + k for part, k in zip(parts, first_vertex, strict=False)]
+        ).astype(np.int32),
+        np.concatenate(
+            [
+                part.piece_of_triangle + k
+                for part, k in zip(parts, first_piece, strict=False)
+            ]
+        ).astype(np.int32),
+    )

@@ -1,0 +1,1 @@
+"""The haptic loop of a scene, wired."""

@@ -1,0 +1,188 @@
+"""The systems from the tool's pose to the contact force, for any loop."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from pydrake.systems.framework import DiagramBuilder, OutputPort, System
+
+from drake_haptics import _core
+from drake_haptics.scene.schema import Contact, Effects, Material
+from drake_haptics.scene.validation import check_query_rate
+from drake_haptics.systems.contact.contact_clustering import (
+    ClusteringMethod,
+    ContactClustering,
+)
+from drake_haptics.systems.contact.contact_query import (
+    ContactObject,
+    ContactQuery,
+    DepthSearch,
+)
+from drake_haptics.systems.contact.penalty_force import ContactGains, PenaltyForce
+
+if TYPE_CHECKING:
+    from drake_haptics.systems.contact.contact_advance import ContactAdvance
+    from drake_haptics.systems.contact.pose_sample import PoseSample
+
+
+@dataclass(frozen=True)
+class ContactSystems:
+    """What finds contacts and answers them.
+
+    Attributes:
+        contact_query: Finds the contacts.
+        contact_clustering: Keeps many contacts from being stiffer than one.
+        penalty_force: Answers them.
+        pose_sample: Says where contacts are looked for, if not at every tick.
+        contact_advance: Carries them along then.
+    """
+
+    contact_query: ContactQuery
+    contact_clustering: ContactClustering
+    penalty_force: PenaltyForce
+    pose_sample: PoseSample | None
+    contact_advance: ContactAdvance | None
+
+    @property
+    def found_contacts(self) -> OutputPort:
+        """The contacts where the bodies are now."""
+        if self.contact_advance is not None:
+            return self.contact_advance.get_contacts_output_port()
+        return self.contact_query.get_contacts_output_port()
+
+
+def add_contact_systems(
+    builder: DiagramBuilder,
+    tool: _core.Decomposition,
+    objects: Sequence[ContactObject],
+    contact: Contact,
+    effects: Effects,
+    materials: Sequence[Material],
+    period_s: float,
+    *,
+    sheds_load: bool = False,
+    warns_deep: bool = False,
+) -> ContactSystems:
+    """Adds the systems; their inputs from elsewhere are left to the caller.
+
+    Args:
+        builder: Gets the systems.
+        tool: Pieces of the tool, in its frame T.
+        objects: What it meets.
+        contact: Tolerance, clustering and gains.
+        effects: Contacts are looked for as far as they need.
+        materials: Of each object; gains that one does not give are those of `contact`.
+        period_s: The tick, s.
+        sheds_load: Whether query and clustering take the `relief` of a `LoadShedding`.
+        warns_deep: Whether the clustering warns of a deep contact itself.
+
+    Raises:
+        ValueError: A gain or size is out of range, two objects share a name, there
+            is not a material for each object, or the rate of the query is not that
+            of the tick divided by a whole number.
+    """
+    if len(materials) != len(objects):
+        raise ValueError(
+            f"materials must be one for each of the {len(objects)} objects, are"
+            f" {len(materials)}"
+        )
+    gains = find_contact_gains(contact, materials)
+    query = builder.AddNamedSystem(
+        "contact_query",
+        ContactQuery(
+            tool,
+            objects,
+            find_query_tolerance(contact, effects),
+            cast(DepthSearch, contact.depth),
+            contact.max_walk_steps,
+            # Its answer holds for several ticks; `relief` changes in each.
+            sheds_load=sheds_load and contact.query_rate_hz is None,
+        ),
+    )
+    sample = advance = None
+    if contact.query_rate_hz is not None:
+        check_query_rate(contact.query_rate_hz, 1.0 / period_s)
+        sample, advance = _add_advance(
+            builder, query, tool, objects, 1.0 / contact.query_rate_hz
+        )
+    return ContactSystems(
+        contact_query=query,
+        contact_clustering=builder.AddNamedSystem(
+            "contact_clustering",
+            ContactClustering(
+                cast(ClusteringMethod, contact.clustering),
+                contact.tolerance_m,
+                contact.cluster_size_m,
+                sheds_load=sheds_load,
+                warns_deep=warns_deep,
+            ),
+        ),
+        penalty_force=builder.AddNamedSystem(
+            "penalty_force",
+            PenaltyForce(
+                objects,
+                gains.stiffness_N_per_m.tolist(),
+                gains.damping_Ns_per_m.tolist(),
+            ),
+        ),
+        pose_sample=sample,
+        contact_advance=advance,
+    )
+
+
+def _add_advance(
+    builder: DiagramBuilder,
+    query: ContactQuery,
+    tool: _core.Decomposition,
+    objects: Sequence[ContactObject],
+    period_s: float,
+) -> tuple[PoseSample, ContactAdvance]:
+    """Lets a query look for contacts every so often, and carries them along."""
+    from drake_haptics.systems.contact.contact_advance import ContactAdvance
+    from drake_haptics.systems.contact.pose_sample import PoseSample
+
+    names = [item.name for item in objects if item.X_WO is None]
+    sample = builder.AddNamedSystem("pose_sample", PoseSample(names, period_s))
+    advance = builder.AddNamedSystem("contact_advance", ContactAdvance(tool, objects))
+    for port in map(sample.get_output_port, range(sample.num_output_ports())):
+        name = port.get_name()
+        builder.Connect(port, query.GetInputPort(name))
+        builder.Connect(port, advance.GetInputPort(f"found_{name}"))
+    builder.Connect(query.get_contacts_output_port(), advance.get_contacts_input_port())
+    return sample, advance
+
+
+def find_contact_gains(contact: Contact, materials: Sequence[Material]) -> ContactGains:
+    """Returns the gains of each object: its material's, or else the contact's."""
+    stiffness = [material.stiffness_N_per_m for material in materials]
+    damping = [material.damping_Ns_per_m for material in materials]
+    return ContactGains(
+        np.array([contact.stiffness_N_per_m if k is None else k for k in stiffness]),
+        np.array([contact.damping_Ns_per_m if b is None else b for b in damping]),
+    )
+
+
+def find_query_tolerance(contact: Contact, effects: Effects) -> float:
+    """Returns how far contacts must be looked for, m."""
+    if effects.braking is None:
+        return contact.tolerance_m
+    return max(contact.tolerance_m, effects.braking.distance_m)
+
+
+def connect_by_name(
+    builder: DiagramBuilder, system: System, sources: Mapping[str, OutputPort]
+) -> None:
+    """Connects the inputs of a system whose names say what they want.
+
+    Args:
+        builder: Of the diagram with the system.
+        system: Of it; inputs that are connected already are left alone.
+        sources: What there is, by the names of inputs.
+    """
+    for port in map(system.get_input_port, range(system.num_input_ports())):
+        name = port.get_name()
+        if name in sources and not builder.IsConnectedOrExported(port):
+            builder.Connect(sources[name], port)

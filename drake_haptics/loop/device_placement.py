@@ -1,0 +1,198 @@
+"""Where a device stands in a scene, and how it gets into the scene's diagram."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.math import RigidTransform
+
+from drake_haptics.common.one_line import count
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.device.backend import DeviceBackend, DeviceError, DeviceReading
+from drake_haptics.loop.simulated_device import find_base, make_hand_path
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.scene.schema import Scene
+from drake_haptics.systems.device.device_io import DeviceIo
+from drake_haptics.systems.device.haptic_device import HapticDevice
+
+_LOOK_AGAIN_S = 0.01
+_QUATERNION_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True)
+class DeviceSite:
+    """Where a scene expects its device and the handle of it.
+
+    Attributes:
+        X_WB: Pose of the device's base in the world.
+        X_BH: Pose of the handle in the base where the scene's hand starts: for devices
+            that can be put anywhere.
+        workspace_radius_m: How far the handle reaches from the middle of the
+            workspace, m.
+        max_force_N: Largest force to be shown, N: the scene's, or the preset's.
+        max_torque_Nm: Largest torque to be shown, N·m.
+    """
+
+    X_WB: RigidTransform
+    X_BH: RigidTransform
+    workspace_radius_m: float
+    max_force_N: float
+    max_torque_Nm: float
+
+
+def find_device_site(scene: Scene) -> DeviceSite:
+    """Returns where a scene has its device.
+
+    Raises:
+        SceneError: There is no such preset, or the hand's path is none.
+    """
+    path = make_hand_path(scene.hand.path)
+    X_WB = find_base(scene, path)
+    X_TH = scene.tool.grasp.to_rigid_transform().inverse()
+    preset = load_device_preset(scene.device.preset)
+    force, torque = scene.device.max_force_N, scene.device.max_torque_Nm
+    return DeviceSite(
+        X_WB=X_WB,
+        X_BH=X_WB.inverse() @ path.start @ X_TH,
+        workspace_radius_m=preset.workspace_radius_m,
+        max_force_N=preset.max_force_N if force is None else force,
+        max_torque_Nm=preset.max_torque_Nm if torque is None else torque,
+    )
+
+
+def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceReading:
+    """Returns the first reading of a device.
+
+    Args:
+        backend: Open.
+        timeout_s: How long to wait for it, s.
+
+    Raises:
+        DeviceError: None has come, or none that could be used.
+        ValueError: Its pose or velocity is none.
+    """
+    end_s = time.monotonic() + timeout_s
+    while (reading := backend.read()) is None:
+        if time.monotonic() > end_s:
+            rejected = backend.get_link_status().rejected
+            was = "was" if rejected == 1 else "were"
+            raise DeviceError(
+                f"the device has said nothing that can be used for {timeout_s:g} s:"
+                f" {count(rejected, 'packet')} came and {was} refused. Is each state"
+                " packed as docs/device-protocol.md says, all of it finite, the"
+                " quaternion of the pose of length 1?"
+                if rejected
+                else f"the device has said nothing for {timeout_s:g} s: is its driver"
+                " running at the address given, and does it serve no other host?"
+                " `drake-haptics device` is a driver to try, at udp://127.0.0.1:7400"
+            )
+        time.sleep(_LOOK_AGAIN_S)
+    _check_reading(reading)
+    return reading
+
+
+def _check_reading(reading: DeviceReading) -> None:
+    """Raises ValueError where a backend tells what no handle can do."""
+    for name, size in (("X_BH", 7), ("V_BH", 6)):
+        values = np.asarray(getattr(reading, name), dtype=float)
+        if values.shape != (size,) or not np.isfinite(values).all():
+            raise ValueError(
+                f"{name} of a device's reading must be {size} finite numbers, is"
+                f" {values}"
+            )
+    length = np.linalg.norm(reading.X_BH[:4])
+    if abs(length - 1.0) > _QUATERNION_TOLERANCE:
+        raise ValueError(
+            "the quaternion in X_BH of a device's reading must have length 1, has"
+            f" {length:g}"
+        )
+
+
+def place_device(
+    scene: Scene, backend: DeviceBackend, X_WH: RigidTransform | None = None
+) -> RigidTransform:
+    """Returns X_WB, where a scene's device stands.
+
+    Where nobody says where the base stands, the handle, wherever it is held at first,
+    is put where the scene's hand would start: beside the objects and in none.
+
+    Args:
+        scene: Says where the device stands, or does not.
+        backend: Open.
+        X_WH: Where the handle is put instead, where nobody says.
+
+    Raises:
+        SceneError: As `find_device_site`.
+        DeviceError: The backend says nothing.
+    """
+    site = find_device_site(scene)
+    if scene.device.base is not None or backend.is_placed:
+        return site.X_WB
+    X_WH = X_WH or site.X_WB @ site.X_BH
+    R_WB = site.X_WB.rotation()
+    p_BH = wait_for_reading(backend).X_BH[4:]
+    return RigidTransform(R_WB, X_WH.translation() - R_WB @ p_BH)
+
+
+def make_haptic_device(
+    scene: Scene, backend: DeviceBackend, X_WB: RigidTransform
+) -> tuple[HapticDevice, RigidTransform]:
+    """Returns a scene's device port before a backend, and X_WH, where its handle is.
+
+    Args:
+        scene: Says the rate and the limits.
+        backend: Open.
+        X_WB: Where its base stands.
+
+    Raises:
+        SceneError: As `find_device_site`.
+        DeviceError: The backend says nothing.
+    """
+    site = find_device_site(scene)
+    return make_device_port(
+        backend,
+        X_WB,
+        period_s=1.0 / scene.device.rate_hz,
+        max_force_N=site.max_force_N,
+        max_torque_Nm=site.max_torque_Nm,
+    )
+
+
+def make_device_port(
+    backend: DeviceBackend,
+    X_WB: RigidTransform | None = None,
+    *,
+    period_s: float,
+    max_force_N: float,
+    max_torque_Nm: float,
+) -> tuple[HapticDevice, RigidTransform]:
+    """Returns a device port before a backend, and X_WH, where its handle is now.
+
+    For the `device` of `AddHapticLoop` or `AddHapticRendering`. The first reading is
+    waited for.
+
+    Args:
+        backend: Open; remains the caller's to close.
+        X_WB: Where its base stands; the world's frame where not given.
+        period_s: The tick, s; also that of what the port is given to.
+        max_force_N: Largest force shown, N.
+        max_torque_Nm: Largest torque shown, N·m.
+
+    Raises:
+        DeviceError: The backend says nothing.
+        ValueError: The period or a limit is out of range, or the backend's reading is
+            no pose and velocity.
+    """
+    X_WB = X_WB or RigidTransform()
+    reading = wait_for_reading(backend)
+    io = DeviceIo(backend, X_WB, period_s, reading)
+    io.set_name("device_io")
+    device = HapticDevice(
+        io,
+        period_s=period_s,
+        max_force_N=max_force_N,
+        max_torque_Nm=max_torque_Nm,
+    )
+    return device, X_WB @ vector_to_pose(reading.X_BH)

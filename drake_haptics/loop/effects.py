@@ -1,0 +1,180 @@
+"""Adds the systems of the effects that a scene names, and wires them.
+
+Each system is imported where it is added: what a scene does not name is not even
+loaded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from pydrake.systems.framework import DiagramBuilder, OutputPort, System
+
+from drake_haptics import _core
+from drake_haptics.bounds.sampled_spring import calc_returnable_energy
+from drake_haptics.loop.contact import connect_by_name
+from drake_haptics.loop.haptic_loop import EffectSystems
+from drake_haptics.scene.effects import (
+    Braking,
+    Effects,
+    Friction,
+    Gravity,
+    Material,
+    Passivity,
+    Shading,
+)
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.device.haptic_device import HapticDevice
+
+# Hands on a desk reach no higher.
+_HIGHEST_LIFT_M = 0.5
+
+
+@dataclass(frozen=True)
+class EffectSite:
+    """Which effects go where, and what they are made from.
+
+    Attributes:
+        effects: Those to add are not None.
+        builder: Gets the systems.
+        sources: What the systems' inputs are connected to, by their names; poses and
+            velocities of objects that move are left out.
+        tool: Pieces of the tool, in its frame T.
+        tool_mass_kg: Its mass, kg.
+        p_TTcm: Its center of mass (3,), m.
+        objects: What it meets.
+        materials: Of each object.
+        period_s: The tick, s.
+        springs: What can push the device: the largest load and the stiffness of each,
+            in N and N/m or N·m and N·m/rad.
+    """
+
+    effects: Effects
+    builder: DiagramBuilder
+    sources: Mapping[str, OutputPort]
+    tool: _core.Decomposition
+    tool_mass_kg: float
+    p_TTcm: Sequence[float]
+    objects: Sequence[ContactObject]
+    materials: Sequence[Material]
+    period_s: float
+    springs: Sequence[tuple[float, float]]
+
+
+def find_springs(
+    device: HapticDevice, gains: _core.CouplingGains, contacts_N_per_m: Sequence[float]
+) -> list[tuple[float, float]]:
+    """Returns the springs that push a device, as `EffectSite` wants them.
+
+    Args:
+        device: Its limits load them.
+        gains: Of the coupling.
+        contacts_N_per_m: Stiffness of contact with each object, N/m.
+    """
+    return [
+        (device.max_force_N, gains.stiffness_N_per_m),
+        (device.max_torque_Nm, gains.rotational_stiffness_Nm_per_rad),
+        (device.max_force_N, min(contacts_N_per_m)),
+    ]
+
+
+def add_effects(site: EffectSite) -> EffectSystems:
+    """Adds the systems of a site's effects and connects their inputs.
+
+    Their outputs are left to the caller.
+    """
+    add: dict[str, Callable[[Any, EffectSite], System]] = {
+        "shading": _add_shading,
+        "friction": _add_friction,
+        "braking": _add_braking,
+        "gravity": _add_gravity,
+        "passivity": _add_passivity,
+    }
+    systems: dict[str, Any] = {
+        name: add_one(getattr(site.effects, name), site)
+        for name, add_one in add.items()
+        if getattr(site.effects, name) is not None
+    }
+    return EffectSystems(**systems)
+
+
+def _add_shading(effect: Shading, site: EffectSite) -> System:
+    from drake_haptics.systems.contact.force_shading import ForceShading
+
+    system = ForceShading(
+        site.tool,
+        site.objects,
+        crease_angle_deg=effect.crease_angle_deg,
+        shaded=[material.shading is not False for material in site.materials],
+    )
+    return _add(site, "force_shading", system)
+
+
+def _add_friction(effect: Friction, site: EffectSite) -> System:
+    from drake_haptics.systems.contact.stick_slip_friction import StickSlipFriction
+
+    own = [material.friction_coefficient for material in site.materials]
+    system = StickSlipFriction(
+        site.objects,
+        period_s=site.period_s,
+        coefficient=[effect.coefficient if x is None else x for x in own],
+        break_away_m=effect.break_away_m,
+    )
+    return _add(site, "stick_slip_friction", system)
+
+
+def _add_braking(effect: Braking, site: EffectSite) -> System:
+    from drake_haptics.systems.contact.pre_contact_braking import PreContactBraking
+
+    system = PreContactBraking(
+        site.objects,
+        damping_Ns_per_m=effect.damping_Ns_per_m,
+        distance_m=effect.distance_m,
+        sheds_load="relief" in site.sources,
+    )
+    return _add(site, "pre_contact_braking", system)
+
+
+def _add_gravity(effect: Gravity, site: EffectSite) -> System:
+    from drake_haptics.systems.tool.tool_gravity import ToolGravity
+
+    system = ToolGravity(
+        mass_kg=site.tool_mass_kg,
+        p_TTcm=list(site.p_TTcm),
+        gravity_m_per_s2=effect.acceleration_m_per_s2,
+    )
+    return _add(site, "tool_gravity", system)
+
+
+def _add_passivity(effect: Passivity, site: EffectSite) -> System:
+    from drake_haptics.systems.tool.passivity_control import PassivityControl
+
+    reserve_J = effect.reserve_J
+    system = PassivityControl(
+        period_s=site.period_s,
+        max_damping_Ns_per_m=effect.max_damping_Ns_per_m,
+        max_rotational_damping_Nms_per_rad=effect.max_rotational_damping_Nms_per_rad,
+        reserve_J=_calc_reserve(site) if reserve_J is None else reserve_J,
+    )
+    return _add(site, "passivity_control", system)
+
+
+def _calc_reserve(site: EffectSite) -> float:
+    """Returns the energy that springs and tool can give back to the device, J."""
+    weight_N = 0.0
+    if site.effects.gravity is not None:
+        gravity = site.effects.gravity.acceleration_m_per_s2
+        weight_N = site.tool_mass_kg * float(np.linalg.norm(gravity))
+    return calc_returnable_energy(
+        site.springs, site.tool_mass_kg, _HIGHEST_LIFT_M * weight_N
+    )
+
+
+def _add(site: EffectSite, name: str, system: System) -> System:
+    """Adds a system and connects the inputs whose names say what they want."""
+    site.builder.AddNamedSystem(name, system)
+    connect_by_name(site.builder, system, site.sources)
+    return system

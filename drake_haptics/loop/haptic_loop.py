@@ -1,0 +1,169 @@
+"""The systems of a haptic loop, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from pydrake.systems.framework import DiagramBuilder, OutputPort, System
+
+from drake_haptics.loop.contact import ContactSystems
+from drake_haptics.systems.device.haptic_device import HapticDevice
+from drake_haptics.systems.tool.haptic_tool import HapticTool
+from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
+
+if TYPE_CHECKING:
+    from drake_haptics.systems.contact.force_shading import ForceShading
+    from drake_haptics.systems.contact.load_shedding import LoadShedding
+    from drake_haptics.systems.contact.pre_contact_braking import PreContactBraking
+    from drake_haptics.systems.contact.stick_slip_friction import StickSlipFriction
+    from drake_haptics.systems.tool.passivity_control import PassivityControl
+    from drake_haptics.systems.tool.tool_gravity import ToolGravity
+
+
+@dataclass(frozen=True)
+class BaseSystems(ContactSystems):
+    """The systems that every loop has, those of contact among them.
+
+    Attributes:
+        device: The device port.
+        virtual_coupling: Between the device's handle and the tool.
+        haptic_tool: The tool's body.
+        load_shedding: Says what to leave out; None without a budget of ticks.
+    """
+
+    device: HapticDevice
+    virtual_coupling: VirtualCoupling
+    haptic_tool: HapticTool
+    load_shedding: LoadShedding | None
+
+
+@dataclass(frozen=True)
+class EffectSystems:
+    """The system of each effect; None where the scene does not name it.
+
+    Attributes:
+        shading: Smooths the contacts' normals.
+        friction: Stick-slip friction.
+        braking: Brakes before contact.
+        gravity: The tool's weight.
+        passivity: Takes surplus energy out of the device's wrench.
+    """
+
+    shading: ForceShading | None = None
+    friction: StickSlipFriction | None = None
+    braking: PreContactBraking | None = None
+    gravity: ToolGravity | None = None
+    passivity: PassivityControl | None = None
+
+
+@dataclass(frozen=True)
+class HapticLoop(BaseSystems):
+    """The systems of one haptic loop, wired.
+
+    Attributes:
+        effects: Those of the effects.
+        wrench_sources: The wrench model that feeds each input of `haptic_tool`, by
+            the name of the input.
+    """
+
+    effects: EffectSystems
+    wrench_sources: Mapping[str, OutputPort]
+
+    def __repr__(self) -> str:
+        device = self.device.get_name() or type(self.device).__name__
+        return f"HapticLoop({device!r} feels {', '.join(self.wrench_sources)})"
+
+    @property
+    def contacts(self) -> OutputPort:
+        """What is clustered: the contacts, shaded if the scene asks for it."""
+        if self.effects.shading is not None:
+            return self.effects.shading.get_contacts_output_port()
+        return self.found_contacts
+
+    @property
+    def display_wrench(self) -> OutputPort:
+        """What the device is asked to show: the wrench (6) [τ; f] on its handle."""
+        if self.effects.passivity is not None:
+            return self.effects.passivity.get_display_wrench_output_port()
+        return self.virtual_coupling.get_display_wrench_output_port()
+
+    @property
+    def outputs(self) -> dict[str, OutputPort]:
+        """What there is to see of the loop, by name.
+
+        `BuildHapticDiagram` exports each by this name. In a diagram of one's own each
+        can be read, logged, connected or exported like any port.
+
+        * `X_WTool` (7) and `V_WTool` (6) are those of `HapticTool`: pose
+          [qw qx qy qz x y z], m, and spatial velocity [ω; v], rad/s and m/s, of the
+          tool in the world.
+        * `X_WH` (7), `V_WH` (6), `F_applied` (6) and `status` are those of
+          `HapticDevice`: handle, wrench that it shows, state of its gate.
+        * `F_display` (6) is the wrench [τ; f] that the device is asked to show on the
+          handle at its origin in the world, N·m and N.
+        * `contacts` is a `drake_haptics.ContactSet`, shaded if the effects say so,
+          `clusters` a `drake_haptics._core.ClusterSet`.
+        * `contact_wrench` and `F_Tool_W` (6) are those of `PenaltyForce`: contact
+          alone, on the tool.
+        * `friction_force` (with friction) is that of `StickSlipFriction`, `energy_J`
+          (with passivity control) that of `PassivityControl`.
+        """
+        device, tool, force = self.device, self.haptic_tool, self.penalty_force
+        outputs = {
+            "X_WTool": tool.get_pose_output_port(),
+            "V_WTool": tool.get_velocity_output_port(),
+            "X_WH": device.get_handle_pose_output_port(),
+            "V_WH": device.get_handle_velocity_output_port(),
+            "F_display": self.display_wrench,
+            "F_applied": device.get_applied_wrench_output_port(),
+            "status": device.get_status_output_port(),
+            "contacts": self.contacts,
+            "clusters": self.contact_clustering.get_clusters_output_port(),
+            "contact_wrench": force.get_contact_wrench_output_port(),
+            "F_Tool_W": force.get_tool_wrench_output_port(),
+        }
+        if self.effects.friction is not None:
+            port = self.effects.friction.get_friction_force_output_port()
+            outputs["friction_force"] = port
+        if self.effects.passivity is not None:
+            outputs["energy_J"] = self.effects.passivity.get_energy_output_port()
+        return outputs
+
+
+def ConnectMovingObject(
+    builder: DiagramBuilder,
+    loop: HapticLoop,
+    name: str,
+    X_WO: OutputPort,
+    V_WO: OutputPort,
+) -> None:
+    """Connects the motion of an object to every system of a loop that needs it.
+
+    Args:
+        builder: Of the diagram with the loop.
+        loop: What `AddHapticLoop` returned.
+        name: Of an object without a pose of its own.
+        X_WO: Its pose (7) [qw qx qy qz x y z] in the world, m.
+        V_WO: Its spatial velocity (6) [ω; v] in the world, rad/s and m/s.
+
+    Raises:
+        ValueError: There is no such object, or it does not move.
+    """
+    parts = [loop.penalty_force, *vars(loop.effects).values()]
+    if loop.pose_sample is None:
+        parts.append(loop.contact_query)
+    parts += [loop.pose_sample, loop.contact_advance]
+    systems: list[System] = [part for part in parts if part is not None]
+    sources = {f"X_WO_{name}": X_WO, f"V_WO_{name}": V_WO}
+    inputs = [
+        (sources[port.get_name()], port)
+        for system in systems
+        for port in map(system.get_input_port, range(system.num_input_ports()))
+        if port.get_name() in sources
+    ]
+    if not inputs:
+        raise ValueError(f"name: no object that moves is called {name!r}")
+    for output, input in inputs:
+        builder.Connect(output, input)

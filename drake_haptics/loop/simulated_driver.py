@@ -1,0 +1,125 @@
+"""A scene's simulated arm in its simulated hand, as the hardware of a driver."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
+
+from drake_haptics._core import FrameChange
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.device.driver import DeviceDriver
+from drake_haptics.loop.simulated_device import (
+    make_hand_path,
+    make_simulated_device,
+    place_base,
+)
+from drake_haptics.scene.schema import Scene
+
+
+class SimulatedDriverArm:
+    """An arm that a driver can drive: `drake_haptics.device.driver.DrivenArm`.
+
+    It and the hand are those of the scene as `BuildHapticDiagram` makes them. The
+    hand holds the handle where its path starts until the device first becomes active,
+    and then follows the path.
+
+    Args:
+        scene: Names device, base, grasp and hand; its rate is the driver's.
+
+    Raises:
+        SceneError: A preset, a grip or the path is impossible.
+    """
+
+    def __init__(self, scene: Scene):
+        path = make_hand_path(scene.hand.path)
+        device = make_simulated_device(scene, path)
+        self._max_force_N = device.max_force_N
+        self._max_torque_Nm = device.max_torque_Nm
+        self._period_s = 1.0 / scene.device.rate_hz
+        self._ticks = 0
+        self._starts = False
+        simulator = Simulator(device)
+        ResetIntegratorFromFlags(simulator, "runge_kutta2", self._period_s)
+        simulator.get_mutable_integrator().set_fixed_step_mode(True)
+        simulator.Initialize()
+        self._simulator = simulator
+        self._context = simulator.get_context()
+        self._F_WH = device.get_display_wrench_input_port().FixValue(
+            simulator.get_mutable_context(), np.zeros(6)
+        )
+        self._X_WH = device.get_handle_pose_output_port()
+        self._V_WH = device.get_handle_velocity_output_port()
+        X_BW = place_base(scene, path).inverse()
+        self._to_base = FrameChange(pose_to_vector(X_BW))
+
+    @property
+    def max_force_N(self) -> float:
+        """Largest force that the device shows, N."""
+        return self._max_force_N
+
+    @property
+    def max_torque_Nm(self) -> float:
+        """Largest torque that the device shows, N·m."""
+        return self._max_torque_Nm
+
+    def start(self) -> None:
+        """Lets the hand set out."""
+        self._starts = True
+
+    def step(self, F_BH: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Moves arm and hand on by one period.
+
+        Args:
+            F_BH: (6,) wrench [τ; f] of the motors on the handle, N·m and N.
+
+        Returns:
+            X_BH (7,) = [qw qx qy qz x y z], m, and V_BH (6,) = [ω; v], rad/s and m/s;
+            both NaN once the simulation has diverged.
+        """
+        if self._starts:
+            self._ticks += 1
+            # The wrench stays as it is over the period, as motors hold it.
+            self._F_WH.GetMutableData().get_mutable_value().SetFromVector(
+                self._to_base.change_wrench_back(F_BH)
+            )
+            try:
+                self._simulator.AdvanceTo(self._ticks * self._period_s)
+            except FloatingPointError:
+                return np.full(7, np.nan), np.full(6, np.nan)
+        motion = self._to_base.change_motion(
+            self._X_WH.Eval(self._context), self._V_WH.Eval(self._context)
+        )
+        return motion[:7], motion[7:]
+
+
+def make_simulated_driver(
+    scene: Scene, *, rate_hz: float | None, max_ttl_s: float, bind: str, port: int
+) -> DeviceDriver:
+    """Returns a driver of a scene's simulated device, within that device's limits.
+
+    Args:
+        scene: What the device, its place and its hand are.
+        rate_hz: Ticks per second, Hz; the scene's if None.
+        max_ttl_s: As for `DeviceDriver`, like what follows.
+        bind: Address to listen at.
+        port: UDP port to listen at.
+
+    Raises:
+        SceneError: The scene cannot be simulated.
+        UserError: The address or port cannot be had.
+        ValueError: A limit or the rate is out of range.
+    """
+    if rate_hz is not None:
+        scene = replace(scene, device=replace(scene.device, rate_hz=rate_hz))
+    arm = SimulatedDriverArm(scene)
+    return DeviceDriver(
+        arm,
+        max_force_N=arm.max_force_N,
+        max_torque_Nm=arm.max_torque_Nm,
+        max_ttl_s=max_ttl_s,
+        rate_hz=scene.device.rate_hz,
+        bind=bind,
+        port=port,
+    )

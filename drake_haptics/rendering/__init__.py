@@ -1,0 +1,1 @@
+"""Haptic rendering in a plant of your own."""

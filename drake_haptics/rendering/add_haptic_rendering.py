@@ -1,0 +1,270 @@
+"""Puts haptic rendering into a plant of one's own, with one call."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+
+from pydrake.geometry import Role, SceneGraph
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import RigidBody
+from pydrake.systems.framework import DiagramBuilder
+
+from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.rendering.applied_force import (
+    AddAppliedSpatialForce,
+    find_applied_force,
+)
+from drake_haptics.rendering.bodies import (
+    RenderedBody,
+    exclude_own_contact,
+    find_body,
+    find_environment,
+    make_rendered_bodies,
+)
+from drake_haptics.rendering.haptic_rendering import HapticRendering
+from drake_haptics.rendering.sizes import question_rendered_sizes
+from drake_haptics.rendering.stiffness import check_rendering_stiffness
+from drake_haptics.scene.schema import Contact, Coupling, Effects, Material
+from drake_haptics.scene.validation import SceneWarning, check_rendering
+from drake_haptics.systems.device.haptic_device import HapticDevice
+
+# The tick of effects with a memory in a plant without a time step, s.
+_DEFAULT_PERIOD_S = 1e-3
+
+
+def AddHapticRendering(
+    builder: DiagramBuilder,
+    plant: MultibodyPlant,
+    scene_graph: SceneGraph,
+    tool_body: RigidBody | str,
+    *,
+    environment: Sequence[RigidBody | str] | None = None,
+    role: Role = Role.kProximity,
+    chord_error_m: float = 1e-4,
+    contact: Contact | None = None,
+    materials: Mapping[str, Material] | None = None,
+    effects: Effects | None = None,
+    coupling: Coupling | None = None,
+    device: HapticDevice | None = None,
+    X_HT: RigidTransform | None = None,
+    period_s: float | None = None,
+    name: str = "haptic_rendering",
+    progress: Callable[[str, float], None] | None = None,
+) -> HapticRendering:
+    """Lets a body of a plant touch others by haptic rendering, and connects it.
+
+    The shapes are those that the bodies have in Drake; a `Mesh` keeps its true shape
+    (`drake_haptics.geometry.parsing.body_shapes`). The forces go to the plant's port
+    `applied_spatial_force` beside whatever else feeds it (`AddAppliedSpatialForce`).
+    Bodies that are welded to the world are posed once, here, and never read again;
+    others that move feel the reaction.
+
+    So that no contact counts twice, a collision filter of the model excludes Drake's
+    own contact between the tool and the environment, in every Context made from then
+    on. Between all other bodies it acts as before.
+
+    With a coupling, a spring and damper draw the tool to a handle. The handle is that
+    of `device`, which goes inside; or, without one, is given by the inputs `X_WH` and
+    `V_WH` of the result, which shows its wrench at the output `F_display`.
+
+    Args:
+        builder: Of the diagram with the plant; not built yet.
+        plant: Finalized, continuous or discrete.
+        scene_graph: The plant's.
+        tool_body: The body that is the tool, or its name or `model::name`.
+        environment: The bodies that it meets; all that have shapes where not given,
+            but for those that are rigidly attached to the tool and those whose contact
+            with it the model filters out already.
+        role: Which shapes are used: those for proximity or for illustration.
+        chord_error_m: Largest distance of polytopes from the round shapes that they
+            stand for, m.
+        contact: Tolerance, clustering and gains.
+        materials: Of bodies of the environment, by the names of their ports; what one
+            does not give is that of `contact` and `effects`.
+        effects: What is felt besides contact. Gravity is the plant's own; passivity
+            control is of a device.
+        coupling: Gains between a handle and the tool; None for no handle.
+        device: The handle's, not yet in a builder, as of `make_device_port`.
+        X_HT: Pose of the tool in the handle at rest; the identity where not given.
+        period_s: The tick of effects with a memory, and the device's, s; where not
+            given, the plant's time step, or 1 ms for a continuous plant.
+        name: Of the system in the builder.
+        progress: Called while meshes are cut with the name of the body and the share
+            done, from 0 to 1.
+
+    Returns:
+        The system. Its ports are named; see `HapticRendering`.
+
+    Warns:
+        SceneWarning: A gain is too stiff for the explicit step of a discrete plant,
+            Drake's own contact acts between the tool and bodies that neither this call
+            nor an earlier one renders, or a body is as large as if its mesh were in
+            another unit than meters.
+
+    Raises:
+        ValueError: What was asked for cannot be; the message names the argument and
+            what to do. A mesh that cannot be treated is a
+            `drake_haptics.geometry.mesh.mesh.MeshError`.
+        TypeError: An argument is of another kind; the message names it.
+    """
+    require_kinds(
+        "AddHapticRendering(builder, plant, scene_graph, tool_body) is their order",
+        builder=(builder, DiagramBuilder),
+        plant=(plant, MultibodyPlant),
+        scene_graph=(scene_graph, SceneGraph),
+        tool_body=(tool_body, RigidBody | str),
+    )
+    if isinstance(environment, str):
+        raise ValueError(f"environment: is a list of bodies, as [{environment!r}]")
+    require_kinds(
+        environment=(environment, Sequence[RigidBody | str] | None),
+        role=(role, Role),
+        chord_error_m=(chord_error_m, float),
+        contact=(contact, Contact | None),
+        materials=(materials, Mapping[str, Material] | None),
+        effects=(effects, Effects | None),
+        coupling=(coupling, Coupling | None),
+        device=(device, HapticDevice | None),
+        X_HT=(X_HT, RigidTransform | None),
+        period_s=(period_s, float | None),
+        name=(name, str),
+        progress=(progress, Callable | None),
+    )
+    _check_builder(builder, plant, scene_graph, name)
+    if period_s is not None and not period_s > 0.0:
+        raise ValueError(f"period_s must be positive, is {period_s}")
+    if not chord_error_m > 0.0:
+        raise ValueError(f"chord_error_m must be positive, is {chord_error_m}")
+    contact, effects = contact or Contact(), effects or Effects()
+    materials = materials or {}
+    check_rendering(contact, materials, effects, coupling)
+    inspector = scene_graph.model_inspector()
+    tool = find_body(plant, tool_body, "tool_body")
+    if environment is None:
+        bodies = [
+            body
+            for body in find_environment(plant, inspector, tool, role)
+            if not _find_rendering(builder, tool, body)
+        ]
+    else:
+        bodies = [find_body(plant, body, "environment") for body in environment]
+        _check_rendered_once(builder, tool, bodies)
+    rendered_tool, objects = make_rendered_bodies(
+        plant,
+        inspector,
+        tool,
+        bodies,
+        role=role,
+        chord_error_m=chord_error_m,
+        progress=progress,
+    )
+    ordered = _order_materials(materials, objects)
+    rendering = HapticRendering(
+        rendered_tool,
+        objects,
+        contact=contact,
+        materials=ordered,
+        effects=effects,
+        coupling=coupling,
+        device=device,
+        X_HT=X_HT or RigidTransform(),
+        period_s=period_s or plant.time_step() or _DEFAULT_PERIOD_S,
+    )
+    builder.AddNamedSystem(name, rendering)
+    builder.Connect(
+        plant.get_body_poses_output_port(), rendering.get_body_poses_input_port()
+    )
+    builder.Connect(
+        plant.get_body_spatial_velocities_output_port(),
+        rendering.get_body_velocities_input_port(),
+    )
+    AddAppliedSpatialForce(builder, plant, rendering.get_applied_force_output_port())
+    touching = exclude_own_contact(plant, scene_graph, tool, bodies)
+    for sentence in [
+        *_describe_own_contact(tool, touching),
+        *question_rendered_sizes(rendered_tool, objects, contact.tolerance_m),
+        *check_rendering_stiffness(
+            plant, rendered_tool, objects, contact, ordered, coupling
+        ),
+    ]:
+        warnings.warn(sentence, SceneWarning, stacklevel=2)
+    return rendering
+
+
+def _find_rendering(builder: DiagramBuilder, tool: RigidBody, body: RigidBody) -> str:
+    """Returns the name of the rendering in which two bodies meet already, or none."""
+    for system in builder.GetSystems():
+        if not isinstance(system, HapticRendering):
+            continue
+        objects = [item.body for item in system.objects]
+        for one, other in [(tool, body), (body, tool)]:
+            if system.tool.body is one and any(item is other for item in objects):
+                return system.get_name()
+    return ""
+
+
+def _check_rendered_once(
+    builder: DiagramBuilder, tool: RigidBody, bodies: Sequence[RigidBody]
+) -> None:
+    """Refuses bodies that the tool meets in an earlier rendering."""
+    for body in bodies:
+        if name := _find_rendering(builder, tool, body):
+            raise ValueError(
+                f"environment: {body.name()!r} and {tool.name()!r} meet in the"
+                f" rendering {name!r} already; their contact would count twice"
+            )
+
+
+def _check_builder(
+    builder: DiagramBuilder, plant: MultibodyPlant, scene_graph: SceneGraph, name: str
+) -> None:
+    """Finds out what Drake would refuse, before anything is changed."""
+    if builder.already_built():
+        raise ValueError("builder: is built already; call AddHapticRendering before")
+    if plant not in builder.GetSystems():
+        raise ValueError("plant: is not in the builder")
+    if not plant.is_finalized():
+        raise ValueError("plant: call plant.Finalize() before AddHapticRendering")
+    source_id = plant.get_source_id()
+    if source_id is None:
+        raise ValueError(
+            "plant: has no scene graph; make it with AddMultibodyPlantSceneGraph"
+        )
+    if not scene_graph.model_inspector().SourceIsRegistered(source_id):
+        raise ValueError("scene_graph: is not that of the plant")
+    if builder.HasSubsystemNamed(name):
+        raise ValueError(
+            f"name: the builder has a system {name!r} already; give a second rendering"
+            " a name of its own, as name='left_hand'"
+        )
+    find_applied_force(builder, plant)
+
+
+def _order_materials(
+    materials: Mapping[str, Material], objects: Sequence[RenderedBody]
+) -> list[Material]:
+    """Returns one material for each object."""
+    names = [item.name for item in objects]
+    for name in materials:
+        if name not in names:
+            raise ValueError(
+                f"materials: there is no {name!r} in the environment; there are"
+                f" {', '.join(names)}"
+            )
+    return [materials.get(item, Material()) for item in names]
+
+
+def _describe_own_contact(tool: RigidBody, others: Sequence[str]) -> list[str]:
+    """Returns a sentence if Drake's own contact acts on the tool.
+
+    A later call for the same tool may render the others: that cannot be known here.
+    """
+    if not others:
+        return []
+    return [
+        f"Drake's own contact acts between {tool.name()!r} and"
+        f" {', '.join(map(repr, others))}, unless another call renders them: name them"
+        " in environment, or exclude them with a collision filter"
+    ]

@@ -1,0 +1,227 @@
+"""Which bodies of a plant take part in haptic rendering, and as what."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from pydrake.geometry import (
+    CollisionFilterDeclaration,
+    GeometryId,
+    GeometrySet,
+    Role,
+    SceneGraph,
+    SceneGraphInspector,
+)
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import BodyIndex, RigidBody
+
+from drake_haptics import _core
+from drake_haptics.geometry.parsing.body_shapes import (
+    decompose_body,
+    find_body_geometries,
+)
+
+
+@dataclass(frozen=True)
+class RenderedBody:
+    """A body of a plant with its contact pieces.
+
+    Attributes:
+        name: Of its ports: that of the body, with its model instance where two of
+            those that take part are called the same.
+        body: Of the plant. Its frame is that of the pieces.
+        pieces: Its shapes.
+        X_WB: Its pose, if it is welded to the world; None where it can move.
+    """
+
+    name: str
+    body: RigidBody
+    pieces: _core.Decomposition
+    X_WB: RigidTransform | None
+
+    @property
+    def index(self) -> BodyIndex:
+        """Index of the body in its plant."""
+        return self.body.index()
+
+
+def find_body(plant: MultibodyPlant, body: RigidBody | str, argument: str) -> RigidBody:
+    """Returns a body that is given by itself, its name, or `model::name`.
+
+    Args:
+        plant: Has the body.
+        body: Which one.
+        argument: What to call it in messages.
+
+    Raises:
+        ValueError: There is none, there are several, or it is of another plant.
+    """
+    if isinstance(body, RigidBody):
+        if int(body.index()) >= plant.num_bodies() or (
+            plant.get_body(body.index()) is not body
+        ):
+            raise ValueError(f"{argument}: body {body.name()!r} is of another plant")
+        return body
+    found = [
+        other
+        for other in _all_bodies(plant)
+        if body in (other.name(), other.scoped_name().get_full())
+    ]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        names = ", ".join(other.scoped_name().get_full() for other in found)
+        raise ValueError(f"{argument}: several bodies are called {body!r}: {names}")
+    names = ", ".join(other.name() for other in _all_bodies(plant))
+    raise ValueError(f"{argument}: no body is called {body!r}; there are {names}")
+
+
+def find_environment(
+    plant: MultibodyPlant, inspector: SceneGraphInspector, tool: RigidBody, role: Role
+) -> list[RigidBody]:
+    """Returns all bodies with shapes that a tool can meet.
+
+    Those that are rigidly attached to it are not among them, nor those whose contact
+    with it a collision filter of the model leaves out (Drake does that for bodies
+    that a joint connects).
+    """
+    attached = _find_attached(plant, tool)
+    return [
+        body
+        for body in _all_bodies(plant)
+        if body.index() not in attached
+        and find_body_geometries(plant, inspector, body, role)
+        and not _is_filtered(plant, inspector, tool, body)
+    ]
+
+
+def make_rendered_bodies(
+    plant: MultibodyPlant,
+    inspector: SceneGraphInspector,
+    tool: RigidBody,
+    environment: Sequence[RigidBody],
+    *,
+    role: Role,
+    chord_error_m: float,
+    progress: Callable[[str, float], None] | None,
+) -> tuple[RenderedBody, list[RenderedBody]]:
+    """Returns the tool and what it meets, with their pieces.
+
+    Raises:
+        ValueError: There is nothing to meet, the tool cannot move, a body of the
+            environment is rigidly attached to it or named twice, or a body's shapes
+            cannot be used
+            (`drake_haptics.geometry.parsing.body_shapes.decompose_body`).
+    """
+    fixed = {body.index() for body in plant.GetBodiesWeldedTo(plant.world_body())}
+    if tool.index() in fixed:
+        raise ValueError(
+            f"tool_body: {tool.name()!r} is welded to the world, so that it cannot move"
+        )
+    if not environment:
+        raise ValueError(
+            f"environment: nothing in the plant has a shape that {tool.name()!r} can"
+            " meet"
+        )
+    indices = [body.index() for body in environment]
+    attached = _find_attached(plant, tool)
+    for body in environment:
+        if body.index() in attached:
+            raise ValueError(
+                f"environment: {body.name()!r} is rigidly attached to the tool"
+                f" {tool.name()!r}, so that the two cannot meet"
+            )
+        if indices.count(body.index()) > 1:
+            raise ValueError(f"environment: {body.name()!r} is named twice")
+    context = plant.CreateDefaultContext()
+
+    def render(body: RigidBody, name: str) -> RenderedBody:
+        return RenderedBody(
+            name,
+            body,
+            decompose_body(
+                plant,
+                inspector,
+                body,
+                role=role,
+                chord_error_m=chord_error_m,
+                progress=partial(progress, name) if progress else None,
+            ),
+            plant.EvalBodyPoseInWorld(context, body) if body.index() in fixed else None,
+        )
+
+    names = [body.name() for body in environment]
+    objects = [
+        render(
+            body,
+            body.name()
+            if names.count(body.name()) == 1
+            else body.scoped_name().get_full().replace("::", "_"),
+        )
+        for body in environment
+    ]
+    return render(tool, tool.name()), objects
+
+
+def exclude_own_contact(
+    plant: MultibodyPlant,
+    scene_graph: SceneGraph,
+    tool: RigidBody,
+    environment: Sequence[RigidBody],
+) -> list[str]:
+    """Keeps the plant's own contact from acting between the tool and what is rendered.
+
+    Args:
+        plant: Of the bodies.
+        scene_graph: Its collision filters are changed, in the model.
+        tool: The tool.
+        environment: What is rendered.
+
+    Returns:
+        Names of other bodies that the plant lets the tool touch.
+    """
+    inspector = scene_graph.model_inspector()
+    ours: list[GeometryId] = []
+    for body in environment:
+        ours += find_body_geometries(plant, inspector, body)
+    scene_graph.collision_filter_manager().Apply(
+        CollisionFilterDeclaration().ExcludeBetween(
+            GeometrySet(find_body_geometries(plant, inspector, tool)), GeometrySet(ours)
+        )
+    )
+    return [
+        body.name()
+        for body in _all_bodies(plant)
+        if body.index() != tool.index()
+        and find_body_geometries(plant, inspector, body)
+        and find_body_geometries(plant, inspector, tool)
+        and not _is_filtered(plant, inspector, tool, body)
+    ]
+
+
+def _all_bodies(plant: MultibodyPlant) -> list[RigidBody]:
+    return [plant.get_body(BodyIndex(i)) for i in range(plant.num_bodies())]
+
+
+def _find_attached(plant: MultibodyPlant, tool: RigidBody) -> set[BodyIndex]:
+    """Returns the tool and all that is welded to it."""
+    return {body.index() for body in plant.GetBodiesWeldedTo(tool)}
+
+
+def _is_filtered(
+    plant: MultibodyPlant,
+    inspector: SceneGraphInspector,
+    tool: RigidBody,
+    body: RigidBody,
+) -> bool:
+    """Returns whether the model leaves out contact between the shapes of two bodies."""
+    pairs = [
+        (a, b)
+        for a in find_body_geometries(plant, inspector, tool)
+        for b in find_body_geometries(plant, inspector, body)
+    ]
+    # Bodies that are only drawn have no pairs: nobody has left them out.
+    return bool(pairs) and all(inspector.CollisionFiltered(a, b) for a, b in pairs)

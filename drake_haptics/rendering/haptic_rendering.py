@@ -1,0 +1,173 @@
+"""Contact of a body of a plant with others, as a diagram between the plant's ports."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import Diagram, InputPort, OutputPort
+
+from drake_haptics.loop.contact import connect_by_name
+from drake_haptics.loop.coupling import make_coupling_gains
+from drake_haptics.rendering.bodies import RenderedBody
+from drake_haptics.rendering.wiring import RenderingWiring
+from drake_haptics.scene.schema import Contact, Coupling, Effects, Material
+from drake_haptics.scene.skin import calc_skin_speed
+from drake_haptics.systems.device.haptic_device import HapticDevice
+
+
+class HapticRendering(Diagram):
+    """Contact of one body of a plant with others, as forces on all of them.
+
+    .. pydrake_system::
+
+        name: HapticRendering
+        input_ports:
+        - body_poses
+        - body_spatial_velocities
+        - X_WH (with a coupling, without a device)
+        - V_WH (with a coupling, without a device)
+        output_ports:
+        - X_WTool
+        - V_WTool
+        - X_WO_<name of each body that moves>
+        - V_WO_<name of each body that moves>
+        - contacts
+        - clusters
+        - contact_wrench
+        - F_Tool_W
+        - F_O_W (with bodies that move)
+        - F_display (with a coupling)
+        - X_WH (with a device)
+        - V_WH (with a device)
+        - F_applied (with a device)
+        - status (with a device)
+        - friction_force (with friction)
+        - energy_J (with passivity control)
+        - applied_spatial_force
+
+    * `body_poses`, `body_spatial_velocities` and `applied_spatial_force` belong to the
+      plant's ports of these names.
+    * `X_WTool` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
+      frames in the world, m; `V_WTool` and `V_WO_<name>` (6) their spatial velocities
+      [ω; v] at the frame's origin in the world, rad/s and m/s.
+    * `contacts` is a `drake_haptics.ContactSet`, shaded if the effects say so,
+      `clusters` a `drake_haptics._core.ClusterSet`.
+    * `F_Tool_W` (6) is the wrench [τ; f] of contact on the tool at its origin in the
+      world, N·m and N, without coupling and effects; `F_O_W` (6 for each body that
+      moves) are those on the bodies. `contact_wrench` is that of `PenaltyForce`.
+    * `F_display` (6) is the wrench [τ; f] to show on the handle at its origin in the
+      world, N·m and N; `X_WH`, `V_WH`, `F_applied` and `status` are those of
+      `HapticDevice`, `friction_force` that of `StickSlipFriction`, `energy_J` that of
+      `PassivityControl`.
+
+    The force is a function of the plant's state now: there is no sample of delay.
+    Above `skin_speed_m_per_s` a step may carry the tool from beyond the tolerance into
+    a shape: it is met all the same, but as deep as the step has taken it. Once a
+    contact is deeper than ten tolerances there is a
+    `drake_haptics.scene.validation.SceneWarning`, the first time only.
+    """
+
+    def __init__(
+        self,
+        tool: RenderedBody,
+        objects: Sequence[RenderedBody],
+        *,
+        contact: Contact,
+        materials: Sequence[Material],
+        effects: Effects,
+        coupling: Coupling | None,
+        device: HapticDevice | None,
+        X_HT: RigidTransform,
+        period_s: float,
+    ):
+        """Constructs the diagram; see `AddHapticRendering`.
+
+        Args:
+            tool: The body that is moved.
+            objects: What it meets.
+            contact: Tolerance, clustering and gains.
+            materials: Of each object.
+            effects: What is felt besides contact.
+            coupling: Gains between a handle and the tool; None for no handle.
+            device: The handle's, if it is to be inside; not yet in a builder.
+            X_HT: Pose of the tool in the handle at rest.
+            period_s: The tick of effects with a memory, s.
+
+        Raises:
+            ValueError: A gain or size is out of range, or an effect or the device
+                lacks what it needs.
+        """
+        super().__init__()
+        _check_effects(effects, coupling, device)
+        self._tool = tool
+        self._objects = tuple(objects)
+        self._skin_speed_m_per_s = calc_skin_speed(contact, period_s)
+        wiring = RenderingWiring(tool, objects)
+        wiring.add_contact(contact, effects, materials, period_s)
+        if coupling is not None:
+            wiring.add_coupling(make_coupling_gains(coupling, device), X_HT, device)
+        wiring.add_effects(effects, materials, period_s)
+        wiring.add_applied_wrenches()
+        for system in wiring.builder.GetSystems():
+            connect_by_name(wiring.builder, system, wiring.sources)
+        for name, port in wiring.outputs.items():
+            wiring.builder.ExportOutput(port, name)
+        wiring.builder.BuildInto(self)
+
+    def __repr__(self) -> str:
+        objects = ", ".join(one.name for one in self._objects)
+        return f"HapticRendering({self._tool.name!r} against {objects})"
+
+    @property
+    def tool(self) -> RenderedBody:
+        """The body that is moved."""
+        return self._tool
+
+    @property
+    def objects(self) -> tuple[RenderedBody, ...]:
+        """What it meets, in the order of `ContactSet.object_index`."""
+        return self._objects
+
+    @property
+    def skin_speed_m_per_s(self) -> float:
+        """Speed at which one step of the plant crosses the contact tolerance, m/s.
+
+        With `contact.query_rate_hz`, one step of the query; of a plant without a time
+        step, the tick of effects with a memory.
+        """
+        return self._skin_speed_m_per_s
+
+    def get_body_poses_input_port(self) -> InputPort:
+        """Returns the input `body_poses`."""
+        return self.GetInputPort("body_poses")
+
+    def get_body_velocities_input_port(self) -> InputPort:
+        """Returns the input `body_spatial_velocities`."""
+        return self.GetInputPort("body_spatial_velocities")
+
+    def get_applied_force_output_port(self) -> OutputPort:
+        """Returns the output `applied_spatial_force`."""
+        return self.GetOutputPort("applied_spatial_force")
+
+
+def _check_effects(
+    effects: Effects,
+    coupling: Coupling | None,
+    device: HapticDevice | None,
+) -> None:
+    """Refuses what would mean nothing, or something false."""
+    if device is not None and coupling is None:
+        raise ValueError(
+            "device: needs a coupling to the tool; give coupling=Coupling()"
+        )
+    if effects.gravity is not None:
+        raise ValueError(
+            "effects.gravity: the plant's own gravity acts on the tool already; change"
+            " it with plant.mutable_gravity_field()"
+        )
+    if effects.passivity is not None and device is None:
+        raise ValueError(
+            "effects.passivity: is of a device; give device=, or put a PassivityControl"
+            " before your own"
+        )

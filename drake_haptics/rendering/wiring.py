@@ -1,0 +1,197 @@
+"""Adds the parts of a haptic rendering one by one, and knows their ports by name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import DiagramBuilder, OutputPort, System
+from pydrake.systems.primitives import Demultiplexer, Multiplexer
+
+from drake_haptics import _core
+from drake_haptics.loop.contact import add_contact_systems, find_contact_gains
+from drake_haptics.loop.effects import EffectSite, add_effects, find_springs
+from drake_haptics.rendering.bodies import RenderedBody
+from drake_haptics.scene.schema import Contact, Effects, Material
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.contact.friction_reaction import FrictionReaction
+from drake_haptics.systems.device.haptic_device import HapticDevice
+from drake_haptics.systems.plant.applied_wrenches import AppliedWrenches
+from drake_haptics.systems.plant.body_motions import BodyMotions
+from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
+
+# Effects that push the tool, each with a wrench model of its own.
+_FORCES = ("friction", "braking")
+
+
+class RenderingWiring:
+    """A `HapticRendering` under construction.
+
+    Attributes:
+        builder: Of its diagram.
+        outputs: What it will export, by name.
+    """
+
+    def __init__(self, tool: RenderedBody, objects: Sequence[RenderedBody]):
+        """Begins with the motion of tool and objects.
+
+        Args:
+            tool: The body that is moved.
+            objects: What it meets.
+        """
+        self.builder = DiagramBuilder()
+        self._tool = tool
+        self._moving = {item.name: item.index for item in objects if item.X_WB is None}
+        self._objects = [
+            ContactObject(item.name, item.pieces, item.X_WB) for item in objects
+        ]
+        # Wrenches (6) on the tool, and (6 each) on the objects that move.
+        self._on_tool: dict[str, OutputPort] = {}
+        self._on_objects: dict[str, OutputPort] = {}
+        self._asked: OutputPort | None = None
+        self._contact_stiffness: Sequence[float] = []
+        self._springs: list[tuple[float, float]] = []
+        motions = self.builder.AddNamedSystem(
+            "body_motions", BodyMotions(tool.index, self._moving)
+        )
+        for port in map(motions.get_input_port, range(motions.num_input_ports())):
+            self.builder.ExportInput(port, port.get_name())
+        self.outputs = _name_outputs(motions)
+
+    @property
+    def sources(self) -> dict[str, OutputPort]:
+        """What there is, by the names of the inputs that want it."""
+        asked = {} if self._asked is None else {"F_asked": self._asked}
+        return {
+            **self.outputs,
+            **asked,
+            **{f"F_Tool_W_{name}": port for name, port in self._on_tool.items()},
+            **{f"F_O_W_{name}": port for name, port in self._on_objects.items()},
+        }
+
+    def add_contact(
+        self,
+        contact: Contact,
+        effects: Effects,
+        materials: Sequence[Material],
+        period_s: float,
+    ) -> None:
+        """Adds what finds contacts and answers them."""
+        found = add_contact_systems(
+            self.builder,
+            self._tool.pieces,
+            self._objects,
+            contact,
+            effects,
+            materials,
+            period_s,
+            warns_deep=True,
+        )
+        force = found.penalty_force
+        gains = find_contact_gains(contact, materials)
+        self._contact_stiffness = gains.stiffness_N_per_m.tolist()
+        self._on_tool["contact"] = force.get_tool_wrench_output_port()
+        self.outputs |= {
+            "contacts": found.found_contacts,
+            "clusters": found.contact_clustering.get_clusters_output_port(),
+            "contact_wrench": force.get_contact_wrench_output_port(),
+            "F_Tool_W": self._on_tool["contact"],
+        }
+        if self._moving:
+            self._on_objects["contact"] = force.get_object_wrenches_output_port()
+            self.outputs["F_O_W"] = self._on_objects["contact"]
+
+    def add_coupling(
+        self,
+        gains: _core.CouplingGains,
+        X_HT: RigidTransform,
+        device: HapticDevice | None,
+    ) -> None:
+        """Adds the coupling to a handle: that of a device, or given by inputs."""
+        coupling = self.builder.AddNamedSystem(
+            "virtual_coupling", VirtualCoupling(gains, X_HT)
+        )
+        self._push_tool("coupling", coupling.get_wrench_model_output_port())
+        self._asked = coupling.get_display_wrench_output_port()
+        self.outputs["F_display"] = self._asked
+        if device is None:
+            for port in (
+                coupling.get_handle_pose_input_port(),
+                coupling.get_handle_velocity_input_port(),
+            ):
+                # Drake names the system whose input nobody has connected; through a
+                # `PassThrough` there would be NaN.
+                named = self.builder.AddNamedSystem(
+                    port.get_name(), Multiplexer([port.size()])
+                )
+                self.builder.Connect(named.get_output_port(), port)
+                self.builder.ExportInput(named.get_input_port(), port.get_name())
+            return
+        self.builder.AddNamedSystem("device", device)
+        self.outputs |= _name_outputs(device)
+        self._springs = find_springs(device, gains, self._contact_stiffness)
+
+    def add_effects(
+        self, effects: Effects, materials: Sequence[Material], period_s: float
+    ) -> None:
+        """Adds the effects that are named, after contact and coupling."""
+        added = add_effects(
+            EffectSite(
+                effects=effects,
+                builder=self.builder,
+                sources=self.sources,
+                tool=self._tool.pieces,
+                tool_mass_kg=self._tool.body.default_mass(),
+                p_TTcm=self._tool.body.default_com().tolist(),
+                objects=self._objects,
+                materials=materials,
+                period_s=period_s,
+                springs=self._springs,
+            )
+        )
+        for name in _FORCES:
+            if (system := getattr(added, name)) is not None:
+                self._push_tool(name, system.get_wrench_model_output_port())
+        if added.braking is not None and self._moving:
+            wrenches = added.braking.get_object_wrenches_output_port()
+            self._on_objects["braking"] = wrenches
+        if added.shading is not None:
+            self.outputs["contacts"] = added.shading.get_contacts_output_port()
+        if added.friction is not None:
+            friction_force = added.friction.get_friction_force_output_port()
+            self.outputs["friction_force"] = friction_force
+            if self._moving:
+                reaction = self.builder.AddNamedSystem(
+                    "friction_reaction", FrictionReaction(self._objects)
+                )
+                wrenches = reaction.get_object_wrenches_output_port()
+                self._on_objects["friction"] = wrenches
+        if added.passivity is not None:
+            self.outputs |= _name_outputs(added.passivity)
+
+    def add_applied_wrenches(self) -> None:
+        """Adds what makes forces on bodies of all wrenches, after all else."""
+        applied = self.builder.AddNamedSystem(
+            "applied_wrenches",
+            AppliedWrenches(
+                self._tool.index,
+                list(self._on_tool),
+                list(self._moving.values()),
+                list(self._on_objects),
+            ),
+        )
+        self.outputs["applied_spatial_force"] = applied.get_output_port()
+
+    def _push_tool(self, name: str, wrench_model: OutputPort) -> None:
+        """Counts the wrench (6) of a wrench model (78) among those on the tool."""
+        system = self.builder.AddNamedSystem(
+            f"{wrench_model.get_system().get_name()}_wrench", Demultiplexer([6, 72])
+        )
+        self.builder.Connect(wrench_model, system.get_input_port())
+        self._on_tool[name] = system.get_output_port(0)
+
+
+def _name_outputs(system: System) -> dict[str, OutputPort]:
+    """Returns the outputs of a system by their names."""
+    ports = map(system.get_output_port, range(system.num_output_ports()))
+    return {port.get_name(): port for port in ports}

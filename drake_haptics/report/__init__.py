@@ -1,0 +1,1 @@
+"""Tables, labels and paths of reports, whatever they report on."""

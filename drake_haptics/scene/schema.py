@@ -1,0 +1,376 @@
+"""Scenes: what is held, what it meets, who holds it, and with which gains.
+
+A scene is a YAML file read into the dataclasses below. Every field has its unit
+in its name or its docstring, every default works, and an unknown key is an error.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from pydrake.common.yaml import yaml_load_typed
+from pydrake.math import RigidTransform, RollPitchYaw
+
+from drake_haptics.common.errors import SceneError
+from drake_haptics.common.package_url import resolve_package_url
+from drake_haptics.scene.effects import (
+    Braking,
+    Effects,
+    Friction,
+    Gravity,
+    Material,
+    Passivity,
+    Shading,
+)
+from drake_haptics.scene.library import list_scenes
+from drake_haptics.scene.paths import place_files
+from drake_haptics.scene.twin import (
+    Encoder,
+    ForceDelay,
+    JointFriction,
+    Saturation,
+    Twin,
+)
+from drake_haptics.scene.validation import check_values
+from drake_haptics.scene.yaml_loading import check_keys, load_yaml
+
+__all__ = [
+    "Braking",
+    "Contact",
+    "Coupling",
+    "Device",
+    "Effects",
+    "Encoder",
+    "EnvironmentObject",
+    "ForceDelay",
+    "Friction",
+    "Gravity",
+    "Hand",
+    "HandPath",
+    "JointFriction",
+    "Material",
+    "Passivity",
+    "Pose",
+    "Saturation",
+    "Scene",
+    "SceneError",
+    "Shading",
+    "Tool",
+    "Twin",
+    "Waypoint",
+    "load_scene",
+]
+
+
+@dataclass(slots=True)
+class Pose:
+    """A pose X_AB of a frame B in a frame A.
+
+    Attributes:
+        position_m: x, y, z of B's origin in A, m.
+        rpy_deg: roll, pitch, yaw of B in A, degrees, in Drake's (space-fixed
+            x-y-z) order.
+    """
+
+    position_m: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
+    rpy_deg: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
+
+    def to_rigid_transform(self) -> RigidTransform:
+        """Returns X_AB."""
+        return RigidTransform(RollPitchYaw(np.deg2rad(self.rpy_deg)), self.position_m)
+
+
+@dataclass(slots=True)
+class Tool:
+    """The tool in the hand: a mesh with a mass.
+
+    Its inertia is that of the mesh filled with one density.
+
+    Attributes:
+        mesh: Path of a mesh, or of a model (SDF, URDF, MJCF) whose collision shapes
+            are taken, as a whole rigid; relative to the scene file, absolute, or
+            `package://...` of this package or of Drake.
+        scale: Meters per unit of the mesh file.
+        center: Whether the mesh is moved so that the middle of its box is at the
+            origin of its frame, where the coupling pulls. For a file that has its
+            origin somewhere else.
+        max_triangles: The mesh is first reduced to at most so many triangles; all
+            of them where not given. See
+            `drake_haptics.geometry.mesh.decimation.decimate`.
+        chord_error_m: Of a model with round shapes: largest distance of the polytopes
+            that stand for them, m; 1e-4 where not given.
+        decomposition: How the mesh is cut into convex pieces: a method of
+            `drake_haptics.geometry.decomposition.decompose.decompose`.
+        decomposition_error_m: For `merged`, and only there: how far a piece may depart
+            from the mesh, m.
+        mass_kg: Mass, kg.
+        grasp: X_HT, the pose of the tool's frame in the handle's.
+    """
+
+    mesh: str = ""
+    scale: float = 1.0
+    center: bool = False
+    max_triangles: int | None = None
+    chord_error_m: float | None = None
+    decomposition: str = "surface"
+    decomposition_error_m: float | None = None
+    mass_kg: float = 0.1
+    grasp: Pose = field(default_factory=Pose)
+
+
+@dataclass(slots=True)
+class EnvironmentObject:
+    """An object that stands still in the world.
+
+    Attributes:
+        name: Unique among the scene's objects.
+        mesh: As for the tool.
+        scale: Meters per unit of the mesh file.
+        center: As for the tool; `pose` then places the middle.
+        max_triangles: As for the tool.
+        chord_error_m: As for the tool.
+        decomposition: As for the tool.
+        decomposition_error_m: As for the tool.
+        pose: X_WO, the pose of the object's frame in the world.
+        material: What it is made of.
+    """
+
+    name: str = ""
+    mesh: str = ""
+    scale: float = 1.0
+    center: bool = False
+    max_triangles: int | None = None
+    chord_error_m: float | None = None
+    decomposition: str = "surface"
+    decomposition_error_m: float | None = None
+    pose: Pose = field(default_factory=Pose)
+    material: Material = field(default_factory=Material)
+
+
+@dataclass(slots=True)
+class Contact:
+    """How contact is found and answered.
+
+    Attributes:
+        tolerance_m: Pieces nearer than this push each other apart, m (the
+            paper's t).
+        stiffness_N_per_m: Force per meter below the tolerance, N/m (k of Eq. 6).
+        damping_Ns_per_m: Force per speed of approach, N·s/m (k_v of Eq. 6).
+        clustering: How few contacts are made of many: `shared`, which is
+            continuous, or `octree`, the paper's.
+        cluster_size_m: For `octree`, and only there: contacts nearer than this
+            count as one, m (the paper's δ).
+        depth: Of two pieces in overlap: `tracked`, the way out that is nearest to
+            the last one, which does not pop through a thin plate, or `global`, the
+            least of all, which costs more.
+        max_walk_steps: Bound on the steps of the search for a way out from feature
+            to feature (the paper's maximum number of iterations), at least 1. Where
+            it ends a search, the depth may be too large, never too small.
+        query_rate_hz: Contacts are looked for so often, Hz, and carried along with
+            the bodies in between; `device.rate_hz` divided by a whole number. Where
+            not given, at every tick.
+    """
+
+    tolerance_m: float = 2e-3
+    stiffness_N_per_m: float = 2e4
+    damping_Ns_per_m: float = 5.0
+    clustering: str = "shared"
+    cluster_size_m: float | None = None
+    depth: str = "tracked"
+    max_walk_steps: int = 1024
+    query_rate_hz: float | None = None
+
+
+@dataclass(slots=True)
+class Coupling:
+    """The spring and damper between the handle and the tool.
+
+    The device feels at most this stiffness, whatever the contact's. The defaults
+    are stable on the shipped device, with and without a hand.
+
+    Attributes:
+        stiffness_N_per_m: Force per meter between handle and tool, N/m.
+        damping_Ns_per_m: Force per speed of one against the other, N·s/m.
+        rotational_stiffness_Nm_per_rad: Torque per angle between them, N·m/rad.
+        rotational_damping_Nms_per_rad: Torque per speed of rotation of one against
+            the other, N·m·s/rad.
+    """
+
+    stiffness_N_per_m: float = 800.0
+    damping_Ns_per_m: float = 2.0
+    rotational_stiffness_Nm_per_rad: float = 1.0
+    rotational_damping_Nms_per_rad: float = 0.004
+
+
+@dataclass(slots=True)
+class Device:
+    """The device that is held.
+
+    Attributes:
+        preset: Name of a file in models/devices (see `drake-haptics devices`), or a
+            file of one's own (`*.yaml`), relative to the scene file.
+        base: X_WB, the pose of the device's base in the world. Where not given,
+            the middle of its workspace is put at the middle of the hand's path, and
+            a device that is not simulated begins where the path does.
+        rate_hz: Ticks per second of the haptic loop, Hz.
+        tick_budget_us: What the work of a tick may take, µs. Where ticks take longer,
+            drawing stops, then contacts are looked for less far, then fewer push
+            (docs/under-load.md). Nothing is dropped where not given.
+        max_force_N: Largest force shown, N; the preset's where not given. With no more
+            is the tool pressed; at 0 nothing is shown, and it is pressed without limit.
+        max_torque_Nm: Largest torque shown, N·m; the preset's where not given. With no
+            more is the tool turned; at 0 with no more than the force has at 5 cm.
+        twin: What a simulated device has of a real one's faults.
+    """
+
+    preset: str = "phantom_premium_1_5_6dof"
+    base: Pose | None = None
+    rate_hz: float = 1000.0
+    tick_budget_us: float | None = None
+    max_force_N: float | None = None
+    max_torque_Nm: float | None = None
+    twin: Twin = field(default_factory=Twin)
+
+
+@dataclass(slots=True)
+class Waypoint:
+    """Where the hand wants the tool to be at a time.
+
+    Attributes:
+        time_s: Time from the start of the path, s.
+        position_m: Position of the tool's origin in the world, m.
+        rpy_deg: Roll, pitch, yaw of the tool's frame in the world, degrees.
+    """
+
+    time_s: float = 0.0
+    position_m: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
+    rpy_deg: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
+
+
+@dataclass(slots=True)
+class HandPath:
+    """Where the hand wants the tool to go; its spring decides how firmly.
+
+    Attributes:
+        periodic: Whether the path starts again at its last waypoint, which must
+            then be at the first one's pose. Else the hand rests at the last.
+        waypoints: In order of time, the first at 0 s; neighbors turned by less
+            than 120°.
+    """
+
+    periodic: bool = False
+    waypoints: list[Waypoint] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Hand:
+    """The simulated hand on a simulated device.
+
+    Attributes:
+        grip: Name of a grip: none, light, nominal or firm. Their masses, stiffnesses
+            and dampings are those of `drake_haptics.systems.arm.hand_grip.HAND_GRIPS`:
+            springs of 50, 300 and 1000 N/m.
+        path: Where the hand wants the tool to go.
+    """
+
+    grip: str = "nominal"
+    path: HandPath = field(default_factory=HandPath)
+
+
+@dataclass(slots=True)
+class Scene:
+    """A whole scene.
+
+    Attributes:
+        description: One sentence for people.
+        tool: What is in the hand.
+        environment: What it meets; at least one object.
+        contact: How contact is found and answered.
+        coupling: Between the handle and the tool.
+        device: What is held.
+        hand: Who holds it.
+        effects: What is felt besides contact.
+    """
+
+    description: str = ""
+    tool: Tool = field(default_factory=Tool)
+    environment: list[EnvironmentObject] = field(default_factory=list)
+    contact: Contact = field(default_factory=Contact)
+    coupling: Coupling = field(default_factory=Coupling)
+    device: Device = field(default_factory=Device)
+    hand: Hand = field(default_factory=Hand)
+    effects: Effects = field(default_factory=Effects)
+
+    def __repr__(self) -> str:
+        objects = ", ".join(Path(one.mesh).name for one in self.environment) or "none"
+        return (
+            f"Scene({self.description!r}, tool {Path(self.tool.mesh).name or 'none'}, "
+            f"environment {objects}, contact {self.contact.stiffness_N_per_m:g} N/m, "
+            f"coupling {self.coupling.stiffness_N_per_m:g} N/m)"
+        )
+
+    @classmethod
+    def for_meshes(
+        cls,
+        tool_path: str | Path,
+        environment_path: str | Path,
+        *,
+        tool_scale: float = 1.0,
+        environment_scale: float = 1.0,
+    ) -> "Scene":
+        """Makes a scene of two meshes of one's own.
+
+        The environment's frame is the world's. The tool starts above the middle
+        of it, comes down, touches, and scrapes in a circle, pressed by the hand's
+        spring with a few newtons, for ever. A tool's file that has its origin far
+        beside the mesh is centered (`tool.center`).
+
+        Args:
+            tool_path: Mesh of the tool.
+            environment_path: Mesh of what it meets.
+            tool_scale: Meters per unit of the tool's file.
+            environment_scale: Meters per unit of the environment's file.
+
+        Raises:
+            SceneError: The tool does not fit into the device's workspace.
+            drake_haptics.geometry.mesh.mesh.MeshError: A mesh cannot be treated.
+        """
+        from drake_haptics.authoring.scene_from_meshes import make_scene_for_meshes
+
+        return make_scene_for_meshes(
+            Path(resolve_package_url(tool_path)),
+            Path(resolve_package_url(environment_path)),
+            tool_scale,
+            environment_scale,
+        )
+
+
+def load_scene(path: str | Path) -> Scene:
+    """Reads and checks a scene file.
+
+    Args:
+        path: The YAML file. Relative paths in it are taken from its folder.
+
+    Returns:
+        The scene, with paths that no longer depend on the folder.
+
+    Raises:
+        SceneError: The file cannot be read, has a key or a value that means
+            nothing, names a mesh that is not there, or describes something
+            physically impossible. The message names the file and the key.
+    """
+    path = Path(path)
+    if str(path) in list_scenes() and not path.exists():
+        raise SceneError(
+            f"{path}: no such file; the scene of that name that is shipped is"
+            f" load_scene(find_scene('{path}'))"
+        )
+    data = load_yaml(path)
+    try:
+        check_keys(Scene, data)
+        scene: Scene = yaml_load_typed(schema=Scene, filename=str(path))
+        check_values(scene)
+        place_files(scene, path.parent)
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from error
+    return scene

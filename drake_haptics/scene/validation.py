@@ -1,0 +1,317 @@
+"""Checks of a scene: values that cannot be."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from drake_haptics.common.errors import SceneError
+from drake_haptics.geometry.decomposition.decompose import METHODS
+from drake_haptics.geometry.parsing.model_file import is_model_file
+from drake_haptics.scene.yaml_loading import join_key, make_hint
+
+if TYPE_CHECKING:
+    import drake_haptics.scene.schema
+    from drake_haptics.scene.effects import Effects, Material
+    from drake_haptics.scene.schema import (
+        Contact,
+        Coupling,
+        Device,
+        EnvironmentObject,
+        HandPath,
+        Scene,
+        Tool,
+    )
+    from drake_haptics.scene.twin import Twin
+
+_CLUSTERINGS = ("shared", "octree")
+_DEPTHS = ("tracked", "global")
+# How far a ratio of two rates may be from a whole number.
+_RATE_SLACK = 1e-9
+# 5 mm of way at 0.1 m/s, more than near contacts are looked for.
+_LEAST_QUERY_RATE_HZ = 20.0
+
+
+class SceneWarning(UserWarning):
+    """A scene that can be used, but may not do what is wanted. Names the bound."""
+
+
+def check_values(scene: Scene) -> None:
+    """Checks that a scene describes something physically possible.
+
+    Raises:
+        SceneError: A value out of its range.
+    """
+    require(bool(scene.tool.mesh), "tool.mesh", "is missing")
+    require_all_positive(scene.tool, "tool", ["mass_kg"])
+    _check_shape(scene.tool, "tool")
+    _check_pose(scene.tool.grasp, "tool.grasp")
+    require(bool(scene.environment), "environment", "needs at least one object")
+    names = [item.name for item in scene.environment]
+    for i, item in enumerate(scene.environment):
+        where = f"environment[{i}]"
+        require(item.name.isidentifier(), f"{where}.name", "must be a plain name")
+        require(names.count(item.name) == 1, f"{where}.name", "is used twice")
+        require(bool(item.mesh), f"{where}.mesh", "is missing")
+        _check_shape(item, where)
+        _check_pose(item.pose, f"{where}.pose")
+        _check_material(item.material, f"{where}.material", scene.effects)
+    _check_contact(scene.contact)
+    require_all_positive(scene.device, "device", ["rate_hz"])
+    if scene.contact.query_rate_hz is not None:
+        check_query_rate(scene.contact.query_rate_hz, scene.device.rate_hz)
+    _check_effects(scene.effects)
+    require_none_negative(
+        scene.coupling, "coupling", [f.name for f in dataclasses.fields(scene.coupling)]
+    )
+    require_none_negative(scene.device, "device", ["max_force_N", "max_torque_Nm"])
+    _check_tick_budget(scene.device)
+    if scene.device.base is not None:
+        _check_pose(scene.device.base, "device.base")
+    _check_twin(scene.device.twin)
+    _check_path(scene.hand.path)
+
+
+def check_rendering(
+    contact: drake_haptics.scene.schema.Contact,
+    materials: Mapping[str, Material],
+    effects: Effects,
+    coupling: Coupling | None,
+) -> None:
+    """Checks the parts of a scene that a body of a plant is rendered with.
+
+    Args:
+        contact: As in a scene.
+        materials: Of bodies, by their names.
+        effects: As in a scene.
+        coupling: As in a scene, if there is a handle.
+
+    Raises:
+        SceneError: A value out of its range.
+    """
+    _check_contact(contact)
+    _check_effects(effects)
+    for name, material in materials.items():
+        _check_material(material, f"materials[{name!r}]", effects)
+    if coupling is not None:
+        keys = [f.name for f in dataclasses.fields(coupling)]
+        require_none_negative(coupling, "coupling", keys)
+
+
+def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
+    """Checks how the shape of an object is read and how exact it is."""
+    require_all_positive(item, where, ["scale", "chord_error_m"])
+    require(
+        item.max_triangles is None or item.max_triangles >= 4,
+        f"{where}.max_triangles",
+        f"must be 4 or more, is {item.max_triangles}",
+    )
+    require(
+        item.decomposition in METHODS,
+        f"{where}.decomposition",
+        f"is '{item.decomposition}'; {make_hint(item.decomposition, METHODS)}",
+    )
+    require(
+        item.chord_error_m is None or is_model_file(item.mesh),
+        f"{where}.chord_error_m",
+        "is for models with round shapes (SDF, URDF, MJCF); a mesh file has none",
+    )
+    require_none_negative(item, where, ["decomposition_error_m"])
+    merged = item.decomposition == "merged"
+    require(
+        merged == (item.decomposition_error_m is not None),
+        f"{where}.decomposition_error_m",
+        "is missing" if merged else "is only for decomposition: merged",
+    )
+
+
+def _check_contact(contact: Contact) -> None:
+    """Checks how contact is found and answered."""
+    require_all_positive(contact, "contact", ["stiffness_N_per_m", "cluster_size_m"])
+    require_none_negative(contact, "contact", ["tolerance_m", "damping_Ns_per_m"])
+    require(
+        contact.clustering in _CLUSTERINGS,
+        "contact.clustering",
+        f"is '{contact.clustering}'; {make_hint(contact.clustering, _CLUSTERINGS)}",
+    )
+    octree = contact.clustering == "octree"
+    require(
+        octree == (contact.cluster_size_m is not None),
+        "contact.cluster_size_m",
+        "is missing" if octree else "is only for clustering: octree",
+    )
+    require(
+        contact.depth in _DEPTHS,
+        "contact.depth",
+        f"is '{contact.depth}'; {make_hint(contact.depth, _DEPTHS)}",
+    )
+    require(
+        contact.max_walk_steps >= 1,
+        "contact.max_walk_steps",
+        f"must be at least 1, is {contact.max_walk_steps}",
+    )
+
+
+def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
+    """Checks that contacts are looked for every so many ticks.
+
+    Args:
+        rate_hz: contact.query_rate_hz, Hz.
+        ticks_per_s: device.rate_hz, Hz.
+
+    Raises:
+        SceneError: The one is not the other divided by a whole number.
+    """
+    where = "contact.query_rate_hz"
+    require(
+        rate_hz >= _LEAST_QUERY_RATE_HZ,
+        where,
+        f"must be at least {_LEAST_QUERY_RATE_HZ:g}, is {rate_hz:g}: a hand moves tools"
+        " by millimeters in the meantime",
+    )
+    ticks = ticks_per_s / rate_hz
+    require(
+        round(ticks) >= 1 and abs(ticks - round(ticks)) <= _RATE_SLACK * ticks,
+        where,
+        f"must be device.rate_hz ({ticks_per_s:g}) divided by a whole number, is"
+        f" {rate_hz:g}; {ticks_per_s / max(1, round(ticks)):.10g} is the nearest",
+    )
+
+
+def _check_tick_budget(device: Device) -> None:
+    period_us = 1e6 / device.rate_hz
+    require(
+        device.tick_budget_us is None or 0.0 < device.tick_budget_us <= period_us,
+        "device.tick_budget_us",
+        f"must be positive and at most a tick ({period_us:g} µs), is"
+        f" {device.tick_budget_us}",
+    )
+
+
+def _check_material(material: Material, where: str, effects: Effects) -> None:
+    """Checks a material, and that the scene names the effects it speaks of."""
+    require_all_positive(material, where, ["stiffness_N_per_m"])
+    require_none_negative(material, where, ["damping_Ns_per_m", "friction_coefficient"])
+    for key, effect in [("friction_coefficient", "friction"), ("shading", "shading")]:
+        require(
+            getattr(material, key) is None or getattr(effects, effect) is not None,
+            f"{where}.{key}",
+            f"means nothing without effects.{effect}",
+        )
+
+
+def _check_effects(effects: Effects) -> None:
+    """Checks the values of the effects that there are."""
+    if (shading := effects.shading) is not None:
+        require(
+            0.0 <= shading.crease_angle_deg <= 180.0,
+            "effects.shading.crease_angle_deg",
+            f"must be between 0 and 180, is {shading.crease_angle_deg}",
+        )
+    if (friction := effects.friction) is not None:
+        require_none_negative(friction, "effects.friction", ["coefficient"])
+        require_all_positive(friction, "effects.friction", ["break_away_m"])
+    if (braking := effects.braking) is not None:
+        require_none_negative(braking, "effects.braking", ["damping_Ns_per_m"])
+        require_all_positive(braking, "effects.braking", ["distance_m"])
+    if (gravity := effects.gravity) is not None:
+        require(
+            len(gravity.acceleration_m_per_s2) == 3,
+            "effects.gravity.acceleration_m_per_s2",
+            "needs three numbers",
+        )
+    if (passivity := effects.passivity) is not None:
+        keys = [f.name for f in dataclasses.fields(passivity)]
+        require_none_negative(passivity, "effects.passivity", keys)
+
+
+def _check_twin(twin: Twin) -> None:
+    """Checks the values of the parts that there are."""
+    where = "device.twin"
+    if (encoder := twin.encoder) is not None:
+        require_each(encoder, f"{where}.encoder", "step_rad", 6, positive=True)
+        require_all_positive(encoder, f"{where}.encoder", ["velocity_window"])
+    if (friction := twin.friction) is not None:
+        for key in ("coulomb_Nm", "viscous_Nms_per_rad"):
+            require_each(friction, f"{where}.friction", key, 6, positive=False)
+    if (delay := twin.delay) is not None:
+        require_all_positive(delay, f"{where}.delay", ["samples"])
+    if (saturation := twin.saturation) is not None:
+        require_each(
+            saturation, f"{where}.saturation", "peak_torque_Nm", 6, positive=True
+        )
+
+
+def _check_path(path: HandPath) -> None:
+    """Checks a path's times; its poses are checked where they are made."""
+    where = "hand.path.waypoints"
+    require(bool(path.waypoints), where, "is empty")
+    require(path.waypoints[0].time_s == 0.0, f"{where}[0].time_s", "must be 0")
+    for i, waypoint in enumerate(path.waypoints):
+        _check_pose(waypoint, f"{where}[{i}]")
+        if i > 0:
+            require(
+                waypoint.time_s > path.waypoints[i - 1].time_s,
+                f"{where}[{i}].time_s",
+                "must be later than the one before",
+            )
+
+
+def _check_pose(pose: Any, where: str) -> None:
+    """Checks the lengths of a position and a rotation."""
+    for key in ("position_m", "rpy_deg"):
+        require(len(getattr(pose, key)) == 3, f"{where}.{key}", "needs three numbers")
+
+
+def require_all_positive(part: Any, where: str, keys: list[str]) -> None:
+    """Raises SceneError unless those of the values that are given are positive."""
+    for key in keys:
+        value = getattr(part, key)
+        require(
+            value is None or value > 0.0,
+            join_key(where, key),
+            f"must be positive, is {value}",
+        )
+
+
+def require_none_negative(part: Any, where: str, keys: list[str]) -> None:
+    """Raises SceneError if one of the values that are given is negative."""
+    for key in keys:
+        value = getattr(part, key)
+        require(
+            value is None or value >= 0.0,
+            join_key(where, key),
+            f"must not be negative, is {value}",
+        )
+
+
+def require_each(
+    part: Any, where: str, key: str, count: int, *, positive: bool
+) -> None:
+    """Raises SceneError unless a list, if given, has so many numbers in range.
+
+    Args:
+        part: Holds the list.
+        where: Key of the part, for messages.
+        key: Of the list in it.
+        count: How many numbers there must be.
+        positive: Whether 0 is out of range, as what is negative always is.
+    """
+    values = getattr(part, key)
+    if values is None:
+        return
+    place = join_key(where, key)
+    require(len(values) == count, place, f"needs {count} numbers")
+    for i, value in enumerate(values):
+        require(
+            value > 0.0 or (value == 0.0 and not positive),
+            f"{place}[{i}]",
+            f"must {'be positive' if positive else 'not be negative'}, is {value}",
+        )
+
+
+def require(condition: bool, where: str, complaint: str) -> None:
+    """Raises SceneError about a key unless a condition holds."""
+    if not condition:
+        raise SceneError(f"{where} {complaint}")

@@ -1,0 +1,143 @@
+"""Files of YAML that become dataclasses, and what is wrong with them."""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import math
+import reprlib
+import typing
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydrake.common.yaml import yaml_load_file
+
+from drake_haptics.common.errors import SceneError
+
+
+def load_yaml(path: Path) -> Any:
+    """Returns what a file of YAML holds.
+
+    Raises:
+        SceneError: It cannot be opened, is none, or gives a key twice; the message is
+            one line.
+    """
+    try:
+        data = yaml_load_file(str(path))
+        tree = yaml.compose(path.read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
+    except OSError as error:
+        raise SceneError(
+            f"{path}: cannot be opened: {error.strerror}; looked for {path.absolute()}"
+        ) from error
+    except Exception as error:  # Drake passes on whatever its YAML parser raises.
+        reason = " ".join(str(error).split())
+        if "'\\t'" in reason:
+            reason += "; indent with spaces, YAML takes no tabs"
+        raise SceneError(f"{path}: cannot be read as YAML: {reason}") from error
+    _refuse_repeated_keys(path, tree)
+    return data
+
+
+def _refuse_repeated_keys(path: Path, tree: yaml.Node | None) -> None:
+    """Refuses a key that is given twice, of which YAML takes the last in silence.
+
+    Raises:
+        SceneError: There is one; the message names both lines.
+    """
+    left: list[tuple[str, yaml.Node | None]] = [("", tree)]
+    seen = set()
+    while left:
+        where, node = left.pop()
+        # An alias is the node that it names.
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        if isinstance(node, yaml.SequenceNode):
+            left += [(f"{where}[{i}]", item) for i, item in enumerate(node.value)]
+        if not isinstance(node, yaml.MappingNode):
+            continue
+        lines: dict[str, int] = {}
+        for key, item in node.value:
+            place = join_key(where, str(key.value))
+            line = key.start_mark.line + 1
+            if place in lines:
+                raise SceneError(
+                    f"{path}: {place}: given in line {lines[place]} and again in line"
+                    f" {line}; join the two"
+                )
+            lines[place] = line
+            left.append((place, item))
+
+
+def check_keys(schema: Any, data: Any, where: str = "") -> None:
+    """Checks that data, as YAML gives it, has the shape of a schema.
+
+    Args:
+        schema: A dataclass, `float`, `int`, `str`, `bool`, `list[...]` or `... | None`.
+        data: What stands in its place.
+        where: Key of the place, for messages.
+
+    Raises:
+        SceneError: An unknown key, with the nearest known one, or a value of the
+            wrong kind.
+    """
+    arguments = typing.get_args(schema)
+    if type(None) in arguments:
+        if data is not None:
+            check_keys(arguments[0], data, where)
+        elif dataclasses.is_dataclass(arguments[0]):
+            raise SceneError(f"{where}: is empty; write {{}} for the defaults")
+    elif typing.get_origin(schema) is list:
+        if not isinstance(data, list):
+            raise SceneError(f"{where}: expected a list, found {reprlib.repr(data)}")
+        for i, item in enumerate(data):
+            check_keys(arguments[0], item, f"{where}[{i}]")
+    elif dataclasses.is_dataclass(schema):
+        _check_mapping(schema, data, where)
+    else:
+        _check_scalar(schema, data, where)
+
+
+def join_key(where: str, key: str) -> str:
+    """Returns the key of what is in a part, which may be the whole file."""
+    return f"{where}.{key}" if where else key
+
+
+def _check_mapping(schema: Any, data: Any, where: str) -> None:
+    """Checks the keys of a mapping, then what stands under them."""
+    if not isinstance(data, dict):
+        found = "nothing" if data is None else reprlib.repr(data)
+        raise SceneError(f"{where or 'the file'}: expected keys, found {found}")
+    types = typing.get_type_hints(schema)
+    for key, item in data.items():
+        place = join_key(where, str(key))
+        if key not in types:
+            raise SceneError(f"{place}: unknown key; {make_hint(str(key), types)}")
+        check_keys(types[key], item, place)
+
+
+def make_hint(word: str, known: Iterable[str]) -> str:
+    """Returns the known word that was probably meant, or all of them."""
+    near = difflib.get_close_matches(word, known, n=1)
+    return f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
+
+
+def _check_scalar(schema: Any, data: Any, where: str) -> None:
+    """Checks a number, a flag or a text."""
+    found = reprlib.repr(data)
+    if schema is float:
+        try:
+            # YAML 1.1 reads 1e3 as a text; Drake converts it, and so do we.
+            finite = not isinstance(data, bool) and math.isfinite(float(data))
+        except (TypeError, ValueError):
+            finite = False
+        if not finite:
+            raise SceneError(f"{where}: expected a finite number, found {found}")
+    elif schema is int and (isinstance(data, bool) or not isinstance(data, int)):
+        raise SceneError(f"{where}: expected a whole number, found {found}")
+    elif schema is bool and not isinstance(data, bool):
+        raise SceneError(f"{where}: expected true or false, found {found}")
+    elif schema is str and not isinstance(data, str):
+        raise SceneError(f"{where}: expected a text, found {found}")

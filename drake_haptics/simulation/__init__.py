@@ -1,0 +1,1 @@
+"""Runs a loop, measures it, and changes it while it runs."""

@@ -1,0 +1,179 @@
+"""Where the energy of a haptic loop goes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from pydrake.systems.framework import Context, OutputPort
+
+from drake_haptics import _core
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.loop.haptic_loop import HapticLoop
+from drake_haptics.systems.contact.contact_clustering import ClusteringRule
+from drake_haptics.systems.contact.penalty_force import ContactGains
+
+
+class EnergyLedger:
+    """Books the energy that goes through each part of a loop, tick by tick.
+
+    ::
+
+        ledger = EnergyLedger(loop, simulator.get_context())
+        simulator.Initialize()
+        ledger.add()
+        simulator.set_monitor(lambda context: ledger.add())
+        simulator.AdvanceTo(10.0)
+        print(ledger.to_dict()["device"])
+
+    The parts, in a row: `display` (what the device does to the wrench: limits, hold;
+    and passivity control), `coupling`, `tool`, and each source of wrench on the tool
+    by the name of its port (`contact`, `friction`, `braking`, `gravity`). What goes
+    out of one goes into its neighbor. `device` is all of them together, as the hand
+    has them at the device's port. How a tick is booked, and what the sampling of a
+    force can seem to create, is derived in `core/tick_energy.h`.
+
+    Objects are taken to stand still: what one that moves does to the tool shows as
+    created by the source of the force. Where gains are changed in the context, the
+    tick that begins with them is left out of the books, and so is what the change puts
+    into springs or takes out.
+    """
+
+    def __init__(self, loop: HapticLoop, root: Context):
+        """Constructs a ledger without an entry.
+
+        Args:
+            loop: What `AddHapticLoop` returned.
+            root: Context of the diagram that holds it, where it is read.
+        """
+        sources = dict(loop.wrench_sources)
+        coupling = sources.pop("coupling")
+        self._read_gains = _make_gains_reader(loop, root)
+        self._gains = self._read_gains()
+        self._ledger = _core.EnergyLedger(
+            loop.haptic_tool.dynamics,
+            self._gains.coupling,
+            pose_to_vector(loop.virtual_coupling.X_HT),
+            loop.haptic_tool.period_s,
+            list(sources),
+        )
+        self._tool = loop.haptic_tool.GetMyContextFromRoot(root)
+        self._X_WH = _reader(loop.device.get_handle_pose_output_port(), root)
+        self._F_applied = _reader(loop.device.get_applied_wrench_output_port(), root)
+        self._coupling = _reader(coupling, root)
+        self._sources = [_reader(port, root) for port in sources.values()]
+        stored = _make_stored_readers(loop, root, lambda: self._gains)
+        self._stored = [stored.get(name, _nothing) for name in sources]
+
+    def __repr__(self) -> str:
+        device = self.to_dict()["device"]
+        return (
+            f"EnergyLedger({device['in']:.3g} J from the hand, {device['out']:.3g} J "
+            f"back to it, {device['created']:.3g} J from nothing)"
+        )
+
+    def add(self) -> None:
+        """Books the tick since the last call; the first one only begins.
+
+        To be called at the start, after `Simulator.Initialize`, and after every tick,
+        before the next one, as a monitor is. All that it reads is what the next tick
+        will need, so that it costs nothing twice.
+        """
+        gains = self._read_gains()
+        if gains != self._gains:
+            self._gains = gains
+            self._ledger.begin_again(gains.coupling)
+        self._ledger.add(
+            self._tool.get_discrete_state_vector().value(),
+            self._X_WH(),
+            self._F_applied(),
+            self._coupling(),
+            [read() for read in self._sources],
+            [read() for read in self._stored],
+        )
+
+    def to_dict(self) -> dict[str, dict[str, float]]:
+        """Returns the books so far, by the name of the part, ready for JSON.
+
+        Each has, in J:
+
+        * `in`, `out`: what went into the part and what came out of it, through all its
+          ports; `net`, the difference. For `device`, `in` is what the hand put in.
+        * `stored`: what it holds now: the spring of the coupling, the compressed
+          contacts, the tool's kinetic energy, the tool's height.
+        * `lost`: `net` less what `stored` has grown by; of that, `damped` by dampers.
+          The rest is slip, and what the implicit step takes.
+        * `created`: energy from nothing. What is lost never comes back, so it is the
+          largest fall of `lost` over any stretch of time.
+        * `bound`: how much of that the sampling of forces explains.
+        * `beyond`: the most that was created over any stretch of time beyond what
+          sampling explains there. More than rounding is a force that makes energy.
+        """
+        return {
+            name: {
+                "in": account.in_J,
+                "out": account.out_J,
+                "net": account.in_J - account.out_J,
+                "stored": account.stored_J,
+                "lost": account.lost_J,
+                "damped": account.damped_J,
+                "created": account.created_J,
+                "bound": account.bound_J,
+                "beyond": account.beyond_J,
+            }
+            for name, account in self._ledger.accounts.items()
+        }
+
+
+def _reader(port: OutputPort, root: Context) -> Callable[[], Any]:
+    """Returns what evaluates a port."""
+    context = port.get_system().GetMyContextFromRoot(root)
+    return lambda: port.Eval(context)
+
+
+class _Gains(NamedTuple):
+    """What can be changed in a context, and changes the energy of springs."""
+
+    coupling: _core.CouplingGains
+    contact: ContactGains
+    clustering: ClusteringRule
+
+
+def _make_gains_reader(loop: HapticLoop, root: Context) -> Callable[[], _Gains]:
+    """Returns what reads the gains of a context."""
+    coupling, force = loop.virtual_coupling, loop.penalty_force
+    clustering = loop.contact_clustering
+    contexts = [
+        part.GetMyContextFromRoot(root) for part in (coupling, force, clustering)
+    ]
+    return lambda: _Gains(
+        coupling.get_gains(contexts[0]),
+        force.get_gains(contexts[1]),
+        clustering.get_rule(contexts[2]),
+    )
+
+
+def _make_stored_readers(
+    loop: HapticLoop, root: Context, get_gains: Callable[[], _Gains]
+) -> dict[str, Callable[[], float]]:
+    """Returns what tells the energy (J) of each source of wrench that stores some."""
+    clusters = _reader(loop.contact_clustering.get_clusters_output_port(), root)
+
+    def contact_energy() -> float:
+        gains = get_gains()
+        stiffness = gains.contact.stiffness_N_per_m.tolist()
+        return _core.contact_energy(clusters(), stiffness, gains.clustering.tolerance_m)
+
+    readers: dict[str, Callable[[], float]] = {"contact": contact_energy}
+    if (friction := loop.effects.friction) is not None:
+        friction_force = _reader(friction.get_friction_force_output_port(), root)
+        readers["friction"] = lambda: friction_force().stored_J
+    if (gravity := loop.effects.gravity) is not None:
+        X_WTool = _reader(loop.haptic_tool.get_pose_output_port(), root)
+        weight_W, p_TTcm = gravity.weight_W_N, gravity.p_TTcm
+        readers["gravity"] = lambda: _core.weight_energy(X_WTool(), p_TTcm, weight_W)
+    return readers
+
+
+def _nothing() -> float:
+    return 0.0

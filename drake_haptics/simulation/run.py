@@ -1,0 +1,245 @@
+"""Runs a haptic diagram tick by tick and measures it."""
+
+from __future__ import annotations
+
+import gc
+import math
+import time
+import warnings
+from collections.abc import Callable
+from contextlib import nullcontext
+
+from pydrake.systems.analysis import (
+    InitializeParams,
+    ResetIntegratorFromFlags,
+    Simulator,
+)
+from pydrake.systems.framework import Context, EventStatus
+
+from drake_haptics.common.realtime_priority import realtime_priority
+from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.scene.skin import question_depth
+from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.simulation.energy import EnergyLedger
+from drake_haptics.simulation.statistics import RunStatistics
+
+_MADE_BY = "BuildHapticDiagram(scene) makes it of a scene"
+
+
+class RunError(RuntimeError):
+    """A run was stopped because a value was no longer finite.
+
+    Attributes:
+        statistics: Of the run up to there.
+    """
+
+    def __init__(self, message: str, statistics: RunStatistics):
+        super().__init__(message)
+        self.statistics = statistics
+
+
+def make_simulator(haptic: HapticDiagram, context: Context | None = None) -> Simulator:
+    """Returns a simulator that integrates one step per tick.
+
+    The step is fixed and of second order: the stiffest motion of a shipped arm in
+    a shipped grip is slow against a tick (tests/test_simulation.py).
+
+    Args:
+        haptic: What `BuildHapticDiagram` returned.
+        context: Where to start; becomes the simulator's. At time 0 if not given.
+    """
+    require_kinds(_MADE_BY, haptic=(haptic, HapticDiagram))
+    simulator = Simulator(haptic.diagram, context)
+    ResetIntegratorFromFlags(simulator, "runge_kutta2", haptic.period_s)
+    simulator.get_mutable_integrator().set_fixed_step_mode(True)
+    return simulator
+
+
+def run(
+    haptic: HapticDiagram,
+    duration_s: float | None = None,
+    *,
+    pace: TickClock | None = None,
+    energy: bool = False,
+    on_tick: Callable[[Context], bool | None] | None = None,
+    context: Context | None = None,
+    statistics: RunStatistics | None = None,
+) -> RunStatistics:
+    """Runs a scene and measures every tick.
+
+    A run can be one of several in a row: with the context in which the last one ended,
+    of the same diagram or carried on to another (`drake_haptics.carry_on`), and its
+    statistics.
+
+    Args:
+        haptic: What `BuildHapticDiagram` returned.
+        duration_s: Simulated time, s; for ever where not given.
+        pace: Waits for each tick, so that simulated time is clock time; a device needs
+            it, and the system is asked for a real-time priority. As fast as it can
+            where not given.
+        energy: Whether to keep the books of an `EnergyLedger`, for some 10 µs in
+            each tick. Only of a simulated device: what any other does between two
+            readings is not known.
+        on_tick: Called after every tick with the diagram's context, of which it may
+            change parameters alone, as `drake_haptics.simulation.live_scene` does.
+            Its time counts in the tick. Where it returns True the run ends.
+        context: Where to go on; becomes the simulator's. Nothing in it is initialized.
+            At the scene's start where not given.
+        statistics: Of the runs before, which this one goes on with, or of none yet;
+            its own where not given. It is filled tick by tick, and so holds what ran
+            also where an error or Ctrl-C ends the run.
+
+    Returns:
+        What was measured.
+
+    Warns:
+        SceneWarning: At the end, a contact was deeper than ten tolerances, and none
+            was in the runs before.
+
+    Raises:
+        ValueError: `duration_s` is negative, `energy` is asked for, but the device is
+            not simulated, or the run goes on with the statistics of others.
+        RunError: The tool or the arm has a pose or velocity that is not finite.
+        TypeError: An argument is of another kind; the message names it.
+        KeyboardInterrupt: At Ctrl-C.
+    """
+    require_kinds(_MADE_BY, haptic=(haptic, HapticDiagram))
+    require_kinds(
+        duration_s=(duration_s, float | None),
+        pace=(pace, TickClock | None),
+        on_tick=(on_tick, Callable | None),
+        statistics=(statistics, RunStatistics | None),
+    )
+    # Drake ends the whole program for a time before now.
+    if duration_s is not None and not duration_s >= 0.0:
+        raise ValueError(f"duration_s must not be negative, is {duration_s}")
+    if energy and haptic.backend is not None:
+        raise ValueError("energy can be booked for a simulated device only")
+    if energy and statistics is not None and statistics.ticks:
+        raise ValueError("energy can be booked of a run that is all in one only")
+    simulator = make_simulator(haptic, context)
+    ledger = EnergyLedger(haptic.loop, simulator.get_context()) if energy else None
+    if statistics is None:
+        statistics = RunStatistics(haptic.period_s, pace=pace)
+    if ledger is not None:
+        statistics.book(ledger)
+    before_m = statistics.max_penetration_m
+    end_s = math.inf
+    if duration_s is not None:
+        end_s = _find_end(simulator.get_context().get_time(), duration_s, haptic)
+    measure = _make_measure(haptic, simulator.get_context(), statistics, ledger)
+    # Collecting garbage over all of pydrake's objects takes many ticks; frozen, they
+    # are left alone. What goes on has no time for it.
+    if context is None:
+        gc.collect()
+    gc.freeze()
+    try:
+        simulator.Initialize(
+            InitializeParams(suppress_initialization_events=context is not None)
+        )
+        if ledger is not None:
+            ledger.add()
+        simulator.set_monitor(_make_monitor(haptic, measure, on_tick, pace))
+        with nullcontext() if pace is None else realtime_priority():
+            simulator.AdvanceTo(end_s)
+    except FloatingPointError as error:
+        time_s = simulator.get_context().get_time()
+        raise RunError(f"stopped at {time_s:.4f} s: {error}", statistics) from error
+    finally:
+        gc.unfreeze()
+        clustering = haptic.loop.contact_clustering
+        rule = clustering.get_rule(
+            clustering.GetMyContextFromRoot(simulator.get_context())
+        )
+        question = question_depth(statistics.max_penetration_m, rule.tolerance_m)
+        if question and not question_depth(before_m, rule.tolerance_m):
+            warnings.warn(question, SceneWarning, stacklevel=2)
+    return statistics
+
+
+def _find_end(start_s: float, duration_s: float, haptic: HapticDiagram) -> float:
+    """Returns when a run ends; of two times a round-off apart that of a tick."""
+    end_s = start_s + duration_s
+    tick_s = round(end_s / haptic.period_s) * haptic.period_s
+    return tick_s if math.isclose(end_s, tick_s, rel_tol=1e-12) else end_s
+
+
+def _make_monitor(
+    haptic: HapticDiagram,
+    measure: Callable[[Context, float], None],
+    on_tick: Callable[[Context], bool | None] | None,
+    pace: TickClock | None,
+) -> Callable[[Context], EventStatus]:
+    """Returns what the simulator calls after each tick."""
+    start_s = time.perf_counter()
+
+    def monitor(context: Context) -> EventStatus:
+        nonlocal start_s
+        now_s = time.perf_counter()
+        measure(context, now_s - start_s)
+        start_s = now_s
+        if on_tick is not None and on_tick(context):
+            return EventStatus.ReachedTermination(
+                haptic.diagram, "on_tick ends the run"
+            )
+        if pace is not None:
+            now_s = time.perf_counter()
+            pace.wait()
+            # Waiting belongs to no tick.
+            start_s += time.perf_counter() - now_s
+        return EventStatus.Succeeded()
+
+    return monitor
+
+
+def _make_measure(
+    haptic: HapticDiagram,
+    root: Context,
+    statistics: RunStatistics,
+    ledger: EnergyLedger | None,
+) -> Callable[[Context, float], None]:
+    """Returns what reads a tick's values from the context into both books."""
+    loop = haptic.loop
+    tool_context = loop.haptic_tool.GetMyContextFromRoot(root)
+    hold = loop.device.GetSubsystemByName("display_force_hold")
+    hold_context = hold.GetMyContextFromRoot(root)
+    clustering_context = loop.contact_clustering.GetMyContextFromRoot(root)
+    contacts_port = loop.found_contacts
+    contacts_context = contacts_port.get_system().GetMyContextFromRoot(root)
+    relief_context = (
+        None
+        if loop.load_shedding is None
+        else loop.load_shedding.GetMyContextFromRoot(root)
+    )
+    clusters_port = loop.contact_clustering.get_clusters_output_port()
+
+    def measure(context: Context, tick_s: float) -> None:
+        shown = hold_context.get_discrete_state_vector().value().tolist()
+        # A handle that is lost takes the tool with it.
+        tool_state = tool_context.get_discrete_state_vector().value()
+        if not math.isfinite(sum(tool_state.tolist())):
+            # There are no contacts of such a tool.
+            statistics.add(tick_s, 0.0, 0, 0, math.inf, shown)
+            raise RunError(
+                f"stopped at {context.get_time():.4f} s: the tool's state is not"
+                " finite",
+                statistics,
+            )
+        # What the next tick needs of these is cached, so they cost nothing twice.
+        contacts = contacts_port.Eval(contacts_context)
+        statistics.add(
+            tick_s,
+            contacts.query_seconds,
+            len(contacts),
+            len(clusters_port.Eval(clustering_context)),
+            contacts.least_distance,
+            shown,
+        )
+        if relief_context is not None:
+            statistics.add_shed(relief_context.get_discrete_state_vector().value()[0])
+        if ledger is not None:
+            ledger.add()
+
+    return measure

@@ -1,0 +1,173 @@
+"""Goes on in another diagram where one is: effects come and go, a hand lets go."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Context, Diagram, System
+
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.scene.device_preset import load_device_preset
+from drake_haptics.systems.arm.arm_inverse_kinematics import (
+    UnreachableError,
+    solve_arm_positions,
+)
+
+
+def carry_on(old: HapticDiagram, old_context: Context, new: HapticDiagram) -> Context:
+    """Returns a context of a diagram that goes on where another one is.
+
+    Time goes on, and so does the state of every system that both have: the tool, what
+    the device shows, the bristles of friction, the balance of passivity control. The
+    contact query keeps the way out of what is pressed in. A system that is new begins
+    as in a run that starts there. Gains are those of the new scene.
+
+    A simulated arm goes on as it moves if it is the same one; else it begins at rest
+    with its handle where the other was. If it does not reach that place, it begins at
+    its default angles, and the tool with it. A backend says itself where its handle is:
+    open it where `find_handle` tells, or the coupling pulls the tool away.
+
+    Args:
+        old: What ran, of whatever scene.
+        old_context: Where it is.
+        new: Where to go on, with the same tool.
+
+    Returns:
+        A context of `new`, for `drake_haptics.simulation.run.run`.
+    """
+    require_kinds(
+        "carry_on(old, old_context, new) is their order",
+        old=(old, HapticDiagram),
+        old_context=(old_context, Context),
+        new=(new, HapticDiagram),
+    )
+    context = new.diagram.CreateDefaultContext()
+    context.SetTime(old_context.get_time())
+    begins_anew: list[System] = []
+    is_reached = True
+    if not _has_same_device(old, new):
+        begins_anew.append(new.loop.device)
+        is_reached = _take_handle(new, context, find_handle(old, old_context))
+    if not is_reached:
+        begins_anew.append(new.loop.haptic_tool)
+    # A system that is new may read at its beginning what the others have.
+    copied = old.diagram, old_context, new.diagram, context, begins_anew
+    _copy_states(*copied)
+    new.diagram.ExecuteInitializationEvents(context)
+    _copy_states(*copied)
+    if new.loop.effects.passivity is not None and old.loop.effects.passivity is None:
+        control = new.loop.effects.passivity
+        control.begin(control.GetMyMutableContextFromRoot(context))
+    if is_reached:
+        query, known = new.loop.contact_query, old.loop.contact_query
+        query.learn(
+            query.GetMyMutableContextFromRoot(context),
+            known,
+            known.GetMyContextFromRoot(old_context),
+        )
+    return context
+
+
+def find_handle(haptic: HapticDiagram, root: Context) -> RigidTransform:
+    """Returns X_WH, where the handle is.
+
+    Args:
+        haptic: What `BuildHapticDiagram` returned.
+        root: Context of its diagram.
+    """
+    device = haptic.loop.device
+    port = device.get_handle_pose_output_port()
+    return vector_to_pose(port.Eval(device.GetMyContextFromRoot(root)))
+
+
+def _has_same_device(old: HapticDiagram, new: HapticDiagram) -> bool:
+    """Returns whether both have one backend, or arms that are the same."""
+    if old.backend is not None or new.backend is not None:
+        return old.backend is new.backend
+    arms = [_find_arm(haptic) for haptic in (old, new)]
+    if None in arms:
+        return arms == [None, None]
+    bases = [
+        arm.GetFrameByName("base").CalcPoseInWorld(arm.CreateDefaultContext())
+        for arm in arms
+        if arm is not None
+    ]
+    presets = [haptic.scene.device.preset for haptic in (old, new)]
+    return presets[0] == presets[1] and bases[0].IsExactlyEqualTo(bases[1])
+
+
+def _find_arm(haptic: HapticDiagram) -> MultibodyPlant | None:
+    """Returns the plant of a simulated arm; None where the device is none."""
+    device = haptic.loop.device
+    if not device.HasSubsystemNamed("simulated_arm"):
+        return None
+    return device.GetSubsystemByName("simulated_arm").GetSubsystemByName("arm")
+
+
+def _take_handle(haptic: HapticDiagram, root: Context, X_WH: RigidTransform) -> bool:
+    """Puts the handle of a simulated arm at a pose; returns whether it gets there."""
+    arm = _find_arm(haptic)
+    if arm is None:
+        return True
+    preset = load_device_preset(haptic.scene.device.preset)
+    context = arm.GetMyMutableContextFromRoot(root)
+    try:
+        q = solve_arm_positions(
+            arm,
+            arm.GetBodyByName(preset.handle_link),
+            X_WH,
+            arm.GetPositions(context),
+        )
+    except UnreachableError:
+        return False
+    arm.SetPositions(context, q)
+    return True
+
+
+def _copy_states(
+    old: System,
+    old_context: Context,
+    new: System,
+    context: Context,
+    begins_anew: Sequence[System],
+) -> None:
+    """Copies the state of each system that two have in the same place."""
+    if any(new is system for system in begins_anew):
+        return
+    if isinstance(new, Diagram):
+        assert isinstance(old, Diagram)
+        for part in new.GetSystems():
+            if not old.HasSubsystemNamed(part.get_name()):
+                continue
+            old_part = old.GetSubsystemByName(part.get_name())
+            if type(old_part) is not type(part):
+                continue
+            _copy_states(
+                old_part,
+                old.GetSubsystemContext(old_part, old_context),
+                part,
+                new.GetMutableSubsystemContext(part, context),
+                begins_anew,
+            )
+    elif _describe_state(old_context) == _describe_state(context):
+        context.SetContinuousState(old_context.get_continuous_state_vector().value())
+        context.get_mutable_discrete_state().SetFrom(old_context.get_discrete_state())
+        for i in range(context.num_abstract_states()):
+            value = old_context.get_abstract_state(i)
+            context.get_mutable_abstract_state(i).SetFrom(value)
+
+
+def _describe_state(context: Context) -> tuple[object, ...]:
+    """Returns how many numbers and values a state has."""
+    return (
+        context.num_continuous_states(),
+        context.num_abstract_states(),
+        *(
+            context.get_discrete_state(i).size()
+            for i in range(context.num_discrete_state_groups())
+        ),
+    )

@@ -1,0 +1,107 @@
+"""A recorded handle as a device: what the hand did once, it does again."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceCommand,
+    DeviceError,
+    DeviceReading,
+    GateState,
+    LinkStatus,
+)
+from drake_haptics.tick_log.tick_log import TickLog
+
+
+class ReplayDevice(DeviceBackend):
+    """A device that moves as a log says, one recorded tick per command.
+
+    It stands where the recording begins until the first command enables it; each
+    further one moves it on by a tick, so that a loop of the recorded rate meets tick
+    k at its tick k. After the last tick, or the first gap of the log, it stays. It
+    shows no force: a recorded hand does not yield.
+
+    The readings are those of the recorded loop but for the round-off of going from
+    the world into the base's frame and back. `drake_haptics.simulation.replay_log`
+    gives the loop the very same bits.
+    """
+
+    def __init__(self, log: TickLog):
+        """Opens a log.
+
+        Args:
+            log: What `read_tick_log` returned.
+
+        Raises:
+            DeviceError: The log has no first tick.
+        """
+        ticks = log.count_ticks_from_start()
+        if not ticks:
+            raise DeviceError("the log has no first tick to start from; record again")
+        self._times_s = log.rows["time_s"][:ticks]
+        self._buttons = log.rows["buttons"][:ticks]
+        self._X_BH, self._V_BH = _express_in_base(
+            np.array(log.header.X_WB),
+            log.rows["X_WH"][:ticks],
+            log.rows["V_WH"][:ticks],
+        )
+        self._tick = 0
+        self._gate = GateState.IDLE
+
+    @property
+    def is_placed(self) -> bool:
+        """True."""
+        return True
+
+    @property
+    def shows_force(self) -> bool:
+        """False."""
+        return False
+
+    def read(self) -> DeviceReading:
+        """Returns the recorded handle at the present tick."""
+        tick = self._tick
+        return DeviceReading(
+            sequence=tick,
+            time_s=float(self._times_s[tick]),
+            X_BH=self._X_BH[tick],
+            V_BH=self._V_BH[tick],
+            F_BH=np.zeros(6),
+            buttons=int(self._buttons[tick]),
+            gate=self._gate,
+        )
+
+    def write(self, command: DeviceCommand) -> None:
+        """Goes on by a tick; the first call only starts."""
+        if self._gate == GateState.ACTIVE:
+            self._tick = min(self._tick + 1, len(self._times_s) - 1)
+        self._gate = GateState.ACTIVE
+
+    def get_link_status(self) -> LinkStatus:
+        """Returns how many ticks have been given; none is ever lost."""
+        return LinkStatus(received=self._tick + 1)
+
+    def close(self) -> None:
+        """Stops where it is."""
+        self._gate = GateState.IDLE
+
+
+def _express_in_base(
+    X_WB: np.ndarray, X_WH: np.ndarray, V_WH: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns X_BH (n, 7) and V_BH (n, 6)."""
+    w, x, y, z = X_WB[:4]
+    # The product q_BW q_WH is linear in q_WH.
+    left = np.array([[w, x, y, z], [-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]])
+    R_BW = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],
+            [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)],
+            [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    X_BH = np.hstack([X_WH[:, :4] @ left.T, (X_WH[:, 4:] - X_WB[4:]) @ R_BW.T])
+    V_BH = np.hstack([V_WH[:, :3] @ R_BW.T, V_WH[:, 3:] @ R_BW.T])
+    return X_BH, V_BH

@@ -1,0 +1,1 @@
+"""Meshcat's page and camera, and recordings of it."""

@@ -1,0 +1,155 @@
+"""The stage on which Meshcat shows a scene: page, background, camera."""
+
+from __future__ import annotations
+
+import socket
+
+import numpy as np
+from pydrake.geometry import Meshcat, MeshcatParams
+from pydrake.math import RigidTransform
+
+from drake_haptics.common.colors import BACKGROUND_BOTTOM, BACKGROUND_TOP
+from drake_haptics.common.errors import UserError
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.scene.schema import Pose
+
+# From where the camera looks, by the name of the view. Straight down it would not know
+# what is up.
+_VIEWS = {
+    "fit": (0.48, -0.74, 0.47),
+    "front": (0.0, -1.0, 0.0),
+    "side": (1.0, 0.0, 0.0),
+    "top": (0.0, -1e-3, 1.0),
+}
+CAMERAS = tuple(_VIEWS)
+# Half the angle of Meshcat's camera is 37.5 degrees; the rest is margin.
+_HALF_VIEW_RAD = np.deg2rad(35.0)
+
+
+def open_meshcat(port: int | None = None) -> Meshcat:
+    """Opens a page on this computer.
+
+    Args:
+        port: TCP port of the page; None takes the first free one from 7000 on.
+
+    Raises:
+        UserError: The port cannot be had.
+    """
+    # Drake gives no reason where it fails, so ask the system first.
+    if port is not None:
+        with socket.socket() as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                probe.bind(("localhost", port))
+            except (OSError, OverflowError) as error:
+                raise UserError(f"port {port} cannot be used: {error}") from error
+    try:
+        # How fast it runs is told elsewhere.
+        return Meshcat(
+            MeshcatParams(host="localhost", port=port, show_stats_plot=False)
+        )
+    except RuntimeError as error:
+        raise UserError(f"Meshcat cannot open a page: {error}") from error
+
+
+def set_stage(meshcat: Meshcat, haptic: HapticDiagram) -> None:
+    """Points the camera at where tool and objects meet, on a plain background."""
+    meshcat.SetProperty("/Background", "top_color", list(BACKGROUND_TOP[:3]))
+    meshcat.SetProperty("/Background", "bottom_color", list(BACKGROUND_BOTTOM[:3]))
+    meshcat.SetProperty("/Grid", "visible", False)
+    meshcat.SetProperty("/Axes", "visible", False)
+    aim_camera(meshcat, find_framed_points(haptic), "fit")
+
+
+def aim_camera(
+    meshcat: Meshcat, p_WP: np.ndarray, view: str, within: float = 1.0
+) -> None:
+    """Points the camera at where tool and objects meet.
+
+    Args:
+        meshcat: Whose camera.
+        p_WP: (n, 3) points to be seen, m, as of `find_framed_points`.
+        view: One of `CAMERAS`.
+        within: Share of the picture's height, about its middle, that must hold it.
+
+    Raises:
+        ValueError: There is no such view, or the share is not from 0.1 to 1.
+    """
+    if view not in _VIEWS:
+        raise ValueError(f"view must be one of {', '.join(CAMERAS)}, is {view!r}")
+    if not 0.1 <= within <= 1.0:
+        raise ValueError(f"within must be from 0.1 to 1, is {within}")
+    backwards = np.array(_VIEWS[view]) / np.linalg.norm(_VIEWS[view])
+    right = np.cross([0.0, 0.0, 1.0], backwards)
+    right /= np.linalg.norm(right)
+    R_CW = np.vstack([right, np.cross(backwards, right), backwards])
+    p_CP = p_WP @ R_CW.T
+    middle = (p_CP.min(axis=0) + p_CP.max(axis=0)) / 2
+    # The least distance at which the cone of the view holds every point.
+    across = np.linalg.norm(p_CP[:, :2] - middle[:2], axis=1)
+    slope = within * np.tan(_HALF_VIEW_RAD)
+    distance = float(np.max(p_CP[:, 2] - middle[2] + across / slope))
+    target = R_CW.T @ middle
+    meshcat.SetCameraPose(target + distance * backwards, target)
+
+
+def find_framed_points(haptic: HapticDiagram) -> np.ndarray:
+    """Returns points (n, 3) of the world, m, that are to be in the picture.
+
+    Of large surroundings only what is within a tool's size of the hand's path is
+    framed.
+    """
+    vertices = haptic.tool.mesh.vertices
+    tool = np.vstack(
+        [
+            _transform(Pose(waypoint.position_m, waypoint.rpy_deg), vertices)
+            for waypoint in haptic.scene.hand.path.waypoints
+        ]
+    )
+    size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+    low, high = tool.min(axis=0) - size, tool.max(axis=0) + size
+    framed = [tool]
+    for item, decomposition in zip(
+        haptic.scene.environment, haptic.environment, strict=True
+    ):
+        mesh = decomposition.mesh
+        corners = _transform(item.pose, mesh.vertices)
+        framed.append(corners[np.all((corners > low) & (corners < high), axis=1)])
+        # Of a facet that is larger than all that is framed no corner may be there.
+        facets = corners[mesh.triangles]
+        is_large = np.ptp(facets, axis=1).max(axis=1) > size
+        is_near = np.all((facets.max(1) > low) & (facets.min(1) < high), axis=1)
+        framed += [clip_facet(facet, low, high) for facet in facets[is_large & is_near]]
+    return np.vstack(framed)
+
+
+def clip_facet(p_WF: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Returns the corners (n, 3) of what a box leaves of a flat convex facet.
+
+    By Sutherland and Hodgman: one plane of the box after the other cuts it.
+
+    Args:
+        p_WF: (k, 3) its corners in order, m.
+        low: (3,) least coordinates of the box, m.
+        high: (3,) largest coordinates, m.
+    """
+    for axis, bound, sign in [
+        *((axis, low[axis], 1.0) for axis in range(3)),
+        *((axis, high[axis], -1.0) for axis in range(3)),
+    ]:
+        inside = sign * (p_WF[:, axis] - bound)
+        beyond, p_WNext = np.roll(inside, -1), np.roll(p_WF, -1, axis=0)
+        crosses = (inside >= 0.0) != (beyond >= 0.0)
+        share = np.divide(
+            inside, inside - beyond, out=np.zeros_like(inside), where=crosses
+        )
+        p_WCut = p_WF + share[:, np.newaxis] * (p_WNext - p_WF)
+        kept = np.stack([inside >= 0.0, crosses], axis=1)
+        p_WF = np.stack([p_WF, p_WCut], axis=1)[kept]
+    return p_WF
+
+
+def _transform(pose: Pose, points: np.ndarray) -> np.ndarray:
+    """Returns points (n, 3) of a frame in the frame that its pose is given in."""
+    X: RigidTransform = pose.to_rigid_transform()
+    return points @ X.rotation().matrix().T + X.translation()

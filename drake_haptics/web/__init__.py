@@ -1,0 +1,1 @@
+"""The page of a loop in the browser: its server, process, link and telemetry."""

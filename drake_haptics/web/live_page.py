@@ -1,0 +1,146 @@
+"""The page of a loop that runs: told of each tick, and heard now and then."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pydrake.geometry import Meshcat
+from pydrake.math import RigidTransform
+
+from drake_haptics.web.camera import PageCamera
+from drake_haptics.web.link import PageLink
+from drake_haptics.web.telemetry import TickBuffer
+
+_HEAR_PERIOD_S = 1 / 50
+_SHOW_PERIOD_S = 1 / 30
+_LOOK_PERIOD_S = 1 / 20
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """What the page is told besides the ticks, 30 times a second.
+
+    Attributes:
+        gate: Index into `telemetry.GATES`.
+        p_WH: (3,) where the handle is, m.
+        fault: Index into `telemetry.FAULTS`.
+        silent_s: For how long the device's driver has said nothing new, s.
+        shed: How many stages of work are left out.
+        skipped: Ticks lost to stalls since the run began.
+    """
+
+    gate: int
+    p_WH: Sequence[float]
+    fault: int = 0
+    silent_s: float = 0.0
+    shed: int = 0
+    skipped: int = 0
+
+
+class LivePage:
+    """A page, and what the loop does for it, one thing at a time.
+
+    A tick costs `note` and a look at the clock. As all of Drake's Meshcat, it is to be
+    used from the thread that made the Meshcat.
+
+    Attributes:
+        camera: Of the page.
+        meshcat_url: Address of what the page shows.
+    """
+
+    def __init__(
+        self,
+        meshcat: Meshcat,
+        X_WC: RigidTransform,
+        listener: socket.socket | None = None,
+    ):
+        """Starts the page's process; waits for nobody.
+
+        Args:
+            meshcat: What the page shows.
+            X_WC: Where the page's camera is before it tells.
+            listener: The page's port, of `open_page_port`; the first free one where
+                not given.
+
+        Raises:
+            UserError: No port can be had.
+        """
+        self.camera = PageCamera(meshcat, X_WC)
+        # The Meshcat then tells where the camera of this page is.
+        self.meshcat_url = f"{meshcat.web_url()}/?tracked_camera=on"
+        self._link = PageLink(meshcat.web_url(), listener)
+        self._ticks = TickBuffer()
+        # When each of the three is due, and the first of them.
+        self._hear_s = self._show_s = self._look_s = self._due_s = 0.0
+
+    @property
+    def url(self) -> str:
+        """Address of the page."""
+        return self._link.url
+
+    def note(self, time_s: float, latest: Sequence[float], late_s: float) -> None:
+        """Notes a tick, as `TickBuffer.note`."""
+        self._ticks.note(time_s, latest, late_s)
+
+    def tell(self, name: str, body: dict[str, Any]) -> None:
+        """Tells pages something, also those that come later.
+
+        Args:
+            name: Of the message; a newer one takes the place of an older one.
+            body: Ready for JSON.
+        """
+        self._link.tell({name: body})
+
+    def act(
+        self, now_s: float, describe: Callable[[], Outlook]
+    ) -> list[dict[str, Any]]:
+        """Does one of the things that are due, and returns what pages ask for.
+
+        Args:
+            now_s: Time of any clock that runs, s.
+            describe: Called if the page is to be told.
+        """
+        due_s = self._due_s
+        if now_s < due_s:
+            return []
+        heard: list[dict[str, Any]] = []
+        # What has waited longest, so that a slow loop leaves nothing out.
+        if due_s == self._show_s:
+            self._show_s = now_s + _SHOW_PERIOD_S
+            self._show(now_s, describe())
+        elif due_s == self._hear_s:
+            self._hear_s = now_s + _HEAR_PERIOD_S
+            heard = self._link.hear()
+        else:
+            self._look_s = now_s + _LOOK_PERIOD_S
+            self.camera.look()
+        self._due_s = min(self._show_s, self._hear_s, self._look_s)
+        return heard
+
+    def close(self, why: str = "The run has ended.") -> None:
+        """Ends the page; may be called again.
+
+        Args:
+            why: Told to the pages.
+        """
+        self._link.close(why)
+        self.camera.close()
+
+    def _show(self, now_s: float, outlook: Outlook) -> None:
+        """Sends what was noted."""
+        self._link.flush()
+        self._link.send(
+            self._ticks.take(
+                gate=outlook.gate,
+                fault=outlook.fault,
+                silent_s=outlook.silent_s,
+                shed=outlook.shed,
+                skipped=outlook.skipped,
+                clock_s=now_s,
+                camera=self.camera.numbers,
+                p_WH=outlook.p_WH,
+            )
+        )

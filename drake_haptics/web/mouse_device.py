@@ -1,0 +1,119 @@
+"""The mouse as a haptic device, in a program of one's own."""
+
+from __future__ import annotations
+
+import math
+from time import monotonic
+
+from pydrake.geometry import Meshcat
+from pydrake.math import RigidTransform
+
+from drake_haptics.device.backend import DeviceCommand, DeviceReading
+from drake_haptics.web.camera import look_from_the_front
+from drake_haptics.web.handle import PageHandle
+from drake_haptics.web.live_page import LivePage, Outlook
+from drake_haptics.web.port import open_page_port
+from drake_haptics.web.telemetry import NOT_KNOWN
+
+# Until a page tells, the camera is this many radii in front of the workspace: at -y.
+_FIRST_DISTANCE = 4.0
+# A tick as `RunStatistics.latest`, of which only the wrench is known.
+_NO_FIGURES = (NOT_KNOWN,) * 5
+
+
+class MouseDevice(PageHandle):
+    """A pointer, on a page that shows the Meshcat, moves and turns the handle.
+
+    The page is the cockpit of `drake-haptics run` with what applies here: force and
+    torque, the gate, and the pointer, which it can hand to Meshcat's own control of the
+    camera and take back. Where the camera goes, the directions of the pointer go with
+    it. When no page is open the handle stays where it is. A process of its own serves
+    the page, so that talking with it does not delay the loop.
+
+    As all of Drake's Meshcat, it is to be used from the thread that made the Meshcat.
+    """
+
+    def __init__(
+        self,
+        meshcat: Meshcat,
+        *,
+        X_WB: RigidTransform,
+        X_BH: RigidTransform,
+        workspace_radius_m: float,
+        max_force_N: float,
+        max_torque_Nm: float,
+        port: int | None = None,
+    ):
+        """Starts to serve the page; waits for nobody to look at it.
+
+        Args:
+            meshcat: What the page shows.
+            X_WB: Pose of the device's base in the world of the Meshcat.
+            X_BH: Pose of the handle where it starts.
+            workspace_radius_m: How far from there it goes, m.
+            max_force_N: Force of a full bar, N.
+            max_torque_Nm: Torque of a full bar, N·m.
+            port: TCP port of the page; as `open_page_port`.
+
+        Raises:
+            ValueError: A pose is not finite, or the radius or a limit out of range.
+            UserError: The port cannot be had.
+        """
+        super().__init__(X_WB=X_WB, X_BH=X_BH, workspace_radius_m=workspace_radius_m)
+        for name, value in [
+            ("max_force_N", max_force_N),
+            ("max_torque_Nm", max_torque_Nm),
+        ]:
+            if not 0.0 <= value < math.inf:
+                raise ValueError(f"{name} must be finite and not negative, is {value}")
+        self._R_WB = X_WB.rotation().matrix()
+        self._p_WH = (X_WB @ X_BH).translation()
+        self._page = LivePage(
+            meshcat,
+            look_from_the_front(self._p_WH, _FIRST_DISTANCE * workspace_radius_m),
+            open_page_port(port),
+        )
+        self._start_s = monotonic()
+        self._page.tell(
+            "hello",
+            {
+                "meshcat": self._page.meshcat_url,
+                "scene": "Move the handle",
+                "description": "",
+                "limits": {"force_N": max_force_N, "torque_Nm": max_torque_Nm},
+                "handles": [{"name": "mouse", "label": "Mouse"}],
+            },
+        )
+        self._page.tell("state", {"handle": "mouse"})
+
+    @property
+    def url(self) -> str:
+        """Address of the page."""
+        return self._page.url
+
+    def read(self) -> DeviceReading:
+        """Returns where the handle is now."""
+        for asked in self._page.act(monotonic(), self._describe):
+            if not self.obey(asked, self._page.camera.X_WC):
+                self.note_refused()
+        reading = super().read()
+        self._p_WH = self._X_WB @ reading.X_BH[4:]
+        return reading
+
+    def write(self, command: DeviceCommand) -> None:
+        """Shows a wrench on the page from now on."""
+        super().write(command)
+        F_W = self._R_WB @ self._handle.F_BH.reshape(2, 3).T
+        wrench = F_W.T.ravel().tolist()
+        self._page.note(
+            monotonic() - self._start_s, (*_NO_FIGURES, *wrench, 0.0), NOT_KNOWN
+        )
+
+    def close(self) -> None:
+        """Tells the page that it is over, and gives up the port."""
+        super().close()
+        self._page.close()
+
+    def _describe(self) -> Outlook:
+        """Returns what else the page is told."""
+        return Outlook(gate=self.gate, p_WH=self._p_WH)

@@ -1,0 +1,129 @@
+"""The process that serves the page: between pages and the loop.
+
+It is started by `PageLink`, imports neither Drake nor NumPy, and ends when the loop's
+process closes its standard input or ends, whatever ended it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import socket
+import sys
+from contextlib import suppress
+from time import monotonic
+from typing import Any
+
+from drake_haptics.web.changes_yaml import write_changes
+from drake_haptics.web.frame_maker import FrameMaker
+from drake_haptics.web.server import PageServer
+from drake_haptics.web.telemetry import KIND, LARGEST_DATAGRAM, read_telemetry
+
+_CLOSE_S = 0.5
+# A loop that says nothing for so long stands still; pages are told as often.
+_QUIET_S = 0.5
+_STDIN = 0
+
+
+class PageProcess:
+    """Turns the loop's packets into messages for pages, and passes requests on."""
+
+    def __init__(self, listener: socket.socket, link: socket.socket, origin: str):
+        """Begins with no page.
+
+        Args:
+            listener: Listens on the page's port.
+            link: The way to the loop, of datagrams.
+            origin: Of the Meshcat in the page.
+        """
+        self._link = link
+        self._server = PageServer(listener, origin, self._forward)
+        self._frames = FrameMaker()
+        self._why = ""
+        # When the loop last told of ticks; None before it begins.
+        self._heard_s: float | None = None
+
+    async def run(self) -> None:
+        """Serves until the loop has ended."""
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(_report)
+        ended = asyncio.Event()
+
+        def look_for_end() -> None:
+            if not os.read(_STDIN, 1):
+                ended.set()
+
+        server = await self._server.open()
+        loop.add_reader(self._link, self._read)
+        loop.add_reader(_STDIN, look_for_end)
+        watch = asyncio.create_task(self._watch())
+        await ended.wait()
+        watch.cancel()
+        # What waits for free connections finds its socket closed.
+        loop.set_exception_handler(lambda *_: None)
+        loop.remove_reader(_STDIN)
+        # What the loop said last.
+        self._read()
+        why = self._why or "The run stopped unexpectedly."
+        self._server.tell("over", json.dumps({"over": {"why": why}}))
+        server.close()
+        # A page that does not answer is not waited for.
+        await asyncio.wait(
+            [asyncio.create_task(server.wait_closed())], timeout=_CLOSE_S
+        )
+
+    def _read(self) -> None:
+        """Takes what the loop has sent."""
+        with suppress(BlockingIOError):
+            while packet := self._link.recv(LARGEST_DATAGRAM):
+                if packet.startswith(KIND):
+                    self._heard_s = monotonic()
+                    self._server.show(self._frames.make(read_telemetry(packet)))
+                else:
+                    self._take(json.loads(packet))
+
+    async def _watch(self) -> None:
+        """Tells pages that nothing is heard of the loop, for as long as it is so."""
+        while True:
+            await asyncio.sleep(_QUIET_S)
+            if self._heard_s is not None:
+                quiet_s = monotonic() - self._heard_s
+                if quiet_s >= _QUIET_S:
+                    self._server.say(json.dumps({"quiet": {"for_s": quiet_s}}))
+
+    def _take(self, message: dict[str, Any]) -> None:
+        """Does what a message of the loop says."""
+        [(name, body)] = message.items()
+        if name == "over":
+            self._why = body["why"]
+            return
+        if name == "hello":
+            self._frames = FrameMaker(body.pop("shed_stages", ()))
+        elif name == "state":
+            body["yaml"] = write_changes(body.pop("changes", {}))
+        self._server.tell(name, json.dumps(message))
+
+    async def _forward(self, asked: dict[str, Any]) -> None:
+        """Passes on what a page asks for; waits while the loop does not listen."""
+        loop = asyncio.get_running_loop()
+        with suppress(OSError):
+            await loop.sock_sendall(self._link, json.dumps(asked).encode())
+
+
+def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """Reports a defect; that strangers take all connections is none, and passes."""
+    if not isinstance(context.get("exception"), OSError):
+        loop.default_exception_handler(context)
+
+
+def main() -> None:
+    """Takes the file descriptors of port and link, and the Meshcat's origin."""
+    listener, link = (socket.socket(fileno=int(word)) for word in sys.argv[1:3])
+    for end in (listener, link):
+        end.setblocking(False)
+    asyncio.run(PageProcess(listener, link, sys.argv[3]).run())
+
+
+if __name__ == "__main__":
+    main()

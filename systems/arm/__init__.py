@@ -1,0 +1,1 @@
+"""A simulated arm with its faults, and the simulated hand that holds it."""

@@ -1,0 +1,130 @@
+"""What a simulated arm has of a real one's faults, and the systems that give it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import DiagramBuilder, InputPort, OutputPort
+from pydrake.systems.primitives import Adder, ConstantVectorSource
+
+from drake_haptics._core import HeldArm
+from drake_haptics.systems.arm.force_delay import ForceDelay
+from drake_haptics.systems.arm.hand_impedance import HandImpedance
+from drake_haptics.systems.arm.joint_encoder import JointEncoder
+from drake_haptics.systems.arm.joint_friction import JointFriction
+from drake_haptics.systems.arm.motor_torque import MotorTorque
+
+
+@dataclass(frozen=True, eq=False)
+class ArmTwin:
+    """Parts of an arm's twin. One that is None, or 0, is not in the diagram.
+
+    All angles and torques of motors are after their gears.
+
+    Attributes:
+        period_s: The tick, s.
+        joint_per_motor: S (6, 6) in q = S q_motor, so that τ_motor = Sᵀ τ.
+        encoder_step_rad: (6,) see `JointEncoder`, rad.
+        velocity_window: For the encoders, ticks.
+        coulomb_Nm: (6,) see `JointFriction`, N·m.
+        viscous_Nms_per_rad: (6,) for the friction, N·m·s/rad.
+        delay_samples: See `ForceDelay`, ticks.
+        peak_torque_Nm: (6,) see `MotorTorque`, N·m.
+    """
+
+    period_s: float
+    joint_per_motor: np.ndarray
+    encoder_step_rad: np.ndarray | None = None
+    velocity_window: int = 1
+    coulomb_Nm: np.ndarray | None = None
+    viscous_Nms_per_rad: np.ndarray | None = None
+    delay_samples: int = 0
+    peak_torque_Nm: np.ndarray | None = None
+
+
+def add_arm_twin(
+    builder: DiagramBuilder,
+    twin: ArmTwin,
+    plant: MultibodyPlant,
+    hand: HandImpedance,
+    free_arm: HeldArm,
+) -> tuple[InputPort, OutputPort, OutputPort]:
+    """Adds the parts of a twin that there are, between an arm and its ports.
+
+    Args:
+        builder: Of the arm's diagram; the arm's state is not connected to the hand's
+            input here.
+        twin: The parts.
+        plant: The arm, finalized, at its default angles.
+        hand: What holds it.
+        free_arm: The arm's kinematics, held by no hand.
+
+    Returns:
+        The input for the wrench that the device is to show, the arm's generalized
+        force, and the handle's state, as of `HandImpedance`.
+
+    Raises:
+        ValueError: A figure is out of its range.
+    """
+    S = twin.joint_per_motor
+    arm_state = plant.get_state_output_port()
+    wrench = hand.get_applied_wrench_input_port()
+    forces = [hand.get_generalized_force_output_port()]
+    handle_state = hand.get_handle_state_output_port()
+    if twin.peak_torque_Nm is not None:
+        motors = builder.AddNamedSystem(
+            "motor_torque", MotorTorque(free_arm, S, twin.peak_torque_Nm)
+        )
+        builder.Connect(arm_state, motors.GetInputPort("arm_state"))
+        # The hand no longer passes the wrench on.
+        nothing = builder.AddNamedSystem("no_wrench", ConstantVectorSource(np.zeros(6)))
+        builder.Connect(nothing.get_output_port(), wrench)
+        wrench = motors.GetInputPort("F_applied")
+        forces.append(motors.get_output_port())
+    if twin.coulomb_Nm is not None:
+        viscous = twin.viscous_Nms_per_rad
+        friction = builder.AddNamedSystem(
+            "joint_friction",
+            JointFriction(
+                plant,
+                twin.period_s,
+                S,
+                twin.coulomb_Nm,
+                np.zeros(6) if viscous is None else viscous,
+            ),
+        )
+        builder.Connect(arm_state, friction.get_input_port())
+        forces.append(friction.get_output_port())
+    if twin.delay_samples > 0:
+        delay = builder.AddNamedSystem(
+            "force_delay", ForceDelay(twin.period_s, twin.delay_samples)
+        )
+        builder.Connect(delay.get_output_port(), wrench)
+        wrench = delay.get_input_port()
+    if twin.encoder_step_rad is not None:
+        encoder = builder.AddNamedSystem(
+            "joint_encoder",
+            JointEncoder(
+                plant,
+                free_arm,
+                twin.period_s,
+                S,
+                twin.encoder_step_rad,
+                twin.velocity_window,
+            ),
+        )
+        builder.Connect(arm_state, encoder.get_arm_state_input_port())
+        handle_state = encoder.get_handle_state_output_port()
+    return wrench, _add(builder, forces), handle_state
+
+
+def _add(builder: DiagramBuilder, forces: list[OutputPort]) -> OutputPort:
+    """Returns the sum of generalized forces; no system for one alone."""
+    if len(forces) == 1:
+        return forces[0]
+    total = builder.AddNamedSystem("generalized_force", Adder(len(forces), 6))
+    for i, force in enumerate(forces):
+        builder.Connect(force, total.get_input_port(i))
+    return total.get_output_port()

@@ -1,0 +1,182 @@
+"""The hand that holds a simulated arm, and what the arm's handle does."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    InputPort,
+    OutputPort,
+)
+
+from drake_haptics._core import AutoDiffVector, CouplingGains, HeldArm
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.systems.arm.hand_path import HandPath
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+
+_NUM_JOINTS = 6
+_LETS_GO = CouplingGains(0.0, 0.0, 0.0, 0.0)
+# Angles (rad) and speeds (rad/s) at which the arm is compared with its plant.
+_PROBE = np.array([0.3, -0.5, 0.7, 1.1, -0.9, 0.4, 1.0, -2.0, 3.0, 2.0, -1.0, 4.0])
+_MAX_DIFFERENCE = 1e-9
+
+
+class HandImpedance(DifferentiableSystem):
+    """A hand as a six-axis spring and damper that follows a path.
+
+    It draws the handle to X_WP X_PH, with P the frame of the path, and passes on
+    the wrench that the device's motors show. Both act in continuous time as
+    generalized forces, τ = Jᵀ (F_hand + F_applied), which is one call of the core
+    and one vector port, where applied spatial forces would be many.
+
+    .. pydrake_system::
+
+        name: HandImpedance
+        input_ports:
+        - arm_state
+        - F_applied
+        output_ports:
+        - generalized_force
+        - handle_state
+
+    * `arm_state` is [q; v] of the arm's plant.
+    * `F_applied` (6) is the wrench [τ; f] on the handle at its origin in the world,
+      N·m and N.
+    * `generalized_force` is for the plant, N·m.
+    * `handle_state` (13) is [X_WH; V_WH]: the handle's pose [qw qx qy qz x y z], m,
+      and its spatial velocity [ω; v], rad/s and m/s, in the world.
+
+    Both raise FloatingPointError where the arm's state is not finite.
+    """
+
+    def __init__(
+        self,
+        plant: MultibodyPlant,
+        handle: RigidBody,
+        path: HandPath,
+        X_PH: RigidTransform,
+        gains: CouplingGains | None,
+    ):
+        """Constructs the system.
+
+        Args:
+            plant: The arm, finalized: six revolute joints in a chain.
+            handle: Its body that is held, at the end of the chain.
+            path: Where the hand wants P to go.
+            X_PH: Where it wants the handle in P.
+            gains: Of the hand; None lets go.
+
+        Raises:
+            ValueError: The arm is no such chain.
+        """
+        super().__init__()
+        self._arm = make_held_arm(plant, handle, path, X_PH, gains)
+        self._arm_state = self.DeclareVectorInputPort("arm_state", 2 * _NUM_JOINTS)
+        self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
+        self._eval_arm_state = self._arm_state.Eval
+        self._eval_F_applied = self._F_applied.Eval
+        from_arm = {self._arm_state.ticket()}
+        self._generalized_force = self.DeclareVectorOutputPort(
+            "generalized_force",
+            _NUM_JOINTS,
+            self._calc_generalized_force,
+            from_arm | {self._F_applied.ticket(), self.time_ticket()},
+        )
+        self._handle_state = self.DeclareVectorOutputPort(
+            "handle_state", 13, self._calc_handle_state, from_arm
+        )
+
+    def get_arm_state_input_port(self) -> InputPort:
+        """Returns the input `arm_state`."""
+        return self._arm_state
+
+    def get_applied_wrench_input_port(self) -> InputPort:
+        """Returns the input `F_applied`."""
+        return self._F_applied
+
+    def get_generalized_force_output_port(self) -> OutputPort:
+        """Returns the output `generalized_force`."""
+        return self._generalized_force
+
+    def get_handle_state_output_port(self) -> OutputPort:
+        """Returns the output `handle_state`."""
+        return self._handle_state
+
+    def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
+        output.set_value(
+            self._arm.calc_joint_torques(
+                context.get_time(),
+                self._eval_arm_state(context),
+                self._eval_F_applied(context),
+            )
+        )
+
+    def _calc_handle_state(self, context: Context, output: BasicVector) -> None:
+        output.set_value(self._arm.calc_handle_state(self._eval_arm_state(context)))
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns an output with its derivatives."""
+        if port == "handle_state":
+            return self._arm.calc_handle_state(at["arm_state"])
+        return self._arm.calc_joint_torques(at.time_s, at["arm_state"], at["F_applied"])
+
+
+def make_held_arm(
+    plant: MultibodyPlant,
+    handle: RigidBody,
+    path: HandPath,
+    X_PH: RigidTransform,
+    gains: CouplingGains | None,
+) -> HeldArm:
+    """Reads an arm's kinematics off its plant and holds them against it.
+
+    Args:
+        plant: The arm, finalized: six revolute joints in a chain.
+        handle: Its body that is held, at the end of the chain.
+        path: Where the hand wants P to go.
+        X_PH: Where it wants the handle in P.
+        gains: Of the hand; None lets go.
+
+    Raises:
+        ValueError: The arm is no such chain.
+    """
+    if (plant.num_positions(), plant.num_velocities()) != (_NUM_JOINTS, _NUM_JOINTS):
+        raise ValueError(f"the arm must have {_NUM_JOINTS} revolute joints")
+    context = plant.CreateDefaultContext()
+
+    def kinematics(state: np.ndarray) -> tuple[RigidTransform, np.ndarray]:
+        plant.SetPositionsAndVelocities(context, state)
+        J_WH = plant.CalcJacobianSpatialVelocity(
+            context,
+            JacobianWrtVariable.kV,
+            handle.body_frame(),
+            np.zeros(3),
+            plant.world_frame(),
+            plant.world_frame(),
+        )
+        return plant.EvalBodyPoseInWorld(context, handle), J_WH
+
+    X_WH, J_WH = kinematics(np.zeros(2 * _NUM_JOINTS))
+    arm = HeldArm(
+        J_WH,
+        pose_to_vector(X_WH),
+        path.core,
+        pose_to_vector(X_PH),
+        gains or _LETS_GO,
+    )
+    X_WH, J_WH = kinematics(_PROBE)
+    handle_state = arm.calc_handle_state(_PROBE)
+    V_difference = handle_state[7:] - J_WH @ _PROBE[_NUM_JOINTS:]
+    if (
+        not vector_to_pose(handle_state[:7]).IsNearlyEqualTo(X_WH, _MAX_DIFFERENCE)
+        or np.abs(V_difference).max() > _MAX_DIFFERENCE
+    ):
+        raise ValueError("the arm must be one chain of revolute joints to the handle")
+    return arm

@@ -1,0 +1,93 @@
+"""What an arm's motors make of a wrench: their torques, up to what they can give."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.systems.framework import BasicVector, Context
+
+from drake_haptics._core import AutoDiffVector, HeldArm
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+
+
+class MotorTorque(DifferentiableSystem):
+    """Jacobian-transpose actuation by motors of limited torque.
+
+    τ_motor = clamp(Sᵀ J_WHᵀ F_applied), each motor by itself as its amplifier does,
+    with q = S q_motor; the joints get τ = S⁻ᵀ τ_motor. A wrench that no motor must be
+    limited for arrives as it is. Else what arrives is J_WH⁻ᵀ S⁻ᵀ τ_motor, which has
+    another direction than the wrench that was asked for.
+
+    .. pydrake_system::
+
+        name: MotorTorque
+        input_ports:
+        - arm_state
+        - F_applied
+        output_ports:
+        - generalized_force
+
+    * `arm_state` (12) is [q; v] of the arm's plant, rad and rad/s.
+    * `F_applied` (6) is the wrench [τ; f] on the handle at its origin in the world,
+      N·m and N.
+    * `generalized_force` (6) is for the plant, N·m.
+
+    Its derivative is that of the motors that are not at their limit; one at its limit
+    has none.
+    """
+
+    def __init__(
+        self, arm: HeldArm, joint_per_motor: np.ndarray, peak_torque_Nm: np.ndarray
+    ):
+        """Constructs the system.
+
+        Args:
+            arm: Kinematics of the arm, held by no hand.
+            joint_per_motor: S (6, 6), invertible.
+            peak_torque_Nm: Of each motor after its gear (6,), positive, N·m.
+
+        Raises:
+            ValueError: A torque is not positive.
+        """
+        super().__init__()
+        if not (np.asarray(peak_torque_Nm) > 0.0).all():
+            raise ValueError(f"peak_torque_Nm must be positive, is {peak_torque_Nm}")
+        self._arm = arm
+        self._to_motors = np.array(joint_per_motor, dtype=float).T
+        self._to_joints = np.linalg.inv(self._to_motors)
+        self._peak_torque_Nm = np.array(peak_torque_Nm, dtype=float)
+        self._arm_state = self.DeclareVectorInputPort("arm_state", 12)
+        self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
+        self.DeclareVectorOutputPort(
+            "generalized_force",
+            6,
+            self._calc_generalized_force,
+            {self._arm_state.ticket(), self._F_applied.ticket()},
+        )
+
+    def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
+        # The time is the hand's, and there is none.
+        torque = self._arm.calc_joint_torques(
+            0.0, self._arm_state.Eval(context), self._F_applied.Eval(context)
+        )
+        output.SetFromVector(self._to_joints @ self._limit(self._to_motors @ torque))
+
+    def _limit(self, motor_torque: np.ndarray) -> np.ndarray:
+        """Returns torques (6,) of motors, each within its limit."""
+        return np.clip(motor_torque, -self._peak_torque_Nm, self._peak_torque_Nm)
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the generalized force with its derivatives."""
+        torque = self._arm.calc_joint_torques(
+            AutoDiffVector(np.zeros(1), np.zeros((1, at.num_derivatives))),
+            at["arm_state"],
+            at["F_applied"],
+        )
+        asked = self._to_motors @ torque.value
+        slope = self._to_motors @ torque.gradient
+        slope[np.abs(asked) > self._peak_torque_Nm] = 0.0
+        return AutoDiffVector(
+            self._to_joints @ self._limit(asked), self._to_joints @ slope
+        )

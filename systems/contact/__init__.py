@@ -1,0 +1,1 @@
+"""The systems from poses to contacts, and from contacts to forces."""

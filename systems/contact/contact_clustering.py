@@ -1,0 +1,254 @@
+"""Decides what each contact pushes with, given the others."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+from typing import Literal, get_args, overload
+
+import numpy as np
+from pydrake.common.value import AbstractValue, Value
+from pydrake.systems.framework import Context, InputPort, OutputPort
+
+from drake_haptics._core import (
+    AutoDiffClusterSet,
+    AutoDiffContactSet,
+    ClusterSet,
+    ContactSet,
+    cluster_contacts,
+    share_stiffness,
+    thin_contacts,
+)
+from drake_haptics.scene.skin import question_depth
+from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+
+ClusteringMethod = Literal["shared", "octree"]
+
+
+@dataclass(frozen=True)
+class ClusteringRule:
+    """Which contacts push, and which count as one; immutable.
+
+    Attributes:
+        method: "shared" or "octree".
+        tolerance_m: The distance t below which contacts push, m.
+        delta_m: Cluster size δ of the octree, m; None without.
+
+    Raises:
+        ValueError: There is no such method, the tolerance is negative, or δ is not
+            positive, missing, or given where there is no octree.
+    """
+
+    method: ClusteringMethod
+    tolerance_m: float
+    delta_m: float | None = None
+
+    def __post_init__(self) -> None:
+        """Checks the rule."""
+        if self.method not in get_args(ClusteringMethod):
+            raise ValueError(f"method must be 'shared' or 'octree', is {self.method!r}")
+        tolerance_m, delta_m = self.tolerance_m, self.delta_m
+        if not (tolerance_m >= 0.0 and math.isfinite(tolerance_m)):
+            raise ValueError(
+                f"tolerance_m must be finite and not negative, is {tolerance_m}"
+            )
+        if self.method == "octree":
+            if delta_m is None or not (delta_m > 0.0 and math.isfinite(delta_m)):
+                raise ValueError(f"delta_m must be finite and positive, is {delta_m}")
+        elif delta_m is not None:
+            raise ValueError(f"delta_m is of the octree; the method is {self.method!r}")
+
+
+class ContactClustering(DifferentiableSystem):
+    """Keeps many contacts from being stiffer than one.
+
+    There are two methods, by name:
+
+    * `shared`: each contact stays, and contacts along one direction share stiffness
+      as if they pressed into a common elastic skin. The force is a continuous
+      function of the contacts, and does not depend on how finely a face is cut
+      into pieces.
+    * `octree`: contacts nearer than δ are grouped with an octree of cell size δ, and
+      each group is replaced by one contact, the mean weighted by the depth below
+      the tolerance (paper, 4.2, Eq. 1-5). The force jumps where a contact crosses a
+      cell.
+
+    .. pydrake_system::
+
+        name: ContactClustering
+        input_ports:
+        - contacts
+        - relief (with load shedding)
+        output_ports:
+        - clusters
+
+    `contacts` is a `drake_haptics.ContactSet`, `clusters` a
+    `drake_haptics._core.ClusterSet`; both are immutable and in the world frame.
+    `relief` is that of `LoadShedding`: contacts push only below its share of the
+    tolerance, and those that are nearer than its cell to a deeper one along the same
+    direction are left out.
+    Under AutoDiffXd they are an `AutoDiffContactSet` and an `AutoDiffClusterSet` of
+    `drake_haptics._core`: which contacts are together or push stays.
+
+    Method, tolerance and δ are an abstract parameter of the Context, of type
+    `ClusteringRule`; see `set_rule`.
+    """
+
+    def __init__(
+        self,
+        method: ClusteringMethod,
+        tolerance_m: float,
+        delta_m: float | None = None,
+        *,
+        sheds_load: bool = False,
+        warns_deep: bool = False,
+    ):
+        """Constructs the system.
+
+        Method, tolerance and δ hold in a Context that says no others.
+
+        Args:
+            method: "shared" or "octree".
+            tolerance_m: The distance t below which contacts push, m.
+            delta_m: Cluster size δ of the octree, m.
+            sheds_load: Whether the loop sheds load, and there is a port for that.
+            warns_deep: Whether the first contact that is deeper than ten tolerances
+                is warned of, where `run` does not: it waits for the end, since to
+                write may keep a loop waiting that a hand holds.
+
+        Raises:
+            ValueError: There is no such method, the tolerance is negative, or δ is
+                not positive, missing, or given where there is no octree.
+        """
+        super().__init__()
+        self._warns_deep = warns_deep
+        rule = ClusteringRule(method, tolerance_m, delta_m)
+        self._rule = self.DeclareAbstractParameter(Value[object](rule))
+        self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
+        self._eval_contacts = self._contacts.Eval
+        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
+        self._clusters = self.DeclareAbstractOutputPort(
+            "clusters",
+            Value[object],
+            self._calc_clusters if self._relief is None else self._calc_fewer,
+            {self.all_input_ports_ticket(), self.pa_ticket()},
+        )
+
+    def get_rule(self, context: Context) -> ClusteringRule:
+        """Returns which contacts push, and which count as one.
+
+        Args:
+            context: Of this system.
+        """
+        self.ValidateContext(context)
+        return context.get_abstract_parameter(self._rule).get_value()
+
+    def set_rule(self, context: Context, rule: ClusteringRule) -> None:
+        """Changes which contacts push, and which count as one, from now on.
+
+        Contacts are looked for as far as the `ContactQuery` says: a larger tolerance
+        must be told there too.
+
+        Args:
+            context: Of this system.
+            rule: The new one.
+
+        Raises:
+            TypeError: It is no `ClusteringRule`.
+        """
+        self.ValidateContext(context)
+        if not isinstance(rule, ClusteringRule):
+            raise TypeError(f"rule must be a ClusteringRule, is {type(rule).__name__}")
+        context.get_mutable_abstract_parameter(self._rule).set_value(rule)
+
+    def get_contacts_input_port(self) -> InputPort:
+        """Returns the input `contacts`."""
+        return self._contacts
+
+    def get_relief_input_port(self) -> InputPort:
+        """Returns the input `relief`, with load shedding."""
+        return self.GetInputPort("relief")
+
+    def get_clusters_output_port(self) -> OutputPort:
+        """Returns the output `clusters`."""
+        return self._clusters
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffClusterSet:
+        """Returns the clusters with their derivatives."""
+        rule: ClusteringRule = at.parameters[self._rule]
+        if self._relief is None:
+            return _cluster(at["contacts"], rule.tolerance_m, rule.delta_m)
+        return _cluster_fewer(at["contacts"], rule, at["relief"].value)
+
+    def _calc_clusters(self, context: Context, clusters: AbstractValue) -> None:
+        rule = context.get_abstract_parameter(self._rule).get_value()
+        contacts = self._eval_contacts(context)
+        if self._warns_deep:
+            self._warn_of_depth(contacts, rule.tolerance_m)
+        clusters.set_value(_cluster(contacts, rule.tolerance_m, rule.delta_m))
+
+    def _warn_of_depth(self, contacts: ContactSet, tolerance_m: float) -> None:
+        """Warns of a deep contact, the first time."""
+        if question := question_depth(-contacts.least_distance, tolerance_m):
+            self._warns_deep = False
+            # Drake calls this: which of the user's lines it was is not known.
+            warnings.warn(question, SceneWarning, stacklevel=1)
+
+    def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:
+        assert self._relief is not None
+        clusters.set_value(
+            _cluster_fewer(
+                self._contacts.Eval(context),
+                self.get_rule(context),
+                self._relief.Eval(context),
+            )
+        )
+
+
+@overload
+def _cluster_fewer(
+    contacts: ContactSet, rule: ClusteringRule, relief: np.ndarray
+) -> ClusterSet: ...
+
+
+@overload
+def _cluster_fewer(
+    contacts: AutoDiffContactSet, rule: ClusteringRule, relief: np.ndarray
+) -> AutoDiffClusterSet: ...
+
+
+def _cluster_fewer(
+    contacts: ContactSet | AutoDiffContactSet, rule: ClusteringRule, relief: np.ndarray
+) -> ClusterSet | AutoDiffClusterSet:
+    """Applies a rule where the loop sheds load."""
+    _, reach_share, cell_m = relief
+    if cell_m > 0.0:
+        contacts = thin_contacts(contacts, cell_m)
+    return _cluster(contacts, reach_share * rule.tolerance_m, rule.delta_m)
+
+
+@overload
+def _cluster(
+    contacts: ContactSet, tolerance_m: float, delta_m: float | None
+) -> ClusterSet: ...
+
+
+@overload
+def _cluster(
+    contacts: AutoDiffContactSet, tolerance_m: float, delta_m: float | None
+) -> AutoDiffClusterSet: ...
+
+
+def _cluster(
+    contacts: ContactSet | AutoDiffContactSet,
+    tolerance_m: float,
+    delta_m: float | None,
+) -> ClusterSet | AutoDiffClusterSet:
+    if delta_m is None:
+        return share_stiffness(contacts, tolerance_m)
+    return cluster_contacts(contacts, delta_m, tolerance_m)

@@ -1,0 +1,302 @@
+"""Finds all contacts between the tool and its surroundings."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from pydrake.common.value import AbstractValue, Value
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import (
+    AbstractParameterIndex,
+    Context,
+    InputPort,
+    OutputPort,
+    ValueProducer,
+)
+
+from drake_haptics._core import (
+    AutoDiffContactSet,
+    AutoDiffVector,
+    Decomposition,
+    SceneTracker,
+    differentiate_contacts,
+)
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+
+DepthSearch = Literal["tracked", "global"]
+
+# What is known before the first query. (A Value of Drake 1.58 cannot hold None.)
+_NOTHING = "nothing"
+
+
+@dataclass(frozen=True)
+class ContactObject:
+    """Something the tool can meet.
+
+    Attributes:
+        name: Unique among the objects; part of port names.
+        decomposition: Its convex pieces, in its frame O.
+        X_WO: Its pose, if it never moves; None gives it input ports instead.
+    """
+
+    name: str
+    decomposition: Decomposition
+    X_WO: RigidTransform | None = None
+
+
+class ContactQuery(DifferentiableSystem):
+    """Contacts between the convex pieces of the tool and of the objects.
+
+    For each pair of pieces nearer than the tolerance there is one contact: signed
+    distance in m (negative: penetration depth), unit normal from the object into
+    the tool, both witness points in the world in m, both features.
+
+    .. pydrake_system::
+
+        name: ContactQuery
+        input_ports:
+        - X_WTool
+        - X_WO_<name of each object that moves>
+        - relief (with load shedding)
+        output_ports:
+        - contacts
+
+    `X_WTool` and `X_WO_<name>` are poses [qw qx qy qz x y z] in the world, m.
+    `contacts` is a `drake_haptics.ContactSet`, immutable. `relief` is that of
+    `LoadShedding`: contacts are looked for only up to its share of the tolerance.
+
+    The tolerance is an abstract parameter of the Context (index 1), a float; see
+    `set_tolerance`.
+
+    The search starts from its last answer in the same Context (paper, 5.2), and first
+    from the abstract parameter `hint` (index 0): what a query of another Context knew.
+    Without one it starts anew, and can find another way out of a deep penetration; so
+    call `prepare_conversion` before the parameters are copied. Objects with a pose of
+    their own are placed once for each Context.
+
+    Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`: the
+    features stay. There every answer starts from the hint, and is a function of the
+    Context alone.
+    """
+
+    def __init__(
+        self,
+        tool: Decomposition,
+        objects: Sequence[ContactObject],
+        tolerance_m: float,
+        depth: DepthSearch = "tracked",
+        max_walk_steps: int = 1024,
+        *,
+        sheds_load: bool = False,
+    ):
+        """Constructs the system.
+
+        Args:
+            tool: Convex pieces of the tool, in its frame.
+            objects: What it can meet, in the order of `ContactSet.object_index`.
+            tolerance_m: Pairs up to this distance are contacts, m, in a Context that
+                says no other.
+            depth: Of two pieces in overlap: that walked to from the last answer, or
+                the least one of all; see `drake_haptics.SceneTracker`.
+            max_walk_steps: Bound on the steps of such a walk, at least 1.
+            sheds_load: Whether the loop sheds load, and there is a port for that.
+
+        Raises:
+            ValueError: The tolerance is negative or not finite, there is no object, a
+                name is used twice, there is no such depth, or no step is allowed.
+        """
+        super().__init__()
+        _check_tolerance(tolerance_m)
+        if depth not in get_args(DepthSearch):
+            raise ValueError(f"depth must be 'tracked' or 'global', is {depth!r}")
+        if max_walk_steps < 1:
+            raise ValueError(f"max_walk_steps must be at least 1, is {max_walk_steps}")
+        if not objects:
+            raise ValueError("objects must name something that the tool can meet")
+        if len({item.name for item in objects}) < len(objects):
+            raise ValueError("two objects have the same name")
+        self._tool = tool
+        self._objects = tuple(objects)
+        self._depth: DepthSearch = depth
+        self._max_walk_steps = max_walk_steps
+        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._eval_X_WTool = self._X_WTool.Eval
+        self._X_WO = {
+            i: self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
+            for i, item in enumerate(objects)
+            if item.X_WO is None
+        }
+        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
+        self._hint = self.DeclareAbstractParameter(Value[object](_NOTHING))
+        self._tolerance = self.DeclareAbstractParameter(Value[object](tolerance_m))
+        from_tolerance = self.abstract_parameter_ticket(
+            AbstractParameterIndex(self._tolerance)
+        )
+        # The memory of a Context, which never changes an answer by more than round-off.
+        # That it is told of another tolerance as a cache entry costs a tick nothing.
+        self._tracker = self.DeclareCacheEntry(
+            description="tracker",
+            value_producer=ValueProducer(
+                allocate=lambda: Value[object](_NOTHING), calc=self._prepare_tracker
+            ),
+            prerequisites_of_calc={from_tolerance},
+        )
+        self._eval_tracker = self._tracker.Eval
+        self._contacts = self.DeclareAbstractOutputPort(
+            "contacts",
+            Value[object],
+            self._calc_contacts,
+            {self.all_input_ports_ticket(), from_tolerance},
+        )
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self._X_WTool
+
+    def get_object_pose_input_port(self, name: str) -> InputPort:
+        """Returns the input `X_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"X_WO_{name}")
+
+    def get_relief_input_port(self) -> InputPort:
+        """Returns the input `relief`, with load shedding."""
+        return self.GetInputPort("relief")
+
+    def get_contacts_output_port(self) -> OutputPort:
+        """Returns the output `contacts`."""
+        return self._contacts
+
+    def get_tolerance(self, context: Context) -> float:
+        """Returns the distance up to which pairs are contacts, m.
+
+        Args:
+            context: Of this system.
+        """
+        self.ValidateContext(context)
+        return context.get_abstract_parameter(self._tolerance).get_value()
+
+    def set_tolerance(self, context: Context, tolerance_m: float) -> None:
+        """Changes the distance up to which pairs are contacts, from now on.
+
+        What the query knows is kept: a deep penetration keeps its way out.
+
+        Args:
+            context: Of this system.
+            tolerance_m: The distance, m.
+
+        Raises:
+            ValueError: It is negative or not finite.
+        """
+        self.ValidateContext(context)
+        _check_tolerance(tolerance_m)
+        context.get_mutable_abstract_parameter(self._tolerance).set_value(tolerance_m)
+
+    def prepare_conversion(self, context: Context) -> None:
+        """Writes what the query knows into the parameter `hint`.
+
+        Args:
+            context: Of this system; the query of it is asked if it has not been.
+        """
+        self._contacts.Eval(context)
+        context.get_mutable_abstract_parameter(self._hint).set_value(
+            copy.deepcopy(self._tracker.Eval(context))
+        )
+
+    def learn(
+        self, context: Context, other: ContactQuery, other_context: Context
+    ) -> None:
+        """Begins from what another query knows, if it is of the same pieces.
+
+        Args:
+            context: Of this system, of which nothing has been asked.
+            other: It is asked if it has not been.
+            other_context: Of the other query.
+        """
+        if self._list_searched() == other._list_searched():
+            other._contacts.Eval(other_context)
+            context.get_mutable_abstract_parameter(self._hint).set_value(
+                copy.deepcopy(other._tracker.Eval(other_context))
+            )
+
+    def _list_searched(self) -> list[object]:
+        """Returns what a tracker holds for good, to be compared."""
+        pieces = [id(item.decomposition) for item in self._objects]
+        return [id(self._tool), pieces, self._depth, self._max_walk_steps]
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffContactSet:
+        """Returns the contacts with their derivatives."""
+        reach_m: float = at.parameters[self._tolerance]
+        tracker = self._make_tracker(at.parameters[self._hint], reach_m)
+        X_WO = [
+            at[f"X_WO_{item.name}"]
+            if item.X_WO is None
+            else AutoDiffVector(
+                pose_to_vector(item.X_WO), np.zeros((7, at.num_derivatives))
+            )
+            for item in self._objects
+        ]
+        for i in self._X_WO:
+            tracker.set_object_pose(i, X_WO[i].value)
+        if self._relief is not None:
+            reach_m *= at["relief"].value[1]
+        return differentiate_contacts(
+            tracker.query(at["X_WTool"].value, reach_m),
+            reach_m,
+            self._tool,
+            at["X_WTool"],
+            [item.decomposition for item in self._objects],
+            X_WO,
+        )
+
+    def _make_tracker(self, hint: object, tolerance_m: float) -> SceneTracker:
+        if isinstance(hint, SceneTracker):
+            tracker = copy.deepcopy(hint)
+            tracker.tolerance = tolerance_m
+        else:
+            tracker = SceneTracker(
+                self._tool,
+                [item.decomposition for item in self._objects],
+                tolerance_m,
+                self._depth,
+                self._max_walk_steps,
+            )
+        for i, item in enumerate(self._objects):
+            if item.X_WO is not None:
+                tracker.set_object_pose(i, item.X_WO)
+        return tracker
+
+    def _prepare_tracker(self, context: Context, value: AbstractValue) -> None:
+        """Makes the tracker of a Context, or tells it of another tolerance."""
+        tolerance_m = self.get_tolerance(context)
+        tracker = value.get_value()
+        if isinstance(tracker, SceneTracker):
+            tracker.tolerance = tolerance_m
+        else:
+            hint = context.get_abstract_parameter(self._hint).get_value()
+            value.set_value(self._make_tracker(hint, tolerance_m))
+
+    def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
+        tracker: SceneTracker = self._eval_tracker(context)
+        for i, port in self._X_WO.items():
+            tracker.set_object_pose(i, port.Eval(context))
+        X_WTool = self._eval_X_WTool(context)
+        if self._relief is None:
+            contacts.set_value(tracker.query(X_WTool))
+            return
+        reach_m = self.get_tolerance(context) * self._relief.Eval(context)[1]
+        contacts.set_value(tracker.query(X_WTool, reach_m))
+
+
+def _check_tolerance(tolerance_m: float) -> None:
+    if not (tolerance_m >= 0.0 and math.isfinite(tolerance_m)):
+        raise ValueError(
+            f"tolerance_m must be finite and not negative, is {tolerance_m}"
+        )

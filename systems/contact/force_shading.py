@@ -1,0 +1,156 @@
+"""Turns the normals of contacts to those of smooth surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pydrake.common.value import AbstractValue, Value
+from pydrake.systems.framework import Context, InputPort, OutputPort
+
+from drake_haptics._core import (
+    AutoDiffContactSet,
+    AutoDiffVector,
+    ContactShading,
+    Decomposition,
+    SurfaceShading,
+)
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+
+
+class ForceShading(DifferentiableSystem):
+    """Normals interpolated over the triangles under the witness points.
+
+    The direction of the force follows the smooth surface that a mesh stands for
+    instead of jumping from facet to facet (paper, 4.4.1; Morgenbesser and
+    Srinivasan 1996). Edges that turn by the crease angle or more stay sharp. Only
+    normals change, by 45° at most, so that no contact pulls.
+
+    .. pydrake_system::
+
+        name: ForceShading
+        input_ports:
+        - contacts
+        - X_WTool
+        - X_WO_<name of each object that moves>
+        output_ports:
+        - contacts
+
+    Poses are [qw qx qy qz x y z] in the world, m, those at which the contacts were
+    found. Both `contacts` are a `drake_haptics.ContactSet`, immutable.
+
+    Pieces of a decomposition that were not made from triangles (methods "hull" and
+    "coacd") keep the normals of their facets. A shaded force is not the gradient of
+    any energy: see the documentation for what a closed path can gain.
+
+    Under AutoDiffXd both `contacts` are a `drake_haptics._core.AutoDiffContactSet`.
+    Derivatives of the normals are complete: as they turn with the bodies and with the
+    place on the triangle. At an edge between triangles they are those of the triangle
+    that the witness point is taken to be on.
+    """
+
+    def __init__(
+        self,
+        tool: Decomposition,
+        objects: Sequence[ContactObject],
+        *,
+        crease_angle_deg: float,
+        shaded: Sequence[bool],
+    ):
+        """Constructs the system.
+
+        Args:
+            tool: That of the `ContactQuery`.
+            objects: Those of the `ContactQuery`, in the same order.
+            crease_angle_deg: Edges of less than this dihedral angle are smooth,
+                degrees.
+            shaded: Whether each object is. The tool is if one of them is.
+
+        Raises:
+            ValueError: The angle is not in [0, 180], or `shaded` has not one entry
+                for each object.
+        """
+        super().__init__()
+        if not 0.0 <= crease_angle_deg <= 180.0:
+            raise ValueError(
+                f"crease_angle_deg must be in [0, 180], is {crease_angle_deg}"
+            )
+        if len(shaded) != len(objects):
+            raise ValueError(
+                f"shaded must have one entry for each of the {len(objects)} objects, "
+                f"has {len(shaded)}"
+            )
+        crease_angle = np.deg2rad(crease_angle_deg)
+        self._shading = ContactShading(
+            SurfaceShading(tool, crease_angle if any(shaded) else 0.0),
+            [
+                SurfaceShading(item.decomposition, crease_angle if smooth else 0.0)
+                for item, smooth in zip(objects, shaded, strict=True)
+            ],
+        )
+        self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
+        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._X_WO = {
+            i: self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
+            for i, item in enumerate(objects)
+            if item.X_WO is None
+        }
+        # Poses of objects at rest are read nowhere else.
+        self._q_WO = np.zeros((len(objects), 7))
+        for i, item in enumerate(objects):
+            if item.X_WO is not None:
+                self._q_WO[i] = pose_to_vector(item.X_WO)
+        self._shaded_contacts = self.DeclareAbstractOutputPort(
+            "contacts",
+            Value[object],
+            self._calc_contacts,
+            {self.all_input_ports_ticket()},
+        )
+
+    def get_contacts_input_port(self) -> InputPort:
+        """Returns the input `contacts`."""
+        return self._contacts
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self._X_WTool
+
+    def get_object_pose_input_port(self, name: str) -> InputPort:
+        """Returns the input `X_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"X_WO_{name}")
+
+    def get_contacts_output_port(self) -> OutputPort:
+        """Returns the output `contacts`."""
+        return self._shaded_contacts
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffContactSet:
+        """Returns the shaded contacts with their derivatives."""
+        q_WO = self._q_WO.copy()
+        by_q_WO = np.zeros((*q_WO.shape, at.num_derivatives))
+        for i, input_port in self._X_WO.items():
+            X_WO = at[input_port.get_name()]
+            q_WO[i], by_q_WO[i] = X_WO.value, X_WO.gradient
+        return self._shading.shade(
+            at["contacts"],
+            at["X_WTool"],
+            AutoDiffVector(
+                q_WO.ravel(), by_q_WO.reshape(q_WO.size, at.num_derivatives)
+            ),
+        )
+
+    def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
+        q_WO = self._q_WO
+        if self._X_WO:
+            q_WO = q_WO.copy()
+            for i, port in self._X_WO.items():
+                q_WO[i] = port.Eval(context)
+        contacts.set_value(
+            self._shading.shade(
+                self._contacts.Eval(context), self._X_WTool.Eval(context), q_WO
+            )
+        )

@@ -1,0 +1,185 @@
+"""Drops work where a tick takes too long, in a stated order."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+import numpy as np
+from pydrake.systems.framework import (
+    Context,
+    DiscreteValues,
+    EventStatus,
+    OutputPort,
+)
+
+from drake_haptics._core import AutoDiffVector
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+
+# What is dropped, in this order.
+SHED_STAGES = ("drawing", "far near-contacts", "fine clusters")
+# A stage is dropped within so many ticks over the budget: one that the operating
+# system has delayed drops next to nothing, and what is felt changes smoothly.
+_TICKS_TO_DROP = 50
+# And comes back within so many that are well below it.
+_TICKS_TO_RESTORE = 1000
+_WELL_BELOW = 0.8
+# Near contacts are looked for, and push, as far as this share of the tolerance.
+_LEAST_REACH = 0.25
+
+
+class TickMeter:
+    """Times the work of each tick, from its first event to its last."""
+
+    def __init__(self, clock: Callable[[], float] = time.perf_counter):
+        """Begins with no tick.
+
+        Args:
+            clock: Reads the time, s.
+        """
+        self._clock = clock
+        self._start_s = math.inf
+        self._busy_s = 0.0
+
+    @property
+    def busy_s(self) -> float:
+        """What the last whole tick took, s; 0 before there is one."""
+        return self._busy_s
+
+    def begin(self) -> None:
+        """Notes that a tick begins."""
+        self._start_s = self._clock()
+
+    def end(self) -> None:
+        """Notes that it has ended; between two ticks that says nothing."""
+        if self._start_s < math.inf:
+            self._busy_s = self._clock() - self._start_s
+            self._start_s = math.inf
+
+
+class TickEnd(DifferentiableSystem):
+    """Ends the `TickMeter`'s tick. It must be the last system of its diagram.
+
+    .. pydrake_system::
+
+        name: TickEnd
+    """
+
+    def __init__(self, meter: TickMeter, period_s: float):
+        """Constructs the system.
+
+        Args:
+            meter: That of the `LoadShedding`.
+            period_s: From tick to tick, s.
+
+        Raises:
+            RuntimeError: The period is not positive.
+        """
+        super().__init__()
+        self._meter = meter
+        # Publish events of a time come when all else of the tick before is done.
+        self.DeclarePeriodicPublishEvent(period_s, 0.0, self._publish)
+
+    def _publish(self, context: Context) -> EventStatus:
+        self._meter.end()
+        return EventStatus.Succeeded()
+
+
+class LoadShedding(DifferentiableSystem):
+    """Says how much work a loop leaves out, so that its ticks stay within a budget.
+
+    Work is dropped in stages, each by degrees, and comes back in the reverse order:
+
+    1. drawing: no new frame is begun;
+    2. far near-contacts: the distance within which contacts are looked for, push and
+       brake shrinks to a quarter;
+    3. fine clusters: of contacts that are nearer to each other than a cell, and whose
+       normals differ by less than 45°, only the deepest pushes.
+
+    What penetrates is never left without a contact that is as deep, and the device's
+    limits, checks and gate are no work that could be dropped.
+
+    .. pydrake_system::
+
+        name: LoadShedding
+        output_ports:
+        - relief
+
+    `relief` (3) is [shed, reach share, cell]: how much is dropped, 0 (nothing) to 3
+    (all stages), the share of the distances that is left, 1 to 1/4, and the size of
+    the cell, m, 0 while all clusters count. It is the state, one discrete group,
+    updated every period from 0 s on.
+
+    The time of the last tick is an input that no Context has: it is read once per tick.
+    It must be the first system of its diagram with an update, and a `TickEnd` the last.
+    """
+
+    def __init__(
+        self, meter: TickMeter, period_s: float, budget_s: float, largest_cell_m: float
+    ):
+        """Constructs the system.
+
+        Args:
+            meter: Times the ticks.
+            period_s: From tick to tick, s.
+            budget_s: What the work of a tick may take, s.
+            largest_cell_m: Size of the cell where all is dropped, m.
+
+        Raises:
+            ValueError: A period, the budget or the cell is not positive.
+        """
+        super().__init__()
+        for name, value in [
+            ("period_s", period_s),
+            ("budget_s", budget_s),
+            ("largest_cell_m", largest_cell_m),
+        ]:
+            if not (value > 0.0 and math.isfinite(value)):
+                raise ValueError(f"{name} must be finite and positive, is {value}")
+        self._meter = meter
+        self._budget_s = budget_s
+        self._largest_cell_m = largest_cell_m
+        state = self.DeclareDiscreteState(self._describe(0.0))
+        self._relief = self.DeclareStateOutputPort("relief", state)
+        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+
+    def get_relief_output_port(self) -> OutputPort:
+        """Returns the output `relief`."""
+        return self._relief
+
+    def _update(self, context: Context, next_state: DiscreteValues) -> None:
+        shed = float(context.get_discrete_state_vector().value()[0])
+        next_state.set_value(self._describe(self._find_next(shed)))
+        self._meter.begin()
+
+    def _find_next(self, shed: float) -> float:
+        """Returns how much is dropped after the tick that was measured."""
+        if self._meter.busy_s > self._budget_s:
+            return min(float(len(SHED_STAGES)), shed + 1.0 / _TICKS_TO_DROP)
+        if self._meter.busy_s < _WELL_BELOW * self._budget_s:
+            return max(0.0, shed - 1.0 / _TICKS_TO_RESTORE)
+        return shed
+
+    def _describe(self, shed: float) -> np.ndarray:
+        """Returns `relief`."""
+        thinned = min(max(shed - 1.0, 0.0), 1.0)
+        coarsened = max(shed - 2.0, 0.0)
+        return np.array(
+            [
+                shed,
+                1.0 - (1.0 - _LEAST_REACH) * thinned,
+                self._largest_cell_m * coarsened,
+            ]
+        )
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the state."""
+        return at.state
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the state as it is: nothing is dropped by a linearization."""
+        return at.state

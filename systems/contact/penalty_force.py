@@ -1,0 +1,302 @@
+"""Answers contact clusters with forces."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from pydrake.common.value import AbstractValue, Value
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    InputPort,
+    OutputPort,
+)
+
+from drake_haptics._core import (
+    AutoDiffPenaltyWrench,
+    AutoDiffVector,
+    ContactMaterials,
+    PenaltyWrench,
+    penalty_force,
+    penalty_wrench_model,
+)
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.contact.object_motions import ObjectMotions
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+
+_GAINS = ("stiffness_N_per_m", "damping_Ns_per_m")
+
+
+@dataclass(frozen=True, eq=False)
+class ContactGains:
+    """How each object answers contact; immutable.
+
+    Attributes:
+        stiffness_N_per_m: k of each object, (n,), N/m.
+        damping_Ns_per_m: k_v of each object, (n,), N·s/m.
+        materials: Both as the core reads them.
+
+    Raises:
+        ValueError: A gain is negative or not finite, or not one of a list.
+    """
+
+    stiffness_N_per_m: np.ndarray
+    damping_Ns_per_m: np.ndarray
+    materials: ContactMaterials = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Checks the gains and takes read-only copies."""
+        for name in _GAINS:
+            gains = getattr(self, name)
+            copied = np.array(gains, dtype=float)
+            if copied.ndim != 1:
+                raise ValueError(
+                    f"{name} must have one value for each object, (n,), is {gains}"
+                )
+            for gain in copied:
+                if not (gain >= 0.0 and math.isfinite(gain)):
+                    raise ValueError(
+                        f"{name} must be finite and not negative, has {gain:g}"
+                    )
+            copied.flags.writeable = False
+            object.__setattr__(self, name, copied)
+        if len(self.stiffness_N_per_m) != len(self.damping_Ns_per_m):
+            raise ValueError(
+                "stiffness_N_per_m and damping_Ns_per_m must have one value for each"
+                f" object, have {len(self.stiffness_N_per_m)} and"
+                f" {len(self.damping_Ns_per_m)}"
+            )
+        materials = ContactMaterials(self.stiffness_N_per_m, self.damping_Ns_per_m)
+        object.__setattr__(self, "materials", materials)
+
+    def __deepcopy__(self, memo: object) -> ContactGains:
+        """Returns itself, so that it crosses into copies of a Context."""
+        return self
+
+
+class PenaltyForce(DifferentiableSystem):
+    """Elastic force below the tolerance, with damping that never pulls.
+
+    Each cluster pushes with k times its compression along n at its point, and with
+    k_v times the speed of approach and its damping share more where the surfaces
+    approach. With the octree's clusters that is (k (t - d) - k_v v) n of the paper
+    (Eq. 6-10).
+
+    .. pydrake_system::
+
+        name: PenaltyForce
+        input_ports:
+        - clusters
+        - X_WTool
+        - V_WTool
+        - X_WO_<name of each object that moves>
+        - V_WO_<name of each object that moves>
+        output_ports:
+        - wrench_model
+        - F_Tool_W
+        - F_O_W (with objects that move)
+        - contact_wrench
+
+    Poses are [qw qx qy qz x y z], m. `V_WTool` and `V_WO_<name>` are spatial
+    velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
+
+    * `clusters` is a `drake_haptics._core.ClusterSet`.
+    * `wrench_model` (78) is [F; K; B]: the wrench on the tool at its origin in the
+      world, N·m and N, and its 6 x 6 stiffness and damping, row-major, with
+      F(δ, V + dV) ≈ F - K δ - B dV, δ = [rotation vector; translation] of the tool.
+    * `F_Tool_W` (6) is its F, [τ; f].
+    * `F_O_W` (6 for each object that moves) are the wrenches [τ; f] on those objects,
+      each at its origin in the world, N·m and N.
+    * `contact_wrench` is the `drake_haptics._core.PenaltyWrench` with the force of
+      each cluster and the wrench on each object.
+
+    Under AutoDiffXd `clusters` is an `AutoDiffClusterSet` and `contact_wrench` an
+    `AutoDiffPenaltyWrench` of `drake_haptics._core`. K and B have derivatives of
+    their own there, by which the tool's implicit step changes.
+
+    k and k_v are an abstract parameter of the Context, of type `ContactGains`; see
+    `set_gains`.
+    """
+
+    def __init__(
+        self,
+        objects: Sequence[ContactObject],
+        stiffness_N_per_m: Sequence[float],
+        damping_Ns_per_m: Sequence[float],
+    ):
+        """Constructs the system.
+
+        Args:
+            objects: Those of the `ContactQuery`, in the same order.
+            stiffness_N_per_m: k of each object, N/m, in a Context that says no other.
+            damping_Ns_per_m: k_v of each object, N·s/m, the same.
+
+        Raises:
+            ValueError: A gain is negative or not finite, or there is not one for
+                each object.
+        """
+        super().__init__()
+        self._num_objects = len(objects)
+        gains = ContactGains(np.array(stiffness_N_per_m), np.array(damping_Ns_per_m))
+        self._check_number(gains)
+        self._gains = self.DeclareAbstractParameter(Value[object](gains))
+        self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())
+        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
+        self._eval_clusters = self._clusters.Eval
+        self._eval_X_WTool = self._X_WTool.Eval
+        self._eval_V_WTool = self._V_WTool.Eval
+        self._motions = ObjectMotions(self, objects)
+        from_inputs = {self.all_input_ports_ticket(), self.pa_ticket()}
+        self._wrench_model = self.DeclareVectorOutputPort(
+            "wrench_model", 78, self._calc_wrench_model, from_inputs
+        )
+        self._F_Tool_W = self.DeclareVectorOutputPort(
+            "F_Tool_W", 6, self._calc_F_Tool_W, from_inputs
+        )
+        self._moving = [i for i, item in enumerate(objects) if item.X_WO is None]
+        if self._moving:
+            self.DeclareVectorOutputPort(
+                "F_O_W", 6 * len(self._moving), self._calc_F_O_W, from_inputs
+            )
+        self._contact_wrench = self.DeclareAbstractOutputPort(
+            "contact_wrench",
+            Value[object],
+            self._calc_contact_wrench,
+            from_inputs,
+        )
+        # A plant asks for the wrench on the tool and the reaction of objects that move:
+        # these share the answer that `contact_wrench` keeps. A haptic loop asks for
+        # `wrench_model` alone, and to call the core then takes less time.
+        self._eval_wrench: Callable[[Context], PenaltyWrench] = (
+            self._contact_wrench.Eval if self._moving else self._calc_wrench
+        )
+
+    def get_gains(self, context: Context) -> ContactGains:
+        """Returns how each object answers contact.
+
+        Args:
+            context: Of this system.
+        """
+        self.ValidateContext(context)
+        return context.get_abstract_parameter(self._gains).get_value()
+
+    def set_gains(self, context: Context, gains: ContactGains) -> None:
+        """Changes how each object answers contact, from now on.
+
+        Args:
+            context: Of this system.
+            gains: One of each kind for each object, in their order.
+
+        Raises:
+            TypeError: They are no `ContactGains`.
+            ValueError: There is not one for each object.
+        """
+        self.ValidateContext(context)
+        if not isinstance(gains, ContactGains):
+            raise TypeError(f"gains must be ContactGains, is {type(gains).__name__}")
+        self._check_number(gains)
+        context.get_mutable_abstract_parameter(self._gains).set_value(gains)
+
+    def get_clusters_input_port(self) -> InputPort:
+        """Returns the input `clusters`."""
+        return self._clusters
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self._X_WTool
+
+    def get_tool_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_WTool`."""
+        return self._V_WTool
+
+    def get_object_pose_input_port(self, name: str) -> InputPort:
+        """Returns the input `X_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"X_WO_{name}")
+
+    def get_object_velocity_input_port(self, name: str) -> InputPort:
+        """Returns the input `V_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"V_WO_{name}")
+
+    def get_wrench_model_output_port(self) -> OutputPort:
+        """Returns the output `wrench_model`."""
+        return self._wrench_model
+
+    def get_tool_wrench_output_port(self) -> OutputPort:
+        """Returns the output `F_Tool_W`."""
+        return self._F_Tool_W
+
+    def get_object_wrenches_output_port(self) -> OutputPort:
+        """Returns the output `F_O_W`; there is none if no object moves."""
+        return self.GetOutputPort("F_O_W")
+
+    def get_contact_wrench_output_port(self) -> OutputPort:
+        """Returns the output `contact_wrench`."""
+        return self._contact_wrench
+
+    def differentiate(
+        self, port: str, at: AutoDiffPoint
+    ) -> AutoDiffVector | AutoDiffPenaltyWrench:
+        """Returns a wrench, or all that is known of them, with derivatives."""
+        X_WTool = at["X_WTool"]
+        p_WO, V_WO = self._motions.differentiate(at)
+        gains: ContactGains = at.parameters[self._gains]
+        wrench = penalty_force(
+            at["clusters"],
+            AutoDiffVector(X_WTool.value[4:], X_WTool.gradient[4:]),
+            at["V_WTool"],
+            p_WO,
+            V_WO,
+            gains.stiffness_N_per_m,
+            gains.damping_Ns_per_m,
+        )
+        if port == "contact_wrench":
+            return wrench
+        if port == "F_O_W":
+            F = wrench.F_objects_W
+            rows = [6 * i + k for i in self._moving for k in range(6)]
+            return AutoDiffVector(F.value[rows], F.gradient[rows])
+        return wrench.F_Tool_W if port == "F_Tool_W" else wrench.wrench_model
+
+    def _read(self, context: Context) -> tuple[Any, ...]:
+        """Returns what the law is a function of."""
+        return (
+            self._eval_clusters(context),
+            self._eval_X_WTool(context),
+            self._eval_V_WTool(context),
+            self._motions.read(context),
+            context.get_abstract_parameter(self._gains).get_value().materials,
+        )
+
+    def _check_number(self, gains: ContactGains) -> None:
+        """Refuses gains that are not one for each object."""
+        for name in _GAINS:
+            values = getattr(gains, name)
+            if len(values) != self._num_objects:
+                raise ValueError(
+                    f"{name} must have one value for each of the {self._num_objects}"
+                    f" objects, has {len(values)}"
+                )
+
+    def _calc_wrench(self, context: Context) -> PenaltyWrench:
+        return penalty_force(*self._read(context))
+
+    def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
+        output.set_value(penalty_wrench_model(*self._read(context)))
+
+    def _calc_F_Tool_W(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._eval_wrench(context).F_Tool_W)
+
+    def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
+        wrench = self._eval_wrench(context)
+        output.SetFromVector(wrench.F_objects_W[self._moving].ravel())
+
+    def _calc_contact_wrench(self, context: Context, output: AbstractValue) -> None:
+        output.set_value(self._calc_wrench(context))

@@ -1,0 +1,195 @@
+"""Brakes the tool before it touches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from pydrake.common.value import AbstractValue, Value
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    InputPort,
+    OutputPort,
+    ValueProducer,
+)
+
+from drake_haptics._core import AutoDiffVector, BrakingGains, pre_contact_braking
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.contact.object_motions import ObjectMotions
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+
+
+class PreContactBraking(DifferentiableSystem):
+    """Viscous force against the approach of surfaces that do not touch yet.
+
+    At each contact with 0 < d < D, D the braking's distance, the tool is pushed with
+    b s w v along the normal, v the speed of approach at the contact; never pulled,
+    never held back when it leaves (McNeely, Puterbaugh and Troy 1999). The profile
+    w = 4 (d/D) (1 - d/D) fades at both ends, so that the wrench is continuous in pose
+    and velocity. On a straight way to a surface a mass m loses 2 b D / (3 m) of its
+    speed, at any speed.
+
+    The share s of a contact keeps those with like normals from adding up, however
+    finely a surface is cut, and leaves others alone (core/braking.h). The damping is
+    at most 1.1 b where all normals are alike, and 4.4 b along any direction.
+
+    .. pydrake_system::
+
+        name: PreContactBraking
+        input_ports:
+        - contacts
+        - X_WTool
+        - V_WTool
+        - X_WO_<name of each object that moves>
+        - V_WO_<name of each object that moves>
+        - relief (with load shedding)
+        output_ports:
+        - wrench_model
+        - F_O_W (with objects that move)
+
+    `contacts` is a `drake_haptics.ContactSet`; contacts must have been looked for up
+    to D at least. Poses are [qw qx qy qz x y z], m. `V_WTool` and `V_WO_<name>` are
+    spatial velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
+    `relief` is that of `LoadShedding`: D is as much less as it says.
+
+    `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
+    documents it. K is zero: the braking changes with the pose only as the speed does.
+    `F_O_W` (6 for each object that moves) is the reaction: wrenches [τ; f] on those
+    objects, each at its origin in the world, N·m and N.
+
+    Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`.
+    Derivatives are complete: profile, shares and normals change with the pose. Where a
+    contact begins or ends to brake (d = 0, d = D) they are those of a contact that does
+    not; at rest they are the mean of approach and parting.
+    """
+
+    def __init__(
+        self,
+        objects: Sequence[ContactObject],
+        *,
+        damping_Ns_per_m: float,
+        distance_m: float,
+        sheds_load: bool = False,
+    ):
+        """Constructs the system.
+
+        Args:
+            objects: Those of the `ContactQuery`, in the same order.
+            damping_Ns_per_m: b, the damping half-way to the surface, N·s/m.
+            distance_m: D, where braking begins, m.
+            sheds_load: Whether the loop sheds load, and there is a port for that.
+
+        Raises:
+            ValueError: The damping is negative, the distance not positive, or one of
+                them not finite.
+        """
+        super().__init__()
+        self._gains = BrakingGains(damping_Ns_per_m, distance_m)
+        self._damping_Ns_per_m = damping_Ns_per_m
+        self._distance_m = distance_m
+        self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
+        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
+        self._motions = ObjectMotions(self, objects)
+        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
+        from_inputs = {self.all_input_ports_ticket()}
+        self._wrench_model = self.DeclareVectorOutputPort(
+            "wrench_model", 78, self._calc_wrench_model, from_inputs
+        )
+        # Rows of the objects that move, in what the core returns.
+        self._moving = [
+            78 + 6 * i + k
+            for i, item in enumerate(objects)
+            if item.X_WO is None
+            for k in range(6)
+        ]
+        self._eval_wrenches: Callable[[Context], np.ndarray] = self._calc_wrenches
+        if self._moving:
+            self.DeclareVectorOutputPort(
+                "F_O_W", len(self._moving), self._calc_F_O_W, from_inputs
+            )
+            # The reaction is asked for beside the wrench on the tool.
+            shared = self.DeclareCacheEntry(
+                description="wrenches",
+                value_producer=ValueProducer(
+                    allocate=lambda: Value[object](), calc=self._keep_wrenches
+                ),
+                prerequisites_of_calc=from_inputs,
+            )
+            self._eval_wrenches = shared.Eval
+
+    def get_contacts_input_port(self) -> InputPort:
+        """Returns the input `contacts`."""
+        return self._contacts
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self._X_WTool
+
+    def get_tool_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_WTool`."""
+        return self._V_WTool
+
+    def get_object_pose_input_port(self, name: str) -> InputPort:
+        """Returns the input `X_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"X_WO_{name}")
+
+    def get_object_velocity_input_port(self, name: str) -> InputPort:
+        """Returns the input `V_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"V_WO_{name}")
+
+    def get_relief_input_port(self) -> InputPort:
+        """Returns the input `relief`, with load shedding."""
+        return self.GetInputPort("relief")
+
+    def get_wrench_model_output_port(self) -> OutputPort:
+        """Returns the output `wrench_model`."""
+        return self._wrench_model
+
+    def get_object_wrenches_output_port(self) -> OutputPort:
+        """Returns the output `F_O_W`; there is none if no object moves."""
+        return self.GetOutputPort("F_O_W")
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the wrench model, or the reaction, with its derivatives."""
+        X_WTool = at["X_WTool"]
+        wrenches = pre_contact_braking(
+            at["contacts"],
+            AutoDiffVector(X_WTool.value[4:], X_WTool.gradient[4:]),
+            at["V_WTool"],
+            *self._motions.differentiate(at),
+            self._gains
+            if self._relief is None
+            else self._relieve(float(at["relief"].value[1])),
+        )
+        rows = self._moving if port == "F_O_W" else slice(78)
+        return AutoDiffVector(wrenches.value[rows], wrenches.gradient[rows])
+
+    def _calc_wrenches(self, context: Context) -> np.ndarray:
+        """Returns the wrench model (78,) and the wrench (6) on each object."""
+        return pre_contact_braking(
+            self._contacts.Eval(context),
+            self._X_WTool.Eval(context)[4:],
+            self._V_WTool.Eval(context),
+            self._motions.read(context),
+            self._gains
+            if self._relief is None
+            else self._relieve(self._relief.Eval(context)[1]),
+        )
+
+    def _relieve(self, reach_share: float) -> BrakingGains:
+        """Returns the gains where braking begins only at a share of D."""
+        return BrakingGains(self._damping_Ns_per_m, reach_share * self._distance_m)
+
+    def _keep_wrenches(self, context: Context, value: AbstractValue) -> None:
+        value.set_value(self._calc_wrenches(context))
+
+    def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._eval_wrenches(context)[:78])
+
+    def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._eval_wrenches(context)[self._moving])

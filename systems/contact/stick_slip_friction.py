@@ -1,0 +1,215 @@
+"""Holds the tool by friction where it touches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pydrake.common.value import AbstractValue, Value
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    DiscreteValues,
+    InputPort,
+    OutputPort,
+    ValueProducer,
+)
+
+from drake_haptics._core import (
+    AutoDiffFrictionStep,
+    AutoDiffVector,
+    FrictionStep,
+    StickSlipModel,
+)
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+
+_NOTHING_MOVES = np.zeros(0)
+
+
+class StickSlipFriction(DifferentiableSystem):
+    """Friction of the clusters, after Hayward and Armstrong (2000; paper, 4.4.2).
+
+    Each contact has an adhesion point and is drawn back to it by a force that grows
+    with the displacement z and with the normal force N. It sticks up to the static
+    limit, r μ N after `break_away_m`, and slides at μ N. The force is a function of
+    displacement only: at rest nothing creeps. Contacts hand their adhesion on from
+    tick to tick, so that the force does not jump where they merge, split or cross a
+    seam; and no change of the normal force makes energy. The formulas are in
+    `core/friction_law.h` and `core/friction_tracking.h`.
+
+    .. pydrake_system::
+
+        name: StickSlipFriction
+        input_ports:
+        - clusters
+        - contact_wrench
+        - X_WTool
+        - X_WO_<name of each object that moves>
+        output_ports:
+        - wrench_model
+        - friction_force
+
+    Poses are [qw qx qy qz x y z] in the world, m.
+
+    * `clusters` is a `drake_haptics._core.ClusterSet`.
+    * `contact_wrench` is their `drake_haptics._core.PenaltyWrench`, whose forces are
+      the normal forces.
+    * `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
+      documents it. B is zero: the implicit step damps what sticks.
+    * `friction_force` is the `drake_haptics._core.FrictionStep` with the force on the
+      tool at each cluster, whether it slides, and the elastic energy.
+
+    The outputs are a function of the inputs now and of the state, without a sample of
+    delay. The state is one discrete group, [X_WTool (7); X_WO (7) of each object that
+    moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z_W (3), load (N), grip]: the
+    poses and the strongest contacts of the last tick, updated every period from 0 s
+    on. A slot without a load is empty.
+
+    Under AutoDiffXd `clusters`, `contact_wrench` and `friction_force` are an
+    `AutoDiffClusterSet`, an `AutoDiffPenaltyWrench` and an `AutoDiffFrictionStep` of
+    `drake_haptics._core`. Derivatives are those of the branch taken: of each contact as
+    it sticks or slides now, of its grip as it wears or is restored, and of its load,
+    which is kept where the normal force N falls and follows where N grows; the force
+    is smooth there, K and the grip have a kink. At no displacement, where the length of
+    z has a kink, that length does not change.
+    """
+
+    def __init__(
+        self,
+        objects: Sequence[ContactObject],
+        *,
+        period_s: float,
+        coefficient: Sequence[float],
+        break_away_m: float,
+        static_ratio: float = 1.2,
+        reach_m: float = 5e-3,
+    ):
+        """Constructs the system.
+
+        Args:
+            objects: Those of the `ContactQuery`, in the same order.
+            period_s: The tick, s.
+            coefficient: μ of sliding of each object. One at 0 has no friction.
+            break_away_m: How far a contact gives way before it slips, m.
+            static_ratio: r, static over sliding coefficient.
+            reach_m: A contact whose place changes by this from one tick to the next
+                keeps half of its friction, m.
+
+        Raises:
+            ValueError: The period, `break_away_m` or `reach_m` is not positive, a
+                coefficient is negative, there is not one for each object, or
+                `static_ratio` is below 1.
+        """
+        super().__init__()
+        if not period_s > 0.0:
+            raise ValueError(f"period_s must be positive, is {period_s}")
+        self._model = StickSlipModel(
+            list(coefficient),
+            [item.X_WO is None for item in objects],
+            static_ratio,
+            break_away_m,
+            reach_m,
+        )
+        self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())
+        self._contact_wrench = self.DeclareAbstractInputPort(
+            "contact_wrench", Value[object]()
+        )
+        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._X_WO = [
+            self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
+            for item in objects
+            if item.X_WO is None
+        ]
+        self.DeclareDiscreteState(self._model.state_size)
+        from_all = {self.all_input_ports_ticket(), self.xd_ticket()}
+        # Output and update of a tick share one answer of the core.
+        self._step = self.DeclareCacheEntry(
+            description="step",
+            value_producer=ValueProducer(
+                allocate=lambda: Value[object](), calc=self._calc_step
+            ),
+            prerequisites_of_calc=from_all,
+        )
+        from_step = {self._step.ticket()}
+        self._wrench_model = self.DeclareVectorOutputPort(
+            "wrench_model", 78, self._calc_wrench_model, from_step
+        )
+        self._friction_force = self.DeclareAbstractOutputPort(
+            "friction_force", Value[object], self._calc_friction_force, from_step
+        )
+        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+
+    def get_clusters_input_port(self) -> InputPort:
+        """Returns the input `clusters`."""
+        return self._clusters
+
+    def get_contact_wrench_input_port(self) -> InputPort:
+        """Returns the input `contact_wrench`."""
+        return self._contact_wrench
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self._X_WTool
+
+    def get_object_pose_input_port(self, name: str) -> InputPort:
+        """Returns the input `X_WO_<name>` of an object that moves."""
+        return self.GetInputPort(f"X_WO_{name}")
+
+    def get_wrench_model_output_port(self) -> OutputPort:
+        """Returns the output `wrench_model`."""
+        return self._wrench_model
+
+    def get_friction_force_output_port(self) -> OutputPort:
+        """Returns the output `friction_force`."""
+        return self._friction_force
+
+    def differentiate(
+        self, port: str, at: AutoDiffPoint
+    ) -> AutoDiffVector | AutoDiffFrictionStep:
+        """Returns the wrench model or the step with its derivatives."""
+        step = self._differentiate_step(at)
+        return step.wrench_model if port == "wrench_model" else step
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the next state with its derivatives."""
+        return self._differentiate_step(at).next_state
+
+    def _differentiate_step(self, at: AutoDiffPoint) -> AutoDiffFrictionStep:
+        poses = [at[port.get_name()] for port in self._X_WO]
+        q_WO = AutoDiffVector(
+            np.concatenate([_NOTHING_MOVES, *(q.value for q in poses)]),
+            np.vstack(
+                [np.zeros((0, at.num_derivatives)), *(q.gradient for q in poses)]
+            ),
+        )
+        return self._model.step(
+            at.state, at["clusters"], at["contact_wrench"], at["X_WTool"], q_WO
+        )
+
+    def _calc_step(self, context: Context, step: AbstractValue) -> None:
+        poses = [port.Eval(context) for port in self._X_WO]
+        step.set_value(
+            self._model.step(
+                context.get_discrete_state_vector().value(),
+                self._clusters.Eval(context),
+                self._contact_wrench.Eval(context),
+                self._X_WTool.Eval(context),
+                np.concatenate(poses) if poses else _NOTHING_MOVES,
+            )
+        )
+
+    def _eval_step(self, context: Context) -> FrictionStep:
+        return self._step.Eval(context)
+
+    def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._eval_step(context).wrench_model)
+
+    def _calc_friction_force(self, context: Context, output: AbstractValue) -> None:
+        output.set_value(self._eval_step(context))
+
+    def _update(self, context: Context, next_state: DiscreteValues) -> None:
+        next_state.set_value(self._eval_step(context).next_state)

@@ -1,0 +1,1 @@
+"""The systems of the device port, whatever is behind it."""

@@ -1,0 +1,125 @@
+"""The device port: wrench in, pose out, whatever is behind it."""
+
+from __future__ import annotations
+
+from pydrake.systems.framework import (
+    Diagram,
+    DiagramBuilder,
+    InputPort,
+    OutputPort,
+    System,
+)
+
+from drake_haptics.systems.device.display_force_hold import DisplayForceHold
+
+
+class HapticDevice(Diagram):
+    """A haptic device, real or simulated, behind one set of ports.
+
+    .. pydrake_system::
+
+        name: HapticDevice
+        input_ports:
+        - F_display
+        - handle_slopes (if the backend has it)
+        output_ports:
+        - X_WH
+        - V_WH
+        - F_applied
+        - status
+        - reading (if the backend has it)
+
+    * `F_display` (6) is the wrench [τ; f] to show at the handle's origin, in the
+      world, N·m and N.
+    * `handle_slopes` (72) is that of `DeviceIo`.
+    * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
+    * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
+    * `F_applied` and `status` are those of the `DisplayForceHold` before the device.
+    * `reading` is that of `DeviceIo`.
+
+    A backend is a system with the input `F_applied` and the outputs `X_WH` and
+    `V_WH`, neither of which depends directly on the input: a `SimulatedArm`, or a
+    `DeviceIo` for any other device.
+    """
+
+    def __init__(
+        self,
+        backend: System,
+        *,
+        period_s: float,
+        max_force_N: float,
+        max_torque_Nm: float,
+    ):
+        """Constructs the device.
+
+        Args:
+            backend: What is behind the port, not yet in a diagram.
+            period_s: The tick, s.
+            max_force_N: Largest force shown, N.
+            max_torque_Nm: Largest torque shown, N·m.
+
+        Raises:
+            ValueError: The period or a limit is out of range.
+        """
+        super().__init__()
+        self._max_force_N = max_force_N
+        self._max_torque_Nm = max_torque_Nm
+        builder = DiagramBuilder()
+        hold = builder.AddNamedSystem(
+            "display_force_hold",
+            DisplayForceHold(period_s, max_force_N, max_torque_Nm),
+        )
+        builder.AddSystem(backend)
+        builder.Connect(
+            hold.get_applied_wrench_output_port(), backend.GetInputPort("F_applied")
+        )
+        builder.ExportInput(hold.get_display_wrench_input_port(), "F_display")
+        self._wants_slopes = backend.HasInputPort("handle_slopes")
+        if self._wants_slopes:
+            builder.ExportInput(backend.GetInputPort("handle_slopes"), "handle_slopes")
+        builder.ExportOutput(backend.GetOutputPort("X_WH"), "X_WH")
+        builder.ExportOutput(backend.GetOutputPort("V_WH"), "V_WH")
+        builder.ExportOutput(hold.get_applied_wrench_output_port(), "F_applied")
+        builder.ExportOutput(hold.get_status_output_port(), "status")
+        if backend.HasOutputPort("reading"):
+            builder.ExportOutput(backend.GetOutputPort("reading"), "reading")
+        builder.BuildInto(self)
+
+    @property
+    def max_force_N(self) -> float:
+        """Largest force shown, N."""
+        return self._max_force_N
+
+    @property
+    def max_torque_Nm(self) -> float:
+        """Largest torque shown, N·m."""
+        return self._max_torque_Nm
+
+    @property
+    def wants_slopes(self) -> bool:
+        """Whether there is a backend that can use `handle_slopes`."""
+        return self._wants_slopes
+
+    def get_display_wrench_input_port(self) -> InputPort:
+        """Returns the input `F_display`."""
+        return self.GetInputPort("F_display")
+
+    def get_handle_slopes_input_port(self) -> InputPort:
+        """Returns the input `handle_slopes`; there must be one."""
+        return self.GetInputPort("handle_slopes")
+
+    def get_handle_pose_output_port(self) -> OutputPort:
+        """Returns the output `X_WH`."""
+        return self.GetOutputPort("X_WH")
+
+    def get_handle_velocity_output_port(self) -> OutputPort:
+        """Returns the output `V_WH`."""
+        return self.GetOutputPort("V_WH")
+
+    def get_applied_wrench_output_port(self) -> OutputPort:
+        """Returns the output `F_applied`."""
+        return self.GetOutputPort("F_applied")
+
+    def get_status_output_port(self) -> OutputPort:
+        """Returns the output `status`."""
+        return self.GetOutputPort("status")

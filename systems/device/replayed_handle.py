@@ -1,0 +1,80 @@
+"""A device backend that moves its handle as a log says."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    Diagram,
+    DiagramBuilder,
+    LeafSystem,
+)
+
+from drake_haptics.systems.framework.vector_ports import export_parts
+
+
+class ReplayedHandle(Diagram):
+    """The handle of a recorded run, tick by tick, bit for bit.
+
+    .. pydrake_system::
+
+        name: ReplayedHandle
+        input_ports:
+        - F_applied
+        output_ports:
+        - X_WH
+        - V_WH
+
+    * `F_applied` (6) is not used: a recorded hand does not yield.
+    * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
+    * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
+
+    From tick k to the next one both are those that the updates of tick k saw when the
+    run was recorded; after the last tick they stay.
+    """
+
+    def __init__(self, X_WH: np.ndarray, V_WH: np.ndarray, period_s: float):
+        """Constructs the system.
+
+        Args:
+            X_WH: (n, 7) poses of the handle at each tick, n at least 1.
+            V_WH: (n, 6) spatial velocities.
+            period_s: The tick, s.
+
+        Raises:
+            ValueError: There is no tick, the two differ in length, or the period is
+                not positive.
+        """
+        super().__init__()
+        if not period_s > 0.0:
+            raise ValueError(f"period_s must be positive, is {period_s}")
+        if not len(X_WH) == len(V_WH) > 0:
+            raise ValueError(
+                f"X_WH and V_WH must have as many ticks and at least one, have"
+                f" {len(X_WH)} and {len(V_WH)}"
+            )
+        builder = DiagramBuilder()
+        states = np.hstack([X_WH, V_WH])
+        motion = builder.AddNamedSystem("motion", _RecordedMotion(states, period_s))
+        builder.ExportInput(motion.get_input_port(), "F_applied")
+        export_parts(builder, motion.get_output_port(), {"X_WH": 7, "V_WH": 6})
+        builder.BuildInto(self)
+
+
+class _RecordedMotion(LeafSystem):
+    """[X_WH; V_WH] as a function of time."""
+
+    def __init__(self, states: np.ndarray, period_s: float):
+        super().__init__()
+        self._states = states
+        self._period_s = period_s
+        self.DeclareVectorInputPort("F_applied", 6)
+        self.DeclareVectorOutputPort(
+            "handle_state", 13, self._calc_handle_state, {self.time_ticket()}
+        )
+
+    def _calc_handle_state(self, context: Context, output: BasicVector) -> None:
+        # Between ticks the last one holds. At a tick itself round-off must not count.
+        tick = int(context.get_time() / self._period_s + 1e-6)
+        output.SetFromVector(self._states[min(tick, len(self._states) - 1)])

@@ -1,0 +1,1 @@
+"""Building blocks of systems: derivatives, and ports for parts of vectors."""

@@ -1,0 +1,1 @@
+"""Devices over LCM: messages to vectors and back."""

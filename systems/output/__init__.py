@@ -1,0 +1,1 @@
+"""Systems that draw a loop and record it."""

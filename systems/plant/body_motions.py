@@ -1,0 +1,136 @@
+"""Tool and objects as bodies of a plant: how they move."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from pydrake.autodiffutils import AutoDiffXd
+from pydrake.common.value import AbstractValue
+from pydrake.math import RigidTransform_
+from pydrake.multibody.math import SpatialVelocity_
+from pydrake.multibody.tree import BodyIndex
+from pydrake.systems.framework import (
+    Diagram,
+    DiagramBuilder,
+    InputPort,
+    LeafSystem_,
+    OutputPort,
+)
+from pydrake.systems.scalar_conversion import TemplateSystem
+
+from drake_haptics.systems.framework.vector_ports import export_parts
+
+
+class BodyMotions(Diagram):
+    """Poses and velocities of the bodies that take part, out of all of a plant's.
+
+    .. pydrake_system::
+
+        name: BodyMotions
+        input_ports:
+        - body_poses
+        - body_spatial_velocities
+        output_ports:
+        - X_WTool
+        - V_WTool
+        - X_WO_<name of each object>
+        - V_WO_<name of each object>
+
+    The inputs are the lists of a `MultibodyPlant`'s ports of these names.
+
+    * `X_WTool` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
+      frames in the world, m.
+    * `V_WTool` and `V_WO_<name>` (6) are their spatial velocities [ω; v] at the
+      frame's origin in the world, rad/s and m/s.
+
+    It has no state, and converts to AutoDiffXd.
+    """
+
+    def __init__(self, tool: BodyIndex, objects: Mapping[str, BodyIndex]):
+        """Constructs the system.
+
+        Args:
+            tool: The body that is the tool.
+            objects: Bodies of the objects that move, by the names of the objects.
+        """
+        super().__init__()
+        builder = DiagramBuilder()
+        vector = builder.AddNamedSystem(
+            "vector", _BodyMotionsVector([tool, *objects.values()])
+        )
+        for port in map(vector.get_input_port, range(2)):
+            builder.ExportInput(port, port.get_name())
+        sizes = {"X_WTool": 7, "V_WTool": 6}
+        for name in objects:
+            sizes |= {f"X_WO_{name}": 7, f"V_WO_{name}": 6}
+        export_parts(builder, vector.get_output_port(), sizes)
+        builder.BuildInto(self)
+
+    def get_body_poses_input_port(self) -> InputPort:
+        """Returns the input `body_poses`."""
+        return self.GetInputPort("body_poses")
+
+    def get_body_velocities_input_port(self) -> InputPort:
+        """Returns the input `body_spatial_velocities`."""
+        return self.GetInputPort("body_spatial_velocities")
+
+    def get_pose_output_port(self) -> OutputPort:
+        """Returns the output `X_WTool`."""
+        return self.GetOutputPort("X_WTool")
+
+    def get_velocity_output_port(self) -> OutputPort:
+        """Returns the output `V_WTool`."""
+        return self.GetOutputPort("V_WTool")
+
+    def get_object_pose_output_port(self, name: str) -> OutputPort:
+        """Returns the output `X_WO_<name>`."""
+        return self.GetOutputPort(f"X_WO_{name}")
+
+    def get_object_velocity_output_port(self, name: str) -> OutputPort:
+        """Returns the output `V_WO_<name>`."""
+        return self.GetOutputPort(f"V_WO_{name}")
+
+
+@TemplateSystem.define("_BodyMotionsVector_", T_list=(float, AutoDiffXd))
+def _BodyMotionsVector_(T: type) -> type:
+    class Impl(LeafSystem_[T]):
+        """All outputs of a `BodyMotions`, one after another."""
+
+        def _construct(self, bodies: list[BodyIndex], converter: Any = None) -> None:
+            LeafSystem_[T].__init__(self, converter=converter)
+            self._bodies = [int(body) for body in bodies]
+            self._poses = self.DeclareAbstractInputPort(
+                "body_poses", AbstractValue.Make([RigidTransform_[T]()])
+            )
+            self._velocities = self.DeclareAbstractInputPort(
+                "body_spatial_velocities", AbstractValue.Make([SpatialVelocity_[T]()])
+            )
+            self.DeclareVectorOutputPort(
+                "motions",
+                13 * len(bodies),
+                self._calc_motions,
+                {self.all_input_ports_ticket()},
+            )
+
+        def _construct_copy(self, other: Any, converter: Any = None) -> None:
+            Impl._construct(self, other._bodies, converter=converter)
+
+        def _calc_motions(self, context: Any, motions: Any) -> None:
+            poses = self._poses.Eval(context)
+            velocities = self._velocities.Eval(context)
+            parts = []
+            for body in self._bodies:
+                X_WB = poses[body]
+                parts += [
+                    X_WB.rotation().ToQuaternion().wxyz(),
+                    X_WB.translation(),
+                    velocities[body].get_coeffs(),
+                ]
+            motions.SetFromVector(np.concatenate(parts))
+
+    return Impl
+
+
+_BodyMotionsVector = _BodyMotionsVector_[None]

@@ -1,0 +1,171 @@
+"""The tool as a rigid body with an implicit step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import (
+    Context,
+    Diagram,
+    DiagramBuilder,
+    DiscreteValues,
+    InputPort,
+    OutputPort,
+)
+
+from drake_haptics._core import AutoDiffVector, RigidToolDynamics
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+from drake_haptics.systems.framework.vector_ports import export_parts
+
+
+class HapticTool(Diagram):
+    """A free rigid body that linearized backward Euler moves once per tick.
+
+    The step takes each force with its stiffness and damping, so that contact of
+    any stiffness is stable (Otaduy and Lin 2006): with the sum of all models
+    [F; K; B], (M + h B + h² K) dV = h (F - h K V).
+
+    .. pydrake_system::
+
+        name: HapticTool
+        input_ports:
+        - <name of each wrench>
+        output_ports:
+        - X_WTool
+        - V_WTool
+
+    Each input is a wrench model (78) as `PenaltyForce` documents it; one that is
+    not connected counts as zero.
+
+    * `X_WTool` (7) is the pose [qw qx qy qz x y z] in the world, m.
+    * `V_WTool` (6) is the spatial velocity [ω; v] of the tool's origin in the
+      world, rad/s and m/s.
+
+    The state is one discrete group (13), [X_WTool; V_WTool], updated every period
+    from 0 s on.
+    """
+
+    def __init__(
+        self,
+        dynamics: RigidToolDynamics,
+        period_s: float,
+        wrench_names: Sequence[str],
+        X_WT: RigidTransform,
+    ):
+        """Constructs the system.
+
+        Args:
+            dynamics: Mass and inertia.
+            period_s: The tick, s.
+            wrench_names: A name for each input port.
+            X_WT: Default pose; the tool starts at rest.
+
+        Raises:
+            ValueError: The period is not positive.
+        """
+        super().__init__()
+        if not period_s > 0.0:
+            raise ValueError(f"period_s must be positive, is {period_s}")
+        self._dynamics = dynamics
+        self._period_s = period_s
+        builder = DiagramBuilder()
+        step = builder.AddNamedSystem(
+            "step", _ImplicitStep(dynamics, period_s, wrench_names, X_WT)
+        )
+        for name in wrench_names:
+            builder.ExportInput(step.GetInputPort(name), name)
+        export_parts(builder, step.get_output_port(), {"X_WTool": 7, "V_WTool": 6})
+        builder.BuildInto(self)
+
+    @property
+    def dynamics(self) -> RigidToolDynamics:
+        """Mass and inertia."""
+        return self._dynamics
+
+    @property
+    def period_s(self) -> float:
+        """The tick, s."""
+        return self._period_s
+
+    def get_wrench_input_port(self, name: str) -> InputPort:
+        """Returns the input of a wrench."""
+        return self.GetInputPort(name)
+
+    def get_pose_output_port(self) -> OutputPort:
+        """Returns the output `X_WTool`."""
+        return self.GetOutputPort("X_WTool")
+
+    def get_velocity_output_port(self) -> OutputPort:
+        """Returns the output `V_WTool`."""
+        return self.GetOutputPort("V_WTool")
+
+
+_STATE_NAMES = "qw qx qy qz x y z wx wy wz vx vy vz".split()
+
+
+class _ImplicitStep(DifferentiableSystem):
+    """The state of a `HapticTool`, and its update."""
+
+    def __init__(
+        self,
+        dynamics: RigidToolDynamics,
+        period_s: float,
+        wrench_names: Sequence[str],
+        X_WT: RigidTransform,
+    ):
+        super().__init__()
+        self._dynamics = dynamics
+        self._period_s = period_s
+        self._wrenches = [
+            self.DeclareVectorInputPort(name, 78) for name in wrench_names
+        ]
+        self._eval_wrenches = [port.Eval for port in self._wrenches]
+        state = self.DeclareDiscreteState(
+            np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
+        )
+        self._eval_state = self.DeclareStateOutputPort("state", state).Eval
+        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+
+    def _update(self, context: Context, next_state: DiscreteValues) -> None:
+        try:
+            wrench_models = [
+                eval_wrench(context) for eval_wrench in self._eval_wrenches
+            ]
+        except RuntimeError:
+            # To ask first would take as long as to read, at every tick.
+            wrench_models = [
+                port.Eval(context) for port in self._wrenches if port.HasValue(context)
+            ]
+        next_state.set_value(
+            self._dynamics.step(
+                self._eval_state(context), wrench_models, self._period_s
+            )
+        )
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the state."""
+        return at.state
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the next state with its derivatives."""
+        models = [
+            at[port.get_name()] for port in self._wrenches if port.get_name() in at
+        ]
+        wrench_model = AutoDiffVector(
+            sum((model.value for model in models), np.zeros(78)),
+            sum(
+                (model.gradient for model in models),
+                np.zeros((78, at.num_derivatives)),
+            ),
+        )
+        return self._dynamics.step(at.state, wrench_model, self._period_s)
+
+    def list_state_names(self) -> list[str]:
+        """Returns a name for each number of the state."""
+        return list(_STATE_NAMES)

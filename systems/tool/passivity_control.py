@@ -1,0 +1,205 @@
+"""Keeps the haptic loop from giving the device energy that it did not get."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    Diagram,
+    DiagramBuilder,
+    DiscreteValues,
+    InputPort,
+    OutputPort,
+)
+from pydrake.systems.primitives import Demultiplexer
+
+from drake_haptics._core import AutoDiffVector, PassivityBounds, passivity_control
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+
+_AT_ORIGIN = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+
+
+class PassivityControl(Diagram):
+    """Passivity observer and controller at the device's port, in the time domain.
+
+    The observer keeps the balance of the energy that the virtual world has received
+    from the device. The wrench on a device is held between ticks, so its work is
+    exactly force times way and, about an axis that stands still, torque times angle
+    (Ryu, Kim and Hannaford 2004); no velocity is needed. Where the balance is below
+    zero, the world has given out more than it got, and the controller adds the damping
+    that dissipates the excess within a tick at the measured twist, up to a largest
+    one (Hannaford and Ryu 2002; in six axes Preusche et al. 2003). What is left is
+    carried over. The controller never adds power to the handle, and where the
+    balance is not negative `F_display` is `F_asked` bit for bit.
+
+    A long contact that dissipates would fill the balance without end, and the
+    controller would come late. Therefore the balance is kept at `reserve_J` at most,
+    to be chosen as the largest energy that the world can honestly give back
+    (`drake_haptics.bounds.sampled_spring.calc_returnable_energy`).
+
+    .. pydrake_system::
+
+        name: PassivityControl
+        input_ports:
+        - F_asked
+        - F_applied
+        - X_WH
+        - V_WH
+        output_ports:
+        - F_display
+        - energy_J
+
+    Wrenches are [τ; f] on the handle at its origin in the world, N·m and N.
+
+    * `F_asked` is what the coupling would show.
+    * `F_applied` is the `HapticDevice`'s: what has been held, after its limits, since
+      the last tick.
+    * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m, and `V_WH`
+      its spatial velocity [ω; v], rad/s and m/s.
+    * `F_display` depends directly on all inputs: there is no delay. The device's hold
+      samples it.
+    * `energy_J` (1) is the balance, J.
+
+    The state is one discrete group (8), [balance; X_WH at the last tick], updated
+    every period from 0 s on.
+
+    Derivatives are those of the branch taken: nothing is damped, a share, or with all
+    of the damping; the balance is below the reserve or kept at it.
+    """
+
+    def __init__(
+        self,
+        *,
+        period_s: float,
+        max_damping_Ns_per_m: float,
+        max_rotational_damping_Nms_per_rad: float,
+        reserve_J: float,
+    ):
+        """Constructs the system.
+
+        Args:
+            period_s: The tick, s; the device's.
+            max_damping_Ns_per_m: Largest damping, N·s/m. A sampled damper b is itself
+                stable on a device of mass m only below 2 m / period_s.
+            max_rotational_damping_Nms_per_rad: Largest rotational damping, N·m·s/rad.
+            reserve_J: Largest balance that is kept, J.
+
+        Raises:
+            ValueError: The period is not positive, another one is negative, or one of
+                them is not finite.
+        """
+        super().__init__()
+        bounds = PassivityBounds(
+            period_s,
+            max_damping_Ns_per_m,
+            max_rotational_damping_Nms_per_rad,
+            reserve_J,
+        )
+        builder = DiagramBuilder()
+        port = builder.AddNamedSystem("port", _ObservedPort(bounds, period_s))
+        self._port = port
+        for i in range(port.num_input_ports()):
+            builder.ExportInput(
+                port.get_input_port(i), port.get_input_port(i).get_name()
+            )
+        parts = builder.AddNamedSystem("parts", Demultiplexer([6, 1, 7]))
+        builder.Connect(port.get_output_port(), parts.get_input_port(0))
+        builder.ExportOutput(parts.get_output_port(0), "F_display")
+        builder.ExportOutput(parts.get_output_port(1), "energy_J")
+        builder.BuildInto(self)
+
+    def begin(self, context: Context) -> None:
+        """Begins with a balance of zero where the handle is.
+
+        A wrench may be held there already: for a control that is added to a loop that
+        runs.
+
+        Args:
+            context: Of this system.
+        """
+        self._port.begin(self.GetMutableSubsystemContext(self._port, context))
+
+    def get_asked_wrench_input_port(self) -> InputPort:
+        """Returns the input `F_asked`."""
+        return self.GetInputPort("F_asked")
+
+    def get_applied_wrench_input_port(self) -> InputPort:
+        """Returns the input `F_applied`."""
+        return self.GetInputPort("F_applied")
+
+    def get_handle_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WH`."""
+        return self.GetInputPort("X_WH")
+
+    def get_handle_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_WH`."""
+        return self.GetInputPort("V_WH")
+
+    def get_display_wrench_output_port(self) -> OutputPort:
+        """Returns the output `F_display`."""
+        return self.GetOutputPort("F_display")
+
+    def get_energy_output_port(self) -> OutputPort:
+        """Returns the output `energy_J`."""
+        return self.GetOutputPort("energy_J")
+
+
+class _ObservedPort(DifferentiableSystem):
+    """The state of a `PassivityControl`, and both outputs from one call of the core."""
+
+    def __init__(self, bounds: PassivityBounds, period_s: float):
+        super().__init__()
+        self._bounds = bounds
+        self._F_asked = self.DeclareVectorInputPort("F_asked", 6)
+        self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
+        self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
+        self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
+        # At the first tick no wrench has been held: any pose does.
+        self.DeclareDiscreteState(np.array([0.0, *_AT_ORIGIN]))
+        # What is shown, and the state after it.
+        self._shown_and_state = self.DeclareVectorOutputPort(
+            "shown_and_state",
+            14,
+            self._calc_shown_and_state,
+            {self.all_input_ports_ticket(), self.xd_ticket()},
+        )
+        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+
+    def _calc_shown_and_state(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(
+            passivity_control(
+                context.get_discrete_state_vector().value(),
+                self._F_applied.Eval(context),
+                self._F_asked.Eval(context),
+                self._X_WH.Eval(context),
+                self._V_WH.Eval(context),
+                self._bounds,
+            )
+        )
+
+    def begin(self, context: Context) -> None:
+        """Begins with a balance of zero where the handle is."""
+        context.SetDiscreteState(np.array([0.0, *self._X_WH.Eval(context)]))
+
+    def _update(self, context: Context, next_state: DiscreteValues) -> None:
+        next_state.set_value(self._shown_and_state.Eval(context)[6:])
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns what is shown and the state with their derivatives."""
+        return passivity_control(
+            at.state,
+            at["F_applied"],
+            at["F_asked"],
+            at["X_WH"],
+            at["V_WH"],
+            self._bounds,
+        )
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the next state with its derivatives."""
+        both = self.differentiate("shown_and_state", at)
+        return AutoDiffVector(both.value[6:], both.gradient[6:])

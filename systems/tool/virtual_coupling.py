@@ -1,0 +1,180 @@
+"""The spring and damper between the device's handle and the tool."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.math import RigidTransform
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    Diagram,
+    DiagramBuilder,
+    InputPort,
+    OutputPort,
+)
+from pydrake.systems.primitives import ConstantVectorSource
+
+from drake_haptics._core import AutoDiffVector, CouplingGains, joined_coupling_wrench
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+)
+from drake_haptics.systems.framework.vector_ports import export_parts, import_parts
+
+
+class VirtualCoupling(Diagram):
+    """Six-axis spring and damper between handle and tool.
+
+    It draws the tool to X_WH X_HT; what it does to the handle is the reaction. The
+    device thus feels at most this stiffness, however stiff the contact is
+    (Adams and Hannaford 1999). It has no state and adds no delay.
+
+    It pulls with no more than the gains' `max_force_N` and `max_torque_Nm`, those of
+    the device in a loop: what stretches it further presses the tool no harder.
+
+    .. pydrake_system::
+
+        name: VirtualCoupling
+        input_ports:
+        - X_WH
+        - V_WH
+        - X_WTool
+        - V_WTool
+        output_ports:
+        - wrench_model
+        - F_display
+
+    `X_WH` and `X_WTool` are poses [qw qx qy qz x y z] of the handle and the tool in
+    the world, m; `V_WH` and `V_WTool` their spatial velocities [ω; v] at the
+    frame's origin, rad/s and m/s.
+
+    * `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
+      documents it.
+    * `F_display` (6) is the wrench [τ; f] on the handle at its origin in the world,
+      N·m and N.
+
+    The gains are a numeric parameter (6) of the Context, in the order of
+    `drake_haptics._core.CouplingGains`; see `set_gains`. Outputs have no derivatives
+    by them.
+    """
+
+    def __init__(self, gains: CouplingGains, X_HT: RigidTransform):
+        """Constructs the system.
+
+        Args:
+            gains: Of the spring and the damper, in a Context that says no other.
+            X_HT: Pose of the tool in the handle at which the spring rests.
+        """
+        super().__init__()
+        self._X_HT = X_HT
+        builder = DiagramBuilder()
+        spring = builder.AddNamedSystem("spring", _SpringAndDamper(X_HT))
+        # Drake's own system has them among its parameters, and hands them on with
+        # the motions: for Python to read a parameter takes longer than the law.
+        self._gains = builder.AddNamedSystem(
+            "gains", ConstantVectorSource(_to_vector(gains))
+        )
+        import_parts(
+            builder,
+            spring.get_input_port(),
+            _MOTIONS,
+            self._gains.get_output_port(),
+        )
+        export_parts(
+            builder, spring.get_output_port(), {"wrench_model": 78, "F_display": 6}
+        )
+        builder.BuildInto(self)
+
+    def get_gains(self, context: Context) -> CouplingGains:
+        """Returns the gains of the spring and the damper.
+
+        Args:
+            context: Of this system.
+        """
+        own = self.GetSubsystemContext(self._gains, context)
+        return CouplingGains(*self._gains.get_source_value(own).value())
+
+    def set_gains(self, context: Context, gains: CouplingGains) -> None:
+        """Changes the gains, from now on.
+
+        Args:
+            context: Of this system.
+            gains: Of the spring and the damper.
+
+        Raises:
+            TypeError: They are no `CouplingGains`.
+        """
+        if not isinstance(gains, CouplingGains):
+            raise TypeError(f"gains must be CouplingGains, is {type(gains).__name__}")
+        own = self.GetMutableSubsystemContext(self._gains, context)
+        self._gains.get_mutable_source_value(own).SetFromVector(_to_vector(gains))
+
+    @property
+    def X_HT(self) -> RigidTransform:
+        """Pose of the tool in the handle at which the spring rests."""
+        return self._X_HT
+
+    def get_handle_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WH`."""
+        return self.GetInputPort("X_WH")
+
+    def get_handle_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_WH`."""
+        return self.GetInputPort("V_WH")
+
+    def get_tool_pose_input_port(self) -> InputPort:
+        """Returns the input `X_WTool`."""
+        return self.GetInputPort("X_WTool")
+
+    def get_tool_velocity_input_port(self) -> InputPort:
+        """Returns the input `V_WTool`."""
+        return self.GetInputPort("V_WTool")
+
+    def get_wrench_model_output_port(self) -> OutputPort:
+        """Returns the output `wrench_model`."""
+        return self.GetOutputPort("wrench_model")
+
+    def get_display_wrench_output_port(self) -> OutputPort:
+        """Returns the output `F_display`."""
+        return self.GetOutputPort("F_display")
+
+
+# What the spring and damper are given, with the gains after it.
+_MOTIONS = {"X_WH": 7, "V_WH": 6, "X_WTool": 7, "V_WTool": 6}
+
+
+def _to_vector(gains: CouplingGains) -> np.ndarray:
+    """Returns gains (6,) in the order in which they are constructed."""
+    return np.array(
+        [
+            gains.stiffness_N_per_m,
+            gains.damping_Ns_per_m,
+            gains.rotational_stiffness_Nm_per_rad,
+            gains.rotational_damping_Nms_per_rad,
+            gains.max_force_N,
+            gains.max_torque_Nm,
+        ]
+    )
+
+
+class _SpringAndDamper(DifferentiableSystem):
+    """Both wrenches of a `VirtualCoupling` from one call of the core."""
+
+    def __init__(self, X_HT: RigidTransform):
+        super().__init__()
+        self._q_HT = pose_to_vector(X_HT)
+        # Bound once: to look a method up at each tick takes as long as to add vectors.
+        self._eval_joined = self.DeclareVectorInputPort("motions_and_gains", 32).Eval
+        self.DeclareVectorOutputPort(
+            "wrenches", 84, self._calc_wrenches, {self.all_input_ports_ticket()}
+        )
+
+    def _calc_wrenches(self, context: Context, wrenches: BasicVector) -> None:
+        wrenches.set_value(
+            joined_coupling_wrench(self._eval_joined(context), self._q_HT)
+        )
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the wrenches with their derivatives."""
+        return joined_coupling_wrench(at["motions_and_gains"], self._q_HT)
