@@ -14,6 +14,8 @@ EVERYTHING = [
     {"do": "choose", "key": "contact.clustering", "to": "octree"},
     {"do": "set", "key": "contact.cluster_size_m", "to": 1e-2},
     *({"do": "effect", "name": name, "on": True} for name in EFFECTS),
+    {"do": "set", "key": "effects.friction.break_away_m", "to": 2e-4},
+    {"do": "set", "key": "effects.braking.distance_m", "to": 5e-3},
     {"do": "effect", "name": "gravity", "on": False},
 ]
 
@@ -147,3 +149,35 @@ def test_what_cannot_be_is_refused_and_changes_nothing(changes, request_, messag
     with pytest.raises(ChangeError, match=message):
         changes.obey(request_)
     assert changes.scene is changes.file
+
+
+def test_values_of_an_effect_can_be_set_while_it_is_on(changes):
+    key = "effects.friction.coefficient"
+
+    def find():
+        return [item for item in changes.list_keys() if item.key == key]
+
+    assert find() == []
+    with pytest.raises(ChangeError, match="no value"):
+        changes.set(key, 0.5)
+    changes.switch_effect("friction", True)
+    [item] = find()
+    # What the file does not name is at its default.
+    assert changes.read_file(item) == item.read(changes.scene) == 0.3
+    changes.set(key, 0.5)
+    assert changes.scene.effects.friction.coefficient == 0.5
+    assert find() == [item]
+    with pytest.raises(ChangeError, match="from 0 to 1, is 2"):
+        changes.set(key, 2.0)
+    changes.switch_effect("friction", False)
+    assert find() == []
+
+
+def test_a_coefficient_that_every_material_overrides_is_not_offered(changes):
+    changes.switch_effect("friction", True)
+    for item in changes.scene.environment:
+        item.material.friction_coefficient = 0.2
+    changes.restore(changes.scene)
+    keys = {item.key for item in changes.list_keys()}
+    assert "effects.friction.break_away_m" in keys
+    assert "effects.friction.coefficient" not in keys

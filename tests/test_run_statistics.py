@@ -62,6 +62,18 @@ def test_counts_and_largest_values():
     assert figures["max_force_N"] == pytest.approx(8.5)
     assert figures["max_torque_Nm"] == pytest.approx(0.15)
     assert figures["max_penetration_m"] == 2e-4
+    assert figures["least_distance_m"] == -2e-4
+
+
+def test_the_least_gap_is_told_of_near_contacts_alone():
+    """What fits is measured by it: a smaller tolerance would not be felt there."""
+    statistics = RunStatistics(1e-3)
+    assert statistics.to_dict()["least_distance_m"] is None
+    for distance_m in (np.inf, 8e-4, 3e-4, 5e-4):
+        add(statistics, distance_m=distance_m)
+    figures = statistics.to_dict()
+    assert figures["least_distance_m"] == 3e-4
+    assert figures["max_penetration_m"] == 0.0
 
 
 @pytest.mark.parametrize("ticks", [4, 400])

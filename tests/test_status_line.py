@@ -150,11 +150,12 @@ def test_the_summary_has_the_figures(haptic):
 
 def test_a_force_without_penetration_is_explained(haptic):
     _, figures = run_with_status(haptic, terminal=False)
-    for depth_m, is_explained in [(1e-4, False), (0.0, True)]:
+    for distance_m, is_explained in [(-1e-4, False), (4.2e-4, True), (None, False)]:
         text = io.StringIO()
-        figures["max_penetration_m"] = depth_m
+        figures["least_distance_m"] = distance_m
         Console(file=text, width=320).print(make_summary(figures))
         assert ("contact.tolerance_m" in text.getvalue()) == is_explained
+        assert ("stayed 0.420 mm apart" in text.getvalue()) == is_explained
 
 
 def energy_line(haptic, **changes):

@@ -197,10 +197,13 @@ def make_summary(figures: dict[str, Any]) -> Table:
 
 def _explain_near_force(figures: dict[str, Any]) -> str:
     """Returns where a force without penetration comes from; empty if there is none."""
-    is_near = figures["contacts"]["max"] > 0 and figures["max_penetration_m"] == 0.0
-    if not is_near or figures["max_force_N"] == 0.0:
+    distance_m = figures["least_distance_m"]
+    if distance_m is None or distance_m < 0.0 or figures["max_force_N"] == 0.0:
         return ""
-    return ": force begins before surfaces touch, at contact.tolerance_m"
+    return (
+        f"; surfaces stayed {1e3 * distance_m:.3f} mm apart: force begins before they"
+        " touch, at contact.tolerance_m; what is to fit needs one below its clearance"
+    )
 
 
 def _describe_energy(energy_J: dict[str, dict[str, float]]) -> str:

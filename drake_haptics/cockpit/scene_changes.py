@@ -16,7 +16,7 @@ from drake_haptics.scene.schema import (
     Scene,
     Shading,
 )
-from drake_haptics.simulation.live_key import LiveKey, live_keys
+from drake_haptics.simulation.live_key import LiveKey, effect_keys, live_keys
 
 SCENE_VERBS = ("set", "choose", "effect", "reset")
 CLUSTERING = "contact.clustering"
@@ -66,7 +66,17 @@ class SceneChanges:
         """
         if item.key == _CLUSTER_SIZE:
             return self._cluster_size_m
-        return item.read(self._file)
+        return item.read(self._with_file_effects(item))
+
+    def _with_file_effects(self, item: LiveKey) -> Scene:
+        """Returns the file's scene; with the effect of a key that it does not name."""
+        if item.group != "effects":
+            return self._file
+        name = item.key.split(".")[1]
+        effects = {name: getattr(self._file.effects, name) or EFFECTS[name]()}
+        return dataclasses.replace(
+            self._file, effects=dataclasses.replace(self._file.effects, **effects)
+        )
 
     @property
     def _cluster_size_m(self) -> float:
@@ -88,8 +98,8 @@ class SceneChanges:
         item = self._keys[key]
         if not item.low <= to <= item.high:
             raise ChangeError(
-                f"{key} must be from {item.low:g} to {item.high:g} {item.unit},"
-                f" is {to:g}."
+                f"{key} must be from"
+                f" {f'{item.low:g} to {item.high:g} {item.unit}'.rstrip()}, is {to:g}."
             )
         self.scene = item.change(self.scene, float(to))
 
@@ -127,16 +137,17 @@ class SceneChanges:
                 self._file.environment, self.scene.environment, strict=True
             )
         ]
-        self.scene = dataclasses.replace(
-            self.scene, effects=effects, environment=environment
+        self.restore(
+            dataclasses.replace(self.scene, effects=effects, environment=environment)
         )
 
     def restore(self, scene: Scene) -> None:
         """Makes the scene what it was before, or what its file says."""
         self.scene = scene
-        self._keys = {**_find_keys(scene), **self._keys_of_file}
-        if scene.contact.cluster_size_m is None:
-            self._keys.pop(_CLUSTER_SIZE, None)
+        self._keys = {
+            key: self._keys_of_file.get(key, item)
+            for key, item in _find_keys(scene).items()
+        }
 
     def obey(self, request: dict[str, Any]) -> None:
         """Does what a page asks for.
@@ -193,7 +204,7 @@ class SceneChanges:
 
 def _find_keys(scene: Scene) -> dict[str, LiveKey]:
     """Returns the values that can be set, by their keys."""
-    return {item.key: item for item in live_keys(scene)}
+    return {item.key: item for item in (*live_keys(scene), *effect_keys(scene))}
 
 
 def _make_material(file: Material, now: Material, effects: Effects) -> Material:

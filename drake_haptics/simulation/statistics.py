@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TypedDict
 
@@ -48,6 +49,7 @@ class RunFigures(TypedDict):
     max_force_N: float
     max_torque_Nm: float
     max_penetration_m: float
+    least_distance_m: float | None
     limit_hits: int
     non_finite_events: int
     energy_J: dict[str, dict[str, float]]
@@ -75,7 +77,7 @@ class RunStatistics:
         self._ticks = 0
         self._max_force_N = 0.0
         self._max_torque_Nm = 0.0
-        self._max_penetration_m = 0.0
+        self._least_distance_m = math.inf
         self._limit_hits = 0
         self._shed_ticks = dict.fromkeys(SHED_STAGES, 0)
         self._non_finite_events = 0
@@ -86,7 +88,7 @@ class RunStatistics:
             f"RunStatistics({count(self._ticks, 'tick')} of "
             f"{1e3 * self._period_s:g} ms, at most "
             f"{self._max_force_N:.3g} N, {self._max_torque_Nm:.3g} N·m and "
-            f"{1e3 * self._max_penetration_m:.3g} mm deep)"
+            f"{1e3 * self.max_penetration_m:.3g} mm deep)"
         )
 
     @property
@@ -98,7 +100,7 @@ class RunStatistics:
     def max_penetration_m(self) -> float:
         """Depth of the deepest contact so far, m."""
         self._digest()
-        return self._max_penetration_m
+        return max(0.0, -self._least_distance_m)
 
     def book(self, ledger: EnergyLedger) -> None:
         """Tells from now on of the energy in a ledger, where the run books it."""
@@ -155,7 +157,7 @@ class RunStatistics:
         self._records[np.arange(self._ticks, end) % _MAX_RECORDS] = block[:, :4]
         self._ticks = end
         distance, torque, force, status = np.split(block[:, 4:], [1, 4, 7], axis=1)
-        self._max_penetration_m = max(self._max_penetration_m, -float(distance.min()))
+        self._least_distance_m = min(self._least_distance_m, float(distance.min()))
         self._max_torque_Nm = max(self._max_torque_Nm, _largest_norm(torque))
         self._max_force_N = max(self._max_force_N, _largest_norm(force))
         self._limit_hits += int(np.count_nonzero(status == LIMITED))
@@ -167,14 +169,16 @@ class RunStatistics:
         Keys: `ticks`, `duration_s` (simulated), `tick_us` and `contact_query_us`
         (each with `median`, `p99`, `p99_9`, `max`), `contacts` and `clusters` (each
         with `median`, `max`), `max_force_N`, `max_torque_Nm`, `max_penetration_m`,
-        `limit_hits` and `non_finite_events` (numbers of ticks), `energy_J` (by the
-        name of the part, as `EnergyLedger.to_dict` tells; empty without a ledger),
+        `least_distance_m` (of the nearest contact, negative in depth; None without
+        one), `limit_hits` and `non_finite_events` (numbers of ticks), `energy_J` (by
+        the name of the part, as `EnergyLedger.to_dict` tells; empty without a ledger),
         `lateness_us` (of a paced run, `p50`, `p99`, `p99_9` and `skipped`, the number
         of ticks lost to stalls; else empty), `shed_ticks` (numbers of ticks that left
         out each of `SHED_STAGES`).
         """
         self._digest()
         tick_s, query_s, contacts, clusters = self._records[: self._ticks].T
+        nearest_m = self._least_distance_m
         return {
             "ticks": self._ticks,
             "duration_s": self._ticks * self._period_s,
@@ -184,7 +188,8 @@ class RunStatistics:
             "clusters": _describe_counts(clusters),
             "max_force_N": self._max_force_N,
             "max_torque_Nm": self._max_torque_Nm,
-            "max_penetration_m": self._max_penetration_m,
+            "max_penetration_m": self.max_penetration_m,
+            "least_distance_m": nearest_m if math.isfinite(nearest_m) else None,
             "limit_hits": self._limit_hits,
             "non_finite_events": self._non_finite_events,
             "energy_J": self._ledger.to_dict() if self._ledger is not None else {},

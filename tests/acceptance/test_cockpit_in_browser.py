@@ -212,6 +212,26 @@ def test_a_coupling_that_may_shake_is_warned_of_at_its_slider(page):
     page.wait_for(f"{note}.hidden && document.getElementById('{DAMPING}').value == 2")
 
 
+def test_an_effect_has_sliders_below_its_switch_while_it_is_on(page):
+    key = "effects.friction.coefficient"
+    is_there = f"document.getElementById('{key}') != null"
+    assert not page.evaluate(is_there)
+    page.click("#effect-friction")
+    page.wait_for(is_there)
+    row = f"document.getElementById('{key}').closest('.slider')"
+    above = f"{row}.previousElementSibling.querySelector('input').id"
+    assert page.evaluate(above) == "effect-friction"
+    type_value(page, key, "0.6")
+    # The run says so, of the diagram that it has then.
+    page.wait_for(f"{row}.classList.contains('changed')")
+    page.click("#copy")
+    page.wait_for("document.getElementById('yaml').textContent.includes('0.6')")
+    page.press("Escape")
+    page.wait_for("!document.getElementById('yaml-dialog').open")
+    page.click("#effect-friction")
+    page.wait_for(f"!({is_there})")
+
+
 def test_views_change_the_picture_and_back(page):
     page.wait_for_rest()
     first = look(page)

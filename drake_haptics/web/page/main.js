@@ -24,8 +24,9 @@ const DEEP = "The tool is deep in an object: a stiffer contact holds it further 
 // Contacts push from the tolerance on: one that is soft on purpose gives way by about as much again.
 const DEEP_TOLERANCES = 2;
 const MAKERS = {
-  keys: makeSliders, choices: makeChoices, handles: makeHandles, cameras: makeCameras, legend: makeLegend,
-  effects: list => makeSwitches("effect", list), views: list => makeSwitches("view", list),
+  // Sliders of effects are below their switches, which are there before.
+  effects: list => makeSwitches("effect", list), keys: makeSliders, choices: makeChoices, handles: makeHandles,
+  cameras: makeCameras, legend: makeLegend, views: list => makeSwitches("view", list),
 };
 const made = {};
 let settings = {limits: {force_N: 0, torque_Nm: 0}, period_s: 1e-3};

@@ -14,14 +14,22 @@ const SHOWN = {m: {unit: "mm", scale: 1e3}};
 /** Makes a slider for each key, in the panel of its group. */
 export function makeSliders(keys) {
   rows.clear();
-  for (const group of ["coupling", "contact"]) {
+  for (const group of ["coupling", "contact", "effects"]) {
     find(group).querySelectorAll(".slider").forEach(row => row.remove());
   }
   for (const key of keys) {
     const row = new Slider(key);
     rows.set(key.key, row);
-    find(key.group).append(row.element);
+    if (key.group === "effects") placeBelowSwitch(row.element, key.key.split(".")[1]);
+    else find(key.group).append(row.element);
   }
+}
+
+/** Puts a slider of an effect below its switch and the sliders that are there. */
+function placeBelowSwitch(element, effect) {
+  let above = find("effect-" + effect).closest(".switch");
+  while (above.nextElementSibling?.classList.contains("slider")) above = above.nextElementSibling;
+  above.after(element);
 }
 
 export function showValues(values) {
@@ -60,8 +68,8 @@ class Slider {
     label.htmlFor = key.key;
     label.textContent = key.label;
     part(".unit").textContent = unit;
-    this.bounds = `${low} to ${high} ${unit}`;
-    const help = key.help.replace(", " + key.unit, "");
+    this.bounds = `${low} to ${high} ${unit}`.trim();
+    const help = key.unit ? key.help.replace(", " + key.unit, "") : key.help;
     label.title = help;
     this.range.setAttribute("aria-label", key.label + ", slider");
     for (const input of [this.number, this.range]) {
