@@ -55,7 +55,8 @@ if TYPE_CHECKING:
         list_meshes,
         list_scenes,
     )
-    from drake_haptics.scene.schema import Scene, load_scene
+    from drake_haptics.scene.loading import load_scene
+    from drake_haptics.scene.schema import Scene
     from drake_haptics.simulation.callback_timer import CallbackTimer
     from drake_haptics.simulation.energy import EnergyLedger
     from drake_haptics.simulation.explain import explain_tick
@@ -168,7 +169,7 @@ _MODULE_OF = {
     "list_scenes": "scene.library",
     "live_keys": "simulation.live_key",
     "load_mesh": "geometry.mesh.mesh",
-    "load_scene": "scene.schema",
+    "load_scene": "scene.loading",
     "make_device_port": "loop.device_placement",
     "make_log_header": "loop.tick_log",
     "make_simulator": "simulation.run",

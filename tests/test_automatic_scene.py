@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
+from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.schema import Scene, SceneError
+from drake_haptics.scene.schema import Scene
 from drake_haptics.scene.validation import check_values
 from drake_haptics.simulation.run import run
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from drake_haptics.common.errors import SceneError
 from drake_haptics.geometry.mesh.centering import center, find_origin_beside
 from drake_haptics.geometry.mesh.height_map import TouchMap
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
@@ -19,7 +20,6 @@ from drake_haptics.scene.schema import (
     HandPath,
     Pose,
     Scene,
-    SceneError,
     Tool,
     Waypoint,
 )

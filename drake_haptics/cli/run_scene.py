@@ -27,10 +27,10 @@ from drake_haptics.cli.scene_options import (
     set_values,
 )
 from drake_haptics.cli.status_line import make_summary
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import SceneError, UserError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.scene_file import write_scene
-from drake_haptics.scene.schema import Scene, SceneError
+from drake_haptics.scene.schema import Scene
 from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
 from drake_haptics.visualization.meshcat import open_meshcat, set_stage
 from drake_haptics.visualization.recording import write_recording

@@ -8,10 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from pydrake.common.yaml import yaml_load_typed
 from pydrake.math import RigidTransform, RollPitchYaw
 
-from drake_haptics.common.errors import SceneError
 from drake_haptics.common.package_url import resolve_package_url
 from drake_haptics.scene.effects import (
     Braking,
@@ -22,8 +20,6 @@ from drake_haptics.scene.effects import (
     Passivity,
     Shading,
 )
-from drake_haptics.scene.library import list_scenes
-from drake_haptics.scene.paths import place_files
 from drake_haptics.scene.twin import (
     Encoder,
     ForceDelay,
@@ -31,8 +27,6 @@ from drake_haptics.scene.twin import (
     Saturation,
     Twin,
 )
-from drake_haptics.scene.validation import check_values
-from drake_haptics.scene.yaml_loading import check_keys, load_yaml
 
 __all__ = [
     "Braking",
@@ -53,12 +47,10 @@ __all__ = [
     "Pose",
     "Saturation",
     "Scene",
-    "SceneError",
     "Shading",
     "Tool",
     "Twin",
     "Waypoint",
-    "load_scene",
 ]
 
 
@@ -343,34 +335,3 @@ class Scene:
             tool_scale,
             environment_scale,
         )
-
-
-def load_scene(path: str | Path) -> Scene:
-    """Reads and checks a scene file.
-
-    Args:
-        path: The YAML file. Relative paths in it are taken from its folder.
-
-    Returns:
-        The scene, with paths that no longer depend on the folder.
-
-    Raises:
-        SceneError: The file cannot be read, has a key or a value that means
-            nothing, names a mesh that is not there, or describes something
-            physically impossible. The message names the file and the key.
-    """
-    path = Path(path)
-    if str(path) in list_scenes() and not path.exists():
-        raise SceneError(
-            f"{path}: no such file; the scene of that name that is shipped is"
-            f" load_scene(find_scene('{path}'))"
-        )
-    data = load_yaml(path)
-    try:
-        check_keys(Scene, data)
-        scene: Scene = yaml_load_typed(schema=Scene, filename=str(path))
-        check_values(scene)
-        place_files(scene, path.parent)
-    except SceneError as error:
-        raise SceneError(f"{path}: {error}") from error
-    return scene
