@@ -11,6 +11,7 @@ import click
 from pydrake.geometry import Meshcat
 from rich.console import Console
 
+from drake_haptics.authoring.scene_from_meshes import make_scene_for_meshes
 from drake_haptics.authoring.speedup import find_tick_relief
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.device_words import describe_fault
@@ -62,7 +63,7 @@ def choose_scene(
     _refuse_settings_of_meshes(settings)
     assert tool is not None and environment is not None
     try:
-        made = Scene.for_meshes(
+        made = make_scene_for_meshes(
             tool,
             environment,
             tool_scale=tool_scale,

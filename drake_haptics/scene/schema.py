@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw
 
-from drake_haptics.common.package_url import resolve_package_url
 from drake_haptics.scene.effects import (
     Braking,
     Effects,
@@ -299,39 +298,4 @@ class Scene:
             f"Scene({self.description!r}, tool {Path(self.tool.mesh).name or 'none'}, "
             f"environment {objects}, contact {self.contact.stiffness_N_per_m:g} N/m, "
             f"coupling {self.coupling.stiffness_N_per_m:g} N/m)"
-        )
-
-    @classmethod
-    def for_meshes(
-        cls,
-        tool_path: str | Path,
-        environment_path: str | Path,
-        *,
-        tool_scale: float = 1.0,
-        environment_scale: float = 1.0,
-    ) -> "Scene":
-        """Makes a scene of two meshes of one's own.
-
-        The environment's frame is the world's. The tool starts above the middle
-        of it, comes down, touches, and scrapes in a circle, pressed by the hand's
-        spring with a few newtons, for ever. A tool's file that has its origin far
-        beside the mesh is centered (`tool.center`).
-
-        Args:
-            tool_path: Mesh of the tool.
-            environment_path: Mesh of what it meets.
-            tool_scale: Metres per unit of the tool's file.
-            environment_scale: Metres per unit of the environment's file.
-
-        Raises:
-            SceneError: The tool does not fit into the device's workspace.
-            drake_haptics.geometry.mesh.mesh.MeshError: A mesh cannot be treated.
-        """
-        from drake_haptics.authoring.scene_from_meshes import make_scene_for_meshes
-
-        return make_scene_for_meshes(
-            Path(resolve_package_url(tool_path)),
-            Path(resolve_package_url(environment_path)),
-            tool_scale,
-            environment_scale,
         )
