@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         PairTrajectory,
         SceneTracker,
     )
+    from drake_haptics.authoring.scene_from_meshes import make_scene_for_meshes
     from drake_haptics.common.errors import MeshError, SceneError, UserError
     from drake_haptics.common.tick_clock import TickClock
     from drake_haptics.device.backend import (
@@ -55,7 +56,8 @@ if TYPE_CHECKING:
         list_meshes,
         list_scenes,
     )
-    from drake_haptics.scene.schema import Scene, load_scene
+    from drake_haptics.scene.loading import load_scene
+    from drake_haptics.scene.schema import Scene
     from drake_haptics.simulation.callback_timer import CallbackTimer
     from drake_haptics.simulation.energy import EnergyLedger
     from drake_haptics.simulation.explain import explain_tick
@@ -115,6 +117,7 @@ __all__ = [
     "load_scene",
     "make_device_port",
     "make_log_header",
+    "make_scene_for_meshes",
     "make_simulator",
     "open_device",
     "read_tick_log",
@@ -168,9 +171,10 @@ _MODULE_OF = {
     "list_scenes": "scene.library",
     "live_keys": "simulation.live_key",
     "load_mesh": "geometry.mesh.mesh",
-    "load_scene": "scene.schema",
+    "load_scene": "scene.loading",
     "make_device_port": "loop.device_placement",
     "make_log_header": "loop.tick_log",
+    "make_scene_for_meshes": "authoring.scene_from_meshes",
     "make_simulator": "simulation.run",
     "open_device": "loop.open_device",
     "read_tick_log": "tick_log.tick_log",

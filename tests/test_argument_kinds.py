@@ -14,6 +14,7 @@ from pydrake.systems.framework import DiagramBuilder
 import drake_haptics
 from drake_haptics import AddHapticRendering, BuildHapticDiagram, find_scene, run
 from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.scene.loading import load_scene
 from drake_haptics.scene.schema import (
     Contact,
     Coupling,
@@ -22,7 +23,6 @@ from drake_haptics.scene.schema import (
     Friction,
     Material,
     Scene,
-    load_scene,
 )
 
 

@@ -24,16 +24,16 @@ from twin_rig import (
 from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.analysis.sampled_linearization import linearize_sampled
 from drake_haptics.bounds.held_handle import calc_force_delay
+from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.scene.loading import load_scene
 from drake_haptics.scene.schema import (
     Encoder,
     ForceDelay,
     JointFriction,
     Saturation,
-    SceneError,
     Twin,
-    load_scene,
 )
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.arm.arm_inverse_kinematics import solve_arm_positions

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
+from drake_haptics.authoring.scene_from_meshes import make_scene_for_meshes
+from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.schema import Scene, SceneError
 from drake_haptics.scene.validation import check_values
 from drake_haptics.simulation.run import run
 
@@ -31,7 +32,7 @@ SHAPES = {
     [("block", 1), ("ball", 1), ("ring", 1), ("tube", 0)],
 )
 def test_it_touches_and_presses_gently(tmp_path, environment, median_contacts):
-    scene = Scene.for_meshes(
+    scene = make_scene_for_meshes(
         write(tmp_path, "stick.stl", SHAPES["stick"]),
         write(tmp_path, "environment.ply", SHAPES[environment]),
     )
@@ -47,7 +48,7 @@ def test_its_numbers_are_short_to_read(tmp_path):
     third = SHAPES["stick"].copy()
     third.apply_scale(1.0 / 3.0)
     stick = write(tmp_path, "stick.stl", third)
-    scene = Scene.for_meshes(stick, write(tmp_path, "ball.ply", SHAPES["ball"]))
+    scene = make_scene_for_meshes(stick, write(tmp_path, "ball.ply", SHAPES["ball"]))
     numbers = [scene.contact.tolerance_m, *scene.tool.grasp.position_m]
     for waypoint in scene.hand.path.waypoints:
         numbers += [waypoint.time_s, *waypoint.position_m]
@@ -66,8 +67,8 @@ def test_scales_are_metres_per_unit(tmp_path):
     in_mm = SHAPES["block"].copy()
     in_mm.apply_scale(1000.0)
     stick = write(tmp_path, "stick.stl", SHAPES["stick"])
-    metres = Scene.for_meshes(stick, write(tmp_path, "m.ply", SHAPES["block"]))
-    scaled = Scene.for_meshes(
+    metres = make_scene_for_meshes(stick, write(tmp_path, "m.ply", SHAPES["block"]))
+    scaled = make_scene_for_meshes(
         stick, write(tmp_path, "mm.ply", in_mm), environment_scale=1e-3
     )
     for one, two in zip(
@@ -81,15 +82,15 @@ def test_a_tool_of_an_unlikely_size_is_refused(tmp_path, size):
     tool = write(tmp_path, "tool.stl", trimesh.creation.box([size] * 3))
     block = write(tmp_path, "block.stl", SHAPES["block"])
     with pytest.raises(SceneError, match=r"the tool tool.stl is .*m long, and must"):
-        Scene.for_meshes(tool, block)
+        make_scene_for_meshes(tool, block)
 
 
 def test_a_tool_far_from_its_origin_is_held_as_if_it_were_not(tmp_path):
     ball = write(tmp_path, "ball.ply", SHAPES["ball"])
-    near = Scene.for_meshes(write(tmp_path, "near.stl", SHAPES["stick"]), ball)
+    near = make_scene_for_meshes(write(tmp_path, "near.stl", SHAPES["stick"]), ball)
     moved = SHAPES["stick"].copy()
     moved.apply_translation([0.5, -0.25, 0.125])
-    far = Scene.for_meshes(write(tmp_path, "far.stl", moved), ball)
+    far = make_scene_for_meshes(write(tmp_path, "far.stl", moved), ball)
     assert (near.tool.center, far.tool.center) == (False, True)
     # STL has single precision: half a metre away, 30 nm.
     np.testing.assert_allclose(
@@ -106,7 +107,7 @@ def test_a_tool_that_is_held_at_its_end_keeps_its_origin(tmp_path):
     # The origin is 5 mm beyond the end of a stick of 120 mm.
     stick = SHAPES["stick"].copy()
     stick.apply_translation([0.0, 0.0, 0.065])
-    scene = Scene.for_meshes(
+    scene = make_scene_for_meshes(
         write(tmp_path, "stick.stl", stick),
         write(tmp_path, "ball.ply", SHAPES["ball"]),
     )

@@ -10,19 +10,13 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from drake_haptics._core import RigidToolDynamics
-from drake_haptics.common.errors import MeshError
+from drake_haptics.common.errors import MeshError, SceneError
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.loop.builder import AddHapticLoop, BuildHapticDiagram
 from drake_haptics.loop.haptic_loop import ConnectMovingObject
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.scene.schema import (
-    Contact,
-    Coupling,
-    Effects,
-    Pose,
-    SceneError,
-)
+from drake_haptics.scene.schema import Contact, Coupling, Effects, Pose
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.arm.simulated_arm import SimulatedArm
 from drake_haptics.systems.contact.contact_query import ContactObject

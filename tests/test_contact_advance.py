@@ -28,9 +28,10 @@ from drake_haptics._core import (
     differentiate_contacts,
 )
 from drake_haptics.analysis.state_layout import find_state_layout
+from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
-from drake_haptics.scene.schema import Contact, Effects, SceneError
+from drake_haptics.scene.schema import Contact, Effects
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.contact.contact_advance import ContactAdvance
 from drake_haptics.systems.contact.contact_query import ContactObject

@@ -7,13 +7,15 @@ from chai3d_specifications import find_specification
 from other_arm import PRESET, write_preset
 
 from drake_haptics.analysis.coupling_design import suggest_coupling
+from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.device_preset import (
     DevicePreset,
     list_device_presets,
     load_device_preset,
 )
-from drake_haptics.scene.schema import Encoder, SceneError, Twin, load_scene
+from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.schema import Encoder, Twin
 from drake_haptics.simulation.run import run
 
 PREMIUM = "phantom_premium_1_5_6dof"

@@ -14,7 +14,8 @@ from effect_costs import PAGE, Costs, with_figures
 from effect_rows import make_rows
 
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.schema import Effects, load_scene
+from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.schema import Effects
 
 COSTS = Costs(
     bare=[100_000.0, 100_007.0, 99_990.0],

@@ -12,7 +12,7 @@ from twin_check import check_twin
 from drake_haptics._core import CouplingGains
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.schema import load_scene
+from drake_haptics.scene.loading import load_scene
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 PERIOD = 1e-3

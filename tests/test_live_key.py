@@ -3,13 +3,13 @@
 from dataclasses import fields, replace
 
 from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.loading import load_scene
 from drake_haptics.scene.schema import (
     Contact,
     Coupling,
     EnvironmentObject,
     Material,
     Scene,
-    load_scene,
 )
 from drake_haptics.scene.validation import check_values
 from drake_haptics.simulation.live_key import live_keys

@@ -6,7 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_haptics import BuildHapticDiagram, MeshError, Scene, load_mesh
+from drake_haptics import (
+    BuildHapticDiagram,
+    MeshError,
+    Scene,
+    load_mesh,
+    make_scene_for_meshes,
+)
 from drake_haptics.common.package_url import resolve_package_url
 from drake_haptics.geometry.parsing.model_file import load_model_mesh
 from drake_haptics.loop.tick_log import make_log_header
@@ -52,7 +58,7 @@ def test_a_scene_made_in_python_takes_package_meshes(scene):
 
 
 def test_two_package_meshes_make_a_scene():
-    scene = Scene.for_meshes(PEG, BLOCK)
+    scene = make_scene_for_meshes(PEG, BLOCK)
     assert Path(scene.tool.mesh).samefile(MODELS / "meshes" / "peg.obj")
 
 

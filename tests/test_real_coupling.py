@@ -9,9 +9,10 @@ from other_arm import PRESET, write_preset
 
 from drake_haptics.bounds.held_handle import check_real_coupling
 from drake_haptics.cockpit.coupling_advice import CouplingAdvice
+from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.device_preset import list_device_presets, load_device_preset
-from drake_haptics.scene.schema import ForceDelay, SceneError
+from drake_haptics.scene.schema import ForceDelay
 from drake_haptics.scene.validation import SceneWarning
 
 PREMIUM = "phantom_premium_1_5_6dof"

@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.scene.library import find_scene, list_scenes
+from drake_haptics.scene.loading import load_scene
 from drake_haptics.scene.schema import (
     Braking,
     Contact,
@@ -19,11 +21,9 @@ from drake_haptics.scene.schema import (
     Material,
     Passivity,
     Pose,
-    SceneError,
     Shading,
     Twin,
     Waypoint,
-    load_scene,
 )
 
 GOOD = """

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from drake_haptics.common.errors import SceneError
+from drake_haptics.common.package_url import resolve_package_url
 from drake_haptics.geometry.mesh.centering import center, find_origin_beside
 from drake_haptics.geometry.mesh.height_map import TouchMap
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
@@ -19,7 +21,6 @@ from drake_haptics.scene.schema import (
     HandPath,
     Pose,
     Scene,
-    SceneError,
     Tool,
     Waypoint,
 )
@@ -44,12 +45,31 @@ _DECIMALS_S = 6
 
 
 def make_scene_for_meshes(
-    tool_path: Path,
-    environment_path: Path,
-    tool_scale: float,
-    environment_scale: float,
+    tool_path: str | Path,
+    environment_path: str | Path,
+    *,
+    tool_scale: float = 1.0,
+    environment_scale: float = 1.0,
 ) -> Scene:
-    """Makes what `Scene.for_meshes` documents."""
+    """Makes a scene of two meshes.
+
+    The environment's frame is the world's. The tool starts above the middle
+    of it, comes down, touches, and scrapes in a circle, pressed by the hand's
+    spring with a few newtons, for ever. A tool's file that has its origin far
+    beside the mesh is centered (`tool.center`).
+
+    Args:
+        tool_path: Mesh of the tool.
+        environment_path: Mesh of what it meets.
+        tool_scale: Metres per unit of the tool's file.
+        environment_scale: Metres per unit of the environment's file.
+
+    Raises:
+        SceneError: The tool does not fit into the device's workspace.
+        drake_haptics.common.errors.MeshError: A mesh cannot be treated.
+    """
+    tool_path = Path(resolve_package_url(tool_path))
+    environment_path = Path(resolve_package_url(environment_path))
     tool = load_mesh(tool_path, scale=tool_scale)
     environment = load_mesh(environment_path, scale=environment_scale)
     _check_extent("tool", tool_path, tool, tool_scale, _LARGEST_TOOL_M)

@@ -17,8 +17,9 @@ from drake_haptics.bounds.coupling import (
     find_broken_bounds,
     find_exceeded_ratings,
 )
+from drake_haptics.common.errors import SceneError
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
-from drake_haptics.scene.schema import Scene, SceneError
+from drake_haptics.scene.schema import Scene
 from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, LOOSEST_GRIP, HandGrip
 from drake_haptics.systems.arm.simulated_arm import make_arm_plant, weld_hand
 from drake_haptics.systems.device.haptic_device import HapticDevice

@@ -11,6 +11,7 @@ import click
 from pydrake.geometry import Meshcat
 from rich.console import Console
 
+from drake_haptics.authoring.scene_from_meshes import make_scene_for_meshes
 from drake_haptics.authoring.speedup import find_tick_relief
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.device_words import describe_fault
@@ -27,10 +28,10 @@ from drake_haptics.cli.scene_options import (
     set_values,
 )
 from drake_haptics.cli.status_line import make_summary
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import SceneError, UserError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.scene_file import write_scene
-from drake_haptics.scene.schema import Scene, SceneError
+from drake_haptics.scene.schema import Scene
 from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
 from drake_haptics.visualization.meshcat import open_meshcat, set_stage
 from drake_haptics.visualization.recording import write_recording
@@ -62,7 +63,7 @@ def choose_scene(
     _refuse_settings_of_meshes(settings)
     assert tool is not None and environment is not None
     try:
-        made = Scene.for_meshes(
+        made = make_scene_for_meshes(
             tool,
             environment,
             tool_scale=tool_scale,

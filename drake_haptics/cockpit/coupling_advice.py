@@ -15,9 +15,10 @@ from drake_haptics.bounds.held_handle import (
     calc_scene_handle,
     find_real_bounds,
 )
+from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.scene.schema import Scene, SceneError
+from drake_haptics.scene.schema import Scene
 from drake_haptics.scene.validation import SceneWarning
 
 

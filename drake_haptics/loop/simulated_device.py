@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 from pydrake.math import RigidTransform
 
+from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
 from drake_haptics.scene.schema import HandPath as ScenePath
-from drake_haptics.scene.schema import Pose, Scene, SceneError, Twin
+from drake_haptics.scene.schema import Pose, Scene, Twin
 from drake_haptics.systems.arm.arm_inverse_kinematics import UnreachableError
 from drake_haptics.systems.arm.arm_twin import ArmTwin
 from drake_haptics.systems.arm.hand_grip import HAND_GRIPS

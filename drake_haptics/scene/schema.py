@@ -8,11 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from pydrake.common.yaml import yaml_load_typed
 from pydrake.math import RigidTransform, RollPitchYaw
 
-from drake_haptics.common.errors import SceneError
-from drake_haptics.common.package_url import resolve_package_url
 from drake_haptics.scene.effects import (
     Braking,
     Effects,
@@ -22,8 +19,6 @@ from drake_haptics.scene.effects import (
     Passivity,
     Shading,
 )
-from drake_haptics.scene.library import list_scenes
-from drake_haptics.scene.paths import place_files
 from drake_haptics.scene.twin import (
     Encoder,
     ForceDelay,
@@ -31,8 +26,6 @@ from drake_haptics.scene.twin import (
     Saturation,
     Twin,
 )
-from drake_haptics.scene.validation import check_values
-from drake_haptics.scene.yaml_loading import check_keys, load_yaml
 
 __all__ = [
     "Braking",
@@ -53,12 +46,10 @@ __all__ = [
     "Pose",
     "Saturation",
     "Scene",
-    "SceneError",
     "Shading",
     "Tool",
     "Twin",
     "Waypoint",
-    "load_scene",
 ]
 
 
@@ -308,69 +299,3 @@ class Scene:
             f"environment {objects}, contact {self.contact.stiffness_N_per_m:g} N/m, "
             f"coupling {self.coupling.stiffness_N_per_m:g} N/m)"
         )
-
-    @classmethod
-    def for_meshes(
-        cls,
-        tool_path: str | Path,
-        environment_path: str | Path,
-        *,
-        tool_scale: float = 1.0,
-        environment_scale: float = 1.0,
-    ) -> "Scene":
-        """Makes a scene of two meshes of one's own.
-
-        The environment's frame is the world's. The tool starts above the middle
-        of it, comes down, touches, and scrapes in a circle, pressed by the hand's
-        spring with a few newtons, for ever. A tool's file that has its origin far
-        beside the mesh is centered (`tool.center`).
-
-        Args:
-            tool_path: Mesh of the tool.
-            environment_path: Mesh of what it meets.
-            tool_scale: Meters per unit of the tool's file.
-            environment_scale: Meters per unit of the environment's file.
-
-        Raises:
-            SceneError: The tool does not fit into the device's workspace.
-            drake_haptics.geometry.mesh.mesh.MeshError: A mesh cannot be treated.
-        """
-        from drake_haptics.authoring.scene_from_meshes import make_scene_for_meshes
-
-        return make_scene_for_meshes(
-            Path(resolve_package_url(tool_path)),
-            Path(resolve_package_url(environment_path)),
-            tool_scale,
-            environment_scale,
-        )
-
-
-def load_scene(path: str | Path) -> Scene:
-    """Reads and checks a scene file.
-
-    Args:
-        path: The YAML file. Relative paths in it are taken from its folder.
-
-    Returns:
-        The scene, with paths that no longer depend on the folder.
-
-    Raises:
-        SceneError: The file cannot be read, has a key or a value that means
-            nothing, names a mesh that is not there, or describes something
-            physically impossible. The message names the file and the key.
-    """
-    path = Path(path)
-    if str(path) in list_scenes() and not path.exists():
-        raise SceneError(
-            f"{path}: no such file; the scene of that name that is shipped is"
-            f" load_scene(find_scene('{path}'))"
-        )
-    data = load_yaml(path)
-    try:
-        check_keys(Scene, data)
-        scene: Scene = yaml_load_typed(schema=Scene, filename=str(path))
-        check_values(scene)
-        place_files(scene, path.parent)
-    except SceneError as error:
-        raise SceneError(f"{path}: {error}") from error
-    return scene

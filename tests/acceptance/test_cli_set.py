@@ -8,9 +8,8 @@ import trimesh
 from accuracy_samples import make_study
 from click.testing import CliRunner
 
-from drake_haptics import find_scene, load_scene
+from drake_haptics import find_scene, load_scene, make_scene_for_meshes
 from drake_haptics.cli import accuracy, main, stability
-from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.replay_log import load_log_scene
 from drake_haptics.tick_log.tick_log import read_tick_log
 
@@ -45,7 +44,7 @@ def test_meshes_become_a_scene_file_to_go_on_from(invoke, tmp_path):
     result = invoke("run", *meshes, *SHORT, *SOFT, "--write-scene", "mine.yaml")
     assert result.exit_code == 0, result.output
     assert "Wrote mine.yaml: drake-haptics run mine.yaml\n" in result.output
-    made = Scene.for_meshes("pen.obj", "torus.obj")
+    made = make_scene_for_meshes("pen.obj", "torus.obj")
     made.contact.stiffness_N_per_m = 400.0
     assert load_scene("mine.yaml") == made
     # A file that is named is not one that stands elsewhere, too.

@@ -26,7 +26,8 @@ from drake_haptics.cockpit.cockpit_run import CockpitRun
 from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.schema import Scene, load_scene
+from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.output.haptic_visualizer import HapticVisualizer

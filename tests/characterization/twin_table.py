@@ -27,6 +27,7 @@ from drake_haptics.analysis.sampled_linearization import linearize_sampled
 from drake_haptics.analysis.stability_limit import calc_growth, find_stability_limit
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.loading import load_scene
 from drake_haptics.scene.schema import (
     Encoder,
     ForceDelay,
@@ -35,7 +36,6 @@ from drake_haptics.scene.schema import (
     Saturation,
     Scene,
     Twin,
-    load_scene,
 )
 
 PAGE = Path(__file__).parents[2] / "docs" / "device-twin.md"

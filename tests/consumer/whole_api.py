@@ -61,6 +61,7 @@ from drake_haptics import (
     load_scene,
     make_device_port,
     make_log_header,
+    make_scene_for_meshes,
     make_simulator,
     open_device,
     read_tick_log,
@@ -122,6 +123,8 @@ def use_a_scene(name: str) -> float:
     assert_type(list_scenes(), dict[str, Path])
     scene: Scene = load_scene(find_scene(name))
     scene.contact.stiffness_N_per_m = 4000.0
+    made = make_scene_for_meshes(find_mesh("pen"), find_mesh("sphere"))
+    assert_type(made, Scene)
     try:
         backend = open_device("udp://127.0.0.1:7400", scene)
     except (DeviceError, SceneError) as error:

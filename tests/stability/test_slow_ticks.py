@@ -12,7 +12,7 @@ from drake_haptics.loop import builder
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.effects import Braking, Effects, Friction
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.schema import load_scene
+from drake_haptics.scene.loading import load_scene
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.contact.load_shedding import TickMeter
 

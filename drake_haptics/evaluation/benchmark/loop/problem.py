@@ -17,7 +17,8 @@ from drake_haptics.evaluation.accuracy.recorded_motion import (
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.schema import Scene, load_scene
+from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.schema import Scene
 
 
 @dataclass(frozen=True, eq=False)
