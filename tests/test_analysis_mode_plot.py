@@ -38,13 +38,13 @@ def test_every_pole_is_drawn_where_it_is(linear):
 
 def test_it_draws_into_given_axes(linear):
     axes = pyplot.figure().add_subplot()
-    assert linear.plot(axes) is axes
+    assert plot_poles(linear, axes) is axes
     assert f"{linear.spectral_radius():.6f}" in axes.get_title()
     pyplot.close(axes.figure)
 
 
 def test_lines_of_equal_damping_and_frequency_are_those_of_a_mode(linear):
-    axes = linear.plot()
+    axes = plot_poles(linear)
     lines = [line.get_xydata() @ [1.0, 1j] for line in axes.lines[1:]]
     T = linear.period_s
     ratios, frequencies = set(), set()

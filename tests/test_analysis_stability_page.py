@@ -11,8 +11,7 @@ import pytest
 from held_samples import analyse_sample, make_limits
 from PIL import Image
 
-from drake_haptics.analysis.modes import Mode, ModeKind
-from drake_haptics.analysis.motion_words import describe_motion
+from drake_haptics.analysis.modes import Mode, ModeKind, describe_motion
 from drake_haptics.analysis.stability_page import (
     describe_delay,
     describe_restless,

@@ -12,7 +12,7 @@ Divided by z (z + 1), and with (z - 1)/z = 2 j sin(θ/2) e^(-jθ/2), they give
     β = 2 sin(θ/2) sin((d + ½) θ) / cos²(θ/2),
 
 which for 0 < θ < π/(2 (d + 1)) is the edge of the stable region beside α = 0. For d = 0
-it is Jury's α = 2 β (2 - β)/(2 + β), as `passivity_bounds.calc_sampled_stiffness` has
+it is Jury's α = 2 β (2 - β)/(2 + β), as `sampled_spring.calc_sampled_stiffness` has
 it; for small θ it is the law of Gil et al., α = β/(½ + d).
 """
 

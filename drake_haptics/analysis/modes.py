@@ -175,6 +175,17 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
     return tuple(modes)
 
 
+def describe_motion(mode: Mode) -> str:
+    """Returns how fast a motion swings and what moves, as "245 Hz; mostly ...".
+
+    For a motion at the limit of stability, which neither grows nor dies out.
+    """
+    swings = mode.frequency_hz > 0.0
+    rate = f"{mode.frequency_hz:.3g} Hz" if swings else "without swing"
+    mostly = mode.describe().rpartition("; mostly ")[2]
+    return f"{rate}; mostly {mostly}"
+
+
 def _tell_kind(value: complex) -> ModeKind:
     if abs(value - 1.0) <= NEUTRAL:
         return ModeKind.NEUTRAL

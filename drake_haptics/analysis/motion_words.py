@@ -4,10 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from drake_haptics.analysis.modes import Mode
 
 # Parts of the paths of states which each haptic loop has, and which tell nothing.
 _KNOWN_PARTS = re.compile(r"(?<![^/])(device/simulated_arm/arm|device|step|sample)/")
@@ -15,17 +11,6 @@ _KNOWN_PARTS = re.compile(r"(?<![^/])(device/simulated_arm/arm|device|step|sampl
 _JOINT = re.compile(r"device/simulated_arm/arm/(\w+)_[qw]")
 _TOOL = re.compile(r"haptic_tool/step/([qvw]?)([wxyz])")
 _TOOL_TURNING = "tool turning"
-
-
-def describe_motion(mode: Mode) -> str:
-    """Returns how fast a motion swings and what moves, as "245 Hz; mostly ...".
-
-    For a motion at the limit of stability, which neither grows nor dies out.
-    """
-    swings = mode.frequency_hz > 0.0
-    rate = f"{mode.frequency_hz:.3g} Hz" if swings else "without swing"
-    mostly = mode.describe().rpartition("; mostly ")[2]
-    return f"{rate}; mostly {mostly}"
 
 
 def list_parts(states: Iterable[str]) -> list[str]:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.common.one_line import one_line
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -49,12 +46,6 @@ class PeriodMap:
     def spectral_radius(self) -> float:
         """Returns the largest magnitude of an eigenvalue: stable below 1."""
         return float(np.abs(self.eigenvalues()).max())
-
-    def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the eigenvalues in the z plane; see `plot_poles`."""
-        from drake_haptics.analysis.mode_plot import plot_poles
-
-        return plot_poles(self, axes)
 
     def to_dict(self) -> dict[str, Any]:
         """Returns the fields and the eigenvalues ([re, im] each), ready for JSON."""

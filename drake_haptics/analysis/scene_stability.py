@@ -31,6 +31,7 @@ from drake_haptics.analysis.stiffness_limits import (
     none_unless_finite,
 )
 from drake_haptics.analysis.z_width_map import ZWidth, z_width
+from drake_haptics.analysis.z_width_plot import HeldBounds
 from drake_haptics.bounds.coupling import HeldHandle
 from drake_haptics.bounds.held_handle import calc_scene_handle, check_scene_coupling
 from drake_haptics.common.one_line import one_line
@@ -109,7 +110,17 @@ class SceneStability:
         """Draws map, poles, passivity and limits on one sheet."""
         from drake_haptics.analysis.stability_sheet import draw_sheet
 
-        return draw_sheet(self)
+        coupling = self.scene.coupling
+        return draw_sheet(
+            self.scene.description,
+            self.linearization,
+            self.limits,
+            frequencies_Hz=self.felt.frequencies_Hz,
+            damping_usage=self.damping_usage,
+            map=self.map,
+            bounds=HeldBounds(self.handle.damping_Ns_per_m, self.period_s),
+            gains=(coupling.stiffness_N_per_m, coupling.damping_Ns_per_m),
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Returns all of it, ready for JSON."""

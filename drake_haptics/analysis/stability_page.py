@@ -11,7 +11,7 @@ from pathlib import Path
 from string import Template
 
 from drake_haptics.analysis.delay_margin import LONGEST_DELAY
-from drake_haptics.analysis.motion_words import describe_motion
+from drake_haptics.analysis.modes import describe_motion
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
 from drake_haptics.report.paths import check_page_path

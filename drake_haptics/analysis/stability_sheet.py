@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drake_haptics.analysis.mode_plot import plot_poles
-from drake_haptics.analysis.scene_stability import SceneStability
+from drake_haptics.analysis.period_map import PeriodMap
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
+from drake_haptics.analysis.z_width_map import ZWidth
 from drake_haptics.analysis.z_width_plot import HeldBounds
 from drake_haptics.common.colors import (
     EIGENVALUE,
@@ -28,48 +29,64 @@ _LEGEND_SIZE = 10
 _LEAST_SHOWN = 0.3
 
 
-def draw_sheet(stability: SceneStability) -> Figure:
-    """Draws on a figure of its own, which no window shows."""
+def draw_sheet(
+    title: str,
+    linearization: PeriodMap,
+    limits: tuple[StiffnessLimits, ...],
+    *,
+    frequencies_Hz: np.ndarray,
+    damping_usage: np.ndarray,
+    map: ZWidth | None,
+    bounds: HeldBounds,
+    gains: tuple[float, float],
+) -> Figure:
+    """Draws on a figure of its own, which no window shows.
+
+    Args:
+        title: Stands above all panels.
+        linearization: Of one tick.
+        limits: Of the coupling's stiffness.
+        frequencies_Hz: (n,), rising, Hz.
+        damping_usage: (n,), how much of the damping passivity needs at each.
+        map: Growth over stiffness and damping; without it its panel is left out.
+        bounds: What theory says of the device in its hand, for the map.
+        gains: K, N/m, and B, N·s/m, of the scene, for the map.
+    """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=_SIZE_INCH, layout="constrained")
-    if stability.map is None:
+    if map is None:
         panels = figure.subplot_mosaic([["poles", "usage"], ["limits", "limits"]])
     else:
         panels = figure.subplot_mosaic([["map", "poles"], ["usage", "limits"]])
-        coupling = stability.scene.coupling
-        stability.map.plot(
-            panels["map"],
-            bounds=HeldBounds(stability.handle.damping_Ns_per_m, stability.period_s),
-            gains=(coupling.stiffness_N_per_m, coupling.damping_Ns_per_m),
-        )
-        points = " × ".join(map(str, reversed(stability.map.spectral_radius.shape)))
+        map.plot(panels["map"], bounds=bounds, gains=gains)
+        rows, columns = map.spectral_radius.shape
         panels["map"].set_title(
-            f"couplings stable in this contact, of {points};"
+            f"couplings stable in this contact, of {columns} × {rows};"
             " dashed: against a rigid wall"
         )
         panels["map"].set_xlabel("stiffness K, N/m")
         panels["map"].set_ylabel("damping B, N·s/m")
         _put_legend_below(panels["map"])
-    plot_poles(stability.linearization, panels["poles"])
-    _plot_usage(stability, panels["usage"])
-    _plot_limits(stability.limits, panels["limits"])
-    figure.suptitle(stability.scene.description)
+    plot_poles(linearization, panels["poles"])
+    _plot_usage(frequencies_Hz, damping_usage, panels["usage"])
+    _plot_limits(limits, panels["limits"])
+    figure.suptitle(title)
     return figure
 
 
-def _plot_usage(stability: SceneStability, axes: Axes) -> None:
+def _plot_usage(frequencies_Hz: np.ndarray, usage: np.ndarray, axes: Axes) -> None:
     """Draws how much damping passivity needs of what there is, over frequency."""
     axes.plot(
-        stability.felt.frequencies_Hz,
-        stability.damping_usage,
+        frequencies_Hz,
+        usage,
         color=PASSIVITY,
         label="passivity: damping that it needs",
     )
     axes.axhline(1.0, color="black", ls=":", label="the scene's: what there is")
-    axes.set_xlim(0.0, stability.felt.frequencies_Hz[-1])
-    most = max(1.0, float(stability.damping_usage.max()))
-    axes.set_ylim(min(0.0, float(stability.damping_usage.min())), 1.2 * most)
+    axes.set_xlim(0.0, frequencies_Hz[-1])
+    most = max(1.0, float(usage.max()))
+    axes.set_ylim(min(0.0, float(usage.min())), 1.2 * most)
     axes.set_xlabel("frequency, Hz")
     axes.set_ylabel("damping, as a share of what there is")
     axes.set_title("passive with every hand: needed below what there is")

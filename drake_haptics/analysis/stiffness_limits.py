@@ -13,8 +13,7 @@ from drake_haptics.analysis.aimed_hand import build_aimed
 from drake_haptics.analysis.held_loop import HeldLoop, analyse_held_scene
 from drake_haptics.analysis.held_scene import HeldScene
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
-from drake_haptics.analysis.modes import find_modes
-from drake_haptics.analysis.motion_words import describe_motion
+from drake_haptics.analysis.modes import describe_motion, find_modes
 from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
 from drake_haptics.analysis.stability_limit import find_stability_limit
 from drake_haptics.bounds.coupling import HeldHandle

@@ -77,7 +77,16 @@ class ZWidth:
         """
         from drake_haptics.analysis.z_width_plot import plot_z_width
 
-        return plot_z_width(self, axes, bounds, gains)
+        return plot_z_width(
+            self.stiffness,
+            self.damping,
+            self.spectral_radius,
+            self.passive_damping,
+            not_evaluated=list(self.reasons),
+            axes=axes,
+            bounds=bounds,
+            gains=gains,
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Returns numbers and lists only, None for NaN: ready for JSON."""

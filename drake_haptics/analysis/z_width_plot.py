@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,8 +17,6 @@ from drake_haptics.common.colors import EIGENVALUE, FORMULA, PASSIVITY, STABLE, 
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from drake_haptics.analysis.z_width_map import ZWidth
 
 # Points of a line of theory.
 _FINE = 200
@@ -55,7 +54,7 @@ class HeldBounds:
     def calc_passive_stiffness(self, damping: float) -> float:
         """Returns the stiffness K up to which K and B are passive.
 
-        See `passivity_bounds.calc_passive_stiffness`.
+        See `sampled_spring.calc_passive_stiffness`.
         """
         return calc_passive_stiffness(
             self.held_damping, damping, self.period_s, self.delay_s
@@ -64,7 +63,7 @@ class HeldBounds:
     def calc_stable_stiffness(self, damping: float) -> float:
         """Returns the stiffness K below which K and B are stable (Gil et al. 2004).
 
-        See `passivity_bounds.calc_stable_stiffness`: for small dampings.
+        See `sampled_spring.calc_stable_stiffness`: for small dampings.
         """
         return calc_stable_stiffness(
             self.held_damping, damping, self.period_s, self.delay_s
@@ -72,13 +71,28 @@ class HeldBounds:
 
 
 def plot_z_width(
-    z_width: ZWidth,
+    K: np.ndarray,
+    B: np.ndarray,
+    spectral_radius: np.ndarray,
+    passive_damping: np.ndarray,
+    *,
+    not_evaluated: Sequence[tuple[int, int]],
     axes: Axes | None,
     bounds: HeldBounds | None,
     gains: tuple[float, float] | None,
 ) -> Axes:
-    """Draws as `ZWidth.plot` says."""
-    K, B = z_width.stiffness, z_width.damping
+    """Draws as `ZWidth.plot` says.
+
+    Args:
+        K: (nK,) stiffnesses, N/m or N·m/rad.
+        B: (nB,) dampings, N·s/m or N·m·s/rad.
+        spectral_radius: (nB, nK), as a `ZWidth` has it.
+        passive_damping: (nB, nK), likewise.
+        not_evaluated: Row and column of each point without a result.
+        axes: Where; new ones if not given.
+        bounds: Draws the lines of theory for this damping, period and delay.
+        gains: K and B to mark.
+    """
     if min(K.size, B.size) < 2:
         raise ValueError(
             "a map needs two stiffnesses and two dampings to be drawn, has"
@@ -88,21 +102,27 @@ def plot_z_width(
         from matplotlib import pyplot
 
         axes = pyplot.figure().add_subplot()
-    _plot_region(z_width, axes)
+    _plot_region(K, B, spectral_radius, axes)
+    if not_evaluated:
+        rows, columns = np.array(not_evaluated).T
+        axes.plot(
+            K[columns], B[rows], "x", color="gray", clip_on=False, label="not evaluated"
+        )
     if bounds is not None:
-        _plot_bounds(z_width, axes, bounds)
+        _plot_bounds(K, B, passive_damping, axes, bounds)
     if gains is not None:
         axes.plot(*gains, "*", ms=12, color="black", label="the scene's gains")
-    _scale_axes(z_width, axes, gains)
+    _scale_axes(K, B, axes, gains)
     axes.set_xlabel("stiffness K, N/m or N·m/rad")
     axes.set_ylabel("damping B, N·s/m or N·m·s/rad")
     axes.legend()
     return axes
 
 
-def _plot_region(z_width: ZWidth, axes: Axes) -> None:
-    K, B = z_width.stiffness, z_width.damping
-    radius = np.ma.masked_invalid(z_width.spectral_radius)
+def _plot_region(
+    K: np.ndarray, B: np.ndarray, spectral_radius: np.ndarray, axes: Axes
+) -> None:
+    radius = np.ma.masked_invalid(spectral_radius)
     most = max(2.0, 2.0 * float(radius.max()))
     for name, color, levels, region in (
         ("stable", STABLE, [0.0, 1.0], radius < 1.0),
@@ -114,15 +134,15 @@ def _plot_region(z_width: ZWidth, axes: Axes) -> None:
     if (radius < 1.0).any() and (radius >= 1.0).any():
         axes.contour(K, B, radius, levels=[1.0], colors=[EIGENVALUE])
         axes.plot([], [], color=EIGENVALUE, label="eigenvalue: one reaches 1")
-    if z_width.reasons:
-        rows, columns = np.array(list(z_width.reasons)).T
-        axes.plot(
-            K[columns], B[rows], "x", color="gray", clip_on=False, label="not evaluated"
-        )
 
 
-def _plot_bounds(z_width: ZWidth, axes: Axes, bounds: HeldBounds) -> None:
-    K, B = z_width.stiffness, z_width.damping
+def _plot_bounds(
+    K: np.ndarray,
+    B: np.ndarray,
+    passive_damping: np.ndarray,
+    axes: Axes,
+    bounds: HeldBounds,
+) -> None:
     fine = np.linspace(B[0], B[-1], _FINE)
     axes.plot(
         [bounds.calc_stable_stiffness(b) for b in fine],
@@ -139,22 +159,24 @@ def _plot_bounds(z_width: ZWidth, axes: Axes, bounds: HeldBounds) -> None:
         label="passivity: (b - |B|)/(T/2 + t_d)",
     )
     # The required damping crosses what there is.
-    missing = np.ma.masked_invalid(z_width.passive_damping - bounds.held_damping)
+    missing = np.ma.masked_invalid(passive_damping - bounds.held_damping)
     if (missing <= 0.0).any() and (missing > 0.0).any():
         axes.contour(K, B, missing, levels=[0.0], colors=[PASSIVITY])
         label = "passivity: of what the loop feels like"
         axes.plot([], [], color=PASSIVITY, label=label)
 
 
-def _scale_axes(z_width: ZWidth, axes: Axes, gains: tuple[float, float] | None) -> None:
+def _scale_axes(
+    K: np.ndarray, B: np.ndarray, axes: Axes, gains: tuple[float, float] | None
+) -> None:
     """Shows the map and the gains, whatever the lines do outside."""
-    if _rises_by_a_factor(z_width.stiffness):
+    if _rises_by_a_factor(K):
         axes.set_xscale("log")
-    if _rises_by_a_factor(z_width.damping):
+    if _rises_by_a_factor(B):
         axes.set_yscale("log")
-    own_K, own_B = gains or (z_width.stiffness[0], z_width.damping[0])
-    shown_K = [*z_width.stiffness, own_K]
-    shown_B = [*z_width.damping, own_B]
+    own_K, own_B = gains or (K[0], B[0])
+    shown_K = [*K, own_K]
+    shown_B = [*B, own_B]
     axes.set_xlim(min(shown_K), max(shown_K))
     axes.set_ylim(min(shown_B), max(shown_B))
 
