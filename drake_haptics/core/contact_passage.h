@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "depth_walk.h"
-#include "pair_state.h"
 #include "support.h"
 #include "supported_facets.h"
+#include "surface_pair_state.h"
 #include "surface_request.h"
 
 namespace drake_haptics {
@@ -16,7 +16,7 @@ namespace drake_haptics {
 class ContactPassage {
  public:
   ContactPassage(const PosedPair& pair, const SurfaceRequest& request,
-                 const PairState& state)
+                 const SurfacePairState& state)
       : pair_(pair), request_(request), state_(state) {}
 
   /// Whether this pair's own last contact goes on in the facet of A ⊖ B.
@@ -34,7 +34,7 @@ class ContactPassage {
 
   const PosedPair& pair_;
   const SurfaceRequest& request_;
-  const PairState& state_;
+  const SurfacePairState& state_;
 };
 
 }  // namespace drake_haptics

@@ -21,7 +21,7 @@ bool IsWorthListing(const PosedPair& pair) {
 
 bool MayFindFacet(const PosedPair& pair, const SurfaceRequest& request,
                   const ContactPassage& passage, const Hub& near,
-                  const WantedFacets* own, PairWorkspace* workspace) {
+                  const WantedFacets* own, SurfacePairWorkspace* workspace) {
   if (!IsWorthListing(pair)) return true;
   std::vector<WantedFacets>& wanted = workspace->wanted;
   wanted.clear();

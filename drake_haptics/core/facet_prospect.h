@@ -1,8 +1,8 @@
 #pragma once
 
 #include "contact_passage.h"
-#include "pair_state.h"
 #include "supported_facets.h"
+#include "surface_pair_state.h"
 #include "surface_request.h"
 
 namespace drake_haptics {
@@ -14,6 +14,6 @@ namespace drake_haptics {
 /// @param near vertices near which the bodies overlap, for speed alone.
 bool MayFindFacet(const PosedPair& pair, const SurfaceRequest& request,
                   const ContactPassage& passage, const Hub& near,
-                  const WantedFacets* own, PairWorkspace* workspace);
+                  const WantedFacets* own, SurfacePairWorkspace* workspace);
 
 }  // namespace drake_haptics

@@ -1,12 +1,9 @@
 #pragma once
 
-#include <vector>
-
 #include "contact_patch.h"
 #include "depth_walk.h"
 #include "simplex.h"
 #include "support.h"
-#include "supported_facets.h"
 #include "types.h"
 
 namespace drake_haptics {
@@ -18,26 +15,12 @@ struct PairState {
   Hub hub;                ///< supports along the last normal
   Feature feature_A;      ///< features of the last depth; none if the last
   Feature feature_B;      ///< answer was not a depth
-  bool in_contact = false;
-  double distance = 0;      ///< last contact's, m
-  Vec3 p_b = Vec3::Zero();  ///< its witness point of B, in B's frame, m
-  /// The last contact was a depth, within its features' sides.
-  bool is_settled = false;
-  int refusals = 0;  ///< ticks on end at which an overlap was no contact
-  Vec3 refused_n = Vec3::Zero();  ///< where the last search ended, in A's frame
-  Hub refused_hub;
-  int press = -1;  ///< its place among the tick's pressed contacts, if any
-  /// Set where no contact was found on the features that face each other, for
-  /// they end: of how many walls that A presses into was known then.
-  int num_ways_out = -1;
 };
 
 /// Buffers of a query, kept between ticks so that a warm one allocates nothing.
 struct PairWorkspace {
   DepthWorkspace depth;
-  std::vector<DepthCandidate> carried;
   PatchWorkspace patch;
-  std::vector<WantedFacets> wanted;
 };
 
 }  // namespace drake_haptics

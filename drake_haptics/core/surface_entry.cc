@@ -30,7 +30,7 @@ double LeastGap(const PosedPair& pair, const Pose& last_X_AB) {
 template <typename DoesCount>
 std::optional<DepthCandidate> Shallowest(const PosedPair& pair, double least,
                                          const Hub& near,
-                                         PairWorkspace* workspace,
+                                         SurfacePairWorkspace* workspace,
                                          const DoesCount& does_count) {
   const WantedFacets wanted{{}, least};
   std::vector<DepthCandidate>& facets = workspace->carried;
@@ -86,7 +86,7 @@ bool LayInFront(const PosedPair& pair, const DepthCandidate& facet,
 std::optional<DepthCandidate> FindEntry(const PosedPair& pair,
                                         const SurfaceRequest& request,
                                         const Hub& near,
-                                        PairWorkspace* workspace) {
+                                        SurfacePairWorkspace* workspace) {
   if (request.is_any_way_out) {
     return Shallowest(pair, kNoFloor, near, workspace,
                       [](const auto&) { return true; });
@@ -101,7 +101,7 @@ std::optional<DepthCandidate> FindEntry(const PosedPair& pair,
 
 std::optional<DepthCandidate> FindWayOut(const PosedPair& pair,
                                          double tolerance,
-                                         PairWorkspace* workspace) {
+                                         SurfacePairWorkspace* workspace) {
   if (pair.A.dimension < 2 || pair.B.dimension < 2) return std::nullopt;
   const Separation separation = ComputeSeparation(pair, {}, 0);
   if (separation.status != SeparationStatus::kTouching) return std::nullopt;

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "depth_walk.h"
-#include "pair_state.h"
 #include "support.h"
+#include "surface_pair_state.h"
 #include "surface_request.h"
 
 namespace drake_haptics {
@@ -29,14 +29,14 @@ bool LayInFront(const PosedPair& pair, const DepthCandidate& facet,
 std::optional<DepthCandidate> FindEntry(const PosedPair& pair,
                                         const SurfaceRequest& request,
                                         const Hub& near,
-                                        PairWorkspace* workspace);
+                                        SurfacePairWorkspace* workspace);
 
 /// The shallowest way out of an overlap of which no earlier pose is known: a
 /// facet of A ⊖ B that the surfaces of both carry and on whose own features
 /// they press. None where the pieces do not overlap.
 std::optional<DepthCandidate> FindWayOut(const PosedPair& pair,
                                          double tolerance,
-                                         PairWorkspace* workspace);
+                                         SurfacePairWorkspace* workspace);
 
 /// Whether an edge of one surface passes through a face of the other: then two
 /// solids overlap, whatever the pieces' virtual sides do.

@@ -43,8 +43,9 @@ constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 
 class Query {
  public:
-  Query(const PosedPair& pair, const SurfaceRequest& request, PairState* state,
-        PairWorkspace* workspace, GlobalDepthState* global)
+  Query(const PosedPair& pair, const SurfaceRequest& request,
+        SurfacePairState* state, SurfacePairWorkspace* workspace,
+        GlobalDepthState* global)
       : pair_(pair),
         request_(request),
         state_(*state),
@@ -426,9 +427,9 @@ class Query {
 
   const PosedPair& pair_;
   const SurfaceRequest request_;
-  PairState& state_;
+  SurfacePairState& state_;
   const ContactPassage passage_;
-  PairWorkspace& workspace_;
+  SurfacePairWorkspace& workspace_;
   GlobalDepthState* const global_;  // null where the depth is tracked
   Separation separation_;
   bool is_refused_ = false;       // an overlap had no plausible facet
@@ -440,8 +441,8 @@ class Query {
 
 std::optional<PairContact> QuerySurfacePair(const PosedPair& pair,
                                             const SurfaceRequest& request,
-                                            PairState* state,
-                                            PairWorkspace* workspace,
+                                            SurfacePairState* state,
+                                            SurfacePairWorkspace* workspace,
                                             GlobalDepthState* global) {
   return Query(pair, request, state, workspace, global).Run();
 }

@@ -4,8 +4,8 @@
 
 #include "global_depth.h"
 #include "pair_contact.h"
-#include "pair_state.h"
 #include "support.h"
+#include "surface_pair_state.h"
 #include "surface_request.h"
 
 namespace drake_haptics {
@@ -31,8 +31,8 @@ namespace drake_haptics {
 /// the tolerance (contact_patch.h).
 std::optional<PairContact> QuerySurfacePair(const PosedPair& pair,
                                             const SurfaceRequest& request,
-                                            PairState* state,
-                                            PairWorkspace* workspace,
+                                            SurfacePairState* state,
+                                            SurfacePairWorkspace* workspace,
                                             GlobalDepthState* global = nullptr);
 
 }  // namespace drake_haptics

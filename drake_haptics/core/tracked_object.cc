@@ -21,7 +21,7 @@ constexpr double kBeyondTouch = 1e-6;
 // by the pose before that all pairs share, and then leaves by its own shortest
 // way.
 Pose PoseBeforeOf(const PosedPair& pair, double tolerance, const Pose& shared,
-                  PairWorkspace* workspace) {
+                  SurfacePairWorkspace* workspace) {
   const auto way = FindWayOut(pair, tolerance, workspace);
   if (!way) return shared;
   SurfaceRequest request;
@@ -238,7 +238,7 @@ bool TrackedObject::Tend(const Tick& tick, const PairFront::Tick& front_tick,
                          std::vector<Contact>* out) {
   const bool may_take_over = is_any_left_ && MayTakeOver(tick, pair->pieces);
   if (pair->slack > 0 && !may_take_over) return true;
-  PairState& state = states_[pair->state];
+  SurfacePairState& state = states_[pair->state];
   if (!may_take_over && state.n.squaredNorm() > 0) {
     // Last tick's normal often still proves that the pair is out of reach.
     const double gap =
@@ -260,7 +260,7 @@ bool TrackedObject::Tend(const Tick& tick, const PairFront::Tick& front_tick,
 void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
                         WatchedPair* pair, std::vector<Contact>* out,
                         bool is_any_way_out) {
-  PairState& state = states_[pair->state];
+  SurfacePairState& state = states_[pair->state];
   const int last_press = state.press;
   GlobalDepthState* global = nullptr;
   if (tick.depth.is_global) {

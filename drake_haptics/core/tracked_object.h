@@ -30,7 +30,7 @@ struct DepthSearch {
 
 /// Buffers of a tick, kept so that a warm one allocates nothing.
 struct TrackerWorkspace {
-  PairWorkspace pair;
+  SurfacePairWorkspace pair;
   std::vector<EnteredPair> entered;
   std::vector<PressedContact> pressed;
   std::vector<Vec3> ways_out;  ///< of the pressed ones, see SurfaceRequest
@@ -103,7 +103,7 @@ class TrackedObject {
   TreedShape shape_;
   PairFront front_;
   std::vector<WatchedPair> watched_;  // sorted by pieces
-  std::vector<PairState> states_;
+  std::vector<SurfacePairState> states_;
   std::vector<GlobalDepthState> global_states_;  // of states_, where needed
   std::vector<int> free_states_;
   std::vector<PressedContact> pressed_;  // last tick's

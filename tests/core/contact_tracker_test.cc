@@ -101,7 +101,7 @@ class PlainTracker {
     Shape shape;
     PieceTree tree;
     Pose X_WO, X_AB;
-    std::map<PiecePair, PairState> states;
+    std::map<PiecePair, SurfacePairState> states;
     std::vector<PressedContact> pressed;
     bool is_first = true;
   };
@@ -119,7 +119,7 @@ class PlainTracker {
     const std::size_t first = contacts->size();
     std::vector<PressedContact> pressed;
     const auto ask = [&](const PiecePair& pieces) {
-      PairState& state = object.states[pieces];
+      SurfacePairState& state = object.states[pieces];
       const PosedPair pair{tool_->pieces[pieces.a],
                            object.shape->pieces[pieces.b], X_AB};
       const int last_press = state.press;
@@ -171,7 +171,7 @@ class PlainTracker {
   PieceTree tree_;
   std::vector<Object> objects_;
   double tolerance_;
-  PairWorkspace workspace_;
+  SurfacePairWorkspace workspace_;
 };
 
 bool AreEqual(const std::vector<Contact>& found,
