@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "types.h"
+#include "base/types.h"
 
 namespace drake_haptics {
 
