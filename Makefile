@@ -5,7 +5,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.drake_haptics
-CORE := $(wildcard drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h) drake_haptics/core/CMakeLists.txt
+CORE := $(wildcard drake_haptics/core/*/* drake_haptics/include/*/*) drake_haptics/core/CMakeLists.txt
+# All C and C++ but the programs that time other libraries.
+FORMATTED = $(shell find drake_haptics/core drake_haptics/include examples tests -name '*.c' -o -name '*.cc' -o -name '*.h')
 
 .PHONY: demo tutorials test test-newest lint unit docs format build fuzz clean
 .DEFAULT_GOAL := demo
@@ -42,7 +44,7 @@ lint: $(STAMP)-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/clang-format --dry-run -Werror drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h examples/*.c tests/benchmarks/*.c tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
+	$(BIN)/clang-format --dry-run -Werror $(FORMATTED)
 
 # The pages of docs/ with the reference that is made of the code, as a site.
 docs: $(STAMP)-test
@@ -55,7 +57,7 @@ docs: $(STAMP)-test
 format: $(STAMP)-test
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
-	$(BIN)/clang-format -i drake_haptics/core/*.cc drake_haptics/core/*.h drake_haptics/include/drake_haptics/*.h examples/*.c tests/benchmarks/*.c tests/core/*.cc tests/core/*.h tests/fuzz/*.cc tests/fuzz/*.h
+	$(BIN)/clang-format -i $(FORMATTED)
 
 # Rebuilds the C++ core after an edit, without a fresh build environment.
 build:

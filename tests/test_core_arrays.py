@@ -8,7 +8,7 @@ import pytest
 
 from drake_haptics import _core
 
-CORE = Path(__file__).parents[1] / "drake_haptics" / "core"
+BINDINGS = Path(__file__).parents[1] / "drake_haptics" / "core" / "bind"
 WRENCH = np.array([0.1, -0.2, 0.3, 1.5, -2.5, 3.5])
 
 
@@ -99,8 +99,8 @@ def test_matrices_keep_rows_and_columns(order):
 
 def test_all_bindings_hand_arrays_over_in_one_way():
     # Two files that disagree on it would not be one program.
-    texts = [file.read_text("utf-8") for file in CORE.glob("bind_*.cc")]
+    texts = [file.read_text("utf-8") for file in BINDINGS.glob("*.cc")]
     bindings = [text for text in texts if "nb::arg(" in text]
     assert len(bindings) > 20
     for text in bindings:
-        assert '#include "bind.h"' in text, text
+        assert '#include "bind/bind.h"' in text, text

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-# Below the servo's thread (core/realtime.cc), which must not wait for the loop.
+# Below the servo's thread (core/device/realtime.cc), which must not wait for the loop.
 _ABOVE_LEAST = 5
 
 

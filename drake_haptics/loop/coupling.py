@@ -9,8 +9,8 @@ from drake_haptics._core import CouplingGains
 from drake_haptics.scene.schema import Coupling
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
-# Half the width of a hand, m: by this length core/passive_part.h as well compares a
-# torque with a force at a handle.
+# Half the width of a hand, m: by this length core/base/passive_part.h as well compares
+# a torque with a force at a handle.
 _HANDLE_LENGTH_M = 0.05
 
 

@@ -31,7 +31,7 @@ class EnergyLedger:
     by the name of its port (`contact`, `friction`, `braking`, `gravity`). What goes
     out of one goes into its neighbor. `device` is all of them together, as the hand
     has them at the device's port. How a tick is booked, and what the sampling of a
-    force can seem to create, is derived in `core/tick_energy.h`.
+    force can seem to create, is derived in `core/tool/tick_energy.h`.
 
     Objects are taken to stand still: what one that moves does to the tool shows as
     created by the source of the force. Where gains are changed in the context, the

@@ -34,8 +34,8 @@ class PreContactBraking(DifferentiableSystem):
     speed, at any speed.
 
     The share s of a contact keeps those with like normals from adding up, however
-    finely a surface is cut, and leaves others alone (core/braking.h). The damping is
-    at most 1.1 b where all normals are alike, and 4.4 b along any direction.
+    finely a surface is cut, and leaves others alone (core/law/braking.h). The damping
+    is at most 1.1 b where all normals are alike, and 4.4 b along any direction.
 
     .. pydrake_system::
 

@@ -39,7 +39,7 @@ class StickSlipFriction(DifferentiableSystem):
     displacement only: at rest nothing creeps. Contacts hand their adhesion on from
     tick to tick, so that the force does not jump where they merge, split or cross a
     seam; and no change of the normal force makes energy. The formulas are in
-    `core/friction_law.h` and `core/friction_tracking.h`.
+    `core/law/friction_law.h` and `core/law/friction_tracking.h`.
 
     .. pydrake_system::
 

@@ -65,7 +65,7 @@ def make_rows() -> list[EffectRow]:
             "clustering",
             "k w = C λ where λ > 0, C_ij = (1 − ρ) c(nᵢ, nⱼ) + δᵢⱼ ρ/mᵢ, c from 1 where"
             " normals are alike to 0 at right angles",
-            "`core/shared_stiffness.h`; `octree`: paper, 4.2, Eq. 1–5",
+            "`core/law/shared_stiffness.h`; `octree`: paper, 4.2, Eq. 1–5",
             f"{contact.clustering}",
             "Continuous; makes no energy while normals and shares stay. `octree` jumps"
             " where a contact crosses a cell.",

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "support.h"
+#include "convex/support.h"
 
 /// Exact answers by enumeration, for tests: O(edges of A × edges of B).
 namespace drake_haptics {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "base/types.h"
 #include "byte_source.h"
-#include "types.h"
 
 namespace drake_haptics::fuzz {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "convex/polytope.h"
 #include "draw.h"
-#include "polytope.h"
 
 namespace drake_haptics::fuzz {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "byte_source.h"
-#include "decomposition.h"
+#include "mesh/decomposition.h"
 
 namespace drake_haptics::fuzz {
 

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "contact_tracker.h"
-#include "convex_pair.h"
 #include "draw.h"
 #include "draw_mesh.h"
+#include "pair/convex_pair.h"
 #include "pair_truth.h"
+#include "tracker/contact_tracker.h"
 
 namespace drake_haptics::fuzz {
 namespace {

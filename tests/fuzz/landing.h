@@ -2,10 +2,10 @@
 
 #include <memory>
 
+#include "base/types.h"
 #include "byte_source.h"
-#include "decomposition.h"
+#include "mesh/decomposition.h"
 #include "tally.h"
-#include "types.h"
 
 namespace drake_haptics::fuzz {
 

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <stdexcept>
 
-#include "decomposition.h"
 #include "draw.h"
 #include "draw_mesh.h"
+#include "mesh/decomposition.h"
 #include "polytope_check.h"
 #include "target.h"
 

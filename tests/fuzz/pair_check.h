@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byte_source.h"
-#include "convex_pair.h"
+#include "pair/convex_pair.h"
 #include "tally.h"
 
 namespace drake_haptics::fuzz {

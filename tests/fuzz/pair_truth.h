@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "support.h"
+#include "convex/support.h"
 
 namespace drake_haptics::fuzz {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "convex/support.h"
 #include "draw.h"
-#include "support.h"
 
 namespace drake_haptics::fuzz {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "byte_source.h"
-#include "polytope.h"
+#include "convex/polytope.h"
 #include "tally.h"
 
 namespace drake_haptics::fuzz {

@@ -6,15 +6,15 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "contact_tracker.h"
 #include "draw.h"
 #include "draw_mesh.h"
 #include "landing.h"
+#include "law/penalty_force.h"
+#include "law/shared_stiffness.h"
+#include "mesh/surface_mesh.h"
 #include "pair_truth.h"
-#include "penalty_force.h"
-#include "shared_stiffness.h"
-#include "surface_mesh.h"
 #include "target.h"
+#include "tracker/contact_tracker.h"
 
 namespace drake_haptics::fuzz {
 namespace {

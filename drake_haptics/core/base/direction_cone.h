@@ -1,0 +1,20 @@
+#pragma once
+
+#include "base/types.h"
+
+namespace drake_haptics {
+
+/// Directions within an angle of an axis.
+struct DirectionCone {
+  Vec3 axis = Vec3::UnitX();  ///< unit
+  double cosine = -1;         ///< of the angle; −1 for all directions
+
+  /// Whether it holds a unit direction, or misses it by a cosine of `slack`.
+  /// Round-off of either unit vector leaves no direction out of a cone of all.
+  bool Holds(const Vec3& direction, double slack = 0) const {
+    constexpr double kRoundOff = 1e-14;
+    return axis.dot(direction) >= cosine - slack - kRoundOff;
+  }
+};
+
+}  // namespace drake_haptics

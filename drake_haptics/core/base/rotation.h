@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "base/autodiff.h"
+#include "base/types.h"
+
+namespace drake_haptics {
+
+/// Rotation by the vector r (rad): exp of its cross-product matrix.
+template <typename T>
+Eigen::Quaternion<T> RotationExp(const Vec3Of<T>& r);
+
+/// The rotation vector (rad) of q, of length at most π. Inverse of
+/// RotationExp.
+template <typename T>
+Vec3Of<T> RotationLog(const Eigen::Quaternion<T>& q);
+
+/// A pose as Drake's vector [qw qx qy qz x y z].
+template <typename T>
+using PoseVectorOf = Eigen::Matrix<T, 7, 1>;
+using PoseVector = PoseVectorOf<double>;
+
+/// @throws std::invalid_argument unless all values are finite and the
+///         quaternion can be normalised. `what` names the pose in the message.
+Pose PoseFromVector(const PoseVector& q, const char* what);
+
+/// The quaternion of a pose vector, normalised.
+template <typename T>
+Eigen::Quaternion<T> QuaternionOf(const Eigen::Matrix<T, 7, 1>& q) {
+  return Eigen::Quaternion<T>(q[0], q[1], q[2], q[3]).normalized();
+}
+
+}  // namespace drake_haptics

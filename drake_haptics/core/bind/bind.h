@@ -1,0 +1,52 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+
+#include "bind/bind_eigen.h"
+
+/// Each bind_<topic>.cc adds one topic to the Python module `_core`.
+namespace drake_haptics {
+
+/// "1 piece", "2 pieces".
+inline std::string Counted(std::size_t number, const char* noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+}
+
+/// Iterates by `__getitem__`, said to type checkers, who do not guess it.
+inline nanobind::object Iterate(nanobind::handle sequence) {
+  return nanobind::steal(PySeqIter_New(sequence.ptr()));
+}
+
+void BindAdvance(nanobind::module_& m);
+void BindAutoDiff(nanobind::module_& m);
+void BindPolytope(nanobind::module_& m);
+void BindDecomposition(nanobind::module_& m);
+void BindContact(nanobind::module_& m);
+void BindConvexPair(nanobind::module_& m);
+void BindTracker(nanobind::module_& m);
+void BindClustering(nanobind::module_& m);
+void BindPenaltyForce(nanobind::module_& m);
+void BindTool(nanobind::module_& m);
+void BindJacobian(nanobind::module_& m);
+void BindAutoDiffContact(nanobind::module_& m);
+void BindAutoDiffForce(nanobind::module_& m);
+void BindShading(nanobind::module_& m);
+void BindFriction(nanobind::module_& m);
+void BindBraking(nanobind::module_& m);
+void BindGravity(nanobind::module_& m);
+void BindPassivity(nanobind::module_& m);
+void BindHand(nanobind::module_& m);
+void BindEnergy(nanobind::module_& m);
+void BindClock(nanobind::module_& m);
+void BindPackets(nanobind::module_& m);
+void BindGate(nanobind::module_& m);
+void BindServo(nanobind::module_& m);
+void BindToolLoop(nanobind::module_& m);
+void BindForeignContacts(nanobind::module_& m);
+
+}  // namespace drake_haptics

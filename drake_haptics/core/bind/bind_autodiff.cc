@@ -1,0 +1,44 @@
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "base/autodiff.h"
+#include "bind/bind.h"
+#include "bind/bind_eigen.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+
+void BindAutoDiff(nb::module_& m) {
+  nb::class_<AutoDiffVector>(
+      m, "AutoDiffVector",
+      "Numbers with their derivatives by D variables that all arguments of a "
+      "call have in common. Immutable.")
+      .def(
+          "__init__",
+          [](AutoDiffVector* self, Eigen::VectorXd value,
+             Eigen::MatrixXd gradient) {
+            if (gradient.rows() != value.size()) {
+              throw std::invalid_argument(
+                  "gradient must have a row for each of the " +
+                  std::to_string(value.size()) + " values, has " +
+                  std::to_string(gradient.rows()));
+            }
+            new (self) AutoDiffVector{std::move(value), std::move(gradient)};
+          },
+          nb::arg("value"), nb::arg("gradient"),
+          "Args:\n"
+          "    value: (n,).\n"
+          "    gradient: (n, D).\n\n"
+          "Raises:\n    ValueError: the sizes do not match.")
+      .def("__len__", &AutoDiffVector::size)
+      .def_prop_ro(
+          "value", [](const AutoDiffVector& self) { return self.value; },
+          "(n,).")
+      .def_prop_ro(
+          "gradient", [](const AutoDiffVector& self) { return self.gradient; },
+          "(n, D).");
+}
+
+}  // namespace drake_haptics

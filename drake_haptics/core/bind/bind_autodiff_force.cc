@@ -1,0 +1,199 @@
+#include <stdexcept>
+#include <string>
+
+#include "bind/bind.h"
+#include "bind/bind_autodiff_set.h"
+#include "bind/bind_eigen.h"
+#include "law/contact_thinning.h"
+#include "law/shared_stiffness.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+void BindClusters(nb::module_& m) {
+  nb::class_<AutoDiffClusterSet> set(
+      m, "AutoDiffClusterSet",
+      "A `ClusterSet` with derivatives by D variables. Its columns are "
+      "`AutoDiffVector`, those of vectors flattened by rows. Immutable; copies "
+      "are the object itself.");
+  set.def("__len__",
+          [](const AutoDiffClusterSet& s) { return s.set.clusters.size(); });
+  constexpr auto kItems = &ClusterSetOf<AutoDiff>::clusters;
+  using Item = ClusterOf<AutoDiff>;
+  DefGradientColumn<kItems, &Item::distance>(&set, "distance", "(k,) m.");
+  DefGradientColumn<kItems, &Item::nhat_BA_W>(&set, "nhat_BA_W",
+                                              "(3 k,) unit normals.");
+  DefGradientColumn<kItems, &Item::p_WC>(&set, "p_WC", "(3 k,) m.");
+  DefGradientColumn<kItems, &Item::compression>(&set, "compression", "(k,) m.");
+  DefGradientColumn<kItems, &Item::damping_share>(&set, "damping_share",
+                                                  "(k,).");
+  set.def_prop_ro(
+      "coupling",
+      [](const AutoDiffClusterSet& s) {
+        const auto count = static_cast<Eigen::Index>(s.set.clusters.size());
+        MatrixOf<AutoDiff> H(count, count);
+        for (Eigen::Index i = 0; i < count; ++i) {
+          for (Eigen::Index j = 0; j < count; ++j) {
+            H(i, j) = s.set.coupling(i, j);
+          }
+        }
+        return ToAutoDiffVector(H.reshaped<Eigen::RowMajor>(),
+                                s.num_derivatives);
+      },
+      "(k k,) derivative of `compression` by the depths.");
+  DefDifferentiated(&set, "The `ClusterSet`.");
+  m.def(
+      "thin_contacts",
+      [](const AutoDiffContactSet& contacts, double cell) {
+        AutoDiffContactSet thinned{{}, contacts.num_derivatives};
+        ThinContacts(contacts.set.contacts, cell, &thinned.set.contacts);
+        return thinned;
+      },
+      nb::arg("contacts"), nb::arg("cell"),
+      "The same with derivatives; which contacts stay is fixed.");
+  m.def(
+      "cluster_contacts",
+      [](const AutoDiffContactSet& contacts, double delta, double tolerance) {
+        AutoDiffClusterSet clusters{{}, contacts.num_derivatives};
+        ClusterContacts(contacts.set.contacts, delta, tolerance, &clusters.set);
+        ClusterSet values;
+        ClusterContacts(ValuesOf(contacts.set).contacts, delta, tolerance,
+                        &values);
+        SetValues(values, &clusters);
+        return clusters;
+      },
+      nb::arg("contacts"), nb::arg("delta"), nb::arg("tolerance"),
+      "The same with derivatives; which contacts are together stays.");
+  m.def(
+      "share_stiffness",
+      [](const AutoDiffContactSet& contacts, double tolerance) {
+        AutoDiffClusterSet clusters{{}, contacts.num_derivatives};
+        ShareStiffness(contacts.set.contacts, tolerance, &clusters.set);
+        ClusterSet values;
+        ShareStiffness(ValuesOf(contacts.set).contacts, tolerance, &values);
+        SetValues(values, &clusters);
+        return clusters;
+      },
+      nb::arg("contacts"), nb::arg("tolerance"),
+      "The same with derivatives; which contacts push stays.");
+}
+
+void RequireVector(const AutoDiffVector& vector, Eigen::Index size,
+                   Eigen::Index num_derivatives, const char* name) {
+  if (vector.size() != size) {
+    throw std::invalid_argument(std::string(name) + " must have " +
+                                std::to_string(size) + " entries, has " +
+                                std::to_string(vector.size()));
+  }
+  if (vector.num_derivatives() != num_derivatives) {
+    throw std::invalid_argument(
+        std::string(name) + " must have derivatives by the " +
+        std::to_string(num_derivatives) + " variables of the clusters, has " +
+        std::to_string(vector.num_derivatives()));
+  }
+}
+
+// Frame i of several, one after another.
+MovingFrameOf<AutoDiff> FrameOf(const AutoDiffVector& p_WF,
+                                const AutoDiffVector& V_WF, Eigen::Index i) {
+  MovingFrameOf<AutoDiff> frame;
+  for (int k = 0; k < 3; ++k) frame.p_WF[k] = p_WF(3 * i + k);
+  for (int k = 0; k < 6; ++k) frame.V_WF[k] = V_WF(6 * i + k);
+  return frame;
+}
+
+AutoDiffPenaltyWrench Compute(const AutoDiffClusterSet& clusters,
+                              const AutoDiffVector& p_WTo,
+                              const AutoDiffVector& V_WTool,
+                              const AutoDiffVector& p_WO,
+                              const AutoDiffVector& V_WO,
+                              const Eigen::VectorXd& stiffness,
+                              const Eigen::VectorXd& damping) {
+  const Eigen::Index count = stiffness.size(), D = clusters.num_derivatives;
+  if (damping.size() != count) {
+    throw std::invalid_argument(
+        "stiffness and damping must have one row for each object");
+  }
+  RequireVector(p_WTo, 3, D, "p_WTo");
+  RequireVector(V_WTool, 6, D, "V_WTool");
+  RequireVector(p_WO, 3 * count, D, "p_WO");
+  RequireVector(V_WO, 6 * count, D, "V_WO");
+  const auto tool = FrameOf(p_WTo, V_WTool, 0);
+  std::vector<MovingFrameOf<AutoDiff>> objects;
+  std::vector<MovingFrame> values;
+  std::vector<ContactMaterial> materials;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    objects.push_back(FrameOf(p_WO, V_WO, i));
+    values.push_back(ValuesOf(objects.back()));
+    materials.push_back({stiffness[i], damping[i]});
+    RequireMaterial(materials.back());
+  }
+  AutoDiffPenaltyWrench wrench{
+      ComputePenaltyWrench(clusters.set, tool, objects, materials), D};
+  SetValues(ComputePenaltyWrench(ValuesOf(clusters.set), ValuesOf(tool), values,
+                                 materials),
+            &wrench);
+  return wrench;
+}
+
+// Vectors one after another.
+template <int Size>
+AutoDiffVector Flat(
+    const std::vector<Eigen::Matrix<AutoDiff, Size, 1>>& vectors,
+    Eigen::Index num_derivatives) {
+  VectorOf<AutoDiff> all(Size * vectors.size());
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    all.segment<Size>(Size * i) = vectors[i];
+  }
+  return ToAutoDiffVector(all, num_derivatives);
+}
+
+void BindWrench(nb::module_& m) {
+  using Wrench = AutoDiffPenaltyWrench;
+  nb::class_<Wrench> wrench(
+      m, "AutoDiffPenaltyWrench",
+      "A `PenaltyWrench` with derivatives by D variables; rows of wrenches and "
+      "forces one after another. Immutable; copies are the object itself.");
+  wrench.def_prop_ro(
+      "wrench_model",
+      [](const Wrench& w) {
+        return ToAutoDiffVector(ToVector(w.set.tool), w.num_derivatives);
+      },
+      "(78,) wrench on the tool at To with its linear model.");
+  wrench.def_prop_ro(
+      "F_Tool_W",
+      [](const Wrench& w) {
+        return ToAutoDiffVector(w.set.tool.F, w.num_derivatives);
+      },
+      "(6,) wrench on the tool at To, [N·m; N].");
+  wrench.def_prop_ro(
+      "F_objects_W",
+      [](const Wrench& w) {
+        return Flat<6>(w.set.SumByObject(), w.num_derivatives);
+      },
+      "(6 m,) wrench on each object at its origin, [N·m; N].");
+  wrench.def_prop_ro(
+      "f_cluster_W",
+      [](const Wrench& w) {
+        return Flat<3>(w.set.f_cluster_W, w.num_derivatives);
+      },
+      "(3 k,) force of each cluster on the tool, N.");
+  DefDifferentiated(&wrench, "The `PenaltyWrench`.");
+  m.def(
+      "penalty_force", &Compute, nb::arg("clusters"), nb::arg("p_WTo"),
+      nb::arg("V_WTool"), nb::arg("p_WO"), nb::arg("V_WO"),
+      nb::arg("stiffness"), nb::arg("damping"),
+      "The same with derivatives; p_WO (3 m,) and V_WO (6 m,) have one object "
+      "after another.");
+}
+
+}  // namespace
+
+void BindAutoDiffForce(nb::module_& m) {
+  BindClusters(m);
+  BindWrench(m);
+}
+
+}  // namespace drake_haptics

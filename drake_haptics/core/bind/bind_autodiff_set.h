@@ -1,0 +1,72 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "bind/bind_columns.h"
+#include "law/autodiff_sets.h"
+
+/// What sets with derivatives have in common.
+namespace drake_haptics {
+
+/// The entries of a vector member of each item, one item after another.
+template <typename Item, typename Member>
+AutoDiffVector GradientColumn(const std::vector<Item>& items,
+                              Member Item::* member,
+                              Eigen::Index num_derivatives) {
+  VectorOf<AutoDiff> column;
+  if constexpr (std::is_same_v<Member, AutoDiff>) {
+    column.resize(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      column[i] = items[i].*member;
+    }
+  } else {
+    column.resize(3 * items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      column.segment<3>(3 * i) = items[i].*member;
+    }
+  }
+  return ToAutoDiffVector(column, num_derivatives);
+}
+
+/// Defines `name` as the column with derivatives of the vector `items`.
+template <auto items, auto member, typename Binding>
+void DefGradientColumn(Binding* binding, const char* name, const char* doc) {
+  using Class = typename Binding::Type;
+  binding->def_prop_ro(
+      name,
+      [](const Class& self) {
+        return GradientColumn(self.set.*items, member, self.num_derivatives);
+      },
+      doc);
+}
+
+/// Its values, the number of variables, and copies that are the object.
+template <typename Binding>
+void DefDifferentiated(Binding* binding, const char* value_doc) {
+  using Class = typename Binding::Type;
+  binding->def_prop_ro(
+      "value", [](const Class& self) { return ValuesOf(self.set); }, value_doc);
+  binding->def_ro("num_derivatives", &Class::num_derivatives,
+                  "D, the number of variables that derivatives are by.");
+  binding->def(
+      "with_variables",
+      [](const Class& self, Eigen::Index num_derivatives) {
+        if (self.num_derivatives != 0) {
+          throw std::invalid_argument("has derivatives by " +
+                                      std::to_string(self.num_derivatives) +
+                                      " variables already");
+        }
+        return WithVariables(self, num_derivatives);
+      },
+      nanobind::arg("num_derivatives"),
+      "A constant, D = 0, with derivatives by that many variables: zeros.\n\n"
+      "Raises:\n    ValueError: it has derivatives.");
+  DefFrozenCopy(binding);
+}
+
+}  // namespace drake_haptics

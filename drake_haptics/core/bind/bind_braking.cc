@@ -1,0 +1,87 @@
+#include <stdexcept>
+
+#include "bind/bind.h"
+#include "bind/bind_eigen.h"
+#include "bind/bind_objects.h"
+#include "law/autodiff_sets.h"
+#include "law/braking.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+Eigen::VectorXd Brake(const ContactSet& contacts, const Vec3& p_WTo,
+                      const Vec6& V_WTool, const ObjectFrames& objects,
+                      const BrakingGains& gains) {
+  return ToVector(ComputeBraking<double>(contacts.contacts, {p_WTo, V_WTool},
+                                         objects.frames, gains));
+}
+
+AutoDiffVector DifferentiateBraking(const AutoDiffContactSet& contacts,
+                                    const AutoDiffVector& p_WTo,
+                                    const AutoDiffVector& V_WTool,
+                                    const AutoDiffVector& p_WO,
+                                    const AutoDiffVector& V_WO,
+                                    const BrakingGains& gains) {
+  const Eigen::Index count = p_WO.size() / 3;
+  if (p_WO.size() != 3 * count || V_WO.size() != 6 * count) {
+    throw std::invalid_argument(
+        "p_WO and V_WO must have 3 and 6 numbers for each object");
+  }
+  std::vector<MovingFrameOf<AutoDiff>> objects(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (int k = 0; k < 3; ++k) objects[i].p_WF[k] = p_WO(3 * i + k);
+    for (int k = 0; k < 6; ++k) objects[i].V_WF[k] = V_WO(6 * i + k);
+  }
+  return ToAutoDiffVector(
+      ToVector(ComputeBraking<AutoDiff>(
+          contacts.set.contacts,
+          {ToScalars<3>(p_WTo, "p_WTo"), ToScalars<6>(V_WTool, "V_WTool")},
+          objects, gains)),
+      contacts.num_derivatives);
+}
+
+}  // namespace
+
+void BindBraking(nb::module_& m) {
+  nb::class_<BrakingGains>(m, "BrakingGains",
+                           "Viscous braking before surfaces touch.")
+      .def(
+          "__init__",
+          [](BrakingGains* self, double damping, double distance) {
+            const BrakingGains gains{damping, distance};
+            RequirePossible(gains);
+            new (self) BrakingGains(gains);
+          },
+          nb::arg("damping_Ns_per_m"), nb::arg("distance_m"),
+          "Args:\n"
+          "    damping_Ns_per_m: b, half-way to the surface, N·s/m.\n"
+          "    distance_m: D, where braking begins, m.\n\n"
+          "Raises:\n"
+          "    ValueError: b < 0, D <= 0, or one of them is not finite.");
+  m.def("pre_contact_braking", &Brake, nb::arg("contacts"), nb::arg("p_WTo"),
+        nb::arg("V_WTool"), nb::arg("objects"), nb::arg("gains"),
+        "Braking of the approach of surfaces that do not touch yet (McNeely, "
+        "Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s "
+        "w v along its normal, v the speed of approach, w = 4 (d/D)(1 − d/D), "
+        "s its share among contacts with like normals (braking.h). Never a "
+        "pull.\n\n"
+        "Args:\n"
+        "    p_WTo: (3,) tool's origin, m.\n"
+        "    V_WTool: (6,) its spatial velocity [rad/s; m/s].\n"
+        "    objects: where they are.\n\n"
+        "Returns:\n"
+        "    (78 + 6 m,) wrench model on the tool at To in W: [F (6); K (36), "
+        "zero; B (36, by rows)], rotational first; then the wrench on each "
+        "object at its origin in W, N·m and N.\n\n"
+        "Raises:\n"
+        "    IndexError: a contact names an object that is not given.");
+  m.def("pre_contact_braking", &DifferentiateBraking, nb::arg("contacts"),
+        nb::arg("p_WTo"), nb::arg("V_WTool"), nb::arg("p_WO"), nb::arg("V_WO"),
+        nb::arg("gains"),
+        "The same with derivatives; p_WO (3 m,) and V_WO (6 m,) have one "
+        "object after another.");
+}
+
+}  // namespace drake_haptics

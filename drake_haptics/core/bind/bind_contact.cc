@@ -1,0 +1,202 @@
+#include "bind/bind_contact.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "bind/bind.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+// Read-only (3,) view of a vector member.
+template <Vec3 Contact::* member>
+void DefVector(nb::class_<Contact>* contact, const char* name,
+               const char* doc) {
+  contact->def_prop_ro(
+      name,
+      [](nb::handle self) {
+        const Vec3& v = nb::cast<const Contact&>(self).*member;
+        const std::size_t shape[1] = {3};
+        return nb::ndarray<nb::numpy, const double, nb::shape<3>>(v.data(), 1,
+                                                                  shape, self);
+      },
+      doc);
+}
+
+using OptionalFeature = std::optional<Feature>;
+
+OptionalFeature ToFeature(const std::array<std::int32_t, 2>& kind_and_index) {
+  const auto [kind, index] = kind_and_index;
+  if (index < 0) return std::nullopt;
+  return Feature(static_cast<FeatureKind>(kind), index);
+}
+
+std::string Text(const Feature& feature) {
+  static constexpr const char* kNames[] = {"vertex", "edge", "facet"};
+  return std::string(kNames[static_cast<int>(feature.kind())]) + " " +
+         std::to_string(feature.index());
+}
+
+nb::object Text(const Contact& contact) {
+  const Vec3& n = contact.nhat_BA_W;
+  const OptionalFeature a = ToFeature(contact.feature_A);
+  const OptionalFeature b = ToFeature(contact.feature_B);
+  const std::string features =
+      a && b ? Text(*a) + " of A on " + Text(*b) + " of B" : "no features";
+  return nb::str("Contact({:.6g} m, {}, normal [{:.4g}, {:.4g}, {:.4g}], {})")
+      .format(contact.distance,
+              nb::cast(static_cast<ContactStatus>(contact.status)).attr("name"),
+              n.x(), n.y(), n.z(), features);
+}
+
+Feature MakeFeature(FeatureKind kind, int index) {
+  if (index < 0 || index > Feature::kMaxIndex) {
+    throw std::invalid_argument("index must be from 0 to " +
+                                std::to_string(Feature::kMaxIndex) + ", is " +
+                                std::to_string(index));
+  }
+  return {kind, index};
+}
+
+void BindFeature(nb::module_& m) {
+  nb::enum_<FeatureKind>(
+      m, "FeatureKind", nb::is_arithmetic(),
+      "What a feature of a `ConvexPolytope` is: the list that its index counts "
+      "in.")
+      .value("VERTEX", FeatureKind::kVertex, "a row of `vertices`")
+      .value("EDGE", FeatureKind::kEdge, "a row of `edges`")
+      .value("FACET", FeatureKind::kFacet, "an item of `facets`");
+  nb::class_<Feature>(m, "Feature",
+                      "A vertex, edge or facet of a `ConvexPolytope`. Equal if "
+                      "kind and index are. Immutable.")
+      .def(nb::new_(&MakeFeature), nb::arg("kind"), nb::arg("index"),
+           "Raises:\n    ValueError: the index is negative or too large.")
+      .def_prop_ro("kind", &Feature::kind, "Which list the index counts in.")
+      .def_prop_ro("index", &Feature::index,
+                   "Place in `vertices`, `edges` or `facets`, from 0.")
+      .def(
+          "__eq__", [](const Feature& a, const Feature& b) { return a == b; },
+          nb::is_operator(), nb::sig("def __eq__(self, other: object) -> bool"))
+      .def("__hash__", &Feature::code)
+      .def("__repr__",
+           [](const Feature& self) { return "Feature(" + Text(self) + ")"; });
+}
+
+void BindOneContact(nb::module_& m) {
+  nb::enum_<ContactStatus>(m, "ContactStatus", nb::is_arithmetic(),
+                           "How the answer of a pair of polytopes was reached.")
+      .value("NEAR", ContactStatus::kNear, "apart; closest features")
+      .value("PENETRATING", ContactStatus::kPenetrating,
+             "overlapping; penetration depth")
+      .value("HELD", ContactStatus::kHeld,
+             "passed behind the surface that it had pressed on; trackers only")
+      .value("BOUNDED", ContactStatus::kBounded,
+             "a search met its bound; best answer seen");
+  nb::class_<Contact> contact(
+      m, "Contact",
+      "One contact of two convex polytopes A and B, in the world frame W, in "
+      "the words and signs of Drake's `SignedDistancePair`. Immutable, and "
+      "made by queries only: tolerance and gains are those of a "
+      "`drake_haptics.scene.schema.Contact`.");
+  // Settings and result have one name: who takes one for the other is told.
+  contact.def(
+      "__init__",
+      [](nb::handle, nb::args, nb::kwargs) {
+        throw nb::type_error(
+            "drake_haptics.Contact is what a query finds and has no "
+            "constructor; for tolerance, stiffness and damping: "
+            "from drake_haptics.scene.schema import Contact");
+      },
+      nb::sig("def __init__(self) -> None"));
+  contact.def_ro("distance", &Contact::distance,
+                 "Signed distance, m; > 0 apart, < 0 penetrating (then "
+                 "−distance is the depth).");
+  DefVector<&Contact::nhat_BA_W>(&contact, "nhat_BA_W",
+                                 "(3,) unit normal out of B into A.");
+  DefVector<&Contact::p_WCa>(
+      &contact, "p_WCa",
+      "(3,) witness point on A, m: p_WCa − p_WCb = distance · nhat_BA_W.");
+  DefVector<&Contact::p_WCb>(&contact, "p_WCb", "(3,) witness point on B, m.");
+  DefVector<&Contact::p_WC>(&contact, "p_WC",
+                            "(3,) mean of both (paper, Eq. 1), m.");
+  contact
+      .def_ro("extent", &Contact::extent,
+              "Measure of the overlap, m²; see `ContactSet.extent`.")
+      .def_ro("flushness", &Contact::flushness,
+              "Share of the contact, 0 to 1, in flush faces or edges.")
+      .def_prop_ro(
+          "feature_A", [](const Contact& c) { return ToFeature(c.feature_A); },
+          "`Feature` of A in contact; None where another library found it.")
+      .def_prop_ro(
+          "feature_B", [](const Contact& c) { return ToFeature(c.feature_B); },
+          "`Feature` of B in contact; None where another library found it.")
+      .def_prop_ro(
+          "status",
+          [](const Contact& c) { return static_cast<ContactStatus>(c.status); },
+          "`ContactStatus`.")
+      .def_ro("object_index", &Contact::object,
+              "Which object B is; 0 from a pair.")
+      .def_ro("piece_A", &Contact::piece_A,
+              "Which piece of the tool A is; 0 from a pair.")
+      .def_ro("piece_B", &Contact::piece_B,
+              "Which piece of the object B is; 0 from a pair.")
+      .def(
+          "__repr__", [](const Contact& self) { return Text(self); },
+          nb::sig("def __repr__(self) -> str"));
+  DefFrozenCopy(&contact);
+}
+
+void BindContactSet(nb::module_& m) {
+  nb::class_<ContactSet> set(
+      m, "ContactSet",
+      "The contacts of one query, one for each pair of pieces within the "
+      "tolerance, ordered by object, piece of A, piece of B: read-only columns "
+      "over n contacts, and a sequence of `Contact`. Immutable; copies are the "
+      "object itself, so that it crosses Drake's abstract ports.");
+  set.def("__len__", [](const ContactSet& s) { return s.contacts.size(); });
+  set.def(
+      "__getitem__",
+      [](const ContactSet& s, Py_ssize_t i) {
+        return s.contacts[PlaceOf(i, s.contacts.size())];
+      },
+      nb::arg("i"));
+  set.def("__iter__", &Iterate,
+          nb::sig("def __iter__(self) -> collections.abc.Iterator[Contact]"));
+  const auto least_distance = [](const ContactSet& s) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : s.contacts) {
+      least = std::min(least, contact.distance);
+    }
+    return least;
+  };
+  set.def_prop_ro("least_distance", least_distance,
+                  "Of the nearest contact, m; infinite if there is none.");
+  const auto text = [least_distance](const ContactSet& s) -> nb::object {
+    if (s.contacts.empty()) return nb::str("ContactSet(no contacts)");
+    return nb::str("ContactSet({}, least distance {:.6g} m)")
+        .format(Counted(s.contacts.size(), "contact"), least_distance(s));
+  };
+  set.def("__repr__", text, nb::sig("def __repr__(self) -> str"));
+  set.def_ro("query_seconds", &ContactSet::query_seconds,
+             "Time that the query took inside the core, s.");
+  constexpr auto kItems = &ContactSet::contacts;
+  DefContactColumns<kItems>(&set);
+  DefPieceColumns<kItems>(&set);
+  DefFrozenCopy(&set);
+}
+
+}  // namespace
+
+void BindContact(nb::module_& m) {
+  BindFeature(m);
+  BindOneContact(m);
+  BindContactSet(m);
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,143 @@
+#include <drake_haptics/gate.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/string.h>
+
+#include <cstdint>
+#include <map>
+#include <sstream>
+
+#include "bind/bind.h"
+#include "bind/bind_device.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+dh_gate MakeGate(const dh_gate_limits& limits) {
+  dh_gate gate;
+  if (const char* problem = dh_gate_init(&gate, &limits)) {
+    std::ostringstream text;
+    text << problem << "; got max_force_N=" << limits.max_force_N
+         << ", max_torque_Nm=" << limits.max_torque_Nm
+         << ", max_speed_m_per_s=" << limits.max_speed_m_per_s
+         << ", max_turn_rate_rad_per_s=" << limits.max_turn_rate_rad_per_s
+         << ", ramp_in_s=" << limits.ramp_in_s
+         << ", ramp_out_s=" << limits.ramp_out_s
+         << ", max_ttl_s=" << limits.max_ttl_s;
+    throw std::invalid_argument(text.str());
+  }
+  return gate;
+}
+
+std::uint64_t ReadTime(nb::int_ now_ns) {
+  return ReadCount<std::uint64_t>("now_ns", now_ns, 0, UINT64_MAX);
+}
+
+Eigen::Matrix<double, 6, 1> Step(dh_gate* gate, nb::int_ now_ns,
+                                 nb::handle X_BH, nb::handle V_BH) {
+  double X[7], V[6], F[6];
+  ReadReals(X_BH, "X_BH", X);
+  ReadReals(V_BH, "V_BH", V);
+  dh_gate_step(gate, ReadTime(now_ns), X, V, F);
+  return ToArray(F);
+}
+
+std::map<std::string, std::uint64_t> Counts(const dh_gate& gate) {
+  std::map<std::string, std::uint64_t> counts;
+  for (int i = 0; i < DH_VERDICT_COUNT; ++i) {
+    counts[NameOf(static_cast<dh_verdict>(i))] = gate.counts[i];
+  }
+  return counts;
+}
+
+}  // namespace
+
+void BindGate(nb::module_& m) {
+  const dh_gate_limits usual = dh_gate_default_limits(0, 0);
+  nb::class_<dh_gate>(
+      m, "DeviceGate",
+      "What stands between commands and a hand, in the driver's process: the "
+      "state machine of gate.h (docs/device-protocol.md), time as an argument. "
+      "Force and torque never exceed the limits, in any state.")
+      .def(
+          "__init__",
+          [](dh_gate* self, double max_force_N, double max_torque_Nm,
+             double max_speed_m_per_s, double max_turn_rate_rad_per_s,
+             double ramp_in_s, double ramp_out_s, double max_ttl_s) {
+            new (self) dh_gate(MakeGate(
+                {max_force_N, max_torque_Nm, max_speed_m_per_s,
+                 max_turn_rate_rad_per_s, ramp_in_s, ramp_out_s, max_ttl_s}));
+          },
+          nb::kw_only(), nb::arg("max_force_N"), nb::arg("max_torque_Nm"),
+          nb::arg("max_speed_m_per_s") = usual.max_speed_m_per_s,
+          nb::arg("max_turn_rate_rad_per_s") = usual.max_turn_rate_rad_per_s,
+          nb::arg("ramp_in_s") = usual.ramp_in_s,
+          nb::arg("ramp_out_s") = usual.ramp_out_s,
+          nb::arg("max_ttl_s") = usual.max_ttl_s,
+          "Args:\n"
+          "    max_force_N: Largest norm of the force, N; 0 for none.\n"
+          "    max_torque_Nm: Largest norm of the torque, N·m; 0 for none.\n"
+          "    max_speed_m_per_s: A faster handle is a fault while active.\n"
+          "    max_turn_rate_rad_per_s: Likewise for its turning.\n"
+          "    ramp_in_s: From none to full, 0.001 to 10 s.\n"
+          "    ramp_out_s: From full to none, 0.001 to 1 s.\n"
+          "    max_ttl_s: The longest that a command lives, 1e-6 to 1 s.\n\n"
+          "Raises:\n"
+          "    ValueError: a limit is not finite or out of its bounds.")
+      .def(
+          "receive",
+          [](dh_gate& gate, nb::int_ now_ns, const nb::bytes& data) {
+            return NameOf(dh_gate_receive(&gate, ReadTime(now_ns), Data(data),
+                                          data.size()));
+          },
+          nb::arg("now_ns"), nb::arg("data"),
+          "Takes a packet in, whatever it holds.\n\n"
+          "Args:\n"
+          "    now_ns: The driver's monotonic clock, ns.\n"
+          "    data: The datagram.\n\n"
+          "Returns:\n"
+          "    'accepted', or why not: a key of `counts`.\n\n"
+          "Raises:\n"
+          "    ValueError: now_ns is no 64-bit time.")
+      .def("step", &Step, nb::arg("now_ns"), nb::arg("X_BH"), nb::arg("V_BH"),
+           "Moves the time on; once per tick, after the packets.\n\n"
+           "Args:\n"
+           "    now_ns: The driver's monotonic clock, ns.\n"
+           "    X_BH: (7,) the handle's pose [qw qx qy qz x y z], m. A value "
+           "that is not finite is a fault.\n"
+           "    V_BH: (6,) its spatial velocity [ω; v], rad/s and m/s; "
+           "likewise.\n\n"
+           "Returns:\n"
+           "    (6,) the wrench to show [τ; f] at Ho in B, N·m and N.\n\n"
+           "Raises:\n"
+           "    ValueError: X_BH or V_BH has a wrong shape, or now_ns is no "
+           "64-bit time.")
+      .def(
+          "fail", [](dh_gate& gate) { dh_gate_fail(&gate); },
+          "The driver's own hardware is at fault: zero wrench at once.")
+      .def_prop_ro(
+          "state", [](const dh_gate& gate) { return int{gate.state}; },
+          "As `backend.GateState`.")
+      .def_prop_ro(
+          "fault", [](const dh_gate& gate) { return int{gate.fault}; },
+          "As `backend.Fault`.")
+      .def_ro("session", &dh_gate::session, "Host that is served, or 0.")
+      .def_ro("command_sequence", &dh_gate::command_sequence,
+              "Of the newest command that was accepted.")
+      .def_prop_ro(
+          "command_F_BH",
+          [](const dh_gate& gate) { return ToArray(gate.command_F_BH); },
+          "(6,) the newest wrench to show, within the limits, N·m and N.")
+      .def_prop_ro(
+          "F_BH", [](const dh_gate& gate) { return ToArray(gate.F_BH); },
+          "(6,) the wrench that is shown, N·m and N.")
+      .def_ro("scale", &dh_gate::scale, "Share of it that is shown, 0 to 1.")
+      .def_prop_ro("rejected", &dh_gate_rejected, "Packets refused so far.")
+      .def_prop_ro("counts", &Counts, "Packets by verdict.")
+      // Drake copies what is in a state.
+      .def("__deepcopy__",
+           [](const dh_gate& gate, nb::handle) { return gate; });
+}
+
+}  // namespace drake_haptics

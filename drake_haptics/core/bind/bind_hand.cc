@@ -1,0 +1,186 @@
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/vector.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "base/autodiff.h"
+#include "base/frame_change.h"
+#include "bind/bind.h"
+#include "bind/bind_array.h"
+#include "tool/held_arm.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+template <typename T>
+using State = Eigen::Matrix<T, 12, 1>;
+using CubicsArg = nb::ndarray<const double, nb::shape<-1, 4, 7>, nb::c_contig,
+                              nb::device::cpu>;
+
+PosePath MakePath(std::vector<double> starts, const CubicsArg& cubics,
+                  double period) {
+  if (starts.empty() || starts.size() != cubics.shape(0) || !(period > 0)) {
+    throw std::invalid_argument(
+        "a path needs a cubic for each start, one at least, and a period above "
+        "0 s");
+  }
+  PosePath path{std::move(starts), {}, period};
+  for (std::size_t i = 0; i < cubics.shape(0); ++i) {
+    path.cubics.emplace_back(
+        Eigen::Map<const PosePath::Cubic>(cubics.data() + 28 * i));
+  }
+  return path;
+}
+
+template <typename T>
+void RequireFinite(const State<T>& state) {
+  if (!ValuesOf(state).allFinite()) {
+    PyErr_SetString(PyExc_FloatingPointError, "the arm's state is not finite");
+    throw nb::python_error();
+  }
+}
+
+template <typename T>
+Eigen::Matrix<T, 13, 1> HandleState(const HeldArm& held,
+                                    const State<T>& state) {
+  RequireFinite(state);
+  const MovingPoseOf<T> pose = held.arm.Evaluate(state).pose;
+  Eigen::Matrix<T, 13, 1> out;
+  out << pose.q, pose.V;
+  return out;
+}
+
+template <typename T>
+Vec6Of<T> JointTorques(const HeldArm& held, const T& time,
+                       const State<T>& state, const Vec6Of<T>& F_applied) {
+  RequireFinite(state);
+  return held.JointTorques<T>(time, state, F_applied);
+}
+
+void BindPath(nb::module_& m) {
+  nb::class_<PosePath>(m, "PosePath",
+                       "A pose over time, a cubic per segment. Immutable.")
+      .def(
+          "__init__",
+          [](PosePath* self, std::vector<double> starts_s,
+             const CubicsArg& cubics, double period_s) {
+            new (self)
+                PosePath(MakePath(std::move(starts_s), cubics, period_s));
+          },
+          nb::arg("starts_s"), nb::arg("cubics"), nb::arg("period_s"),
+          "Path of m segments.\n\n"
+          "Args:\n"
+          "    starts_s: (m,) where they begin, rising from 0 s. The last one "
+          "never ends.\n"
+          "    cubics: (m, 4, 7) coefficients by power of the time since the "
+          "start, of [qw qx qy qz x y z]; the quaternion of any length.\n"
+          "    period_s: when the path begins anew; infinite if never.\n\n"
+          "Raises:\n    ValueError: sizes do not match or there is no period.")
+      .def(
+          "evaluate",
+          [](const PosePath& self, double time) {
+            const MovingPose pose = self.Evaluate(time);
+            return std::pair(pose.q, pose.V);
+          },
+          nb::arg("time_s"),
+          "Returns the pose (7,) and the spatial velocity (6,) at its origin, "
+          "[rad/s; m/s].");
+}
+
+void BindHeldArm(nb::module_& m) {
+  nb::class_<HeldArm>(m, "HeldArm",
+                      "A chain of six revolute joints and a hand that draws "
+                      "its handle H along a path. States are (12,): angles, "
+                      "rad, and speeds, rad/s. All methods raise "
+                      "FloatingPointError where a state is not finite.")
+      .def(
+          "__init__",
+          [](HeldArm* self, const Mat6& J_WH, const PoseVector& q_WH,
+             const PosePath& path, const PoseVector& q_PH,
+             const CouplingGains& gains) {
+            new (self) HeldArm{SixJointArm(J_WH, q_WH), path, q_PH, gains};
+          },
+          nb::arg("J_WH"), nb::arg("q_WH"), nb::arg("path"), nb::arg("q_PH"),
+          nb::arg("gains"),
+          "Args:\n"
+          "    J_WH: (6, 6) spatial velocity of H per joint speed, all angles "
+          "zero.\n"
+          "    q_WH: (7,) its pose there.\n"
+          "    path: X_WP over time.\n"
+          "    q_PH: (7,) where the hand wants the handle in P.\n"
+          "    gains: of the hand.")
+      .def("calc_handle_state", &HandleState<double>, nb::arg("state"),
+           "Pose X_WH and spatial velocity V_WH, (13,) = [pose (7); rad/s; "
+           "m/s].")
+      .def(
+          "calc_handle_state",
+          [](const HeldArm& self, const AutoDiffVector& state) {
+            return ToAutoDiffVector(
+                HandleState<AutoDiff>(self, ToScalars<12>(state, "state")),
+                state.num_derivatives());
+          },
+          nb::arg("state"), "The same with derivatives.")
+      .def("calc_joint_torques", &JointTorques<double>, nb::arg("time_s"),
+           nb::arg("state"), nb::arg("F_applied"),
+           "Joint torques (6,), N·m, of the hand and of a wrench (6,) on the "
+           "handle at its origin in the world, [N·m; N].")
+      .def(
+          "calc_joint_torques",
+          [](const HeldArm& self, const AutoDiffVector& time,
+             const AutoDiffVector& state, const AutoDiffVector& F_applied) {
+            const Eigen::Index num_derivatives =
+                CommonNumDerivatives(time, state, F_applied);
+            return ToAutoDiffVector(
+                JointTorques<AutoDiff>(self, ToScalars<1>(time, "time_s")[0],
+                                       ToScalars<12>(state, "state"),
+                                       ToScalars<6>(F_applied, "F_applied")),
+                num_derivatives);
+          },
+          nb::arg("time_s"), nb::arg("state"), nb::arg("F_applied"),
+          "The same with derivatives; `time_s` is (1,).");
+}
+
+void BindFrameChange(nb::module_& m) {
+  using Slope = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  nb::class_<FrameChange>(m, "FrameChange",
+                          "Tells in a frame A what is given in a frame B that "
+                          "does not move in it, and wrenches the other way.")
+      .def(nb::init<const PoseVector&>(), nb::arg("X_AB"),
+           "Pose (7,) of B in A, [qw qx qy qz x y z], m.\n\n"
+           "Raises:\n    ValueError: it is none.")
+      .def(
+          "change_motion", &FrameChange::ChangeMotion, nb::arg("X_BH"),
+          nb::arg("V_BH"),
+          "Pose and spatial velocity of H in A, (13,), of those in B: (7,), m, "
+          "and (6,), [rad/s; m/s].")
+      .def(
+          "change_wrench_back",
+          [](const FrameChange& self, const Vec6& F_A) {
+            return self.ChangeBack(F_A);
+          },
+          nb::arg("F_A"), "Wrench (6,) in B of one in A, [N·m; N].")
+      .def(
+          "change_slopes_back",
+          [](const FrameChange& self,
+             const Eigen::Matrix<double, 72, 1>& slopes_A) {
+            const double* const K = slopes_A.data();
+            return std::pair<Slope, Slope>(
+                self.ChangeBack(Mat6(Eigen::Map<const Slope>(K))),
+                self.ChangeBack(Mat6(Eigen::Map<const Slope>(K + 36))));
+          },
+          nb::arg("slopes_A"),
+          "Stiffness and damping (6, 6) in B of those in A, (72,) by rows.");
+}
+
+}  // namespace
+
+void BindHand(nb::module_& m) {
+  BindFrameChange(m);
+  BindPath(m);
+  BindHeldArm(m);
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,146 @@
+#include <nanobind/stl/string.h>
+
+#include <array>
+#include <cstdint>
+
+#include "bind/bind.h"
+#include "bind/bind_device.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+constexpr std::uint64_t kMax32 = UINT32_MAX, kMax64 = UINT64_MAX;
+
+nb::bytes PackState(nb::int_ sequence, nb::int_ time_ns, nb::handle X_BH,
+                    nb::handle V_BH, nb::handle F_BH, nb::int_ boot,
+                    nb::int_ session, nb::int_ command_sequence,
+                    nb::int_ buttons, nb::int_ rejected, double max_force_N,
+                    double max_torque_Nm, nb::int_ gate, nb::int_ fault) {
+  dh_state state{};
+  state.session = ReadCount<std::uint32_t>("session", session, 0, kMax32);
+  state.sequence = ReadCount<std::uint32_t>("sequence", sequence, 0, kMax32);
+  state.time_ns = ReadCount<std::uint64_t>("time_ns", time_ns, 0, kMax64);
+  ReadReals(X_BH, "X_BH", state.X_BH);
+  ReadReals(V_BH, "V_BH", state.V_BH);
+  ReadReals(F_BH, "F_BH", state.F_BH);
+  state.boot = ReadCount<std::uint32_t>("boot", boot, 1, kMax32);
+  state.command_sequence =
+      ReadCount<std::uint32_t>("command_sequence", command_sequence, 0, kMax32);
+  state.buttons = ReadCount<std::uint32_t>("buttons", buttons, 0, kMax32);
+  state.rejected = ReadCount<std::uint32_t>("rejected", rejected, 0, kMax32);
+  state.max_force_N = static_cast<float>(max_force_N);
+  state.max_torque_Nm = static_cast<float>(max_torque_Nm);
+  state.gate = ReadCount<std::uint8_t>("gate", gate, 0, DH_FAULT);
+  state.fault = ReadCount<std::uint8_t>("fault", fault, 0, DH_FAULT_DEVICE);
+  std::array<std::uint8_t, DH_STATE_SIZE> bytes;
+  dh_pack_state(&state, bytes.data());
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
+nb::bytes PackCommand(nb::int_ session, nb::int_ sequence, nb::int_ time_ns,
+                      nb::handle F_BH, nb::int_ state_sequence, nb::int_ ttl_us,
+                      bool enable) {
+  dh_command command{};
+  command.session = ReadCount<std::uint32_t>("session", session, 1, kMax32);
+  command.sequence = ReadCount<std::uint32_t>("sequence", sequence, 0, kMax32);
+  command.time_ns = ReadCount<std::uint64_t>("time_ns", time_ns, 0, kMax64);
+  ReadReals(F_BH, "F_BH", command.F_BH);
+  command.state_sequence =
+      ReadCount<std::uint32_t>("state_sequence", state_sequence, 0, kMax32);
+  command.ttl_us = ReadCount<std::uint32_t>("ttl_us", ttl_us, 0, kMax32);
+  command.enable = enable;
+  std::array<std::uint8_t, DH_COMMAND_SIZE> bytes;
+  dh_pack_command(&command, bytes.data());
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
+template <typename Packet>
+Packet Unpack(dh_verdict (*unpack)(const std::uint8_t*, std::size_t, Packet*),
+              const nb::bytes& bytes) {
+  Packet packet{};
+  const dh_verdict verdict = unpack(Data(bytes), bytes.size(), &packet);
+  if (verdict != DH_ACCEPTED) {
+    throw std::invalid_argument(std::string("packet refused: ") +
+                                NameOf(verdict));
+  }
+  return packet;
+}
+
+}  // namespace
+
+void BindPackets(nb::module_& m) {
+  nb::class_<dh_state>(m, "DeviceStatePacket",
+                       "What a driver sends (docs/device-protocol.md). The "
+                       "handle H in the frame B of the device's base, SI.")
+      .def_ro("session", &dh_state::session, "Host that is served, or 0.")
+      .def_ro("sequence", &dh_state::sequence, "Rises by one, and wraps.")
+      .def_ro("time_ns", &dh_state::time_ns, "Of the sample, driver's clock.")
+      .def_prop_ro(
+          "X_BH", [](const dh_state& s) { return ToArray(s.X_BH); },
+          "(7,) pose [qw qx qy qz x y z], m.")
+      .def_prop_ro(
+          "V_BH", [](const dh_state& s) { return ToArray(s.V_BH); },
+          "(6,) spatial velocity [ω; v], rad/s and m/s.")
+      .def_prop_ro(
+          "F_BH", [](const dh_state& s) { return ToArray(s.F_BH); },
+          "(6,) wrench shown [τ; f] at Ho, N·m and N.")
+      .def_ro("boot", &dh_state::boot, "Random in each run of the driver.")
+      .def_ro("command_sequence", &dh_state::command_sequence,
+              "Of the newest command that was accepted.")
+      .def_ro("buttons", &dh_state::buttons, "Bit i: button i is held.")
+      .def_ro("rejected", &dh_state::rejected, "Packets refused so far.")
+      .def_ro("max_force_N", &dh_state::max_force_N, "Largest force, N.")
+      .def_ro("max_torque_Nm", &dh_state::max_torque_Nm, "Largest torque, N·m.")
+      .def_ro("gate", &dh_state::gate, "As `backend.GateState`.")
+      .def_ro("fault", &dh_state::fault, "As `backend.Fault`.");
+  nb::class_<dh_command>(m, "DeviceCommandPacket",
+                         "What a host sends (docs/device-protocol.md), SI.")
+      .def_ro("session", &dh_command::session, "Random in each run of it.")
+      .def_ro("sequence", &dh_command::sequence, "Rises by one, and wraps.")
+      .def_ro("time_ns", &dh_command::time_ns, "Of sending, host's clock.")
+      .def_prop_ro(
+          "F_BH", [](const dh_command& c) { return ToArray(c.F_BH); },
+          "(6,) wrench to show [τ; f] at Ho in B, N·m and N.")
+      .def_ro("state_sequence", &dh_command::state_sequence,
+              "Of the state that this answers.")
+      .def_ro("ttl_us", &dh_command::ttl_us, "Time to live, µs.")
+      .def_prop_ro(
+          "enable", [](const dh_command& c) { return c.enable != 0; },
+          "Whether force is to be shown.");
+  m.def("pack_state", &PackState, nb::kw_only(), nb::arg("sequence"),
+        nb::arg("time_ns"), nb::arg("X_BH"), nb::arg("V_BH"), nb::arg("F_BH"),
+        nb::arg("boot"), nb::arg("session"), nb::arg("command_sequence"),
+        nb::arg("buttons"), nb::arg("rejected"), nb::arg("max_force_N"),
+        nb::arg("max_torque_Nm"), nb::arg("gate"), nb::arg("fault"),
+        "The 208 bytes of a state packet; the arguments are the attributes of "
+        "`DeviceStatePacket`.\n\n"
+        "Raises:\n"
+        "    ValueError: a number does not fit its field, or a wrong shape.");
+  m.def(
+      "unpack_state",
+      [](const nb::bytes& packet) { return Unpack(&dh_unpack_state, packet); },
+      nb::arg("packet"),
+      "What a state packet says. Its real numbers may be NaN or infinite.\n\n"
+      "Raises:\n"
+      "    ValueError: it is damaged or none; says which check failed.");
+  m.def("pack_command", &PackCommand, nb::kw_only(), nb::arg("session"),
+        nb::arg("sequence"), nb::arg("time_ns"), nb::arg("F_BH"),
+        nb::arg("state_sequence"), nb::arg("ttl_us"), nb::arg("enable"),
+        "The 88 bytes of a command packet; the arguments are the attributes of "
+        "`DeviceCommandPacket`.\n\n"
+        "Raises:\n"
+        "    ValueError: a number does not fit its field, or a wrong shape.");
+  m.def(
+      "unpack_command",
+      [](const nb::bytes& packet) {
+        return Unpack(&dh_unpack_command, packet);
+      },
+      nb::arg("packet"),
+      "What a command packet says. Its wrench may be NaN or infinite.\n\n"
+      "Raises:\n"
+      "    ValueError: it is damaged or none; says which check failed.");
+}
+
+}  // namespace drake_haptics

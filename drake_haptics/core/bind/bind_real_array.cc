@@ -1,0 +1,83 @@
+#include "bind/bind_real_array.h"
+
+#include <nanobind/stl/string.h>
+
+#include <stdexcept>
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+bool IsNativeDouble(const Py_buffer& view) {
+  return view.format != nullptr && std::strcmp(view.format, "d") == 0;
+}
+
+// Points `view` at the memory of an array of doubles; false for all else.
+bool ViewDoubles(nb::handle value, Py_buffer* view) {
+  if (!PyObject_CheckBuffer(value.ptr())) return false;
+  if (PyObject_GetBuffer(value.ptr(), view, PyBUF_RECORDS_RO) != 0) {
+    PyErr_Clear();
+    return false;
+  }
+  if (IsNativeDouble(*view)) return true;
+  PyBuffer_Release(view);
+  return false;
+}
+
+// By NumPy, from real numbers of any other kind: int, float32, lists.
+nb::object ToDoubles(nb::handle value, const char* name) {
+  const nb::module_ numpy = nb::module_::import_("numpy");
+  try {
+    const nb::object array = numpy.attr("asarray")(value);
+    const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
+    if (kind == "i" || kind == "u" || kind == "f") {
+      return numpy.attr("asarray")(array, "float64");
+    }
+  } catch (nb::python_error& error) {
+    // Ragged lists, for instance; an interrupt stays what it is.
+    if (!error.matches(PyExc_Exception)) throw;
+  }
+  throw std::invalid_argument(std::string(name) +
+                              " must be an array of real numbers, got " +
+                              TypeName(value));
+}
+
+}  // namespace
+
+RealArray::RealArray(nb::handle value, const char* name) {
+  if (ViewDoubles(value, &view_)) return;
+  if (!ViewDoubles(ToDoubles(value, name), &view_)) {
+    throw std::invalid_argument(std::string(name) +
+                                " must be an array of real numbers");
+  }
+}
+
+std::string RealArray::shape_text() const {
+  std::string text = "(";
+  for (int axis = 0; axis < ndim(); ++axis) {
+    text += (axis > 0 ? ", " : "") + std::to_string(shape(axis));
+  }
+  return text + (ndim() == 1 ? ",)" : ")");
+}
+
+double ToReal(nb::handle value, const char* name) {
+  const double real = PyFloat_AsDouble(value.ptr());
+  if (real == -1.0 && PyErr_Occurred() != nullptr) {
+    PyErr_Clear();
+    throw std::invalid_argument(
+        std::string(name) + " must be a real number, got " + TypeName(value));
+  }
+  return real;
+}
+
+std::string TypeName(nb::handle value) {
+  // An array says more by its numbers than by its class.
+  if (nb::hasattr(value, "dtype")) {
+    return std::string(nb::str(nb::object(value.attr("dtype"))).c_str()) +
+           " values";
+  }
+  return nb::cast<std::string>(value.type().attr("__name__"));
+}
+
+}  // namespace drake_haptics

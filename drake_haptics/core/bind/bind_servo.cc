@@ -1,0 +1,283 @@
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+
+#include <optional>
+#include <tuple>
+
+#include "bind/bind.h"
+#include "bind/bind_eigen.h"
+#include "device/servo_law.h"
+#include "device/udp_servo.h"
+#include "tool/handle_model.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+using OptionalSlope = std::optional<Mat6>;
+
+// Other Python threads run while a name is looked up, and while the servo ends.
+class PythonUdpServo : public UdpServo {
+ public:
+  using UdpServo::UdpServo;
+  ~PythonUdpServo() {
+    const nb::gil_scoped_release release;
+    Close();
+  }
+};
+
+LocalWrench ToLocalWrench(const Vec6& F, const PoseVector& X, const Vec6& V,
+                          const OptionalSlope& K, const OptionalSlope& B,
+                          double published_at) {
+  LocalWrench wrench;
+  wrench.F = F;
+  wrench.X = X;
+  wrench.V = V;
+  if (K) wrench.K = *K;
+  if (B) wrench.B = *B;
+  wrench.published_at = published_at;
+  return wrench;
+}
+
+// A fresh array with the values of one member.
+template <auto member>
+auto Copy(const HandleState& state) {
+  const auto& values = state.*member;
+  return Eigen::Matrix<double,
+                       std::tuple_size_v<std::decay_t<decltype(values)>>, 1>(
+      values.data());
+}
+
+void BindLaw(nb::module_& m) {
+  nb::class_<ServoLaw>(
+      m, "ServoLaw",
+      "What a servo shows between the ticks of a slower loop: the last local "
+      "wrench F − K δ − B (V − V₀), δ = [rotation vector; translation] from X₀ "
+      "to X, each of force and torque within its limit. A wrench that is not "
+      "renewed is shown for `hold_s`, then goes to zero within `release_s`; "
+      "one "
+      "that is renewed comes back within `engage_s`. Wrenches are [τ; f] at "
+      "the "
+      "handle's origin, N·m and N, in one frame with poses [qw qx qy qz x y "
+      "z], "
+      "m, and velocities [ω; v], rad/s and m/s.")
+      .def(
+          "__init__",
+          [](ServoLaw* self, double max_force, double max_torque, double hold,
+             double release, double engage) {
+            new (self) ServoLaw(ServoTimes{hold, release, engage});
+            self->SetLimits(max_force, max_torque);
+          },
+          nb::kw_only(), nb::arg("max_force_N"), nb::arg("max_torque_Nm"),
+          nb::arg("hold_s") = ServoTimes().hold,
+          nb::arg("release_s") = ServoTimes().release,
+          nb::arg("engage_s") = ServoTimes().engage,
+          "Raises:\n    ValueError: a time is not finite and above zero.")
+      .def(
+          "adopt",
+          [](ServoLaw& self, const Vec6& F, const PoseVector& X, const Vec6& V,
+             const OptionalSlope& K, const OptionalSlope& B,
+             double time) { self.Adopt(ToLocalWrench(F, X, V, K, B, time)); },
+          nb::arg("F"), nb::arg("X"), nb::arg("V"), nb::arg("K").none(),
+          nb::arg("B").none(), nb::arg("time_s"),
+          "Takes a wrench (6,) as of `time_s`, for the pose X₀ (7,) and the "
+          "velocity V₀ (6,), with its slopes K and B (6, 6). Only the nearest "
+          "symmetric slope without a negative eigenvalue acts: a servo gives "
+          "no "
+          "energy. What is not finite ends all force at once.")
+      .def(
+          "step", &ServoLaw::Step, nb::arg("time_s"), nb::arg("X"),
+          nb::arg("V"),
+          "Returns the wrench (6,) to show at `time_s`; zero where X (7,) or V "
+          "(6,) is not finite.")
+      .def_prop_ro("scale", &ServoLaw::scale,
+                   "Part of the wrench that is shown, 0 to 1.")
+      .def_prop_ro("num_not_finite", &ServoLaw::num_not_finite,
+                   "Wrenches and states that were not finite.")
+      .def_prop_ro("num_not_passive", &ServoLaw::num_not_passive,
+                   "Wrenches whose K or B was not passive.");
+}
+
+void BindState(nb::module_& m) {
+  nb::class_<HandleState>(m, "HandleState",
+                          "What a device last told, in its base frame B.")
+      .def_ro("number", &HandleState::number,
+              "Rises with every state that counts, also when the driver is "
+              "restarted.")
+      .def_ro("time_s", &HandleState::time, "When, by the driver's clock, s.")
+      .def_prop_ro("X_BH", &Copy<&HandleState::X>,
+                   "(7,) pose [qw qx qy qz x y z], m.")
+      .def_prop_ro("V_BH", &Copy<&HandleState::V>,
+                   "(6,) velocity [ω; v], rad/s and m/s.")
+      .def_prop_ro("F_BH", &Copy<&HandleState::F>,
+                   "(6,) wrench that the device showed, [τ; f], N·m and N.")
+      .def_ro("max_force_N", &HandleState::max_force, "The device's limit, N.")
+      .def_ro("max_torque_Nm", &HandleState::max_torque,
+              "The device's limit, N·m.")
+      .def_ro("buttons", &HandleState::buttons, "Bit i: button i is held.")
+      .def_ro("gate", &HandleState::gate, "Number of a `GateState`.")
+      .def_ro("fault", &HandleState::fault, "Number of a `Fault`.");
+}
+
+void BindStatus(nb::module_& m) {
+  using Status = UdpServoStatus;
+  nb::class_<Status> status(m, "UdpServoStatus",
+                            "What a `UdpServo` knows. Counted from the start.");
+  const auto count = [&status](const char* name, auto member, const char* doc) {
+    status.def_prop_ro(
+        name, [member](const Status& self) { return self.counts.*member; },
+        doc);
+  };
+  count("received", &LinkCounts::received, "States that came whole.");
+  count("lost", &LinkCounts::lost, "States that never came, by the gaps.");
+  count("late", &LinkCounts::late, "States that came after a newer one.");
+  count("duplicate", &LinkCounts::duplicate, "States that came before.");
+  count("damaged", &LinkCounts::damaged, "Packets that are no whole state.");
+  count("not_finite", &LinkCounts::not_finite,
+        "States without a finite pose, velocity and wrench.");
+  count("restarts", &LinkCounts::restarts, "Of the driver.");
+  count("silences", &LinkCounts::silences,
+        "Times that the driver was silent for so long that it was looked for "
+        "anew.");
+  count("refused", &LinkCounts::refused,
+        "Packets that the driver refused, by its own count.");
+  status.def_ro("sent", &Status::sent, "Commands.")
+      .def_ro("wrenches_not_finite", &Status::num_not_finite,
+              "Wrenches that were not finite, and shown as zero.")
+      .def_ro("wrenches_not_passive", &Status::num_not_passive,
+              "Wrenches whose K or B gave energy, which was left out.")
+      .def_ro("scale", &Status::scale, "Part of the wrench that is sent.")
+      .def_ro("is_running", &Status::is_running, "False once closed.")
+      .def_ro("is_heard", &Status::is_heard, "States are coming.")
+      .def_ro("is_active", &Status::is_active, "A wrench may be shown.")
+      .def_ro("has_realtime_priority", &Status::has_priority,
+              "Whether the system granted it to the thread.")
+      .def_ro("has_locked_memory", &Status::has_locked_memory,
+              "Whether the system keeps the servo from being paged out.");
+}
+
+void BindUdpServo(nb::module_& m) {
+  const UdpServoOptions defaults;
+  nb::class_<PythonUdpServo>(
+      m, "UdpServo",
+      "A thread that answers every state of a device's driver with the wrench "
+      "of a `ServoLaw`. It runs without Python; no method but `close` waits "
+      "for "
+      "it. One thread of the program may use it.")
+      .def(
+          "__init__",
+          [](PythonUdpServo* self, const std::string& host, std::uint16_t port,
+             double ttl, double max_rate, double max_force, double max_torque,
+             double hold, double release, double engage) {
+            new (self) PythonUdpServo(host, port,
+                                      {ttl,
+                                       max_rate,
+                                       max_force,
+                                       max_torque,
+                                       {hold, release, engage}});
+          },
+          nb::call_guard<nb::gil_scoped_release>(), nb::arg("host"),
+          nb::arg("port"), nb::kw_only(),
+          nb::arg("ttl_s") = defaults.time_to_live,
+          nb::arg("max_rate_hz") = defaults.max_rate,
+          nb::arg("max_force_N") = defaults.max_force,
+          nb::arg("max_torque_Nm") = defaults.max_torque,
+          nb::arg("hold_s") = defaults.times.hold,
+          nb::arg("release_s") = defaults.times.release,
+          nb::arg("engage_s") = defaults.times.engage,
+          "Starts to look for the driver at that address.\n\n"
+          "Args:\n"
+          "    host: name or number, IPv4 or IPv6.\n"
+          "    port: UDP.\n"
+          "    ttl_s: how long the device shows a command that is not renewed. "
+          "Silence of the driver for twice that, and half a second at least, "
+          "is "
+          "a fault.\n"
+          "    max_rate_hz: of commands.\n"
+          "    max_force_N, max_torque_Nm: largest norms, where the device "
+          "allows more.\n"
+          "    hold_s, release_s, engage_s: of the `ServoLaw`.\n\n"
+          "Raises:\n"
+          "    ValueError: a time or the rate is not finite and above zero, or "
+          "a limit is negative or NaN.\n"
+          "    RuntimeError: there is no such host, or no socket to be had.")
+      .def(
+          "read",
+          [](PythonUdpServo& self) -> std::optional<HandleState> {
+            const HandleState state = self.Read();
+            if (state.number == 0) return std::nullopt;
+            return state;
+          },
+          "Returns the newest `HandleState`; None before the first.")
+      .def(
+          "publish",
+          [](PythonUdpServo& self, const Vec6& F, const PoseVector& X,
+             const Vec6& V, const OptionalSlope& K, const OptionalSlope& B) {
+            self.Publish(ToLocalWrench(F, X, V, K, B, 0));
+          },
+          nb::arg("F_BH"), nb::arg("X_BH"), nb::arg("V_BH"),
+          nb::arg("K_B").none() = nb::none(),
+          nb::arg("B_B").none() = nb::none(),
+          "Shows a local wrench from now on, as `ServoLaw.adopt` does; the "
+          "first one enables the device.")
+      .def("recover", &PythonUdpServo::Recover,
+           "Takes up again after a fault: disabled until the device is idle, "
+           "then enabled.")
+      .def("close", &PythonUdpServo::Close,
+           nb::call_guard<nb::gil_scoped_release>(),
+           "Disables the device and ends the thread, in some 30 ms. May be "
+           "called again.")
+      .def("status", &PythonUdpServo::status, "Returns a `UdpServoStatus`.")
+      .def(
+          "lateness_s",
+          [](const PythonUdpServo& self) {
+            const LatenessHistogram& lateness = self.lateness();
+            return std::tuple(lateness.Quantile(0.5), lateness.Quantile(0.99),
+                              lateness.Quantile(0.999));
+          },
+          "Returns p50, p99 and p99.9 of how much later than the promptest one "
+          "of the last 10 s each state was answered, s, rounded up by at most "
+          "a "
+          "fifth.")
+      .def_prop_ro("local_port", &PythonUdpServo::local_port,
+                   "Our own UDP port.");
+}
+
+}  // namespace
+
+void BindServo(nb::module_& m) {
+  BindLaw(m);
+  BindState(m);
+  BindStatus(m);
+  BindUdpServo(m);
+  m.def(
+      "handle_slopes",
+      [](const PoseVector& q_WH, const PoseVector& q_WTool,
+         const WrenchModelVector& coupling, const WrenchModelVector& contact) {
+        const HandleSlopes slopes = ComputeHandleSlopes(
+            q_WTool.tail<3>() - q_WH.tail<3>(), ToWrenchModel(coupling),
+            ToWrenchModel(contact));
+        Eigen::Matrix<double, 72, 1> out;
+        using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+        Eigen::Map<Rows>(out.data()) = slopes.K;
+        Eigen::Map<Rows>(out.data() + 36) = slopes.B;
+        return out;
+      },
+      nb::arg("q_WH"), nb::arg("q_WTool"), nb::arg("coupling_model"),
+      nb::arg("contact_model"),
+      "How the wrench on a handle changes with the handle's motion, the tool "
+      "following at rest between coupling and contact (springs in series; "
+      "Guyan, AIAA Journal 3(2), 1965).\n\n"
+      "Args:\n"
+      "    q_WH, q_WTool: (7,) poses [qw qx qy qz x y z] of handle and tool.\n"
+      "    coupling_model: (78,) [F; K; B] of the coupling on the tool, at To "
+      "in W.\n"
+      "    contact_model: (78,) the sum of all others.\n\n"
+      "Returns:\n"
+      "    (72,): K then B by rows, at Ho in W; symmetric, no negative "
+      "eigenvalue. The wrench is F − K δ − B ΔV.");
+}
+
+}  // namespace drake_haptics

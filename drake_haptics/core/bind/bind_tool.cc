@@ -1,0 +1,287 @@
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "base/autodiff.h"
+#include "base/require.h"
+#include "base/wrench_limit.h"
+#include "bind/bind.h"
+#include "bind/bind_columns.h"
+#include "bind/bind_eigen.h"
+#include "tool/rigid_tool.h"
+#include "tool/virtual_coupling.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+template <typename T>
+Eigen::Matrix<T, kWrenchModelSize + 6, 1> ToVector(
+    const CouplingWrenchOf<T>& wrench) {
+  Eigen::Matrix<T, kWrenchModelSize + 6, 1> out;
+  out << drake_haptics::ToVector(wrench.tool), wrench.F_display;
+  return out;
+}
+
+template <typename T>
+Eigen::Matrix<T, 13, 1> Step(
+    const ToolInertia& inertia, const Eigen::Matrix<T, 13, 1>& state,
+    const Eigen::Matrix<T, kWrenchModelSize, 1>& wrench, double h) {
+  const ToolStateOf<T> next =
+      StepTool<T>(inertia, {state.template head<7>(), state.template tail<6>()},
+                  ToWrenchModel(wrench), h);
+  Eigen::Matrix<T, 13, 1> out;
+  out << next.q_WT, next.V_WT;
+  return out;
+}
+
+void RequireLimit(double limit, const char* name) {
+  if (limit != std::numeric_limits<double>::infinity()) {
+    RequirePositive(limit, name);
+  }
+}
+
+CouplingGains MakeGains(double k, double b, double kr, double br,
+                        double max_force, double max_torque) {
+  for (const double gain : {k, b, kr, br}) {
+    if (!std::isfinite(gain) || gain < 0) {
+      throw std::invalid_argument(
+          "coupling gains must be finite and at least 0");
+    }
+  }
+  RequireLimit(max_force, "max_force_N");
+  RequireLimit(max_torque, "max_torque_Nm");
+  return {k, b, kr, br, max_force, max_torque};
+}
+
+// Poses and velocities of handle and tool, and the gains.
+template <typename T>
+using JoinedVector = Eigen::Matrix<T, 32, 1>;
+
+template <typename T>
+auto CoupleJoined(const JoinedVector<T>& in, const PoseVector& q_HT,
+                  const CouplingGains& gains) {
+  return ToVector(ComputeCoupling<T>(
+      in.template head<7>(), in.template segment<6>(7), q_HT,
+      in.template segment<7>(13), in.template segment<6>(20), gains));
+}
+
+CouplingGains GainsOf(const JoinedVector<double>& in) {
+  return MakeGains(in[26], in[27], in[28], in[29], in[30], in[31]);
+}
+
+void BindJoinedCoupling(nb::module_& m) {
+  m.def(
+      "joined_coupling_wrench",
+      [](const JoinedVector<double>& joined, const PoseVector& q_HT) {
+        return CoupleJoined<double>(joined, q_HT, GainsOf(joined));
+      },
+      nb::arg("joined"), nb::arg("q_HT"),
+      "`coupling_wrench` of one vector, as a multiplexer joins it: an array "
+      "that crosses takes as long as the law.\n\n"
+      "Args:\n"
+      "    joined: (32,) [q_WH; V_WH; q_WTool; V_WTool; gains], the gains (6) "
+      "in the order of `CouplingGains`.\n"
+      "    q_HT: (7,) the tool's place in the handle.\n\n"
+      "Raises:\n    ValueError: a gain is out of range.");
+  m.def(
+      "joined_coupling_wrench",
+      [](const AutoDiffVector& joined, const PoseVector& q_HT) {
+        const auto in = ToScalars<32>(joined, "joined");
+        if (!joined.gradient.bottomRows<6>().isZero(0.0)) {
+          throw std::invalid_argument(
+              "joined must have no derivatives of the gains: the coupling has "
+              "none by them");
+        }
+        return ToAutoDiffVector(
+            CoupleJoined<AutoDiff>(in, q_HT, GainsOf(joined.value)),
+            joined.num_derivatives());
+      },
+      nb::arg("joined"), nb::arg("q_HT"),
+      "The same with derivatives, but by the gains.");
+}
+
+nb::tuple ToTuple(const CouplingGains& gains) {
+  return nb::make_tuple(gains.stiffness, gains.damping,
+                        gains.rotational_stiffness, gains.rotational_damping,
+                        gains.max_force, gains.max_torque);
+}
+
+void BindCoupling(nb::module_& m) {
+  nb::class_<CouplingGains> gains(
+      m, "CouplingGains",
+      "Spring and damper of the virtual coupling, and the most they pull with "
+      "together, force and torque each by its norm. Immutable, and equal where "
+      "all numbers are.");
+  DefFrozenCopy(&gains);
+  gains
+      .def(
+          "__init__",
+          [](CouplingGains* self, double k, double b, double kr, double br,
+             double max_force, double max_torque) {
+            new (self)
+                CouplingGains(MakeGains(k, b, kr, br, max_force, max_torque));
+          },
+          nb::arg("stiffness_N_per_m"), nb::arg("damping_Ns_per_m"),
+          nb::arg("rotational_stiffness_Nm_per_rad"),
+          nb::arg("rotational_damping_Nms_per_rad"),
+          nb::arg("max_force_N") = std::numeric_limits<double>::infinity(),
+          nb::arg("max_torque_Nm") = std::numeric_limits<double>::infinity())
+      .def_ro("stiffness_N_per_m", &CouplingGains::stiffness)
+      .def_ro("damping_Ns_per_m", &CouplingGains::damping)
+      .def_ro("rotational_stiffness_Nm_per_rad",
+              &CouplingGains::rotational_stiffness)
+      .def_ro("rotational_damping_Nms_per_rad",
+              &CouplingGains::rotational_damping)
+      .def_ro("max_force_N", &CouplingGains::max_force)
+      .def_ro("max_torque_Nm", &CouplingGains::max_torque)
+      .def(
+          "__eq__",
+          [](const CouplingGains& self, const CouplingGains& other) {
+            return ToTuple(self).equal(ToTuple(other));
+          },
+          nb::is_operator(),
+          nb::sig("def __eq__(self, arg: object, /) -> bool"))
+      .def("__hash__",
+           [](const CouplingGains& self) { return nb::hash(ToTuple(self)); })
+      .def("__repr__", [](const CouplingGains& self) {
+        std::ostringstream text;
+        text << "CouplingGains(" << self.stiffness << " N/m, " << self.damping
+             << " N·s/m, " << self.rotational_stiffness << " N·m/rad, "
+             << self.rotational_damping << " N·m·s/rad";
+        if (std::isfinite(self.max_force)) {
+          text << ", at most " << self.max_force << " N";
+        }
+        if (std::isfinite(self.max_torque)) {
+          text << ", at most " << self.max_torque << " N·m";
+        }
+        text << ")";
+        return text.str();
+      });
+  m.def(
+      "coupling_wrench",
+      [](const PoseVector& q_WH, const Vec6& V_WH, const PoseVector& q_HT,
+         const PoseVector& q_WTool, const Vec6& V_WTool,
+         const CouplingGains& gains) {
+        return ToVector(
+            ComputeCoupling(q_WH, V_WH, q_HT, q_WTool, V_WTool, gains));
+      },
+      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WTool"),
+      nb::arg("V_WTool"), nb::arg("gains"),
+      "Wrenches of the virtual coupling between handle H and tool.\n\n"
+      "Args:\n"
+      "    q_WH, q_HT, q_WTool: (7,) poses [qw qx qy qz x y z]: handle, the "
+      "tool's place in it, tool.\n"
+      "    V_WH, V_WTool: (6,) spatial velocities [rad/s; m/s].\n\n"
+      "Returns:\n"
+      "    (84,): wrench model on the tool at To (78), then the reaction on "
+      "the handle at Ho in W (6).");
+  m.def(
+      "coupling_wrench",
+      [](const AutoDiffVector& q_WH, const AutoDiffVector& V_WH,
+         const PoseVector& q_HT, const AutoDiffVector& q_WTool,
+         const AutoDiffVector& V_WTool, const CouplingGains& gains) {
+        const Eigen::Index num_derivatives =
+            CommonNumDerivatives(q_WH, V_WH, q_WTool, V_WTool);
+        return ToAutoDiffVector(
+            ToVector(ComputeCoupling(ToScalars<7>(q_WH, "q_WH"),
+                                     ToScalars<6>(V_WH, "V_WH"), q_HT,
+                                     ToScalars<7>(q_WTool, "q_WTool"),
+                                     ToScalars<6>(V_WTool, "V_WTool"), gains)),
+            num_derivatives);
+      },
+      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WTool"),
+      nb::arg("V_WTool"), nb::arg("gains"), "The same with derivatives.");
+}
+
+void BindRigidTool(nb::module_& m) {
+  nb::class_<ToolInertia>(m, "RigidToolDynamics",
+                          "A free rigid tool, advanced implicitly.")
+      .def(
+          "__init__",
+          [](ToolInertia* self, double mass, const Vec3& p_TTcm,
+             const Mat3& I_TTcm_T) {
+            const ToolInertia inertia{mass, p_TTcm, I_TTcm_T};
+            RequirePhysical(inertia);
+            new (self) ToolInertia(inertia);
+          },
+          nb::arg("mass_kg"), nb::arg("p_TTcm"), nb::arg("I_TTcm_T"),
+          "Tool of `mass_kg`, centre of mass (3,) m and rotational inertia "
+          "about it (3, 3) kg·m², both in the tool's frame.\n\n"
+          "Raises:\n    ValueError: not a physical inertia.")
+      .def_ro("mass_kg", &ToolInertia::mass, "Mass, kg.")
+      .def_prop_ro(
+          "p_TTcm", [](const ToolInertia& self) { return self.p_TTcm; },
+          "Centre of mass (3,) in the tool's frame, m.")
+      // First what each tick calls: to try another takes as long as the step.
+      .def(
+          "step",
+          [](const ToolInertia& self, const Eigen::Matrix<double, 13, 1>& state,
+             const std::vector<WrenchModelVector>& wrenches, double h) {
+            WrenchModelVector sum = WrenchModelVector::Zero();
+            for (const WrenchModelVector& wrench : wrenches) sum += wrench;
+            return Step(self, state, sum, h);
+          },
+          nb::arg("state"), nb::arg("wrench_models"), nb::arg("h"),
+          "Advances the state (13,) = [pose (7); spatial velocity (6)] by one "
+          "linearized backward Euler step of h seconds under the sum of wrench "
+          "models (78,).")
+      .def(
+          "step",
+          [](const ToolInertia& self, const Eigen::Matrix<double, 13, 1>& state,
+             const WrenchModelVector& wrench,
+             double h) { return Step(self, state, wrench, h); },
+          nb::arg("state"), nb::arg("wrench_model"), nb::arg("h"),
+          "The same under one wrench model (78,).")
+      .def(
+          "step",
+          [](const ToolInertia& self, const AutoDiffVector& state,
+             const AutoDiffVector& wrench, double h) {
+            const Eigen::Index num_derivatives =
+                CommonNumDerivatives(state, wrench);
+            return ToAutoDiffVector(
+                Step(self, ToScalars<13>(state, "state"),
+                     ToScalars<kWrenchModelSize>(wrench, "wrench_model"), h),
+                num_derivatives);
+          },
+          nb::arg("state"), nb::arg("wrench_model"), nb::arg("h"),
+          "The same with derivatives.");
+}
+
+void BindLimit(nb::module_& m) {
+  m.def(
+      "limit_wrench",
+      [](const Vec6& F, double max_torque, double max_force) {
+        RequireNotNegative(max_torque, "max_torque_Nm");
+        RequireNotNegative(max_force, "max_force_N");
+        const LimitedWrench limited = LimitWrench(F, max_torque, max_force);
+        Eigen::Matrix<double, 7, 1> out;
+        out << limited.F, static_cast<double>(limited.fate);
+        return out;
+      },
+      nb::arg("F"), nb::arg("max_torque_Nm"), nb::arg("max_force_N"),
+      "Shortens torque and force of a wrench (6,), [N·m; N], each to its "
+      "limit, along its own direction.\n\n"
+      "Returns:\n"
+      "    (7,): the wrench and what became of it: 0 as asked, 1 at a limit, 2 "
+      "not finite, for which it is zero.\n\n"
+      "Raises:\n"
+      "    ValueError: a limit is negative or not finite.");
+}
+
+}  // namespace
+
+void BindTool(nb::module_& m) {
+  BindCoupling(m);
+  BindJoinedCoupling(m);
+  BindLimit(m);
+  BindRigidTool(m);
+}
+
+}  // namespace drake_haptics

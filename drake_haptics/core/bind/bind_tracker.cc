@@ -1,0 +1,409 @@
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+
+#include "bind/bind.h"
+#include "bind/bind_contact.h"
+#include "bind/bind_depth.h"
+#include "bind/bind_pose.h"
+#include "bind/bind_real_array.h"
+#include "bind/bind_trajectory.h"
+#include "bind/bind_turn.h"
+#include "tracker/contact_tracker.h"
+
+namespace nb = nanobind;
+
+// What both trackers' constructors say of the arguments that they share.
+#define DRAKE_HAPTICS_DEPTH_ARGUMENTS                                        \
+  "Args:\n"                                                                  \
+  "    depth: Of two pieces in overlap: `tracked` walks from the last "      \
+  "answer, and so does not pop through a thin plate; `global` is the least " \
+  "way out over any feature that both surfaces have, and costs more. What "  \
+  "has passed behind a surface is held by the way in either way.\n"          \
+  "    max_walk_steps: Bound on the steps of a walk from feature to "        \
+  "feature (paper, 5.2.3), at least 1. Where it ends a walk, the status is " \
+  "`BOUNDED`, and the depth may be too large, never too small.\n\n"
+
+namespace drake_haptics {
+namespace {
+
+using DecompositionPtr = std::shared_ptr<const Decomposition>;
+
+// The public Decomposition holds the core's one as its attribute `core`.
+DecompositionPtr ToDecomposition(nb::handle value, const std::string& name) {
+  DecompositionPtr decomposition;
+  const nb::object core = nb::getattr(value, "core", value);
+  if (core.is_none() || !nb::try_cast(core, decomposition)) {
+    throw std::invalid_argument(name + " must be a Decomposition, got " +
+                                TypeName(value) + "; see decompose()");
+  }
+  return decomposition;
+}
+
+std::vector<DecompositionPtr> ToDecompositions(nb::handle values) {
+  if (!PySequence_Check(values.ptr()) || nb::len(values) == 0) {
+    throw std::invalid_argument(
+        "objects must be a list of one Decomposition or more, got " +
+        (PySequence_Check(values.ptr()) ? std::string("none of them")
+                                        : TypeName(values)));
+  }
+  std::vector<DecompositionPtr> decompositions;
+  for (const nb::handle value : values) {
+    const std::string name =
+        "objects[" + std::to_string(decompositions.size()) + "]";
+    decompositions.push_back(ToDecomposition(value, name));
+  }
+  return decompositions;
+}
+
+DepthSearch ToDepthSearch(nb::handle depth, nb::handle max_walk_steps) {
+  const bool is_global = IsGlobalDepth(depth);
+  int steps = 0;
+  if (PyBool_Check(max_walk_steps.ptr()) ||
+      !nb::try_cast(max_walk_steps, steps) || steps < 1) {
+    throw std::invalid_argument(
+        "max_walk_steps must be a whole number of at least 1, is " +
+        nb::cast<std::string>(nb::repr(max_walk_steps)));
+  }
+  return {is_global, steps};
+}
+
+// The contacts at each pose of a trajectory, one pose after the other.
+struct ContactTrajectory {
+  std::vector<Contact> contacts;
+  std::vector<std::int64_t> start{0};
+  std::vector<double> seconds;
+
+  void Append(const ContactSet& set) {
+    contacts.insert(contacts.end(), set.contacts.begin(), set.contacts.end());
+    start.push_back(static_cast<std::int64_t>(contacts.size()));
+    seconds.push_back(set.query_seconds);
+  }
+
+  ContactSet At(std::size_t k) const {
+    return {{contacts.begin() + start[k], contacts.begin() + start[k + 1]},
+            seconds[k]};
+  }
+};
+
+// A tracker whose users take turns.
+class SharedTracker {
+ public:
+  explicit SharedTracker(ContactTracker tracker)
+      : tracker_(std::move(tracker)) {}
+  SharedTracker(const SharedTracker& other) : SharedTracker(other.Copy()) {}
+
+  // For what never changes.
+  const ContactTracker& constants() const { return tracker_; }
+
+  double Tolerance() const {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    return tracker_.tolerance();
+  }
+
+  void SetTolerance(nb::handle value) {
+    const double tolerance = ToReal(value, "tolerance");
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    tracker_.SetTolerance(tolerance);
+  }
+
+  void Reset() {
+    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    tracker_.Reset();
+  }
+
+ protected:
+  ContactTracker Copy() const {
+    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    return tracker_;
+  }
+
+  // Calls place(k, &tracker) before the query of pose k.
+  template <typename Place>
+  ContactTrajectory QueryEach(std::size_t size, const PoseSeries& X_WA,
+                              const Place& place) {
+    ContactTrajectory out;
+    ContactSet contacts;
+    const Turn turn(&mutex_, Turn::Gil::kRelease);
+    RunTrajectory(size, [&](std::size_t k) {
+      place(k, &tracker_);
+      tracker_.Query(X_WA[k], &contacts);
+      out.Append(contacts);
+    });
+    return out;
+  }
+
+  mutable std::mutex mutex_;
+  ContactTracker tracker_;
+};
+
+class PairTracker : public SharedTracker {
+ public:
+  PairTracker(nb::handle A, nb::handle B, nb::handle tolerance,
+              nb::handle depth, nb::handle max_walk_steps)
+      : SharedTracker({ToDecomposition(A, "A"),
+                       {ToDecomposition(B, "B")},
+                       ToReal(tolerance, "tolerance"),
+                       ToDepthSearch(depth, max_walk_steps)}) {}
+
+  ContactSet Query(nb::handle X_WA_value, nb::handle X_WB_value) {
+    const Pose X_WA = ToPose(X_WA_value, "X_WA");
+    const Pose X_WB = ToPose(X_WB_value, "X_WB");
+    ContactSet contacts;
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    tracker_.SetObjectPose(0, X_WB);
+    tracker_.Query(X_WA, &contacts);
+    return contacts;
+  }
+
+  ContactTrajectory QueryTrajectory(nb::handle X_WA_value,
+                                    nb::handle X_WB_value) {
+    const PoseSeries X_WA(X_WA_value, "X_WA");
+    const PoseSeries X_WB(X_WB_value, "X_WB");
+    return QueryEach(CommonSize(X_WA, X_WB), X_WA,
+                     [&](std::size_t k, ContactTracker* tracker) {
+                       tracker->SetObjectPose(0, X_WB[k]);
+                     });
+  }
+};
+
+class SceneTracker : public SharedTracker {
+ public:
+  SceneTracker(nb::handle tool, nb::handle objects, nb::handle tolerance,
+               nb::handle depth, nb::handle max_walk_steps)
+      : SharedTracker({ToDecomposition(tool, "tool"), ToDecompositions(objects),
+                       ToReal(tolerance, "tolerance"),
+                       ToDepthSearch(depth, max_walk_steps)}) {}
+
+  void SetObjectPose(nb::handle place, nb::handle X_WO_value) {
+    const Pose X_WO = ToPose(X_WO_value, "X_WO");
+    // By `__index__`, as lists do: NumPy's integers count.
+    const Py_ssize_t i = PyNumber_AsSsize_t(place.ptr(), PyExc_IndexError);
+    if (i == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
+    const Py_ssize_t size = tracker_.num_objects();
+    if (i < 0 || i >= size) {
+      const auto text =
+          "no object " + std::to_string(i) + " of " + std::to_string(size);
+      throw nb::index_error(text.c_str());
+    }
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    tracker_.SetObjectPose(static_cast<int>(i), X_WO);
+  }
+
+  ContactSet Query(nb::handle X_WTool_value, nb::handle tolerance_value) {
+    const Pose X_WTool = ToPose(X_WTool_value, "X_WTool");
+    std::optional<double> tolerance;
+    if (!tolerance_value.is_none()) {
+      tolerance = ToReal(tolerance_value, "tolerance");
+    }
+    ContactSet contacts;
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    tracker_.Query(X_WTool, tolerance.value_or(tracker_.tolerance()),
+                   &contacts);
+    return contacts;
+  }
+
+  ContactTrajectory QueryTrajectory(nb::handle X_WTool_value) {
+    const PoseSeries X_WTool(X_WTool_value, "X_WTool");
+    return QueryEach(X_WTool.size(), X_WTool,
+                     [](std::size_t, ContactTracker*) {});
+  }
+};
+
+void BindContactTrajectory(nb::module_& m) {
+  nb::class_<ContactTrajectory> trajectory(
+      m, "ContactTrajectory",
+      "The contacts of a tracker at each of k poses: read-only columns over "
+      "all n contacts, pose after pose, and a sequence of `ContactSet`. "
+      "Immutable.");
+  trajectory.def("__len__",
+                 [](const ContactTrajectory& t) { return t.seconds.size(); });
+  trajectory.def(
+      "__getitem__",
+      [](const ContactTrajectory& t, Py_ssize_t k) {
+        return t.At(PlaceOf(k, t.seconds.size()));
+      },
+      nb::arg("k"), "The contacts at pose k.");
+  trajectory.def(
+      "__iter__", &Iterate,
+      nb::sig("def __iter__(self) -> collections.abc.Iterator[ContactSet]"));
+  trajectory.def("__repr__", [](const ContactTrajectory& t) {
+    return nb::str("ContactTrajectory({}, {})")
+        .format(Counted(t.seconds.size(), "pose"),
+                Counted(t.contacts.size(), "contact"));
+  });
+  constexpr auto kItems = &ContactTrajectory::contacts;
+  DefContactColumns<kItems>(&trajectory);
+  DefPieceColumns<kItems>(&trajectory);
+  DefNumbers<&ContactTrajectory::start>(
+      &trajectory, "start",
+      "(k + 1,) int64: the contacts at pose i are the rows start[i] to "
+      "start[i + 1] of the columns.");
+  DefNumbers<&ContactTrajectory::seconds>(
+      &trajectory, "seconds",
+      "(k,) time that each query took inside the core, s.");
+  DefFrozenCopy(&trajectory);
+}
+
+// What both trackers have.
+template <typename Tracker>
+void DefTracker(nb::class_<Tracker>* tracker) {
+  tracker
+      ->def_prop_rw(
+          "tolerance", &Tracker::Tolerance, &Tracker::SetTolerance,
+          nb::arg("tolerance").none(),
+          "Distance up to which there are contacts, m. May be changed between "
+          "two queries: what was learnt is kept.\n\n"
+          "Raises:\n    ValueError: negative or not finite.")
+      .def_prop_ro(
+          "depth",
+          [](const Tracker& self) {
+            return DepthName(self.constants().depth().is_global);
+          },
+          "'tracked' or 'global'.")
+      .def_prop_ro(
+          "max_walk_steps",
+          [](const Tracker& self) {
+            return self.constants().depth().max_walk_steps;
+          },
+          "Bound on the steps of a walk from feature to feature.")
+      .def("reset", &Tracker::Reset, "Forgets what earlier queries found.")
+      .def("__deepcopy__",
+           [](const Tracker& self, nb::handle) { return Tracker(self); })
+      .def("__copy__", [](const Tracker& self) { return Tracker(self); });
+}
+
+void BindContactTracker(nb::module_& m) {
+  nb::class_<PairTracker> tracker(
+      m, "ContactTracker",
+      "All contacts of two decomposed bodies A and B, each query starting from "
+      "the last one's answer (paper, sections 3 and 5.3): one for each pair of "
+      "convex pieces nearer than the tolerance. Seams between pieces are not "
+      "felt, and what has been pressed in stays in contact, out the way it "
+      "came.\n\n"
+      "A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector "
+      "[qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt "
+      "as it is. Threads that share a tracker take turns.");
+  tracker
+      .def(nb::init<nb::handle, nb::handle, nb::handle, nb::handle,
+                    nb::handle>(),
+           nb::arg("A").none(), nb::arg("B").none(),
+           nb::arg("tolerance").none(), nb::arg("depth").none() = "tracked",
+           nb::arg("max_walk_steps").none() = WalkBounds{}.max_steps,
+           nb::sig("def __init__(self, A: "
+                   "drake_haptics.geometry.decomposition.decompose."
+                   "Decomposition | Decomposition, B: "
+                   "drake_haptics.geometry.decomposition.decompose."
+                   "Decomposition | Decomposition, tolerance: "
+                   "float, depth: typing.Literal['tracked', 'global'] = "
+                   "'tracked', max_walk_steps: int = 1024) -> None"),
+           "Watches A against B for contacts up to `tolerance` "
+           "(m).\n\n" DRAKE_HAPTICS_DEPTH_ARGUMENTS
+           "Raises:\n    ValueError: not decompositions, the tolerance is "
+           "negative or not finite, no such depth, or max_walk_steps below 1.")
+      .def("query", &PairTracker::Query, nb::arg("X_WA").none(),
+           nb::arg("X_WB").none(),
+           nb::sig(
+               "def query(self, X_WA: drake_haptics.common.pose_like.PoseLike, "
+               "X_WB: drake_haptics.common.pose_like.PoseLike) -> ContactSet"),
+           "`ContactSet` of the bodies at the poses X_WA and X_WB.\n\n"
+           "Raises:\n    ValueError: a pose is not finite or not rigid.")
+      .def("query_trajectory", &PairTracker::QueryTrajectory,
+           nb::arg("X_WA").none(), nb::arg("X_WB").none(),
+           nb::sig(
+               "def query_trajectory(self, X_WA: "
+               "drake_haptics.common.pose_like.PoseLike, X_WB: "
+               "drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory"),
+           "What k single queries would give, in one call without the GIL.\n\n"
+           "Args:\n"
+           "    X_WA: (k, 4, 4) or (k, 7) poses of A in turn, or one pose if A "
+           "rests.\n"
+           "    X_WB: the same of B.\n\n"
+           "Raises:\n    ValueError: a pose is not finite or not rigid, or "
+           "numbers of poses differ; nothing was asked then.")
+      .def("__repr__", [](const PairTracker& self) {
+        return nb::str("ContactTracker(tolerance={} m)")
+            .format(self.Tolerance());
+      });
+  DefTracker(&tracker);
+}
+
+void BindSceneTracker(nb::module_& m) {
+  nb::class_<SceneTracker> tracker(
+      m, "SceneTracker",
+      "All contacts of a moving tool with many objects at once; else a "
+      "`ContactTracker`, A the tool and B each object. Objects are posed one "
+      "by one and stay there, so that those at rest cost nothing.");
+  tracker
+      .def(nb::init<nb::handle, nb::handle, nb::handle, nb::handle,
+                    nb::handle>(),
+           nb::arg("tool").none(), nb::arg("objects").none(),
+           nb::arg("tolerance").none(), nb::arg("depth").none() = "tracked",
+           nb::arg("max_walk_steps").none() = WalkBounds{}.max_steps,
+           nb::sig("def __init__(self, tool: "
+                   "drake_haptics.geometry.decomposition.decompose."
+                   "Decomposition | Decomposition, objects: collections.abc."
+                   "Sequence[drake_haptics.geometry.decomposition.decompose."
+                   "Decomposition | "
+                   "Decomposition], tolerance: float, depth: typing.Literal["
+                   "'tracked', 'global'] = 'tracked', max_walk_steps: int = "
+                   "1024) -> None"),
+           "Watches `tool` against `objects`, all at the identity pose, for "
+           "contacts up to `tolerance` (m).\n\n" DRAKE_HAPTICS_DEPTH_ARGUMENTS
+           "Raises:\n    ValueError: not decompositions, no objects, the "
+           "tolerance is negative or not finite, no such depth, or "
+           "max_walk_steps below 1.")
+      .def_prop_ro("num_objects",
+                   [](const SceneTracker& self) {
+                     return self.constants().num_objects();
+                   })
+      .def("set_object_pose", &SceneTracker::SetObjectPose, nb::arg("i"),
+           nb::arg("X_WO").none(),
+           nb::sig("def set_object_pose(self, i: int, X_WO: "
+                   "drake_haptics.common.pose_like.PoseLike) -> None"),
+           "Poses object i.\n\n"
+           "Raises:\n    ValueError: not a pose; the object stays where it is."
+           "\n    IndexError: no such object.")
+      .def("query", &SceneTracker::Query, nb::arg("X_WTool").none(),
+           nb::arg("tolerance") = nb::none(),
+           nb::sig("def query(self, X_WTool: "
+                   "drake_haptics.common.pose_like.PoseLike, "
+                   "tolerance: float | None = None) -> ContactSet"),
+           "`ContactSet` of the tool at the pose X_WTool. With a `tolerance` "
+           "(m) smaller than the tracker's only of contacts up to that, for "
+           "less work; the next query may ask for another.\n\n"
+           "Raises:\n    ValueError: the pose is not finite or not rigid, or "
+           "the tolerance not within 0 and the tracker's.")
+      .def("query_trajectory", &SceneTracker::QueryTrajectory,
+           nb::arg("X_WTool").none(),
+           nb::sig(
+               "def query_trajectory(self, X_WTool: "
+               "drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory"),
+           "What k single queries would give, in one call without the GIL; the "
+           "objects rest.\n\n"
+           "Args:\n"
+           "    X_WTool: (k, 4, 4) or (k, 7) poses of the tool in turn.\n\n"
+           "Raises:\n    ValueError: a pose is not finite or not rigid; "
+           "nothing was asked then.")
+      .def("__repr__", [](const SceneTracker& self) {
+        return nb::str("SceneTracker({}, tolerance={} m)")
+            .format(Counted(self.constants().num_objects(), "object"),
+                    self.Tolerance());
+      });
+  DefTracker(&tracker);
+}
+
+}  // namespace
+
+void BindTracker(nb::module_& m) {
+  BindContactTrajectory(m);
+  BindContactTracker(m);
+  BindSceneTracker(m);
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "convex/polytope.h"
+
+namespace drake_haptics {
+
+/// Sines of the tilt up to which a facet is flush, and from which it is not any
+/// more. Two edges of a right-angled corner at kFlush make a facet at kTilted,
+/// so that a facet takes over before two edges share the contact.
+inline constexpr double kFlush = 0.05;
+inline constexpr double kTilted = 0.0707;
+
+/// Share of a contact, 1 to 0, that a facet or an edge takes at a tilt.
+inline double FacetShare(double sine) {
+  return std::clamp((kTilted - sine) / (kTilted - kFlush), 0.0, 1.0);
+}
+inline double EdgeShare(double sine) {
+  return std::max(0.0, 1 - sine * sine / (kFlush * kFlush));
+}
+
+/// The facets at a vertex that are nearly flush with the contact's plane, and
+/// what they leave of the contact to edges.
+struct FlushFacets {
+  struct Item {
+    int index = -1;
+    double share = 0;
+  };
+  /// More of them are left out: a fan as fine as that is a smooth surface.
+  static constexpr int kMost = 8;
+  std::array<Item, kMost> facets;
+  int count = 0;
+  double rest = 1;
+
+  FlushFacets(const Polytope& P, int vertex, const Vec3& outward) {
+    // A little below the cosine of the tilt.
+    constexpr double kCosTilted = 0.9974;
+    for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
+      if (!(spoke.normal.dot(outward) > kCosTilted) || count == kMost) continue;
+      const double share = FacetShare(spoke.normal.cross(outward).norm());
+      if (!(share > 0)) continue;
+      facets[count++] = {spoke.facet, share};
+      rest *= 1 - share;
+    }
+  }
+  const Item* begin() const { return facets.data(); }
+  const Item* end() const { return facets.data() + count; }
+};
+
+/// Calls visit(edge, share) for each edge at a vertex that is nearly flush.
+template <typename Visitor>
+void VisitFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
+                     const Visitor& visit) {
+  for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
+    const double rise = spoke.along.dot(outward);
+    const double length_squared = spoke.along.squaredNorm();
+    if (rise * rise < kFlush * kFlush * length_squared) {
+      visit(spoke.edge, EdgeShare(std::abs(rise) / std::sqrt(length_squared)));
+    }
+  }
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,45 @@
+#include "convex/support.h"
+
+#include <cassert>
+
+namespace drake_haptics {
+namespace {
+
+// Whether a gain along a direction is more than the round-off of the product.
+// An absolute threshold would end the climb at edges that are short beside the
+// polytope.
+bool IsGain(double gain, const Vec3& direction, const Vec3& along) {
+  constexpr double kRoundOff = 4e-16;
+  return gain > kRoundOff * direction.cwiseProduct(along).cwiseAbs().sum();
+}
+
+}  // namespace
+
+int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
+  // Every vertex is extreme, so a vertex that no neighbour beats is the
+  // farthest one. The bound ends a walk in circles that round-off allows.
+  assert(start >= 0 && start < polytope.num_vertices());
+  int best = start;
+  for (int left = polytope.num_vertices(); left > 0; --left) {
+    double most = 0;
+    int next = -1;
+    for (const Polytope::Spoke& spoke : polytope.fan_of(best)) {
+      const double gain = direction.dot(spoke.along);
+      if (gain > most && IsGain(gain, direction, spoke.along)) {
+        most = gain;
+        next = spoke.neighbor;
+      }
+    }
+    if (next < 0) break;
+    best = next;
+  }
+  return best;
+}
+
+double SupportGap(const PosedPair& pair, const Vec3& n, Hub* hub) {
+  hub->a = pair.SupportA(-n, hub->a);
+  hub->b = pair.SupportB(n, hub->b);
+  return n.dot(pair.a(hub->a) - pair.b(hub->b));
+}
+
+}  // namespace drake_haptics

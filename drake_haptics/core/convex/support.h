@@ -1,0 +1,45 @@
+#pragma once
+
+#include "base/types.h"
+#include "convex/polytope.h"
+
+namespace drake_haptics {
+
+/// The vertex of `polytope` that is farthest along `direction` (any length,
+/// in the polytope's frame). Climbs from vertex `start` from fan to fan, so
+/// that on coherent motion it costs one fan whatever the size.
+int SupportVertex(const Polytope& polytope, const Vec3& direction, int start);
+
+/// Two polytopes in A's frame: A as it is, B posed by X_AB. The difference of
+/// the origins is formed once, in X_AB, so that offsets of both in the world
+/// cost no precision.
+struct PosedPair {
+  const Polytope& A;
+  const Polytope& B;
+  Pose X_AB;
+
+  Vec3 a(int i) const { return A.vertices[i]; }
+  Vec3 b(int j) const { return X_AB * B.vertices[j]; }
+  int SupportA(const Vec3& n, int start) const {
+    return SupportVertex(A, n, start);
+  }
+  int SupportB(const Vec3& n, int start) const {
+    return SupportVertex(B, X_AB.R.transpose() * n, start);
+  }
+  /// A length by which round-off is judged, m.
+  double scale() const { return A.radius + B.radius; }
+};
+
+/// A vertex pair that supports the pair along a direction from B into A.
+struct Hub {
+  int a = 0;
+  int b = 0;
+  bool operator==(const Hub&) const = default;
+};
+
+/// Moves `hub` to the vertices that face each other along n (in A's frame,
+/// from B into A) and returns the support gap
+/// h(n) = min n·a − max n·b. For unit n the signed distance is at least h(n).
+double SupportGap(const PosedPair& pair, const Vec3& n, Hub* hub);
+
+}  // namespace drake_haptics

@@ -1,0 +1,248 @@
+#include "device/udp_servo.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "base/require.h"
+#include "device/realtime.h"
+#include "drake_haptics/wire.h"
+
+namespace drake_haptics {
+namespace {
+
+constexpr double kHandshakePeriod = 0.05;  // s, of commands to a silent driver
+constexpr double kSilence = 0.5;           // s until a driver is gone
+constexpr double kPatience = 0.01;         // s until the thread looks around
+constexpr int kMostPackets = 256;          // taken at once
+constexpr int kDisables = 5;  // commands at the end, in case of loss
+constexpr auto kDisablePause = std::chrono::milliseconds(4);
+
+std::uint32_t DrawSession() {
+  std::random_device random;
+  std::uint32_t session = 0;
+  while (session == 0) session = static_cast<std::uint32_t>(random());
+  return session;
+}
+
+// All signals are for the interpreter's thread, which would else sleep on.
+class BlockedSignals {
+ public:
+  BlockedSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_;
+};
+
+}  // namespace
+
+void UdpServoOptions::Check() const {
+  RequirePositive(time_to_live, "ttl_s");
+  RequirePositive(max_rate, "max_rate_hz");
+  if (!(max_force >= 0 && max_torque >= 0)) {
+    throw std::invalid_argument(
+        "max_force_N and max_torque_Nm must be at least 0, are " +
+        std::to_string(max_force) + " and " + std::to_string(max_torque));
+  }
+  times.Check();
+}
+
+UdpServo::UdpServo(const std::string& host, std::uint16_t port,
+                   const UdpServoOptions& options)
+    : options_((options.Check(), options)),
+      session_(DrawSession()),
+      process_(getpid()),
+      epoch_(std::chrono::steady_clock::now()),
+      socket_(host, port),
+      link_(std::max(kSilence, 2 * options.time_to_live)),
+      law_(options.times) {
+  report_.is_running = true;
+  Report();
+  const BlockedSignals blocked;
+  thread_ = std::thread([this] { Run(); });
+}
+
+UdpServo::~UdpServo() { Close(); }
+
+void UdpServo::Close() {
+  closing_.store(true);
+  if (getpid() != process_) {
+    // A fork has our memory, but not the thread, nor who may hold the lock; and
+    // the device is not its own.
+    if (thread_.joinable()) thread_.detach();
+    return;
+  }
+  const std::lock_guard lock(joining_);
+  if (thread_.joinable()) thread_.join();
+}
+
+HandleState UdpServo::Read() {
+  state_box_.ReadNewer(&read_seen_, &read_);
+  return read_;
+}
+
+UdpServoStatus UdpServo::status() {
+  status_box_.ReadNewer(&status_seen_, &status_);
+  return status_;
+}
+
+void UdpServo::Publish(const LocalWrench& wrench) {
+  PlainWrench plain;
+  double* out = plain.data();
+  const auto append = [&out](const auto& values) {
+    out = std::copy_n(values.data(), values.size(), out);
+  };
+  append(wrench.F);
+  append(wrench.X);
+  append(wrench.V);
+  append(wrench.K);
+  append(wrench.B);
+  *out = Now();
+  wrench_box_.Write(plain);
+}
+
+void UdpServo::Recover() { recover_.store(true); }
+
+double UdpServo::Now() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() -
+                                       epoch_)
+      .count();
+}
+
+void UdpServo::Run() {
+  report_.has_priority = RequestRealtimePriority();
+  report_.has_locked_memory = RequestLockedMemory(this, sizeof(*this));
+  try {
+    Serve();
+  } catch (...) {
+    // Nothing here throws by design; if it does, the device ends at zero force
+    // and the status says that the thread is gone.
+  }
+  Disable();
+  report_.is_running = false;
+  Report();
+}
+
+void UdpServo::Serve() {
+  while (!closing_.load(std::memory_order_relaxed)) {
+    socket_.Wait(kPatience);
+    const double rest = allowed_at_ - Now();
+    if (rest > 0) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(rest));
+    }
+    const bool renewed = Drain();
+    link_.Tick(Now());
+    TakeRequests();
+    const bool is_silent = Now() - sent_at_ >= kHandshakePeriod;
+    if (renewed || sent_at_ < 0 || (is_silent && !link_.IsActive())) Answer();
+    if (renewed) RecordLateness();
+    Report();
+  }
+}
+
+// Takes all that is waiting; only the newest state is answered.
+bool UdpServo::Drain() {
+  std::array<unsigned char, 512> buffer;
+  bool renewed = false;
+  for (int i = 0; i < kMostPackets; ++i) {
+    const std::ptrdiff_t size = socket_.Receive(buffer);
+    if (size < 0) break;
+    const std::span packet(buffer.data(), static_cast<std::size_t>(size));
+    renewed |= link_.Take(packet, Now());
+  }
+  return renewed;
+}
+
+void UdpServo::TakeRequests() {
+  PlainWrench plain;
+  if (wrench_box_.ReadNewer(&wrench_seen_, &plain)) {
+    const double* in = plain.data();
+    const auto take = [&in](auto* values) {
+      std::copy_n(in, values->size(), values->data());
+      in += values->size();
+    };
+    LocalWrench wrench;
+    take(&wrench.F);
+    take(&wrench.X);
+    take(&wrench.V);
+    take(&wrench.K);
+    take(&wrench.B);
+    wrench.published_at = *in;
+    law_.Adopt(wrench);
+    link_.Ask();
+  }
+  if (recover_.exchange(false)) link_.Recover();
+}
+
+void UdpServo::Answer() {
+  const HandleState& state = link_.state();
+  Vec6 F = Vec6::Zero();
+  if (link_.IsActive()) {
+    // In this order what is NaN stays so, and lets nothing through.
+    law_.SetLimits(std::min(state.max_force, options_.max_force),
+                   std::min(state.max_torque, options_.max_torque));
+    F = law_.Step(Now(), Eigen::Map<const PoseVector>(state.X.data()),
+                  Eigen::Map<const Vec6>(state.V.data()));
+  } else {
+    law_.Release();
+  }
+  Send(F, link_.IsEnabling());
+}
+
+void UdpServo::RecordLateness() {
+  const std::int64_t restarts = link_.counts().restarts;
+  if (restarts != restarts_) answer_lateness_.Restart();
+  restarts_ = restarts;
+  lateness_.Record(answer_lateness_.Measure(link_.state().time, sent_at_));
+}
+
+void UdpServo::Send(const Vec6& F, bool enable) {
+  dh_command command{};
+  command.session = session_;
+  command.sequence = ++sequence_;
+  command.time_ns = static_cast<std::uint64_t>(1e9 * Now());
+  std::copy_n(F.data(), 6, command.F_BH);
+  command.state_sequence = link_.state().sequence;
+  command.ttl_us = static_cast<std::uint32_t>(
+      std::clamp(1e6 * options_.time_to_live, 1.0, 4e9));
+  command.enable = enable;
+  std::array<unsigned char, DH_COMMAND_SIZE> packet;
+  dh_pack_command(&command, packet.data());
+  socket_.Send(packet);
+  sent_at_ = Now();
+  // A state may come early by one period, so that jitter at the largest rate
+  // does not delay the answers.
+  const double period = 1 / options_.max_rate;
+  allowed_at_ = std::max(allowed_at_, sent_at_ - period) + period;
+  ++report_.sent;
+}
+
+void UdpServo::Disable() {
+  for (int i = 0; i < kDisables; ++i) {
+    Send(Vec6::Zero(), false);
+    std::this_thread::sleep_for(kDisablePause);
+  }
+}
+
+void UdpServo::Report() {
+  report_.counts = link_.counts();
+  report_.num_not_finite = law_.num_not_finite();
+  report_.num_not_passive = law_.num_not_passive();
+  report_.scale = law_.scale();
+  report_.is_heard = link_.IsHeard();
+  report_.is_active = link_.IsActive();
+  status_box_.Write(report_);
+  state_box_.Write(link_.state());
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "device/device_link.h"
+#include "device/lateness.h"
+#include "device/seqlock.h"
+#include "device/servo_law.h"
+#include "device/udp_socket.h"
+
+namespace drake_haptics {
+
+struct UdpServoOptions {
+  double time_to_live = 0.05;  ///< s that the device shows a command unrenewed
+  double max_rate = 4000;      ///< Hz, of commands
+  /// Largest norms, N and N·m, where the device allows more.
+  double max_force = std::numeric_limits<double>::infinity();
+  double max_torque = std::numeric_limits<double>::infinity();
+  ServoTimes times;
+
+  /// @throws std::invalid_argument unless the times and the rate are finite and
+  ///         above zero and no limit is negative or NaN.
+  void Check() const;
+};
+
+/// What a servo knows, at one moment.
+struct UdpServoStatus {
+  LinkCounts counts;
+  std::int64_t sent = 0;             ///< commands
+  std::int64_t num_not_finite = 0;   ///< wrenches and states; see ServoLaw
+  std::int64_t num_not_passive = 0;  ///< slopes; see ServoLaw
+  double scale = 0;                  ///< part of the wrench that is sent
+  bool is_running = false;           ///< not closed
+  bool is_heard = false;             ///< states are coming
+  bool is_active = false;            ///< a wrench may be shown
+  bool has_priority = false;         ///< the system grants a real-time thread
+  bool has_locked_memory = false;    ///< the system keeps it in memory
+};
+
+/// Answers every state of a driver with a wrench from the last local one, on a
+/// thread of its own. `Publish`, `Read` and `status` never wait for it, nor it
+/// for them. It is bound to no clock: the driver's states are its ticks. After
+/// a pause it answers the newest state only.
+class UdpServo {
+ public:
+  /// Starts to look for the driver.
+  /// @throws std::invalid_argument for options out of range.
+  /// @throws std::runtime_error if there is no such host, or no socket.
+  UdpServo(const std::string& host, std::uint16_t port,
+           const UdpServoOptions& options);
+  ~UdpServo();
+
+  /// The newest state; its `number` is 0 before the first. One thread only.
+  HandleState Read();
+
+  /// Shows a wrench from now on; the first enables the device. One thread only.
+  void Publish(const LocalWrench& wrench);
+
+  /// Takes up again after a fault.
+  void Recover();
+
+  /// Disables the device and ends the thread, in about 20 ms; later calls do
+  /// nothing. Any thread.
+  void Close();
+
+  /// One thread only.
+  UdpServoStatus status();
+  const LatenessHistogram& lateness() const { return lateness_; }
+  std::uint16_t local_port() const { return socket_.local_port(); }
+
+ private:
+  // F, X, V, K, B, time: as plain memory, which can cross threads.
+  using PlainWrench = std::array<double, 6 + 7 + 6 + 36 + 36 + 1>;
+
+  double Now() const;
+  void Run();
+  void Serve();
+  bool Drain();
+  void TakeRequests();
+  void Answer();
+  void RecordLateness();
+  void Send(const Vec6& F, bool enable);
+  void Disable();
+  void Report();
+
+  const UdpServoOptions options_;
+  const std::uint32_t session_;
+  const pid_t process_;
+  const std::chrono::steady_clock::time_point epoch_;
+  UdpSocket socket_;
+
+  // To the thread.
+  Seqlock<PlainWrench> wrench_box_;
+  std::atomic<bool> recover_{false};
+  std::atomic<bool> closing_{false};
+
+  // From the thread.
+  Seqlock<HandleState> state_box_;
+  Seqlock<UdpServoStatus> status_box_;
+  LatenessHistogram lateness_;
+
+  // Of the one thread that reads.
+  HandleState read_;
+  std::uint64_t read_seen_ = 0;
+  UdpServoStatus status_;
+  std::uint64_t status_seen_ = 0;
+
+  // Of the thread alone.
+  DeviceLink link_;
+  ServoLaw law_;
+  AnswerLateness answer_lateness_;
+  std::uint64_t wrench_seen_ = 0;
+  std::uint32_t sequence_ = 0;
+  std::int64_t restarts_ = 0;
+  double sent_at_ = -1;
+  double allowed_at_ = 0;
+  UdpServoStatus report_;
+
+  std::mutex joining_;
+  std::thread thread_;
+};
+
+}  // namespace drake_haptics

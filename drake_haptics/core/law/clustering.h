@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/types.h"
+#include "law/skin_coupling.h"
+#include "pair/contact.h"
+
+namespace drake_haptics {
+
+/// A contact that carries force, in the world. It stands for one contact or
+/// for a cluster of them (paper, Eq. 3 to 5).
+template <typename T>
+struct ClusterOf {
+  T distance{0};        ///< smallest distance of the members (Eq. 5), m
+  Vec3Of<T> nhat_BA_W;  ///< weighted mean direction (Eq. 3), unit
+  Vec3Of<T> p_WC;       ///< weighted mean position (Eq. 4), m
+  /// The elastic force is the stiffness times this, m.
+  T compression{0};
+  /// The damping force is the damping times the speed times this.
+  T damping_share{0};
+  std::int32_t object = 0;
+  std::int32_t num_contacts = 0;
+};
+using Cluster = ClusterOf<double>;
+
+/// Clusters ordered by their first contact.
+template <typename T>
+struct ClusterSetOf {
+  std::vector<ClusterOf<T>> clusters;
+  std::vector<std::int32_t> label;  ///< cluster of each contact; -1 for none
+  /// How the compression of each cluster changes with the depth of each;
+  /// symmetric and positive semidefinite. Empty where each has its own.
+  SkinCouplingOf<T> coupling;
+};
+using ClusterSet = ClusterSetOf<double>;
+
+/// Groups contacts of the same object with an octree whose leaves have the
+/// size `delta`: contacts in one leaf are together, and adjacent occupied
+/// leaves (26 neighbours) are merged (paper, 4.2). Contacts closer than delta
+/// are always together, contacts of different clusters are at least delta
+/// apart; between delta and 2·√3·delta the leaves decide. Each member weighs
+/// `tolerance` − distance. The force jumps where a contact crosses a cell or
+/// clusters merge: see ShareStiffness.
+/// @param delta leaf size, m.
+/// @param tolerance the distance t below which contacts push, m; others are in
+///     no cluster.
+/// @throws std::invalid_argument unless delta > 0 and tolerance >= 0, finite.
+template <typename T>
+void ClusterContacts(const std::vector<ContactOf<T>>& contacts, double delta,
+                     double tolerance, ClusterSetOf<T>* out);
+
+/// Fills the clusters of contacts that are grouped by `out->label`. A change of
+/// scalar type keeps the groups, and which member is the deepest.
+template <typename T>
+void RepresentClusters(const std::vector<ContactOf<T>>& contacts,
+                       double tolerance, ClusterSetOf<T>* out);
+
+}  // namespace drake_haptics

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+#include "base/autodiff.h"
+#include "pair/contact.h"
+
+namespace drake_haptics {
+
+/// The share m of each contact of one object in the constraint that it is part
+/// of: its extent over that of all contacts at the same depth that are flush in
+/// one plane, or in one place with normals not far apart, as on the facets of a
+/// smooth surface. Contacts that are neither near each other nor both flush are
+/// never compared.
+/// @param contacts all nearer than `tolerance` (m).
+template <typename T>
+VectorOf<T> ContactShares(std::span<const ContactOf<T>* const> contacts,
+                          double tolerance);
+
+}  // namespace drake_haptics

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+
+#include "base/autodiff.h"
+#include "base/types.h"
+
+namespace drake_haptics {
+
+/// A contact as friction remembers it from one tick to the next, in the world.
+/// Nothing is preset: a list of them costs what is in it.
+template <typename T>
+struct AdhesiveContactOf {
+  int object;
+  Vec3Of<T> p_WC;       ///< position, m
+  Vec3Of<T> nhat_BA_W;  ///< unit normal, out of the object
+  Vec3Of<T> z_W;        ///< displacement from the adhesion point, m
+  T load;               ///< normal force that the adhesion was formed under, N
+  T grip;  ///< 1 holds up to the static limit, 0 to the sliding one
+};
+
+/// The contacts of one tick: a list of fixed capacity, which allocates nothing
+/// where T is double.
+template <typename T>
+class AdhesiveContactsOf {
+ public:
+  static constexpr int kCapacity = 32;
+  /// Numbers per contact: object, p (3), n (3), z (3), load, grip.
+  static constexpr int kSlotSize = 12;
+
+  /// Reads kCapacity slots; one without a load is empty, and so is all behind.
+  static AdhesiveContactsOf Read(const T* slots);
+  /// Writes the slots, of which all are zero.
+  void Write(T* slots) const;
+
+  void push_back(const AdhesiveContactOf<T>& contact) {
+    items_[size_++] = contact;
+  }
+  int size() const { return size_; }
+  const AdhesiveContactOf<T>& operator[](int i) const { return items_[i]; }
+  AdhesiveContactOf<T>& operator[](int i) { return items_[i]; }
+  const AdhesiveContactOf<T>* begin() const { return items_.data(); }
+  const AdhesiveContactOf<T>* end() const { return items_.data() + size_; }
+  AdhesiveContactOf<T>* begin() { return items_.data(); }
+  AdhesiveContactOf<T>* end() { return items_.data() + size_; }
+
+ private:
+  std::array<AdhesiveContactOf<T>, kCapacity> items_;
+  int size_ = 0;
+};
+
+}  // namespace drake_haptics

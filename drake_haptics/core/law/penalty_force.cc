@@ -1,0 +1,160 @@
+#include "law/penalty_force.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "law/approach.h"
+
+namespace drake_haptics {
+namespace {
+
+void RequireGain(double value, const char* name) {
+  if (!std::isfinite(value) || value < 0) {
+    throw std::invalid_argument(std::string(name) +
+                                " must be finite and at least 0");
+  }
+}
+
+// The direction along which a unit force n at p acts on a frame, as a wrench.
+template <typename T>
+Vec6Of<T> Wrench(const Vec3Of<T>& p_WC, const Vec3Of<T>& n,
+                 const MovingFrameOf<T>& frame) {
+  Vec6Of<T> wrench;
+  wrench << (p_WC - frame.p_WF).cross(n), n;
+  return wrench;
+}
+
+template <typename T>
+using Wrenches = Eigen::Matrix<T, 6, Eigen::Dynamic>;
+
+// Σ k H_ij G_i G_jᵀ. With U = M Σ r φ Gᵀ that is, object by object,
+//   k Uᵀ U + k Σ r (G − Uᵀ φ)(G − Uᵀ φ)ᵀ:
+// no rounding makes the sum less than positive semidefinite.
+Mat6 SumCoupled(const SkinCoupling& coupling, const Wrenches<double>& G,
+                const Eigen::VectorXd& k) {
+  Mat6 K = Mat6::Zero();
+  for (Eigen::Index i = 0, end; i < G.cols(); i = end) {
+    const auto& members = coupling.members;
+    const std::int32_t place = members[i].skin;
+    end = i + 1;
+    if (place < 0) {
+      K += k[i] * members[i].slope * G.col(i) * G.col(i).transpose();
+      continue;
+    }
+    while (end < G.cols() && members[end].skin == place) ++end;
+    const auto& [features, factor] = coupling.skins[place];
+    Wrenches<double> sums = Wrenches<double>::Zero(6, features.cols());
+    for (Eigen::Index j = i; j < end; ++j) {
+      sums.col(members[j].direction) += members[j].slope * G.col(j);
+    }
+    const auto L = factor.triangularView<Eigen::Lower>();
+    Eigen::Matrix<double, Eigen::Dynamic, 6> U = features * sums.transpose();
+    L.solveInPlace(U);
+    L.transpose().solveInPlace(U);
+    const Wrenches<double> yielded = U.transpose() * features;
+    Mat6 in_skin = U.transpose() * U;
+    for (Eigen::Index j = i; j < end; ++j) {
+      if (members[j].slope == 0) continue;
+      const Vec6 own = G.col(j) - yielded.col(members[j].direction);
+      in_skin += members[j].slope * own * own.transpose();
+    }
+    K += k[i] * in_skin;
+  }
+  return K;
+}
+
+Mat6Of<AutoDiff> SumCoupled(const MovingSkinCoupling& coupling,
+                            const Wrenches<AutoDiff>& G,
+                            const Eigen::VectorXd& k) {
+  Mat6Of<AutoDiff> K = Mat6Of<AutoDiff>::Zero();
+  for (Eigen::Index i = 0; i < G.cols(); ++i) {
+    const auto& [first, count, row] = coupling.members[i];
+    const Eigen::Map<const VectorOf<AutoDiff>> H(coupling.together.data() + row,
+                                                 count);
+    K += k[i] * G.col(i) * (G.middleCols(first, count) * H).transpose();
+  }
+  return K;
+}
+
+// Σ k H_ij G_i G_jᵀ. Clusters of different objects have nothing in common.
+template <typename T>
+Mat6Of<T> Stiffness(const ClusterSetOf<T>& set, const Wrenches<T>& G,
+                    const std::vector<ContactMaterial>& materials) {
+  Eigen::VectorXd k(G.cols());
+  for (Eigen::Index i = 0; i < k.size(); ++i) {
+    k[i] = materials[set.clusters[i].object].stiffness;
+  }
+  if (!set.coupling.empty()) return SumCoupled(set.coupling, G, k);
+  Wrenches<T> kG = G;
+  for (Eigen::Index i = 0; i < G.cols(); ++i) kG.col(i) *= k[i];
+  return kG * G.transpose();
+}
+
+}  // namespace
+
+void RequireMaterial(const ContactMaterial& material) {
+  RequireGain(material.stiffness, "stiffness");
+  RequireGain(material.damping, "damping");
+}
+
+template <typename T>
+std::vector<Vec6Of<T>> PenaltyWrenchOf<T>::SumByObject() const {
+  std::vector<Vec6Of<T>> F_objects_W(num_objects, Vec6Of<T>::Zero());
+  for (std::size_t i = 0; i < object.size(); ++i) {
+    F_objects_W[object[i]] += F_cluster_W[i];
+  }
+  return F_objects_W;
+}
+
+template <typename T>
+PenaltyWrenchOf<T> ComputePenaltyWrench(
+    const ClusterSetOf<T>& clusters, const MovingFrameOf<T>& tool,
+    const std::vector<MovingFrameOf<T>>& objects,
+    const std::vector<ContactMaterial>& materials) {
+  if (materials.size() != objects.size()) {
+    throw std::invalid_argument("there must be one material for each object");
+  }
+  PenaltyWrenchOf<T> result;
+  result.num_objects = static_cast<int>(objects.size());
+  result.f_cluster_W.reserve(clusters.clusters.size());
+  result.F_cluster_W.reserve(clusters.clusters.size());
+  result.object.reserve(clusters.clusters.size());
+  Wrenches<T> wrenches(6, clusters.clusters.size());
+  Eigen::Index next = 0;
+  for (const ClusterOf<T>& cluster : clusters.clusters) {
+    const MovingFrameOf<T>& object = objects.at(cluster.object);
+    const ContactMaterial& material = materials[cluster.object];
+    RequireMaterial(material);
+    const Vec6Of<T> G = Wrench(cluster.p_WC, cluster.nhat_BA_W, tool);
+    const Vec6Of<T> G_object = Wrench(cluster.p_WC, cluster.nhat_BA_W, object);
+    // Eq. 8, as power of a unit force: n·v at the contact, of either body.
+    const T speed = G.dot(tool.V_WF) - G_object.dot(object.V_WF);
+    const T damping = material.damping * cluster.damping_share;
+    const Approach<T> approach(speed);
+    T magnitude = material.stiffness * cluster.compression;
+    magnitude -= damping * approach.speed;
+    result.tool.B += approach.engaged * damping * G * G.transpose();
+    wrenches.col(next++) = G;
+    result.tool.F += magnitude * G;
+    result.F_cluster_W.push_back(T(-magnitude) * G_object);
+    result.object.push_back(cluster.object);
+    result.f_cluster_W.push_back(magnitude * cluster.nhat_BA_W);
+  }
+  if (next > 0) result.tool.K = Stiffness(clusters, wrenches, materials);
+  return result;
+}
+
+template struct PenaltyWrenchOf<double>;
+template struct PenaltyWrenchOf<AutoDiff>;
+template PenaltyWrench ComputePenaltyWrench(
+    const ClusterSet&, const MovingFrame&, const std::vector<MovingFrame>&,
+    const std::vector<ContactMaterial>&);
+template PenaltyWrenchOf<AutoDiff> ComputePenaltyWrench(
+    const ClusterSetOf<AutoDiff>&, const MovingFrameOf<AutoDiff>&,
+    const std::vector<MovingFrameOf<AutoDiff>>&,
+    const std::vector<ContactMaterial>&);
+
+}  // namespace drake_haptics

@@ -1,0 +1,170 @@
+#include "law/skin_forces.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace drake_haptics {
+namespace {
+
+// Pivots in blocks that leave no fewer on the wrong side than ever before.
+// Nothing proves that such end; single ones by least index do (Murty 1974).
+constexpr int kBlockPivots = 8;
+// What rounding leaves of a zero, relative to the largest depth.
+constexpr double kNoise = 1e-12;
+
+// The contacts that push, summed up by directions.
+class Pressed {
+ public:
+  explicit Pressed(const Skin& skin)
+      : skin_(skin),
+        slope_(Eigen::VectorXd::Zero(skin.features.cols())),
+        sum_(Eigen::MatrixXd::Identity(skin.features.rows(),
+                                       skin.features.rows())) {}
+
+  // Solves for what the skin yields by, u = M Σ r w φ, and how much deeper each
+  // contact is than that, w − φᵀ u: above 0 where it pushes, by λ / r.
+  void Press(const std::vector<char>& is_pushing) {
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(slope_.size());
+    Eigen::VectorXd load = slope;
+    for (std::size_t i = 0; i < is_pushing.size(); ++i) {
+      if (!is_pushing[i]) continue;
+      slope[skin_.direction[i]] += skin_.slope[i];
+      load[skin_.direction[i]] += skin_.slope[i] * skin_.depth[i];
+    }
+    Add(slope - slope_);
+    slope_ = std::move(slope);
+    factor_.compute(sum_);
+    const Eigen::VectorXd yield = factor_.solve(skin_.features * load);
+    const Eigen::VectorXd yields = skin_.features.transpose() * yield;
+    rest = skin_.depth;
+    for (Eigen::Index i = 0; i < rest.size(); ++i) {
+      rest[i] -= yields[skin_.direction[i]];
+    }
+  }
+
+  const Eigen::MatrixXd& factor() const { return factor_.matrixLLT(); }
+
+  Eigen::VectorXd rest;
+
+ private:
+  // Adds Σ change φ φᵀ, of the directions whose slope becomes more and of those
+  // whose becomes less.
+  void Add(const Eigen::VectorXd& change) {
+    for (const double sign : {1.0, -1.0}) {
+      std::vector<Eigen::Index> changed;
+      for (Eigen::Index a = 0; a < change.size(); ++a) {
+        if (sign * change[a] > 0) changed.push_back(a);
+      }
+      if (changed.empty()) continue;
+      Eigen::MatrixXd features(skin_.features.rows(), changed.size());
+      for (std::size_t k = 0; k < changed.size(); ++k) {
+        const Eigen::Index a = changed[k];
+        features.col(k) =
+            std::sqrt(std::abs(change[a])) * skin_.features.col(a);
+      }
+      sum_.selfadjointView<Eigen::Lower>().rankUpdate(features, sign);
+    }
+  }
+
+  const Skin& skin_;
+  Eigen::VectorXd slope_;  // sums of r by directions
+  Eigen::MatrixXd sum_;    // 1 + Σ r φ φᵀ, its lower half
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+};
+
+// Contacts on the wrong side of their condition: they pull, or are left out and
+// overlap.
+void FindWrong(const Eigen::VectorXd& rest, double noise,
+               const std::vector<char>& is_pushing,
+               std::vector<std::size_t>* wrong) {
+  wrong->clear();
+  for (std::size_t i = 0; i < is_pushing.size(); ++i) {
+    if (is_pushing[i] ? rest[i] < -noise : rest[i] > noise) wrong->push_back(i);
+  }
+}
+
+// The forces of those that push.
+SkinForces Answer(const Skin& skin, const Pressed& pressed,
+                  const std::vector<char>& is_pushing) {
+  const Eigen::Index n = skin.depth.size();
+  SkinForces found{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n),
+                   pressed.factor()};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!is_pushing[i]) continue;
+    // Less what rounding leaves below zero.
+    found.compression[i] = skin.slope[i] * std::max(0.0, pressed.rest[i]);
+    found.slope[i] = skin.slope[i];
+  }
+  return found;
+}
+
+}  // namespace
+
+SkinForces SolveSkin(const Skin& skin) {
+  const auto n = static_cast<std::size_t>(skin.depth.size());
+  const double noise = kNoise * skin.depth.maxCoeff();
+  std::vector<char> is_pushing(n, 1);
+  std::vector<std::size_t> wrong;
+  std::size_t fewest = n + 1;
+  int patience = kBlockPivots;
+  const std::size_t most = kBlockPivots + 4 * n * n;
+  Pressed pressed(skin);
+  for (std::size_t pivot = 0;; ++pivot) {
+    pressed.Press(is_pushing);
+    FindWrong(pressed.rest, noise, is_pushing, &wrong);
+    if (wrong.empty() || pivot == most) {
+      return Answer(skin, pressed, is_pushing);
+    }
+    patience = wrong.size() < fewest ? kBlockPivots : std::max(0, patience - 1);
+    fewest = std::min(fewest, wrong.size());
+    if (patience == 0) wrong.resize(1);
+    for (const std::size_t i : wrong) is_pushing[i] = !is_pushing[i];
+  }
+}
+
+MovingSkinForces SolveSkin(const MovingSkin& skin,
+                           const std::vector<char>& is_pushing) {
+  // C of those that push, apart from the others, which have a 1.
+  MatrixOf<AutoDiff> C = skin.common;
+  for (Eigen::Index i = 0; i < C.rows(); ++i) {
+    if (is_pushing[i]) {
+      C(i, i) += 1.0 / skin.slope[i];
+      continue;
+    }
+    C.row(i).setZero();
+    C.col(i).setZero();
+    C(i, i) = AutoDiff(1);
+  }
+  Eigen::MatrixXd H = Eigen::MatrixXd::Identity(C.rows(), C.cols());
+  Eigen::LLT<Eigen::MatrixXd>(ValuesOf(C)).solveInPlace(H);
+  Eigen::Index variables = 0;
+  for (Eigen::Index i = 0; i < C.size(); ++i) {
+    variables = std::max(variables, C.data()[i].derivatives().size());
+  }
+  for (Eigen::Index i = 0; i < C.rows(); ++i) {
+    if (!is_pushing[i]) H(i, i) = 0;
+  }
+  MovingSkinForces found;
+  found.together = H.unaryExpr([&](double value) {
+    return AutoDiff(value, Eigen::VectorXd::Zero(variables));
+  });
+  for (Eigen::Index k = 0; k < variables; ++k) {
+    const Eigen::MatrixXd dC = C.unaryExpr([&](const AutoDiff& x) {
+      return x.derivatives().size() > 0 ? x.derivatives()[k] : 0.0;
+    });
+    const Eigen::MatrixXd dH = -H * dC * H;
+    for (Eigen::Index i = 0; i < C.size(); ++i) {
+      found.together.data()[i].derivatives()[k] = dH.data()[i];
+    }
+  }
+  found.compression = found.together * skin.depth;
+  for (AutoDiff& compression : found.compression) {
+    // What rounding leaves below zero.
+    if (!(compression > 0.0)) compression = AutoDiff(0.0);
+  }
+  return found;
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "mesh/surface_mesh.h"
+
+namespace drake_haptics {
+
+double PolygonArea(std::span<const Vec3> polygon);
+
+/// The part of a convex polygon below all planes, each lowered by `inset`.
+std::vector<Vec3> ClipPolygon(std::vector<Vec3> polygon,
+                              std::span<const Plane> planes, double inset);
+
+/// Whether a triangle meets the interior of a convex body that is more than
+/// `inset` below all of its planes.
+bool MeetsInterior(const std::array<Vec3, 3>& triangle,
+                   std::span<const Plane> planes, double inset);
+
+}  // namespace drake_haptics

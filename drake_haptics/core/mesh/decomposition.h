@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/types.h"
+#include "convex/polytope.h"
+
+namespace drake_haptics {
+
+using Triangle = Eigen::Vector3i;
+
+/// A mesh and the convex pieces that stand for its surface.
+struct Decomposition {
+  std::vector<Vec3> vertices;       ///< of the mesh, m, in the object's frame
+  std::vector<Triangle> triangles;  ///< counter-clockwise seen from outside
+  /// For each piece, the polytope that a query runs on.
+  std::vector<Polytope> pieces;
+  /// Piece of each triangle; -1 where pieces were not made from triangles.
+  std::vector<int> piece_of_triangle;
+};
+
+/// Called now and then with the share done in [0, 1]; false stops the work.
+using Progress = std::function<bool(double)>;
+
+/// Convex surface decomposition (paper, 5.3.1; Ehmann and Lin 2001): patches
+/// grown breadth first over the dual graph for as long as the patch is convex
+/// and its hull stays inside the solid. See decomposition.cc for the rules.
+/// `solid` tells for each triangle whether it bounds a solid (its component is
+/// closed and wound outward); the patches of others are kept flat-sided, since
+/// they have no inside. A solid that differs from its hull by noise alone is
+/// one piece. Pieces leave the solid by no more than 1e-6 of the mesh's size,
+/// or more in a mesh far from its origin in single precision (see
+/// SurfaceTolerance). Deterministic.
+/// @throws std::invalid_argument for bad indices or values,
+///         std::runtime_error when `progress` asked to stop.
+Decomposition DecomposeSurface(std::span<const Vec3> vertices,
+                               std::span<const Triangle> triangles,
+                               std::span<const std::uint8_t> solid,
+                               const Progress& progress = {});
+
+/// The same result from known labels (a cache), without the search. Triangles
+/// that would be on no original facet of their piece get pieces of their own.
+Decomposition AssembleSurfacePieces(std::span<const Vec3> vertices,
+                                    std::span<const Triangle> triangles,
+                                    std::span<const int> piece_of_triangle);
+
+/// Pieces made elsewhere (CoACD, or one hull): facets within `tolerance` (m)
+/// of the mesh, and facing as it does, are original, all others virtual. Where
+/// it is infinite, the pieces take the place of the mesh: all are original.
+Decomposition AdoptConvexPieces(std::span<const Vec3> vertices,
+                                std::span<const Triangle> triangles,
+                                std::span<const std::vector<Vec3>> pieces,
+                                double tolerance);
+
+}  // namespace drake_haptics

@@ -1,0 +1,274 @@
+#include "pair/contact_patch.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <optional>
+
+#include "convex/flush_features.h"
+
+namespace drake_haptics {
+namespace {
+
+// The contact's plane: coordinates along u and v, height along n.
+struct Plane {
+  Vec3 u, v, n;
+
+  explicit Plane(const Vec3& normal) : n(normal) {
+    u = n.unitOrthogonal();
+    v = n.cross(u);
+  }
+  Vec3 To(const Vec3& p) const { return {u.dot(p), v.dot(p), n.dot(p)}; }
+};
+
+// Height of a facet's plane above the contact's plane, as a linear function.
+struct Height {
+  double x = 0, y = 0, constant = 0;
+
+  Height(const Vec3& normal, const Vec3& point) {
+    x = -normal.x() / normal.z();
+    y = -normal.y() / normal.z();
+    constant = point.z() - x * point.x() - y * point.y();
+  }
+  double operator()(const Vec3& p) const {
+    return x * p.x() + y * p.y() + constant;
+  }
+};
+
+// The part of a contact that one pair of flush features carries.
+struct Part {
+  std::optional<Vec3> center;
+  double extent = 0;
+};
+
+class Patch {
+ public:
+  Patch(const PosedPair& pair, const Vec3& n, double h, double spread,
+        double layer, PatchWorkspace* workspace)
+      : pair_(pair),
+        plane_(n),
+        h_(h),
+        spread_(spread),
+        layer_(layer),
+        workspace_(*workspace) {}
+
+  Part OfFacets(int facet_A, int facet_B) {
+    workspace_.polygon.clear();
+    for (const int v : pair_.A.loop_of(facet_A)) {
+      workspace_.polygon.push_back(plane_.To(pair_.a(v)));
+    }
+    const Height of_A(plane_.To(pair_.A.facets[facet_A].normal),
+                      workspace_.polygon[0]);
+    return Finish(of_A, CutByFacetOfB(facet_B), 1 / spread_);
+  }
+
+  Part OfEdgeOfA(int edge_A, int facet_B) {
+    const Polytope::Edge& edge = pair_.A.edges[edge_A];
+    const Height of_A = StartFromSegment(pair_.a(edge.v0), pair_.a(edge.v1));
+    return Finish(of_A, CutByFacetOfB(facet_B), layer_ / spread_);
+  }
+
+  // Edges fall away to their sides: where they cross under an angle they are
+  // the farther apart the farther from the crossing.
+  Part OfEdges(int edge_A, int edge_B) {
+    const Polytope::Edge& a = pair_.A.edges[edge_A];
+    const Polytope::Edge& b = pair_.B.edges[edge_B];
+    const Vec3 p = plane_.To(pair_.b(b.v0)), q = plane_.To(pair_.b(b.v1));
+    const Vec3 along = q - p;
+    const double length = along.head<2>().norm();
+    const auto place = [&](const Vec3& x) {
+      return (x - p).head<2>().dot(along.head<2>()) / (length * length);
+    };
+    const auto beside = [&](const Vec3& x) {
+      return (along.x() * (x.y() - p.y()) - along.y() * (x.x() - p.x())) /
+             length;
+    };
+    StartFromSegment(pair_.a(a.v0), pair_.a(a.v1));
+    ClipPolygon([&](const Vec3& x) { return place(x); }, &workspace_);
+    ClipPolygon([&](const Vec3& x) { return 1 - place(x); }, &workspace_);
+    const auto pressure = [&](const Vec3& x, double side) {
+      const double gap = x.z() - (p.z() + place(x) * along.z());
+      return spread_ + h_ - gap - side * beside(x);
+    };
+    // The pressure is the smaller of two linear functions: past the crossing
+    // the other side counts.
+    workspace_.overlap = workspace_.polygon;
+    Part whole;
+    Vec3 moment = Vec3::Zero();
+    for (const double side : {1.0, -1.0}) {
+      workspace_.polygon = workspace_.overlap;
+      ClipPolygon([&](const Vec3& x) { return side * beside(x); }, &workspace_);
+      for (Vec3& x : workspace_.polygon) x.z() = pressure(x, side);
+      ClipPolygon([](const Vec3& x) { return x.z(); }, &workspace_);
+      const auto load = PressureLoad(workspace_.polygon);
+      if (!load) continue;
+      whole.extent += layer_ / spread_ * load->integral;
+      moment += load->integral * load->center;
+    }
+    if (!(whole.extent > 0)) return {};
+    moment *= layer_ / spread_ / whole.extent;
+    whole.center = Vec3(plane_.u * moment.x() + plane_.v * moment.y());
+    return whole;
+  }
+
+  Part OfEdgeOfB(int facet_A, int edge_B) {
+    const Polytope::Edge& edge = pair_.B.edges[edge_B];
+    const Height of_B = StartFromSegment(pair_.b(edge.v0), pair_.b(edge.v1));
+    return Finish(CutByFacetOfA(facet_A), of_B, layer_ / spread_);
+  }
+
+ private:
+  Height CutByFacetOfA(int facet) {
+    return Cut(
+        pair_.A, facet, [this](int v) { return pair_.a(v); },
+        pair_.A.facets[facet].normal);
+  }
+
+  Height CutByFacetOfB(int facet) {
+    return Cut(
+        pair_.B, facet, [this](int v) { return pair_.b(v); },
+        pair_.X_AB.R * pair_.B.facets[facet].normal);
+  }
+
+  // @param scale makes the integral of the pressure an extent.
+  Part Finish(const Height& of_A, const Height& of_B, double scale) {
+    for (Vec3& corner : workspace_.polygon) {
+      corner.z() = spread_ + h_ - (of_A(corner) - of_B(corner));
+    }
+    ClipPolygon([](const Vec3& p) { return p.z(); }, &workspace_);
+    const auto load = PressureLoad(workspace_.polygon);
+    if (!load) return {};
+    return {Vec3(plane_.u * load->center.x() + plane_.v * load->center.y()),
+            scale * load->integral};
+  }
+
+  // The height of a segment is taken constant across it.
+  Height StartFromSegment(const Vec3& p, const Vec3& q) {
+    workspace_.polygon.clear();
+    workspace_.polygon.push_back(plane_.To(p));
+    workspace_.polygon.push_back(plane_.To(q));
+    const Vec3 along = workspace_.polygon[1] - workspace_.polygon[0];
+    const Vec3 across = along.cross(Vec3::UnitZ());
+    return Height(across.cross(along), workspace_.polygon[0]);
+  }
+
+  template <typename Position>
+  Height Cut(const Polytope& P, int facet, const Position& position,
+             const Vec3& normal_A) {
+    const auto loop = P.loop_of(facet);
+    const Vec3 normal = plane_.To(normal_A);
+    const Vec3 first = plane_.To(position(loop[0]));
+    // Seen along n, A's loops run clockwise and B's counter-clockwise.
+    const double turn = normal.z() > 0 ? 1.0 : -1.0;
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const Vec3 p = plane_.To(position(loop[k]));
+      const Vec3 along = plane_.To(position(loop[(k + 1) % loop.size()])) - p;
+      ClipPolygon(
+          [&](const Vec3& x) {
+            return turn *
+                   (along.x() * (x.y() - p.y()) - along.y() * (x.x() - p.x()));
+          },
+          &workspace_);
+      if (workspace_.polygon.empty()) break;
+    }
+    return Height(normal, first);
+  }
+
+  const PosedPair& pair_;
+  const Plane plane_;
+  const double h_, spread_, layer_;
+  PatchWorkspace& workspace_;
+};
+
+// Weighted mean over all features that share the contact. What has no overlap
+// leaves its share to the others.
+struct Blend {
+  double total = 0, rest = 1, extent = 0;
+  Vec3 sum = Vec3::Zero();
+
+  /// @param share of what features of higher dimension leave.
+  /// @param left what they leave.
+  void Add(const Part& part, double share, double left) {
+    rest *= 1 - share;
+    share *= left;
+    if (!part.center) return;
+    total += share;
+    sum += share * *part.center;
+    extent += share * part.extent;
+  }
+};
+
+// How many edges at a vertex fall away from the plane by less than the layer.
+int CountFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
+                    double layer) {
+  const auto fan = P.fan_of(vertex);
+  return static_cast<int>(std::count_if(
+      fan.begin(), fan.end(),
+      [&](const auto& spoke) { return outward.dot(spoke.along) >= -layer; }));
+}
+
+}  // namespace
+
+bool MayHaveExtent(const PosedPair& pair, const Vec3& n, const Hub& hub,
+                   double layer) {
+  const int of_A = CountFlushEdges(pair.A, hub.a, -n, layer);
+  if (of_A == 0) return false;
+  const Vec3 n_B = pair.X_AB.R.transpose() * n;
+  const int of_B = CountFlushEdges(pair.B, hub.b, n_B, layer);
+  return of_B > 0 && of_A + of_B > 2;
+}
+
+PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
+                                const Hub& hub, const Vec3& witness,
+                                double spread, double layer,
+                                PatchWorkspace* workspace) {
+  const double point = layer * layer;
+  const Vec3 n_B = pair.X_AB.R.transpose() * n;
+  if (!(spread > 0)) return {std::nullopt, false, 0, point};
+  const FlushFacets of_A(pair.A, hub.a, -n), of_B(pair.B, hub.b, n_B);
+  Patch patch(pair, n, h, spread, layer, workspace);
+  Blend blend;
+  for (const FlushFacets::Item& a : of_A) {
+    for (const FlushFacets::Item& b : of_B) {
+      blend.Add(patch.OfFacets(a.index, b.index), a.share * b.share, 1);
+    }
+  }
+  const bool has_faces = blend.total > 0;
+  if (of_A.rest > 0) {
+    VisitFlushEdges(pair.A, hub.a, n, [&](int edge_A, double share_A) {
+      for (const FlushFacets::Item& b : of_B) {
+        blend.Add(patch.OfEdgeOfA(edge_A, b.index), share_A * b.share,
+                  of_A.rest);
+      }
+      if (!(of_B.rest > 0)) return;
+      const Vec3 along_A =
+          pair.a(pair.A.edges[edge_A].v1) - pair.a(pair.A.edges[edge_A].v0);
+      VisitFlushEdges(pair.B, hub.b, n_B, [&](int edge_B, double share_B) {
+        const Vec3 along_B =
+            pair.b(pair.B.edges[edge_B].v1) - pair.b(pair.B.edges[edge_B].v0);
+        const double sine =
+            along_A.cross(along_B).norm() / (along_A.norm() * along_B.norm());
+        const double share = share_A * share_B * EdgeShare(sine);
+        if (!(share > 0)) return;
+        blend.Add(patch.OfEdges(edge_A, edge_B), share, of_A.rest * of_B.rest);
+      });
+    });
+  }
+  if (of_B.rest > 0) {
+    VisitFlushEdges(pair.B, hub.b, n_B, [&](int edge, double share) {
+      for (const FlushFacets::Item& a : of_A) {
+        blend.Add(patch.OfEdgeOfB(a.index, edge), share * a.share, of_B.rest);
+      }
+    });
+  }
+  PressurePatch found{std::nullopt, has_faces, 1 - blend.rest,
+                      blend.extent + blend.rest * point};
+  if (blend.total > 0) {
+    const Vec3 flat = witness - n * n.dot(witness);
+    const Vec3 center =
+        (blend.sum + blend.rest * flat) / (blend.total + blend.rest);
+    found.center = center + n * n.dot(witness);
+  }
+  return found;
+}
+
+}  // namespace drake_haptics

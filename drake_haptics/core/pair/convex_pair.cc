@@ -1,0 +1,161 @@
+#include "pair/convex_pair.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+#include "pair/facet_revisit.h"
+#include "pair/pair_answer.h"
+#include "pair/separation.h"
+#include "pair/witness.h"
+
+namespace drake_haptics {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Thickness of the layer in which features count as flush, as a share of the
+// size: witness points stay on the bodies to that share.
+constexpr double kLayerShare = 1e-9;
+
+// Every facet of a solid counts, so a walk knows an answer from its first hub
+// on and never needs to promote.
+constexpr WalkBounds kNoPromotion{.max_promotion_hubs = 1};
+
+class Query {
+ public:
+  Query(const PosedPair& pair, PairState* state, PairWorkspace* workspace,
+        GlobalDepthState* global)
+      : pair_(pair), state_(*state), workspace_(*workspace), global_(global) {}
+
+  PairContact Run() {
+    PairContact contact = Answer();
+    state_.n = contact.n;
+    Center(&contact);
+    return contact;
+  }
+
+ private:
+  PairContact Answer() {
+    if (HoldsOrigin(pair_, state_.simplex)) return AtFacet(FindDepth());
+    const Separation separation =
+        ComputeSeparation(pair_, state_.simplex, kInfinity);
+    state_.simplex = separation.simplex;
+    const bool is_apart = separation.status == SeparationStatus::kApart;
+    return is_apart && !AreBothWanted(pair_, separation)
+               ? Apart(separation)
+               : Touching(separation, is_apart);
+  }
+
+  // Overlapping, or apart by so little that both answers are wanted.
+  PairContact Touching(const Separation& separation, bool is_apart) {
+    const Depth depth = FindDepth();
+    const bool has_facet = depth.status != DepthStatus::kNoFacet;
+    if (is_apart) {
+      Hub hub = separation.simplex.hubs[0];
+      const double gap = SupportGap(pair_, separation.n, &hub);
+      if (!has_facet || depth.best.h <= gap) return Apart(separation);
+    }
+    if (has_facet) {
+      PairContact contact = AtFacet(depth);
+      StayOnBodies(separation, &contact);
+      return contact;
+    }
+    state_.feature_A = state_.feature_B = Feature();
+    return ContactGrazing(pair_, separation, state_.n);
+  }
+
+  PairContact Apart(const Separation& separation) {
+    state_.hub = separation.simplex.hubs[0];
+    state_.feature_A = state_.feature_B = Feature();
+    return ContactApart(pair_, separation);
+  }
+
+  PairContact AtFacet(const Depth& depth) {
+    state_.hub = depth.hub;
+    state_.feature_A = depth.best.feature_A;
+    state_.feature_B = depth.best.feature_B;
+    return ContactAtFacet(pair_, depth.best,
+                          depth.best.h > 0 ? ContactStatus::kNear
+                          : depth.status == DepthStatus::kBounded
+                              ? ContactStatus::kBounded
+                              : ContactStatus::kPenetrating);
+  }
+
+  // Where the bodies just touch, facets that only their planes share the touch
+  // with are as good as others; the closest points are on the bodies.
+  void StayOnBodies(const Separation& separation, PairContact* contact) {
+    const double touch = kLayerShare * pair_.scale();
+    if (std::abs(contact->distance) > touch ||
+        LateralOffset(pair_, contact->feature_A, contact->feature_B,
+                      {contact->p_a, contact->p_b}) <= touch) {
+      return;
+    }
+    contact->p_a = separation.p_a;
+    contact->p_b = separation.p_a - contact->distance * contact->n;
+  }
+
+  Depth FindDepth() {
+    const Depth local = FindLocalDepth();
+    if (global_ == nullptr || local.status == DepthStatus::kNoFacet) {
+      return local;
+    }
+    const GlobalDepth least = FindGlobalDepth(pair_, local, global_);
+    if (least.status == GlobalDepthStatus::kFlat) return local;
+    return {least.status == GlobalDepthStatus::kExact
+                ? DepthStatus::kLocalMinimum
+                : DepthStatus::kBounded,
+            least.facet, least.facet.h, least.hub};
+  }
+
+  // On coherent motion the last facet mostly still is the answer, and one
+  // comparison proves it.
+  Depth FindLocalDepth() {
+    if (state_.feature_A.is_none()) {
+      return ColdDepth(pair_, SurfaceRule::kWholeBoundary, state_.n, state_.hub,
+                       kNoPromotion, &workspace_.depth);
+    }
+    const Revisit last =
+        RevisitFacet(pair_, SurfaceRule::kWholeBoundary, state_.feature_A,
+                     state_.feature_B, state_.n);
+    if (last.status == RevisitStatus::kMinimum) {
+      return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub};
+    }
+    if (last.status == RevisitStatus::kFacet) {
+      return WalkDepth(pair_, last.hub, SurfaceRule::kWholeBoundary,
+                       &last.facet, kNoPromotion, &workspace_.depth);
+    }
+    Hub hub = state_.hub;
+    SupportGap(pair_, state_.n, &hub);
+    return WalkDepth(pair_, hub, SurfaceRule::kWholeBoundary, nullptr,
+                     kNoPromotion, &workspace_.depth);
+  }
+
+  void Center(PairContact* contact) {
+    const double layer = kLayerShare * pair_.scale();
+    contact->extent = layer * layer;
+    if (!MayHaveExtent(pair_, contact->n, state_.hub, layer)) return;
+    const PressurePatch patch =
+        FindPressurePatch(pair_, contact->n, contact->distance, state_.hub,
+                          contact->p_a, layer, layer, &workspace_.patch);
+    contact->extent = patch.extent;
+    contact->flushness = patch.flushness;
+    if (!patch.center) return;
+    contact->p_a = *patch.center;
+    contact->p_b = *patch.center - contact->distance * contact->n;
+  }
+
+  const PosedPair& pair_;
+  PairState& state_;
+  PairWorkspace& workspace_;
+  GlobalDepthState* const global_;  // null where the depth is tracked
+};
+
+}  // namespace
+
+PairContact QueryConvexPair(const PosedPair& pair, PairState* state,
+                            PairWorkspace* workspace,
+                            GlobalDepthState* global) {
+  return Query(pair, state, workspace, global).Run();
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,188 @@
+#include "pair/gauss_overlay.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "pair/gauss_clip.h"
+
+namespace drake_haptics {
+namespace {
+
+using Fan = std::span<const Polytope::Spoke>;
+
+// The overlay at one hub. Where an answer is known, its gap is the floor, and
+// what lies below is passed over. Along an arc the gap is largest at an end
+// where it is negative.
+class Overlay {
+ public:
+  Overlay(const PosedPair& pair, const Hub& hub, SurfaceRule rule, double floor,
+          DepthWorkspace* workspace)
+      : pair_(pair),
+        hub_(hub),
+        rule_(rule),
+        floor_(floor),
+        workspace_(*workspace),
+        fan_A_(pair.A.fan_of(hub.a)),
+        fan_B_(pair.B.fan_of(hub.b)),
+        w_(pair.a(hub.a) - pair.b(hub.b)),
+        w_B_(pair.X_AB.R.transpose() * w_) {}
+
+  void Run() {
+    // While a good answer is known most hubs have nothing above its gap.
+    if (floor_ < 0 && !OverlayMayExceed(pair_, hub_, w_, floor_)) return;
+    FillGaps(fan_A_, -w_, &workspace_.gaps_A);
+    FillGaps(fan_B_, w_B_, &workspace_.gaps_B);
+    AddFacetsOfA();
+    AddFacetsOfB();
+    AddEdgePairs();
+  }
+
+ private:
+  // The gap along each facet's normal. Segments have no facets, and all is
+  // open.
+  static void FillGaps(Fan fan, const Vec3& w, std::vector<double>* gaps) {
+    gaps->resize(fan.size());
+    for (std::size_t k = 0; k < fan.size(); ++k) {
+      (*gaps)[k] = fan[k].facet < 0 ? std::numeric_limits<double>::infinity()
+                                    : fan[k].normal.dot(w);
+    }
+  }
+
+  void AddFacetsOfA() {
+    for (std::size_t k = 0; k < fan_A_.size(); ++k) {
+      const double h = workspace_.gaps_A[k];
+      if (!(h > floor_) || fan_A_[k].facet < 0) continue;
+      const Vec3 n = -fan_A_[k].normal;
+      if (IsInRegionOfB(n)) {
+        Append(h, n, {FeatureKind::kFacet, fan_A_[k].facet},
+               {FeatureKind::kVertex, hub_.b});
+      }
+    }
+  }
+
+  void AddFacetsOfB() {
+    for (std::size_t k = 0; k < fan_B_.size(); ++k) {
+      const double h = workspace_.gaps_B[k];
+      if (!(h > floor_) || fan_B_[k].facet < 0) continue;
+      const Vec3 n = pair_.X_AB.R * fan_B_[k].normal;
+      if (IsInRegionOfA(n)) {
+        Append(h, n, {FeatureKind::kVertex, hub_.a},
+               {FeatureKind::kFacet, fan_B_[k].facet});
+      }
+    }
+  }
+
+  void AddEdgePairs() {
+    std::vector<int>& arcs_B = workspace_.arcs_B;
+    std::vector<Vec3>& edges_B = workspace_.edges_B;
+    arcs_B.clear();
+    edges_B.clear();
+    for (std::size_t j = 0; j < fan_B_.size(); ++j) {
+      if (!ArcMayExceed(workspace_.gaps_B, j)) continue;
+      arcs_B.push_back(static_cast<int>(j));
+      edges_B.push_back(pair_.X_AB.R * fan_B_[j].along);
+    }
+    if (arcs_B.empty()) return;
+    for (std::size_t i = 0; i < fan_A_.size(); ++i) {
+      if (!ArcMayExceed(workspace_.gaps_A, i)) continue;
+      const Vec3 edge_A_in_B = pair_.X_AB.R.transpose() * fan_A_[i].along;
+      for (std::size_t j = 0; j < arcs_B.size(); ++j) {
+        if (ArcMayCross(pair_.B, fan_B_, arcs_B[j], edge_A_in_B) &&
+            ArcMayCross(pair_.A, fan_A_, i, edges_B[j])) {
+          AddEdgePair(fan_A_[i], fan_B_[arcs_B[j]], edges_B[j]);
+        }
+      }
+    }
+  }
+
+  void AddEdgePair(const Polytope::Spoke& a, const Polytope::Spoke& b,
+                   const Vec3& edge_B) {
+    const Vec3 cross = a.along.cross(edge_B);
+    const double length_squared = cross.squaredNorm();
+    if (!(length_squared > kParallelSine * kParallelSine *
+                               a.along.squaredNorm() * edge_B.squaredNorm())) {
+      return;
+    }
+    const double length = std::sqrt(length_squared);
+    for (const double sign : {1.0, -1.0}) {
+      const Vec3 n = cross * (sign / length);
+      const double h = n.dot(w_);
+      if (h > floor_ && IsInRegionOfA(n) && IsInRegionOfB(n)) {
+        Append(h, n, {FeatureKind::kEdge, a.edge},
+               {FeatureKind::kEdge, b.edge});
+      }
+    }
+  }
+
+  static std::size_t Before(std::size_t k, std::size_t size) {
+    return (k == 0 ? size : k) - 1;
+  }
+
+  // Whether the arc of an edge, between the normals beside it, may hold a
+  // direction whose gap exceeds the floor.
+  bool ArcMayExceed(const std::vector<double>& gaps, std::size_t k) const {
+    return floor_ >= 0 || gaps[k] > floor_ ||
+           gaps[Before(k, gaps.size())] > floor_;
+  }
+
+  // Whether the arc of a fan's edge may meet the great circle of directions
+  // perpendicular to `axis`. The arc of a segment is a whole circle.
+  static bool ArcMayCross(const Polytope& P, Fan fan, std::size_t k,
+                          const Vec3& axis) {
+    if (fan[k].facet < 0) return true;
+    const double left = axis.dot(fan[k].normal);
+    const double right = axis.dot(fan[Before(k, fan.size())].normal);
+    const double slack = kRegionSlack * P.radius;
+    return (left <= slack && right >= -slack) ||
+           (left >= -slack && right <= slack);
+  }
+
+  // n is in the region of A's vertex when no neighbour lies further against n.
+  bool IsInRegionOfA(const Vec3& n) const {
+    const double slack = kRegionSlack * pair_.A.radius;
+    return std::all_of(fan_A_.begin(), fan_A_.end(), [&](const auto& spoke) {
+      return n.dot(spoke.along) >= -slack;
+    });
+  }
+
+  // n is in the region of B's vertex when no neighbour lies further along n.
+  bool IsInRegionOfB(const Vec3& n) const {
+    const Vec3 n_B = pair_.X_AB.R.transpose() * n;
+    const double slack = kRegionSlack * pair_.B.radius;
+    return std::all_of(fan_B_.begin(), fan_B_.end(), [&](const auto& spoke) {
+      return n_B.dot(spoke.along) <= slack;
+    });
+  }
+
+  void Append(double h, const Vec3& n, Feature a, Feature b) {
+    const SurfaceSupport support =
+        rule_ == SurfaceRule::kWholeBoundary
+            ? SurfaceSupport::kSupported
+            : ClassifySupport(pair_.A, a, n, pair_.B, b,
+                              pair_.X_AB.R.transpose() * n);
+    workspace_.candidates.push_back({h, n, a, b, support});
+    if (support == SurfaceSupport::kSupported) floor_ = h + Tie(pair_);
+  }
+
+  const PosedPair& pair_;
+  const Hub hub_;
+  const SurfaceRule rule_;
+  double floor_;
+  DepthWorkspace& workspace_;
+  const Fan fan_A_, fan_B_;
+  const Vec3 w_;    // the vertex of A ⊖ B, in A's frame
+  const Vec3 w_B_;  // the same in B's frame
+};
+
+}  // namespace
+
+void OverlayGaussRegions(const PosedPair& pair, const Hub& hub,
+                         SurfaceRule rule, double floor,
+                         DepthWorkspace* workspace) {
+  Overlay(pair, hub, rule, floor, workspace).Run();
+}
+
+}  // namespace drake_haptics

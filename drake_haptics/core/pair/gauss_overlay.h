@@ -1,0 +1,27 @@
+#pragma once
+
+#include "pair/depth_walk.h"
+
+namespace drake_haptics {
+
+/// A direction may miss a Gauss region by this share of the polytope's radius:
+/// corners that lie on an arc belong to both sides of it.
+inline constexpr double kRegionSlack = 1e-11;
+
+/// Edges at a smaller angle than this have no usable cross product; the facets
+/// beside them cover its direction.
+inline constexpr double kParallelSine = 1e-8;
+
+/// A facet is shallower only by more than this length (m); within it two facets
+/// are a tie, and a walk stays where it is.
+inline double Tie(const PosedPair& pair) { return 1e-12 * pair.scale(); }
+
+/// Lists the corners of the overlay of the two Gauss regions at a hub (paper,
+/// 5.2.3 steps 1 to 3): the facets of A ⊖ B around that vertex of it. Appends
+/// to workspace->candidates those whose gap exceeds `floor`, which the gap of
+/// a supported one raises.
+void OverlayGaussRegions(const PosedPair& pair, const Hub& hub,
+                         SurfaceRule rule, double floor,
+                         DepthWorkspace* workspace);
+
+}  // namespace drake_haptics

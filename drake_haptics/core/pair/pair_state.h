@@ -1,0 +1,26 @@
+#pragma once
+
+#include "base/types.h"
+#include "convex/support.h"
+#include "pair/contact_patch.h"
+#include "pair/depth_walk.h"
+#include "pair/simplex.h"
+
+namespace drake_haptics {
+
+/// What a pair remembers from one tick to the next.
+struct PairState {
+  SimplexHubs simplex;    ///< of the last separation query
+  Vec3 n = Vec3::Zero();  ///< last normal, in A's frame; zero if none
+  Hub hub;                ///< supports along the last normal
+  Feature feature_A;      ///< features of the last depth; none if the last
+  Feature feature_B;      ///< answer was not a depth
+};
+
+/// Buffers of a query, kept between ticks so that a warm one allocates nothing.
+struct PairWorkspace {
+  DepthWorkspace depth;
+  PatchWorkspace patch;
+};
+
+}  // namespace drake_haptics

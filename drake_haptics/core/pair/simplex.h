@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+
+#include "base/types.h"
+#include "convex/support.h"
+
+namespace drake_haptics {
+
+/// Up to four vertices of the Minkowski difference A ⊖ B by name: what is left
+/// of a simplex when the pose changes.
+struct SimplexHubs {
+  std::array<Hub, 4> hubs;
+  int size = 0;
+  bool operator==(const SimplexHubs& other) const;
+};
+
+/// Up to four vertices of A ⊖ B at a pose, with the weights of the point of
+/// their hull that is closest to the origin.
+struct Simplex : SimplexHubs {
+  std::array<Vec3, 4> points;       ///< a − b, m, in A's frame
+  std::array<double, 4> weights{};  ///< barycentric, of the closest point
+  Vec3 normal = Vec3::Zero();       ///< of a triangle, away from the origin, m²
+
+  bool Contains(const Hub& hub) const {
+    for (int i = 0; i < size; ++i) {
+      if (hubs[i] == hub) return true;
+    }
+    return false;
+  }
+  void Add(const Hub& hub, const Vec3& point) {
+    hubs[size] = hub;
+    points[size] = point;
+    weights[size] = 1.0;
+    ++size;
+  }
+  Vec3 Closest() const {
+    Vec3 sum = weights[0] * points[0];
+    for (int i = 1; i < size; ++i) sum += weights[i] * points[i];
+    return sum;
+  }
+};
+
+/// Shrinks `simplex` to the smallest face that holds its closest point to the
+/// origin and sets the weights. A result of size four holds the origin.
+void ReduceToClosest(Simplex* simplex);
+
+}  // namespace drake_haptics

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+
+#include "base/types.h"
+#include "convex/support.h"
+
+namespace drake_haptics {
+
+/// Witness points of a contact, in A's frame (m): p_a − p_b = h n.
+struct Witness {
+  Vec3 p_a;
+  Vec3 p_b;
+};
+
+/// The witness points of a facet of A ⊖ B: the vertex of a vertex–facet pair
+/// with its foot on the facet's plane, or the points where two crossing edges
+/// pass each other.
+Witness WitnessOfFeatures(const PosedPair& pair, Feature feature_A,
+                          Feature feature_B, const Vec3& n, double h);
+
+/// The point of A's edge nearest to B's, near the point of A where their lines
+/// pass each other: of edges that are nearly parallel that is far beyond both.
+Vec3 OnCrossedEdges(const PosedPair& pair, Feature edge_A, Feature edge_B,
+                    const Vec3& crossing);
+
+/// How far (m) the witness lies outside its features, measured along the
+/// contact's plane; zero where the contact is within both.
+double LateralOffset(const PosedPair& pair, Feature feature_A,
+                     Feature feature_B, const Witness& witness);
+
+/// The same with A out of the walls that stand upright on the contact's plane,
+/// or lean over it.
+/// @param n of the contact, unit, in A's frame.
+/// @param ways_out translations of A out of one wall each, in its frame, m.
+double LateralOffsetOutOfWalls(const PosedPair& pair, Feature feature_A,
+                               Feature feature_B, const Vec3& n,
+                               const Witness& witness,
+                               std::span<const Vec3> ways_out);
+
+}  // namespace drake_haptics

@@ -1,0 +1,59 @@
+#include "tool/handle_model.h"
+
+#include <Eigen/Eigenvalues>
+
+#include "base/passive_part.h"
+
+namespace drake_haptics {
+namespace {
+
+// Directions in which coupling and contact together are softer than this part
+// of the stiffest are those in which nothing holds the tool.
+constexpr double kSoftest = 1e-12;
+
+// How the tool follows the handle: (Kc + Kt)⁺ Kc for matrices of one unit. With
+// the pseudoinverse it does not move where neither holds it.
+Mat6 Follow(const Mat6& Kc, const Mat6& Kt) {
+  const Eigen::SelfAdjointEigenSolver<Mat6> both(Kc + Kt);
+  const Vec6 values = both.eigenvalues();
+  const double softest = kSoftest * values.maxCoeff();
+  Vec6 inverse = Vec6::Zero();
+  for (int i = 0; i < 6; ++i) {
+    if (values[i] > softest) inverse[i] = 1 / values[i];
+  }
+  return both.eigenvectors() * inverse.asDiagonal() *
+         both.eigenvectors().transpose() * Kc;
+}
+
+}  // namespace
+
+HandleSlopes ComputeHandleSlopes(const Vec3& p_HoTo_W,
+                                 const WrenchModel& coupling,
+                                 const WrenchModel& contact) {
+  // Turns are measured at a length, so that all entries have one unit.
+  Vec6 length;
+  length << Vec3::Constant(1 / kHandleLength), Vec3::Ones();
+  const auto even = [&length](const Mat6& matrix) -> Mat6 {
+    bool changed = false;
+    return length.asDiagonal() * PassivePart(matrix, &changed) *
+           length.asDiagonal();
+  };
+  const Mat6 Kc = even(coupling.K), Kt = even(contact.K);
+  const Mat6 Bc = even(coupling.B), Bt = even(contact.B);
+  const Mat6 G = Follow(Kc, Kt);
+  const Mat6 rest = Mat6::Identity() - G;
+  // Kc − Kc G, as a sum of two that cannot be negative.
+  const Mat6 K = rest.transpose() * Kc * rest + G.transpose() * Kt * G;
+  const Mat6 B = rest.transpose() * Bc * rest + G.transpose() * Bt * G;
+
+  // A displacement [θ; p] of the handle at Ho moves its point at To by
+  // p + θ × p_HoTo; and back to the units of turns.
+  Mat6 shift = Mat6::Identity();
+  shift.bottomLeftCorner<3, 3>() << 0, p_HoTo_W.z(), -p_HoTo_W.y(),
+      -p_HoTo_W.z(), 0, p_HoTo_W.x(), p_HoTo_W.y(), -p_HoTo_W.x(), 0;
+  const Mat6 at_handle = length.cwiseInverse().asDiagonal() * shift;
+  return {at_handle.transpose() * K * at_handle,
+          at_handle.transpose() * B * at_handle};
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "base/rotation.h"
+#include "base/types.h"
+#include "law/wrench_model.h"
+
+namespace drake_haptics {
+
+/// Mass properties of the tool.
+struct ToolInertia {
+  double mass = 0;  ///< kg
+  Vec3 p_TTcm;      ///< centre of mass, in the tool's frame, m
+  Mat3 I_TTcm_T;    ///< rotational inertia about it, in T, kg·m²
+};
+
+/// Pose [qw qx qy qz x y z] and spatial velocity [rad/s; m/s] of the tool's
+/// frame in the world.
+template <typename T>
+struct ToolStateOf {
+  PoseVectorOf<T> q_WT;
+  Vec6Of<T> V_WT;
+};
+using ToolState = ToolStateOf<double>;
+
+/// @throws std::invalid_argument unless the mass is above zero and the inertia
+///         is symmetric and positive definite.
+void RequirePhysical(const ToolInertia& inertia);
+
+/// Spatial inertia M about To in W and the velocity terms b of
+/// M dV/dt + b = F.
+template <typename T>
+struct ToolMotionTermsOf {
+  Mat6Of<T> M;
+  Vec6Of<T> b;
+};
+using ToolMotionTerms = ToolMotionTermsOf<double>;
+
+template <typename T>
+ToolMotionTermsOf<T> ComputeMotionTerms(const ToolInertia& inertia,
+                                        const ToolStateOf<T>& state);
+
+/// Advances the free rigid tool by one step of linearized backward Euler:
+///   (M + h B + h² K) ΔV = h (F − b − h K V),  V ← V + ΔV,  δ = h V,
+/// where F, K, B are those of `wrench`.
+/// Stable for stiff contacts at any step, where explicit steps are bounded by
+/// 4 m / h² (stability-and-device notes, section 5).
+/// @param h step, s.
+template <typename T>
+ToolStateOf<T> StepTool(const ToolInertia& inertia, const ToolStateOf<T>& state,
+                        const WrenchModelOf<T>& wrench, double h);
+
+}  // namespace drake_haptics

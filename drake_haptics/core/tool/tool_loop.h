@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "base/rotation.h"
+#include "law/clustering.h"
+#include "law/penalty_force.h"
+#include "tool/rigid_tool.h"
+#include "tool/virtual_coupling.h"
+#include "tracker/contact_tracker.h"
+
+namespace drake_haptics {
+
+/// The tool's part of a haptic loop without Drake: one call goes from the
+/// handle to the tool's next state. It computes what the systems of a loop
+/// without effects compute, in their order.
+class ToolLoop {
+ public:
+  struct Settings {
+    ToolInertia inertia;
+    CouplingGains gains;
+    PoseVector q_HT;                         ///< the tool in the handle
+    std::vector<ContactMaterial> materials;  ///< one for each object
+    double period = 0;                       ///< s
+  };
+
+  /// @param tracker knows where the objects are; they rest.
+  /// @throws std::invalid_argument unless there is a material for each object.
+  ToolLoop(ContactTracker tracker, Settings settings);
+
+  /// Advances the tool by a tick.
+  void Step(const PoseVector& q_WH, const Vec6& V_WH, ToolState* state);
+
+  /// Those of the last tick, at its beginning.
+  const ContactSet& contacts() const { return contacts_; }
+
+ private:
+  ContactTracker tracker_;
+  Settings settings_;
+  std::vector<MovingFrame> objects_;  // at rest
+  ContactSet contacts_;
+  ClusterSet clusters_;
+};
+
+}  // namespace drake_haptics

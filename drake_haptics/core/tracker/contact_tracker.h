@@ -1,0 +1,99 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/types.h"
+#include "base/wake_times.h"
+#include "mesh/decomposition.h"
+#include "pair/contact.h"
+#include "tracker/tracked_object.h"
+
+namespace drake_haptics {
+
+/// Finds all contacts between a moving tool and many objects, tick after tick,
+/// each starting from the last tick's answer (paper, sections 3 and 5.3.2).
+/// An object costs nothing while the motion since it was last looked at cannot
+/// have brought it within reach. Copies are independent and keep what was
+/// learnt.
+///
+/// What a tool presses into keeps it on the side on which it came in. That is
+/// known as long as the tool is followed: a tool that has moved by more than
+/// the diameter of the ball around it, so that it meets nothing of where it was
+/// at the last query, was put elsewhere, and starts there as at first.
+class ContactTracker {
+ public:
+  /// Objects that share a decomposition share its tree.
+  /// @param tolerance contacts up to this distance (m) are reported.
+  /// @throws std::invalid_argument if it is negative or not finite, if no step
+  ///         of a walk is allowed, or if a decomposition is missing.
+  ContactTracker(std::shared_ptr<const Decomposition> tool,
+                 std::vector<std::shared_ptr<const Decomposition>> objects,
+                 double tolerance, const DepthSearch& depth = {});
+
+  int num_objects() const { return static_cast<int>(objects_.size()); }
+  double tolerance() const { return tolerance_; }
+
+  /// From now on reports contacts up to `tolerance` (m). What was learnt is
+  /// kept: what is in contact goes on from its last answer.
+  /// @throws std::invalid_argument if it is negative or not finite.
+  void SetTolerance(double tolerance);
+
+  const DepthSearch& depth() const { return depth_; }
+
+  /// Poses object i; the pose that it has costs nothing.
+  /// @throws std::out_of_range, std::invalid_argument.
+  void SetObjectPose(int i, const Pose& X_WO);
+
+  /// Writes the contacts at the tool's pose to `out`, reusing its memory.
+  /// @throws std::invalid_argument for a pose that is not finite, before any
+  ///         remembered state is touched; std::bad_alloc, after which nothing
+  ///         is remembered.
+  void Query(const Pose& X_WTool, ContactSet* out) {
+    Query(X_WTool, tolerance_, out);
+  }
+
+  /// The same, of contacts up to a smaller distance `tolerance` (m), for less
+  /// work. What is learnt of pairs serves later queries of any.
+  /// @throws std::invalid_argument also unless 0 <= tolerance <= tolerance().
+  void Query(const Pose& X_WTool, double tolerance, ContactSet* out);
+
+  /// Forgets everything learnt from earlier ticks.
+  void Reset();
+
+ private:
+  struct Object {
+    TrackedObject tracked;
+    Pose X_WO;
+    Pose last_X_WO;  // at the last query
+    bool has_moved = false;
+    // What its own odometer is ahead of the tool's, by its own motion, m.
+    double ahead = 0;
+  };
+
+  void QueryAll(const Pose& X_WTool, double tolerance, ContactSet* out);
+  // Beyond the ball around it, or turned by more than a contact that goes on
+  // may turn, 60°: of a side on which it came in then nothing is left.
+  bool IsPutElsewhere(const Motion& motion, double step) const {
+    return step > 2 * radius_ || motion.turn() > 1;
+  }
+  void StartOver();
+  void Forget(int i);
+  void QueryObject(int i, const Pose& X_WTool, const Motion& tool_motion,
+                   double tool_step, double tolerance, ContactSet* out);
+
+  TreedShape tool_;
+  std::vector<Object> objects_;
+  double tolerance_;
+  DepthSearch depth_;
+  Vec3 middle_;        // of the tool, in its frame, m
+  double radius_;      // of the tool about its middle, m
+  Pose last_X_WTool_;  // at the last query
+  bool is_first_ = true;
+  double odometer_ = 0;   // of the tool in the world, m
+  WakeTimes wake_times_;  // of the objects, by the tool's odometer
+  std::vector<int> awake_;
+  TrackerWorkspace workspace_;
+};
+
+}  // namespace drake_haptics

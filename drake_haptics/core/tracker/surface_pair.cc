@@ -1,0 +1,450 @@
+#include "tracker/surface_pair.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "convex/flush_features.h"
+#include "convex/surface_support.h"
+#include "pair/facet_revisit.h"
+#include "pair/gauss_overlay.h"
+#include "pair/pair_answer.h"
+#include "pair/separation.h"
+#include "pair/witness.h"
+#include "tracker/carried_facets.h"
+#include "tracker/contact_passage.h"
+#include "tracker/facet_press.h"
+#include "tracker/facet_prospect.h"
+#include "tracker/near_promotion.h"
+#include "tracker/surface_entry.h"
+
+namespace drake_haptics {
+namespace {
+
+// Hubs looked at for a facet that both surfaces carry, on the first tick of an
+// overlap and on later ones.
+constexpr int kColdPromotionHubs = 64;
+constexpr int kWarmPromotionHubs = 6;
+// The same for an overlap that was refused, and for how many ticks.
+constexpr int kRefusedPromotionHubs = 2;
+constexpr int kRestAfterRefusal = 64;
+constexpr int kRefusalSpread = 32;
+// Cosine of the largest angle between the normal of a new contact and the
+// direction from which the pair came together: beyond it the tool came from
+// behind the surface, through a virtual side of the piece.
+constexpr double kComingFrom = -0.2;
+// How much deeper than the shallowest facet a new contact may be, as a share of
+// the tolerance.
+constexpr double kEntryShare = 0.25;
+// Cosine of the angle within which two normals count as one.
+constexpr double kSameNormal = 0.996;
+constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
+
+class Query {
+ public:
+  Query(const PosedPair& pair, const SurfaceRequest& request,
+        SurfacePairState* state, SurfacePairWorkspace* workspace,
+        GlobalDepthState* global)
+      : pair_(pair),
+        request_(request),
+        state_(*state),
+        passage_(pair, request_, *state),
+        workspace_(*workspace),
+        global_(global) {}
+
+  std::optional<PairContact> Run() {
+    state_.is_settled = false;
+    std::optional<PairContact> contact;
+    if (!state_.in_contact && IsBeyondLastNormal()) {
+      contact = TakenOver();
+      if (!contact) return contact;
+    } else {
+      contact = Answer();
+    }
+    Remember(contact);
+    if (!is_refused_) state_.refusals = 0;
+    state_.num_ways_out = contact || !ends_early_
+                              ? -1
+                              : static_cast<int>(request_.ways_out.size());
+    if (!contact) return contact;
+    const bool is_pressed = contact->distance < 0 && facet_hub_;
+    const bool is_within = is_pressed && IsWithinSides(pair_, *contact);
+    if (facet_hub_ && contact->feature_A.kind() == FeatureKind::kEdge &&
+        contact->feature_B.kind() == FeatureKind::kEdge) {
+      contact->p_a = OnCrossedEdges(pair_, contact->feature_A,
+                                    contact->feature_B, contact->p_a);
+      contact->p_b = contact->p_a - contact->distance * contact->n;
+    }
+    const PressurePatch patch =
+        FindPatch(contact->n, contact->distance, state_.hub, contact->p_a);
+    state_.is_settled = is_within || (is_pressed && patch.center);
+    if (patch.center) {
+      contact->p_a = *patch.center;
+      contact->p_b = *patch.center - contact->distance * contact->n;
+    }
+    contact->extent = patch.extent;
+    contact->flushness = patch.flushness;
+    contact->support = {state_.hub.a, state_.hub.b};
+    return contact;
+  }
+
+ private:
+  std::optional<PairContact> Answer() {
+    separation_ = ComputeSeparation(pair_, state_.simplex, request_.tolerance);
+    state_.simplex = separation_.simplex;
+    switch (separation_.status) {
+      case SeparationStatus::kApart:
+        return Near();
+      case SeparationStatus::kTouching:
+        return Overlapping();
+      default:
+        return Behind();
+    }
+  }
+
+  // Last tick's normal often still proves that the pair is out of reach.
+  bool IsBeyondLastNormal() {
+    return state_.n.squaredNorm() > 0 &&
+           SupportGap(pair_, state_.n, &state_.hub) > request_.tolerance;
+  }
+
+  std::optional<PairContact> Near() {
+    if (AreBothWanted(pair_, separation_)) return Overlapping();
+    const PairContact contact = ContactApart(pair_, separation_);
+    if (IsSupported(contact)) return contact;
+    const auto promoted = Promoted(contact);
+    return promoted ? promoted : Behind();
+  }
+
+  // What becomes of the contact at the closest points where the surfaces do not
+  // carry it.
+  std::optional<PairContact> Promoted(const PairContact& closest) {
+    const Promotion promotion =
+        PromoteClosestPoints(pair_, separation_, request_,
+                             IsSupported(closest, kFlush), &workspace_.patch);
+    ends_early_ = promotion.ends_early;
+    if (promotion.facet.support != SurfaceSupport::kSupported) {
+      if (promotion.is_beside_wall) return closest;
+      return std::nullopt;
+    }
+    facet_hub_ = promotion.hub;
+    return ContactAtFacet(pair_, promotion.facet, ContactStatus::kNear);
+  }
+
+  // No contact of its own: the tool is out of reach, or behind the surface.
+  std::optional<PairContact> Behind() {
+    return state_.in_contact ? Held(state_.n) : TakenOver();
+  }
+
+  bool IsSupported(const PairContact& contact,
+                   double slack = kSurfaceSlack) const {
+    return ClassifySupport(pair_.A, contact.feature_A, contact.n, pair_.B,
+                           contact.feature_B,
+                           pair_.X_AB.R.transpose() * contact.n,
+                           slack) == SurfaceSupport::kSupported;
+  }
+
+  std::optional<PairContact> Overlapping() {
+    const bool is_new = !state_.in_contact && !WasRefused();
+    const std::optional<Depth> entry = is_new ? Entry() : std::nullopt;
+    if (is_new && !entry && !MayBegin()) {
+      is_refused_ = true;
+      return TakenOver();
+    }
+    const Depth depth = entry               ? *entry
+                        : state_.in_contact ? WarmDepth()
+                        : is_new            ? EntryDepth()
+                                            : RefusedDepth();
+    const bool apart = separation_.status == SeparationStatus::kApart;
+    Hub hub = separation_.simplex.hubs[0];
+    if (apart && (depth.status == DepthStatus::kNoFacet ||
+                  depth.best.h <= SupportGap(pair_, separation_.n, &hub))) {
+      const PairContact contact = ContactApart(pair_, separation_);
+      if (IsSupported(contact)) return contact;
+    }
+    // Bodies in one line or point have no facet between them.
+    if (depth.status == DepthStatus::kNoFacet) {
+      return ContactGrazing(pair_, separation_, state_.n);
+    }
+    if (global_ != nullptr && !entry) {
+      const auto least = LeastDepth(depth);
+      if (least) return AtDepth(*least);
+    }
+    if (!entry && !IsPlausible(depth)) {
+      if (state_.in_contact) {
+        const auto begun = Entry();
+        if (begun) return AtDepth(*begun);
+      }
+      Refuse(depth.best.n, depth.hub);
+      const auto contact = GoneOn();
+      return contact ? contact : TakenOver();
+    }
+    return AtDepth(depth);
+  }
+
+  PairContact AtDepth(const Depth& depth) {
+    ContactStatus status =
+        depth.best.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating;
+    if (depth.status == DepthStatus::kBounded &&
+        depth.best.support != SurfaceSupport::kOriginal) {
+      status = ContactStatus::kBounded;
+    }
+    return AtFacet(depth, status);
+  }
+
+  // The least depth of all facets that both surfaces carry, where the bodies
+  // press on them. The least of all facets needs no other reason. Where that
+  // one is virtual, the least of the others counts if it is shallower than the
+  // depth that was tracked, or, with none to compare to, by the rules for that.
+  std::optional<Depth> LeastDepth(const Depth& tracked) {
+    const Depth least = LeastOfAllFacets(pair_, tracked.hub, global_);
+    if (least.status == DepthStatus::kNoFacet) return std::nullopt;
+    if (least.best.support == SurfaceSupport::kSupported &&
+        IsWithinFeatures(least.best)) {
+      return least;
+    }
+    const bool is_tracked = IsPlausible(tracked);
+    ListCarriedFacets(pair_, is_tracked ? tracked.best.h : kNoFloor,
+                      &workspace_.carried);
+    for (const DepthCandidate& facet : workspace_.carried) {
+      const Depth depth{DepthStatus::kLocalMinimum, facet, least.best.h,
+                        HubOf(pair_, facet)};
+      if (is_tracked ? IsWithinFeatures(facet) : IsPlausible(depth)) {
+        return depth;
+      }
+    }
+    return std::nullopt;
+  }
+
+  bool WasRefused() const {
+    return state_.refusals > 0 && state_.refusals < kRestAfterRefusal;
+  }
+
+  // Of a pair that overlaps: false is a proof that a search for a plausible
+  // facet would be in vain.
+  bool MayBegin() {
+    if (global_ != nullptr || separation_.status == SeparationStatus::kApart) {
+      return true;
+    }
+    WantedFacets wanted{
+        {state_.n, state_.n.squaredNorm() > 0 ? kComingFrom : -1.0}, kNoFloor};
+    // A search sees a facet around its start that is no deeper than the start;
+    // none but the two faces where both pieces are flat.
+    if (pair_.A.dimension == 3 || pair_.B.dimension == 3) {
+      wanted.least =
+          std::min(GapAlong(state_.n), GapAlong(BetweenCentroids(pair_))) -
+          kEntryShare * request_.tolerance - Tie(pair_);
+    }
+    return MayFind(&wanted);
+  }
+
+  double GapAlong(const Vec3& n) const {
+    Hub hub = state_.hub;
+    return SupportGap(pair_, n, &hub);
+  }
+
+  bool MayFind(const WantedFacets* own) {
+    return MayFindFacet(pair_, request_, passage_, state_.hub, own,
+                        &workspace_);
+  }
+
+  // Where the overlap of a pair that was apart began.
+  std::optional<Depth> Entry() {
+    const bool is_walked = global_ != nullptr && !request_.is_any_way_out;
+    if (is_walked || pair_.A.dimension < 2 || pair_.B.dimension < 2) {
+      return std::nullopt;
+    }
+    const auto facet = FindEntry(pair_, request_, state_.hub, &workspace_);
+    if (!facet) return std::nullopt;
+    return Depth{DepthStatus::kLocalMinimum, *facet, facet->h,
+                 HubOf(pair_, *facet)};
+  }
+
+  // Of a pair that was not in contact.
+  Depth EntryDepth() {
+    // Pairs refused at one tick shall not all be searched at one later tick.
+    state_.refusals = (state_.hub.a * 31 + state_.hub.b * 17) % kRefusalSpread;
+    return ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
+                     Bounds(kColdPromotionHubs), &workspace_.depth);
+  }
+
+  WalkBounds Bounds(int max_promotion_hubs) const {
+    return {max_promotion_hubs, request_.max_walk_steps};
+  }
+
+  // Of one that was refused at the last tick, and mostly is again: the thorough
+  // search is made anew only now and then.
+  Depth RefusedDepth() {
+    Hub hub = state_.refused_hub;
+    SupportGap(pair_, state_.refused_n, &hub);
+    return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
+                     Bounds(kRefusedPromotionHubs), &workspace_.depth);
+  }
+
+  // @param n, hub where the search ended.
+  void Refuse(const Vec3& n, const Hub& hub) {
+    is_refused_ = true;
+    ++state_.refusals;
+    state_.refused_n = n;
+    state_.refused_hub = hub;
+  }
+
+  // The contact at a facet of A ⊖ B, which is also the next tick's start.
+  PairContact AtFacet(const Depth& depth, ContactStatus status) {
+    facet_hub_ = depth.hub;
+    return ContactAtFacet(pair_, depth.best, status);
+  }
+
+  // Whether the facet found can be the way on which the overlap came about: it
+  // goes on from the last contact, A lay in front of it at the last pose, or it
+  // is near the shallowest way there is. A piece of a thin wall is also met
+  // from behind, through its virtual side: its own surface is far then, and the
+  // pieces on the near side carry the contact.
+  bool IsPlausible(const Depth& depth) {
+    if (depth.best.support == SurfaceSupport::kVirtual) return false;
+    // What goes on may reach beyond its features: a face wider than the pieces
+    // has its deepest corner over another one.
+    if (passage_.GoesOn(depth.best)) return true;
+    if (depth.best.support != SurfaceSupport::kSupported) return false;
+    // A walk that was cut short may not have come to where the bodies press.
+    if (depth.status != DepthStatus::kBounded &&
+        !IsWithinFeatures(depth.best)) {
+      return false;
+    }
+    return passage_.IsHandedOver(depth.best) ||
+           LayInFront(pair_, depth.best, request_.last_X_AB) ||
+           (depth.best.n.dot(state_.n) >= kComingFrom &&
+            depth.best.h >=
+                depth.shallowest - kEntryShare * request_.tolerance);
+  }
+
+  // The contact in the shallowest facet seen in which it goes on: the walk may
+  // have left that facet for one to the side, by which the tool did not come.
+  std::optional<PairContact> GoneOn() {
+    const DepthCandidate* best = nullptr;
+    for (const DepthCandidate& facet : workspace_.depth.candidates) {
+      if (facet.support == SurfaceSupport::kSupported && facet.h < 0 &&
+          (best == nullptr || facet.h > best->h) && passage_.GoesOn(facet)) {
+        best = &facet;
+      }
+    }
+    if (best == nullptr) return std::nullopt;
+    return AtFacet(
+        {DepthStatus::kLocalMinimum, *best, best->h, HubOf(pair_, *best)},
+        ContactStatus::kPenetrating);
+  }
+
+  // A pair that goes on where another one pressed: the tool may be behind this
+  // piece altogether.
+  std::optional<PairContact> TakenOver() {
+    // Contacts along one normal lead to the same facet: one of them will do.
+    const Vec3* tried = nullptr;
+    for (const PressedContact& last : request_.pressed) {
+      if (last.is_kept || !last.IsNear(pair_.A, pair_.B)) continue;
+      if (tried == nullptr && !state_.in_contact && !MayFind(nullptr)) {
+        return std::nullopt;
+      }
+      if (tried != nullptr && tried->dot(last.n) > kSameNormal) continue;
+      tried = &last.n;
+      const auto contact = Held(pair_.X_AB.R * last.n);
+      if (contact) return contact;
+    }
+    return std::nullopt;
+  }
+
+  bool IsWithinFeatures(const DepthCandidate& facet) {
+    return drake_haptics::IsWithinFeatures(pair_, facet, request_.tolerance,
+                                           &workspace_.patch);
+  }
+
+  // From the last answer. On coherent motion its facet mostly still is the
+  // answer, and one comparison proves it.
+  Depth WarmDepth() {
+    Hub hub = state_.hub;
+    if (!state_.feature_A.is_none()) {
+      const Revisit last =
+          RevisitFacet(pair_, SurfaceRule::kSurfaceOnly, state_.feature_A,
+                       state_.feature_B, state_.n);
+      if (last.status == RevisitStatus::kMinimum &&
+          last.facet.support == SurfaceSupport::kSupported) {
+        return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub};
+      }
+      if (last.status != RevisitStatus::kGone) {
+        return WalkDepth(pair_, last.hub, SurfaceRule::kSurfaceOnly,
+                         &last.facet, Bounds(kWarmPromotionHubs),
+                         &workspace_.depth);
+      }
+    }
+    SupportGap(pair_, state_.n, &hub);
+    return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
+                     Bounds(kWarmPromotionHubs), &workspace_.depth);
+  }
+
+  // The tool was in contact and the hulls are apart now, yet the gap along the
+  // way in, n, is negative: it went through a shallow piece. The depth is
+  // measured along the surface's own normals, and the way out is the way in.
+  std::optional<PairContact> Held(const Vec3& n) {
+    Hub hub = state_.hub;
+    if (!(SupportGap(pair_, n, &hub) < 0)) return std::nullopt;
+    const Depth depth =
+        WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
+                  Bounds(kWarmPromotionHubs), &workspace_.depth);
+    if (depth.status == DepthStatus::kNoFacet ||
+        depth.best.support != SurfaceSupport::kSupported ||
+        !(depth.best.h < 0) ||
+        !(passage_.GoesOn(depth.best) || passage_.IsHandedOver(depth.best)) ||
+        !IsWithinFeatures(depth.best)) {
+      return std::nullopt;
+    }
+    return AtFacet(depth, ContactStatus::kHeld);
+  }
+
+  PressurePatch FindPatch(const Vec3& n, double h, const Hub& hub,
+                          const Vec3& p_a) {
+    return FindSurfacePatch(pair_, n, h, hub, p_a, request_.tolerance,
+                            &workspace_.patch);
+  }
+
+  void Remember(const std::optional<PairContact>& contact) {
+    state_.in_contact = contact.has_value();
+    const bool is_facet = contact && facet_hub_;
+    state_.feature_A = is_facet ? contact->feature_A : Feature();
+    state_.feature_B = is_facet ? contact->feature_B : Feature();
+    if (contact) {
+      state_.n = contact->n;
+      state_.distance = contact->distance;
+      state_.p_b = pair_.X_AB.inverse() * contact->p_b;
+    }
+    if (is_facet) {
+      state_.hub = *facet_hub_;
+    } else if (separation_.status != SeparationStatus::kTouching) {
+      // The vertices of the closest features face each other along n.
+      state_.n = separation_.n;
+      state_.hub = separation_.simplex.hubs[0];
+    }
+  }
+
+  const PosedPair& pair_;
+  const SurfaceRequest request_;
+  SurfacePairState& state_;
+  const ContactPassage passage_;
+  SurfacePairWorkspace& workspace_;
+  GlobalDepthState* const global_;  // null where the depth is tracked
+  Separation separation_;
+  bool is_refused_ = false;       // an overlap had no plausible facet
+  bool ends_early_ = false;       // see Promotion
+  std::optional<Hub> facet_hub_;  // of the facet that is the answer, if one is
+};
+
+}  // namespace
+
+std::optional<PairContact> QuerySurfacePair(const PosedPair& pair,
+                                            const SurfaceRequest& request,
+                                            SurfacePairState* state,
+                                            SurfacePairWorkspace* workspace,
+                                            GlobalDepthState* global) {
+  return Query(pair, request, state, workspace, global).Run();
+}
+
+}  // namespace drake_haptics

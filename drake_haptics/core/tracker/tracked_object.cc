@@ -1,0 +1,320 @@
+#include "tracker/tracked_object.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include "tracker/surface_entry.h"
+
+namespace drake_haptics {
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+// Bound on the ways out of walls that are gone, one after the other, to find a
+// pose from which the tool may have come.
+constexpr int kMaxWaysOut = 16;
+// How far beyond the touch each leads, as a share of the size.
+constexpr double kBeyondTouch = 1e-6;
+
+// Where a pair may have come from, of which no earlier pose is known: it counts
+// by the pose before that all pairs share, and then leaves by its own shortest
+// way.
+Pose PoseBeforeOf(const PosedPair& pair, double tolerance, const Pose& shared,
+                  SurfacePairWorkspace* workspace) {
+  const auto way = FindWayOut(pair, tolerance, workspace);
+  if (!way) return shared;
+  SurfaceRequest request;
+  request.tolerance = tolerance;
+  request.last_X_AB = shared;
+  if (!FindEntry(pair, request, {}, workspace)) return shared;
+  Pose X_AB = pair.X_AB;
+  X_AB.p += (way->h - kBeyondTouch * pair.scale()) * way->n;
+  return X_AB;
+}
+
+}  // namespace
+
+void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
+                          std::vector<Contact>* out) {
+  // Who begins has missed nothing, whatever the odometer stood at before.
+  if (is_first_) odometer_ = tick.odometer - tick.step;
+  double deepest = 0;
+  for (PressedContact& last : pressed_) {
+    last.Advance(tick.X_AB, tick.last_X_AB);
+    deepest = std::max(deepest, -last.distance);
+  }
+  // Where the tool presses, pieces beside may take over from as far as it is
+  // deep.
+  const double reach = tick.watched + deepest;
+  const PosedBoxes boxes(tick.X_AB);
+  const PairFront::Tick front_tick{*tick.tool.tree, *shape_.tree, boxes,
+                                   tick.odometer, reach};
+  workspace->entered.clear();
+  front_.Advance(front_tick, &workspace->entered);
+  if (!workspace->entered.empty()) Admit(tick.watched, &workspace->entered);
+
+  const std::size_t first = out->size();
+  if (is_first_) {
+    const Pose before = FindPoseBefore(tick, workspace);
+    AskAll({tick.tool, tick.watched, tick.tolerance, tick.depth, tick.X_WA,
+            tick.X_AB, before, tick.motion, tick.step, tick.odometer},
+           front_tick, workspace, out);
+    if (out->size() == first) AskForAnyWayOut(tick, workspace, out);
+  } else {
+    AskAll(tick, front_tick, workspace, out);
+  }
+  std::sort(out->begin() + static_cast<std::ptrdiff_t>(first), out->end(),
+            [](const Contact& p, const Contact& q) {
+              return std::tie(p.piece_A, p.piece_B) <
+                     std::tie(q.piece_A, q.piece_B);
+            });
+  is_first_ = false;
+  // Copied, so that each object keeps the memory that it has needed.
+  pressed_.assign(workspace->pressed.begin(), workspace->pressed.end());
+}
+
+// Where the tool may have come from, of which nothing is known: out of all that
+// it overlaps with, each time by the shortest way there is.
+Pose TrackedObject::FindPoseBefore(const Tick& tick,
+                                   TrackerWorkspace* workspace) const {
+  Pose X_AB = tick.X_AB;
+  for (int k = 0; k < kMaxWaysOut; ++k) {
+    std::optional<DepthCandidate> least;
+    double beyond = 0;
+    for (const WatchedPair& watched : watched_) {
+      PosedPair pair = Posed(tick, watched.pieces);
+      pair.X_AB = X_AB;
+      const auto way = FindWayOut(pair, tick.tolerance, &workspace->pair);
+      if (way && (!least || way->h > least->h)) {
+        least = way;
+        beyond = kBeyondTouch * pair.scale();
+      }
+    }
+    if (!least) break;
+    X_AB.p += (least->h - beyond) * least->n;
+  }
+  return X_AB;
+}
+
+// Of the pairs whose surfaces cross, the contact of the one with the shallowest
+// way out, wherever on its features: a tool that stands through a wall has no
+// way out on the features where it is.
+void TrackedObject::AskForAnyWayOut(const Tick& tick,
+                                    TrackerWorkspace* workspace,
+                                    std::vector<Contact>* out) {
+  SurfaceRequest any;
+  any.is_any_way_out = true;
+  WatchedPair* shallowest = nullptr;
+  double largest = -kForever;
+  for (WatchedPair& watched : watched_) {
+    const PosedPair pair = Posed(tick, watched.pieces);
+    if (pair.A.dimension < 2 || pair.B.dimension < 2 || !DoSurfacesCross(pair))
+      continue;
+    const auto way = FindEntry(pair, any, {}, &workspace->pair);
+    if (way && way->h > largest) {
+      largest = way->h;
+      shallowest = &watched;
+    }
+  }
+  if (shallowest == nullptr) return;
+  states_[shallowest->state] = {};
+  Ask(tick, workspace, shallowest, out, true);
+}
+
+void TrackedObject::AskAll(const Tick& tick, const PairFront::Tick& front_tick,
+                           TrackerWorkspace* workspace,
+                           std::vector<Contact>* out) {
+  workspace->pressed.clear();
+  workspace->ways_out.clear();
+  AskPairsInContact(tick, workspace, out);
+  is_any_left_ =
+      std::any_of(pressed_.begin(), pressed_.end(),
+                  [](const PressedContact& last) { return !last.is_kept; });
+  double least_slack = kForever;
+  auto kept = watched_.begin();
+  for (auto pair = watched_.begin(); pair != watched_.end(); ++pair) {
+    if (!pair->was_in_contact &&
+        !Tend(tick, front_tick, workspace, &*pair, out)) {
+      free_states_.push_back(pair->state);
+      continue;
+    }
+    least_slack = std::min(least_slack, pair->slack);
+    if (kept != pair) *kept = *pair;
+    ++kept;
+  }
+  watched_.erase(kept, watched_.end());
+  AskPairsBeside(tick, workspace, out);
+  quiet_until_ = least_slack > 0 ? std::min(tick.odometer + least_slack,
+                                            front_.mark() - tick.watched)
+                                 : -kForever;
+}
+
+// Takes the motion off each pair's slack and asks the pairs that were in
+// contact: where the tool goes on pressing on the same pieces, no others are
+// needed. A pair in contact stays under watch, since the tool may have passed
+// behind a shallow piece, out of the reach of its box.
+void TrackedObject::AskPairsInContact(const Tick& tick,
+                                      TrackerWorkspace* workspace,
+                                      std::vector<Contact>* out) {
+  // What the tool moved while there was nothing to be found here.
+  const double missed = tick.odometer - tick.step - odometer_;
+  odometer_ = tick.odometer;
+  int piece = -1;
+  double motion = 0;
+  for (WatchedPair& pair : watched_) {
+    if (pair.pieces.a != piece) {
+      piece = pair.pieces.a;
+      const Polytope& A = tick.tool.decomposition->pieces[piece];
+      motion = tick.motion.Bound(A.centroid, A.radius);
+    }
+    pair.slack -= missed + motion;
+    pair.was_in_contact = states_[pair.state].in_contact;
+    states_[pair.state].num_ways_out = -1;
+    if (pair.was_in_contact) Ask(tick, workspace, &pair, out);
+  }
+}
+
+// Asks again the pairs that may be in contact by what the tool presses into
+// elsewhere, which is not known before all pairs are asked.
+void TrackedObject::AskPairsBeside(const Tick& tick,
+                                   TrackerWorkspace* workspace,
+                                   std::vector<Contact>* out) {
+  const int num_ways_out = static_cast<int>(workspace->ways_out.size());
+  for (WatchedPair& pair : watched_) {
+    const int known = states_[pair.state].num_ways_out;
+    if (known >= 0 && known < num_ways_out) Ask(tick, workspace, &pair, out);
+  }
+}
+
+// Whether the tool pressed here on other pieces, and does no more.
+bool TrackedObject::MayTakeOver(const Tick& tick,
+                                const PiecePair& pieces) const {
+  return std::any_of(
+      pressed_.begin(), pressed_.end(), [&](const PressedContact& last) {
+        return !last.is_kept &&
+               last.IsNear(tick.tool.decomposition->pieces[pieces.a],
+                           shape_.decomposition->pieces[pieces.b]);
+      });
+}
+
+// Merges the pairs into those under watch, from behind and in place.
+void TrackedObject::Admit(double watched, std::vector<EnteredPair>* entered) {
+  const auto by_pieces = [](const auto& p, const auto& q) {
+    return p.pieces < q.pieces;
+  };
+  std::sort(entered->begin(), entered->end(), by_pieces);
+  auto old = static_cast<std::ptrdiff_t>(watched_.size()) - 1;
+  watched_.resize(watched_.size() + entered->size());
+  auto place = watched_.rbegin();
+  for (auto added = entered->rbegin(); added != entered->rend(); ++place) {
+    if (old >= 0 && by_pieces(*added, watched_[old])) {
+      *place = watched_[old--];
+    } else {
+      *place = {added->pieces, added->node, added->gap - watched, NewState()};
+      ++added;
+    }
+  }
+}
+
+int TrackedObject::NewState() {
+  if (free_states_.empty()) {
+    states_.emplace_back();
+    return static_cast<int>(states_.size()) - 1;
+  }
+  const int state = free_states_.back();
+  free_states_.pop_back();
+  states_[state] = {};
+  if (state < static_cast<int>(global_states_.size())) {
+    global_states_[state].Reset();
+  }
+  return state;
+}
+
+// Asks the pair unless it is sure to have no contact. Returns whether it stays
+// under watch.
+bool TrackedObject::Tend(const Tick& tick, const PairFront::Tick& front_tick,
+                         TrackerWorkspace* workspace, WatchedPair* pair,
+                         std::vector<Contact>* out) {
+  const bool may_take_over = is_any_left_ && MayTakeOver(tick, pair->pieces);
+  if (pair->slack > 0 && !may_take_over) return true;
+  SurfacePairState& state = states_[pair->state];
+  if (!may_take_over && state.n.squaredNorm() > 0) {
+    // Last tick's normal often still proves that the pair is out of reach.
+    const double gap =
+        SupportGap(Posed(tick, pair->pieces), state.n, &state.hub);
+    pair->slack = gap - tick.watched;
+    if (gap > tick.tolerance) return true;
+  }
+  const double gap =
+      front_tick.boxes.Gap(tick.tool.tree->box_of(pair->pieces.a),
+                           shape_.tree->box_of(pair->pieces.b));
+  if (gap > front_tick.reach) {
+    front_.Return(pair->node, gap, tick.odometer);
+    return false;
+  }
+  Ask(tick, workspace, pair, out);
+  return true;
+}
+
+void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
+                        WatchedPair* pair, std::vector<Contact>* out,
+                        bool is_any_way_out) {
+  SurfacePairState& state = states_[pair->state];
+  const int last_press = state.press;
+  GlobalDepthState* global = nullptr;
+  if (tick.depth.is_global) {
+    global_states_.resize(states_.size());
+    global = &global_states_[pair->state];
+  }
+  const PosedPair posed = Posed(tick, pair->pieces);
+  const Pose last_X_AB = is_first_
+                             ? PoseBeforeOf(posed, tick.tolerance,
+                                            tick.last_X_AB, &workspace->pair)
+                             : tick.last_X_AB;
+  const auto answer =
+      QuerySurfacePair(posed,
+                       {tick.tolerance, is_any_way_out, last_X_AB, pressed_,
+                        workspace->ways_out, tick.depth.max_walk_steps},
+                       &state, &workspace->pair, global);
+  pair->slack = 0;
+  state.press = -1;
+  if (!answer) return;
+  if (answer->distance < 0) {
+    if (last_press >= 0 && state.is_settled)
+      pressed_[last_press].is_kept = true;
+    state.press = static_cast<int>(workspace->pressed.size());
+    PressedContact press;
+    press.distance = answer->distance;
+    press.n = tick.X_AB.R.transpose() * answer->n;
+    press.p_b = tick.X_AB.inverse() * answer->p_b;
+    workspace->pressed.push_back(press);
+    workspace->ways_out.push_back(-answer->distance * answer->n);
+  }
+  Contact contact = InWorld(*answer, tick.X_WA);
+  contact.piece_A = pair->pieces.a;
+  contact.piece_B = pair->pieces.b;
+  out->push_back(contact);
+}
+
+PosedPair TrackedObject::Posed(const Tick& tick,
+                               const PiecePair& pieces) const {
+  return {tick.tool.decomposition->pieces[pieces.a],
+          shape_.decomposition->pieces[pieces.b], tick.X_AB};
+}
+
+void TrackedObject::WatchFarther(double growth) {
+  for (WatchedPair& pair : watched_) pair.slack -= growth;
+}
+
+void TrackedObject::Reset() {
+  watched_.clear();
+  states_.clear();
+  global_states_.clear();
+  free_states_.clear();
+  pressed_.clear();
+  front_.Clear();
+  is_first_ = true;
+}
+
+}  // namespace drake_haptics
