@@ -50,6 +50,9 @@ void BindClustering(nb::module_& m) {
       },
       "(k, k) derivative of `compression` by the depths tolerance − distance; "
       "symmetric, positive semidefinite.");
+  set.def_ro("is_bounded", &ClusterSet::is_bounded,
+             "Whether the search for the compressions met the bound on its "
+             "steps: they push, but are not quite those of the least energy.");
   DefFrozenCopy(&set);
   m.def(
       "thin_contacts",

@@ -10,6 +10,7 @@
 
 #include "convex/carrying_cone.h"
 #include "convex/gauss_turn.h"
+#include "convex/hidden_edges.h"
 #include "convex/hull_shape.h"
 
 namespace drake_haptics {
@@ -159,6 +160,7 @@ Polytope MakePolytope(std::span<const Vec3> points, const HullShape& shape) {
   AddEdges(&P);
   AddWings(&P);
   AddFansAndRings(&P);
+  FillHiddenEdges(&P);
   AddBallAndBox(&P);
   FillGaussTurns(&P);
   FillCarryingArcs(&P);

@@ -56,6 +56,12 @@ struct Polytope {
     int facet = -1;  ///< -1 on a segment
   };
 
+  /// An edge of the exact hull of the vertices that is inside of a facet.
+  struct HiddenEdge {
+    Vec3 along = Vec3::Zero();  ///< from the vertex to its neighbour, m
+    int neighbor = -1;
+  };
+
   int dimension = 0;
   std::vector<Vec3> vertices;  ///< extreme points only
   std::vector<Edge> edges;
@@ -73,6 +79,11 @@ struct Polytope {
   /// outside: a facet lies between its spoke's edge and the next one's.
   std::vector<int> fan_start{0};
   std::vector<Spoke> fan;
+
+  /// The edges at each vertex that facets hide which are flat only within the
+  /// tolerance (hidden_edges.h); both empty where all facets are flat.
+  std::vector<int> hidden_start;
+  std::vector<HiddenEdge> hidden;
 
   /// Unit directions from each vertex along all edges of the surface there.
   /// The surface is locally supported by n at the vertex when n · r <= 0 for
@@ -102,6 +113,11 @@ struct Polytope {
   }
   std::span<const Spoke> fan_of(int v) const {
     return {fan.data() + fan_start[v], fan.data() + fan_start[v + 1]};
+  }
+  std::span<const HiddenEdge> hidden_of(int v) const {
+    if (hidden_start.empty()) return {};
+    return {hidden.data() + hidden_start[v],
+            hidden.data() + hidden_start[v + 1]};
   }
   std::span<const Vec3> ring_of(int v) const {
     return {ring.data() + ring_start[v], ring.data() + ring_start[v + 1]};

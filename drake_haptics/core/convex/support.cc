@@ -23,12 +23,16 @@ int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
   for (int left = polytope.num_vertices(); left > 0; --left) {
     double most = 0;
     int next = -1;
-    for (const Polytope::Spoke& spoke : polytope.fan_of(best)) {
-      const double gain = direction.dot(spoke.along);
-      if (gain > most && IsGain(gain, direction, spoke.along)) {
+    const auto consider = [&](const auto& edge) {
+      const double gain = direction.dot(edge.along);
+      if (gain > most && IsGain(gain, direction, edge.along)) {
         most = gain;
-        next = spoke.neighbor;
+        next = edge.neighbor;
       }
+    };
+    for (const auto& spoke : polytope.fan_of(best)) consider(spoke);
+    if (next < 0) {
+      for (const auto& edge : polytope.hidden_of(best)) consider(edge);
     }
     if (next < 0) break;
     best = next;

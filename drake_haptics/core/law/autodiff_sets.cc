@@ -129,6 +129,7 @@ ContactSet ValuesOf(const ContactSetOf<AutoDiff>& set) {
 ClusterSet ValuesOf(const ClusterSetOf<AutoDiff>& set) {
   ClusterSet values;
   values.label = set.label;
+  values.is_bounded = set.is_bounded;
   for (const ClusterOf<AutoDiff>& cluster : set.clusters) {
     Cluster& plain = values.clusters.emplace_back();
     plain.object = cluster.object;

@@ -129,6 +129,7 @@ void RepresentClusters(const std::vector<ContactOf<T>>& contacts,
                        double tolerance, ClusterSetOf<T>* out) {
   out->clusters.clear();
   out->coupling.clear();
+  out->is_bounded = false;
   std::vector<Sums<T>> sums;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (out->label[i] < 0) continue;

@@ -33,6 +33,9 @@ struct ClusterSetOf {
   /// How the compression of each cluster changes with the depth of each;
   /// symmetric and positive semidefinite. Empty where each has its own.
   SkinCouplingOf<T> coupling;
+  /// The search for the compressions met the bound on its steps: they push, but
+  /// are not quite those of the least energy. See SolveSkin.
+  bool is_bounded = false;
 };
 using ClusterSet = ClusterSetOf<double>;
 

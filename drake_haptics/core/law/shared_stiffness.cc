@@ -97,7 +97,7 @@ MovingSkin MakeSkin(std::span<const ContactOf<AutoDiff>* const> contacts,
 }
 
 // Which contacts push.
-std::vector<char> FindPushing(const MovingSkin& skin) {
+std::vector<char> FindPushing(const MovingSkin& skin, bool* is_bounded) {
   const Eigen::Index n = skin.depth.size();
   std::vector<std::int32_t> direction(n);
   std::iota(direction.begin(), direction.end(), 0);
@@ -107,6 +107,7 @@ std::vector<char> FindPushing(const MovingSkin& skin) {
                     [&skin](Eigen::Index i, Eigen::Index j) {
                       return skin.common(i, j).value();
                     })});
+  *is_bounded |= forces.is_bounded;
   std::vector<char> is_pushing;
   for (const double slope : forces.slope) is_pushing.push_back(slope > 0);
   return is_pushing;
@@ -126,9 +127,11 @@ void AppendAlone(MovingSkinCoupling* coupling) {
 // Solves for the compressions of an object's contacts (m), and appends how they
 // change with the depths.
 Eigen::VectorXd Solve(std::span<const Contact* const> contacts,
-                      double tolerance, SkinCoupling* coupling) {
+                      double tolerance, ClusterSet* out) {
   Skin skin = MakeSkin(contacts, tolerance);
   SkinForces forces = SolveSkin(skin);
+  out->is_bounded |= forces.is_bounded;
+  SkinCoupling* const coupling = &out->coupling;
   const auto place = static_cast<std::int32_t>(coupling->skins.size());
   for (Eigen::Index i = 0; i < forces.slope.size(); ++i) {
     coupling->members.push_back({forces.slope[i], place, skin.direction[i]});
@@ -139,9 +142,11 @@ Eigen::VectorXd Solve(std::span<const Contact* const> contacts,
 }
 
 VectorOf<AutoDiff> Solve(std::span<const ContactOf<AutoDiff>* const> contacts,
-                         double tolerance, MovingSkinCoupling* coupling) {
+                         double tolerance, ClusterSetOf<AutoDiff>* out) {
   const MovingSkin skin = MakeSkin(contacts, tolerance);
-  MovingSkinForces forces = SolveSkin(skin, FindPushing(skin));
+  MovingSkinForces forces =
+      SolveSkin(skin, FindPushing(skin, &out->is_bounded));
+  MovingSkinCoupling* const coupling = &out->coupling;
   const auto first = static_cast<std::int32_t>(coupling->members.size());
   const auto count = static_cast<std::int32_t>(contacts.size());
   for (std::int32_t i = 0; i < count; ++i) {
@@ -174,7 +179,7 @@ void Press(std::span<const ContactOf<T>* const> contacts, double tolerance,
     AppendAlone(&out->coupling);
     return;
   }
-  const VectorOf<T> compressions = Solve(contacts, tolerance, &out->coupling);
+  const VectorOf<T> compressions = Solve(contacts, tolerance, out);
   for (std::size_t i = 0; i < contacts.size(); ++i) press(i, compressions[i]);
 }
 
@@ -186,6 +191,7 @@ void ShareStiffness(const std::vector<ContactOf<T>>& contacts, double tolerance,
   RequireNotNegative(tolerance, "tolerance");
   out->clusters.clear();
   out->coupling.clear();
+  out->is_bounded = false;
   out->label.assign(contacts.size(), -1);
   out->clusters.reserve(contacts.size());
   std::vector<const ContactOf<T>*> pushing;

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace drake_haptics {
 namespace {
 
-// Pivots in blocks that leave no fewer on the wrong side than ever before.
-// Nothing proves that such end; single ones by least index do (Murty 1974).
-constexpr int kBlockPivots = 8;
 // What rounding leaves of a zero, relative to the largest depth.
 constexpr double kNoise = 1e-12;
 
@@ -36,7 +34,7 @@ class Pressed {
     Add(slope - slope_);
     slope_ = std::move(slope);
     factor_.compute(sum_);
-    const Eigen::VectorXd yield = factor_.solve(skin_.features * load);
+    yield = factor_.solve(skin_.features * load);
     const Eigen::VectorXd yields = skin_.features.transpose() * yield;
     rest = skin_.depth;
     for (Eigen::Index i = 0; i < rest.size(); ++i) {
@@ -46,7 +44,7 @@ class Pressed {
 
   const Eigen::MatrixXd& factor() const { return factor_.matrixLLT(); }
 
-  Eigen::VectorXd rest;
+  Eigen::VectorXd yield, rest;
 
  private:
   // Adds Σ change φ φᵀ, of the directions whose slope becomes more and of those
@@ -74,27 +72,62 @@ class Pressed {
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 
-// Contacts on the wrong side of their condition: they pull, or are left out and
-// overlap.
-void FindWrong(const Eigen::VectorXd& rest, double noise,
-               const std::vector<char>& is_pushing,
-               std::vector<std::size_t>* wrong) {
-  wrong->clear();
+// Whether the contacts that push are those that are deeper than the skin
+// yields.
+bool IsRight(const Eigen::VectorXd& rest, double noise,
+             const std::vector<char>& is_pushing) {
   for (std::size_t i = 0; i < is_pushing.size(); ++i) {
-    if (is_pushing[i] ? rest[i] < -noise : rest[i] > noise) wrong->push_back(i);
+    if (is_pushing[i] ? rest[i] < -noise : rest[i] > noise) return false;
   }
+  return true;
+}
+
+// Where along a step the energy is least, as a share of it. The step leads to
+// the least energy that there were if contacts neither began to push on the way
+// nor ceased to.
+// @param rest, next how much deeper each contact is than the skin yields,
+//     before and after the step.
+// @param square of the step's length.
+double FindLeast(const Eigen::VectorXd& slope, const Eigen::VectorXd& rest,
+                 const Eigen::VectorXd& next, double square) {
+  struct Kink {
+    double at;      // a contact begins or ceases to push here
+    double change;  // of the curvature
+  };
+  std::vector<Kink> kinks;
+  double curvature = square;
+  for (Eigen::Index i = 0; i < rest.size(); ++i) {
+    const double rise = next[i] - rest[i];
+    const double own = slope[i] * rise * rise;
+    if (rest[i] > 0) curvature += own;
+    if (rest[i] > 0 ? rise < 0 : rise > 0) {
+      kinks.push_back({-rest[i] / rise, rest[i] > 0 ? -own : own});
+    }
+  }
+  std::sort(kinks.begin(), kinks.end(),
+            [](const Kink& p, const Kink& q) { return p.at < q.at; });
+  double at = 0, climb = -curvature;
+  for (const Kink& kink : kinks) {
+    const double there = climb + curvature * (kink.at - at);
+    if (there >= 0) break;
+    at = kink.at;
+    climb = there;
+    curvature = std::max(curvature + kink.change, square);
+  }
+  return at - climb / curvature;
 }
 
 // The forces of those that push.
 SkinForces Answer(const Skin& skin, const Pressed& pressed,
-                  const std::vector<char>& is_pushing) {
+                  const std::vector<char>& is_pushing,
+                  const Eigen::VectorXd& rest) {
   const Eigen::Index n = skin.depth.size();
   SkinForces found{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n),
                    pressed.factor()};
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!is_pushing[i]) continue;
     // Less what rounding leaves below zero.
-    found.compression[i] = skin.slope[i] * std::max(0.0, pressed.rest[i]);
+    found.compression[i] = skin.slope[i] * std::max(0.0, rest[i]);
     found.slope[i] = skin.slope[i];
   }
   return found;
@@ -102,25 +135,30 @@ SkinForces Answer(const Skin& skin, const Pressed& pressed,
 
 }  // namespace
 
-SkinForces SolveSkin(const Skin& skin) {
-  const auto n = static_cast<std::size_t>(skin.depth.size());
+SkinForces SolveSkin(const Skin& skin, int max_steps) {
   const double noise = kNoise * skin.depth.maxCoeff();
-  std::vector<char> is_pushing(n, 1);
-  std::vector<std::size_t> wrong;
-  std::size_t fewest = n + 1;
-  int patience = kBlockPivots;
-  const std::size_t most = kBlockPivots + 4 * n * n;
+  // A skin that has not yielded: all push.
+  std::vector<char> is_pushing(skin.depth.size(), 1);
+  Eigen::VectorXd yield = Eigen::VectorXd::Zero(skin.features.rows());
+  Eigen::VectorXd rest = skin.depth;
   Pressed pressed(skin);
-  for (std::size_t pivot = 0;; ++pivot) {
+  for (int step = 0;; ++step) {
     pressed.Press(is_pushing);
-    FindWrong(pressed.rest, noise, is_pushing, &wrong);
-    if (wrong.empty() || pivot == most) {
-      return Answer(skin, pressed, is_pushing);
+    if (IsRight(pressed.rest, noise, is_pushing)) {
+      return Answer(skin, pressed, is_pushing, pressed.rest);
     }
-    patience = wrong.size() < fewest ? kBlockPivots : std::max(0, patience - 1);
-    fewest = std::min(fewest, wrong.size());
-    if (patience == 0) wrong.resize(1);
-    for (const std::size_t i : wrong) is_pushing[i] = !is_pushing[i];
+    if (step == max_steps) {
+      SkinForces found = Answer(skin, pressed, is_pushing, rest);
+      found.is_bounded = true;
+      return found;
+    }
+    const double share = FindLeast(skin.slope, rest, pressed.rest,
+                                   (pressed.yield - yield).squaredNorm());
+    yield += share * (pressed.yield - yield);
+    rest += share * (pressed.rest - rest);
+    for (std::size_t i = 0; i < is_pushing.size(); ++i) {
+      is_pushing[i] = rest[i] > 0;
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "check.h"
+#include "convex/support.h"
 
 namespace drake_haptics {
 namespace {
@@ -156,6 +157,42 @@ void ExtremeScales() {
   }
 }
 
+// A climb ends at the farthest vertex wherever it starts, also where corners
+// are about as near to each other as facets are flat.
+void ClimbsPastCornersThatNearlyCoincide() {
+  constexpr double kNudge = 1e-6, kFlatness = 2e-7;
+  int num_hidden = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    std::vector<Vec3> points = seed % 2 == 0 ? RandomPoints(10, seed) : Cube(2);
+    const std::vector<Vec3> nudges = RandomPoints(8, seed + 1000);
+    for (std::size_t i = 0; i < nudges.size(); ++i) {
+      points.push_back(points[i] + kNudge * nudges[i]);
+    }
+    const Polytope P = MakePolytope(points, kFlatness);
+    num_hidden += !P.hidden.empty();
+    std::vector<Vec3> directions = RandomPoints(20, seed + 2000);
+    for (const Polytope::Facet& facet : P.facets) {
+      directions.push_back(facet.normal + 0.05 * directions[0]);
+    }
+    for (const Vec3& direction : directions) {
+      double farthest = -std::numeric_limits<double>::infinity();
+      for (const Vec3& v : P.vertices) {
+        farthest = std::max(farthest, direction.dot(v));
+      }
+      for (int start = 0; start < P.num_vertices(); ++start) {
+        const int found = SupportVertex(P, direction, start);
+        CHECK(direction.dot(P.vertices[found]) > farthest - 1e-12 * P.radius);
+      }
+    }
+  }
+  CHECK(num_hidden > 20);
+}
+
+void ExactFacetsHideNoEdges() {
+  CHECK(MakePolytope(Cube(3)).hidden.empty());
+  CHECK(MakePolytope(RandomPoints(30, 1)).hidden.empty());
+}
+
 void BadInput() {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS(MakePolytope({}), std::invalid_argument);
@@ -173,6 +210,8 @@ int main() {
   drake_haptics::FlatSets();
   drake_haptics::SegmentsAndPoints();
   drake_haptics::ExtremeScales();
+  drake_haptics::ClimbsPastCornersThatNearlyCoincide();
+  drake_haptics::ExactFacetsHideNoEdges();
   drake_haptics::BadInput();
   return drake_haptics::FailedChecks() > 0;
 }
