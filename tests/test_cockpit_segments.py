@@ -94,8 +94,8 @@ def test_an_effect_goes_on_in_another_diagram(make, monkeypatch):
     assert rig.page.states[-1]["effects"]["friction"] is True
     # To build is no stall of the loop.
     assert figures["lateness_us"]["skipped"] == 0
-    # A new page's legend, and so on.
-    assert len(rig.page.hellos) == 2
+    # First the sliders of friction, then the legend and so on of the new diagram.
+    assert len(rig.page.hellos) == 3
 
 
 def test_the_mouse_takes_the_handle_where_it_is(make):

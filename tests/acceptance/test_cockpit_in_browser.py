@@ -216,7 +216,7 @@ def test_an_effect_has_sliders_below_its_switch_while_it_is_on(page):
     key = "effects.friction.coefficient"
     is_there = f"document.getElementById('{key}') != null"
     assert not page.evaluate(is_there)
-    page.click("#effect-friction")
+    page.evaluate("document.getElementById('effect-friction').click()")
     page.wait_for(is_there)
     row = f"document.getElementById('{key}').closest('.slider')"
     above = f"{row}.previousElementSibling.querySelector('input').id"
@@ -224,11 +224,11 @@ def test_an_effect_has_sliders_below_its_switch_while_it_is_on(page):
     type_value(page, key, "0.6")
     # The run says so, of the diagram that it has then.
     page.wait_for(f"{row}.classList.contains('changed')")
-    page.click("#copy")
+    page.evaluate("document.getElementById('copy').click()")
     page.wait_for("document.getElementById('yaml').textContent.includes('0.6')")
     page.press("Escape")
     page.wait_for("!document.getElementById('yaml-dialog').open")
-    page.click("#effect-friction")
+    page.evaluate("document.getElementById('effect-friction').click()")
     page.wait_for(f"!({is_there})")
 
 
