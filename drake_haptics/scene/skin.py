@@ -5,12 +5,8 @@ Its thickness is the tolerance of contact.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from drake_haptics.geometry.mesh.report import length
-
-if TYPE_CHECKING:
-    from drake_haptics.scene.schema import Contact
+from drake_haptics.scene.schema import Contact
 
 # So deep the contact answers eleven times what its skin carries. The scenes that are
 # shipped press up to 2.3 tolerances deep, at the limit of their device.
