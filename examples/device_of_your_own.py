@@ -24,7 +24,7 @@ from drake_haptics import (
 )
 from drake_haptics.geometry.mesh.mass_properties import make_tool_dynamics
 from drake_haptics.scene.schema import Contact, Coupling
-from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems import ContactObject
 
 PERIOD_S = 1e-3
 MASS_KG, SPRING_N_PER_M, DAMPER_NS_PER_M = 0.2, 300.0, 15.0

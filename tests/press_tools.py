@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-import drake_haptics
 from drake_haptics import _core
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+from drake_haptics.models import FOLDER
 
-MODELS = Path(drake_haptics.__file__).parent / "models" / "meshes"
+MODELS = FOLDER / "meshes"
 TOOL_MASS_KG = 0.05
 
 

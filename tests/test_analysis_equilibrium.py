@@ -11,8 +11,8 @@ from pydrake.symbolic import Variable, cos, sin
 from pydrake.systems.framework import BasicVector_, DiagramBuilder, LeafSystem_
 from pydrake.systems.primitives import LinearSystem, SymbolicVectorSystem
 from pydrake.systems.scalar_conversion import TemplateSystem
-from test_analysis_derivative_check import Curve
-from test_analysis_multirate import make_two_rates
+from spring_mass import Curve
+from two_rates import make_two_rates
 from wall_loop import PERIOD, make_loop
 
 from drake_haptics.analysis import (

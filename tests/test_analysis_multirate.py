@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from eventful_system import Eventful
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
@@ -14,27 +15,11 @@ from pydrake.multibody.tree import (
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 from pydrake.systems.primitives import LinearSystem
 from scipy.linalg import expm
-from test_analysis_derivative_check import SpringMass
-from test_analysis_sampled_preconditions import Eventful
+from spring_mass import SpringMass
+from two_rates import make_two_rates
 from wall_loop import MASS_KG, PERIOD, make_loop, make_mass
 
 from drake_haptics.analysis import linearize_sampled, monodromy
-
-
-def make_two_rates(stiffness, damping=1.0, query_period=2e-3, offset=None):
-    """A mass on a wall that is asked every 2 ms and shown every 1 ms."""
-    builder = DiagramBuilder()
-    mass = builder.AddNamedSystem("mass", make_mass())
-    gains = [[-stiffness, -damping]]
-    query = LinearSystem([[0]], gains, [[1]], np.zeros((1, 2)), query_period)
-    builder.AddNamedSystem("query", query)
-    servo = builder.AddNamedSystem(
-        "servo", LinearSystem([[0]], [[1]], [[1]], [[0]], PERIOD)
-    )
-    builder.Connect(mass.get_output_port(), query.get_input_port())
-    builder.Connect(query.get_output_port(), servo.get_input_port())
-    builder.Connect(servo.get_output_port(), mass.get_input_port())
-    return builder.Build()
 
 
 def calc_two_rates(stiffness, damping=1.0, b=0.5):

@@ -2,7 +2,7 @@
 
 import numpy as np
 from pydrake.systems.framework import DiagramBuilder
-from test_analysis_autodiff_twin import Remembers_
+from remembering_system import Remembers_
 from wall_loop import make_loop
 
 from drake_haptics.analysis.diagram_systems import find_timings

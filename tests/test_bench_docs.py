@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
-from test_bench_figures import EVERYTHING
+from bench_samples import EVERYTHING
 from write_docs import PAGE, figures_of, with_figures
 
 from drake_haptics.evaluation.benchmark.benchmark import Effort

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from box_contacts import TOLERANCE, box_core, query_at
 from contact_state import METHODS, T, random_states
 from pydrake.autodiffutils import AutoDiffXd
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
-from test_contact_query import TOLERANCE, box_core, query_at
 
 from drake_haptics._core import AutoDiffClusterSet
 from drake_haptics.systems.contact.contact_clustering import ContactClustering

@@ -4,23 +4,14 @@ import copy
 
 import numpy as np
 import pytest
-import trimesh
 from autodiff_check import check_derivatives
+from box_contacts import TOLERANCE, at_height, box_core, query_at
 from pydrake.autodiffutils import AutoDiffXd, InitializeAutoDiff
 from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_haptics._core import AutoDiffContactSet
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.geometry.decomposition.decompose import decompose
-from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
-
-TOLERANCE = 2e-3
-
-
-def box_core(*size):
-    box = trimesh.creation.box(size)
-    return decompose(Mesh.from_arrays(box.vertices, box.faces), cache=False).core
 
 
 @pytest.fixture(scope="module")
@@ -31,15 +22,6 @@ def tool():
 @pytest.fixture(scope="module")
 def plate():
     return box_core(0.2, 0.2, 0.02)
-
-
-def at_height(z):
-    return pose_to_vector(RigidTransform([0.0, 0.0, z]))
-
-
-def query_at(query, context, z):
-    query.get_tool_pose_input_port().FixValue(context, at_height(z))
-    return query.get_contacts_output_port().Eval(context)
 
 
 def test_topology(tool, plate):

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from box_contacts import box_core
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
-from test_contact_query import box_core
 
 from drake_haptics.loop.contact import add_contact_systems, connect_by_name
 from drake_haptics.scene.schema import Braking, Contact, Effects, Material

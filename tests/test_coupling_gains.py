@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
-from test_haptic_device import PERIOD, Slider
-from test_haptic_rendering import make_scene
+from cube_scene import make_scene
+from slider_device import PERIOD, Slider
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.coupling import make_coupling_gains

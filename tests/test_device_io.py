@@ -2,19 +2,16 @@
 
 import numpy as np
 import pytest
+from device_diagram import PERIOD, X_WB, make_diagram
 from fake_device import ScriptedDevice, make_reading
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from pydrake.multibody.math import SpatialForce
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import DiagramBuilder, LeafSystem
+from pydrake.systems.framework import LeafSystem
 from pydrake.systems.primitives import ConstantVectorSource
 
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.systems.device.device_io import DeviceIo
-from drake_haptics.systems.device.haptic_device import HapticDevice
-
-PERIOD = 1e-3
-X_WB = RigidTransform(RollPitchYaw(0.3, -0.8, 2.0), [0.4, -0.2, 0.1])
 
 
 class Spring(LeafSystem):
@@ -29,22 +26,6 @@ class Spring(LeafSystem):
     def _calc(self, context, output):
         force = -self._stiffness * self._X_WH.Eval(context)[4:]
         output.SetFromVector([0, 0, 0, *force])
-
-
-def make_diagram(backend, *, X_WB=X_WB, source=None, slopes=None, first=None):
-    """Returns a diagram of a HapticDevice before a backend, and the device."""
-    io = DeviceIo(backend, X_WB, PERIOD, first or make_reading(0))
-    device = HapticDevice(io, period_s=PERIOD, max_force_N=50.0, max_torque_Nm=5.0)
-    builder = DiagramBuilder()
-    builder.AddNamedSystem("device", device)
-    source = builder.AddSystem(source or ConstantVectorSource(np.zeros(6)))
-    builder.Connect(source.get_output_port(), device.get_display_wrench_input_port())
-    if source.num_input_ports():
-        builder.Connect(device.get_handle_pose_output_port(), source.get_input_port(0))
-    if slopes is not None:
-        held = builder.AddSystem(ConstantVectorSource(slopes))
-        builder.Connect(held.get_output_port(), device.get_handle_slopes_input_port())
-    return builder.Build(), device
 
 
 def test_the_handle_is_shown_in_the_world():

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from gate_rig import GateRig
-from test_wire_format import A_COMMAND, A_STATE
+from packet_samples import A_COMMAND, A_STATE
 
 from drake_haptics import _core
 from drake_haptics.device.backend import Fault, GateState

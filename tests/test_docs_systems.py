@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cube_scene import make_scene
 from fake_device import ScriptedDevice
 from pydrake.geometry import Meshcat, MeshcatParams
 from pydrake.systems.framework import Diagram, System
+from slider_device import make_device
 from system_block import Port, find_blocks, parse_block
 from system_pages import find_systems, list_system_modules
-from test_haptic_device import make_device
-from test_haptic_rendering import make_scene
 
 import drake_haptics.systems
 from drake_haptics import BuildHapticDiagram, TickRecorder, load_scene, make_log_header

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 import trimesh
+from box_contacts import TOLERANCE, box_core
 from effect_chain import make_chain
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform, RotationMatrix
-from test_contact_query import TOLERANCE, box_core
 from twin_check import check_twin
 
 from drake_haptics._core import SceneTracker

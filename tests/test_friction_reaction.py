@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from box_contacts import box_core
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
-from test_contact_query import box_core
 
 from drake_haptics._core import AutoDiffVector
 from drake_haptics.systems.contact.contact_query import ContactObject

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from cube_scene import CONTACT, CUBE, HALF, MASS, G, make_scene
 from diagram_parts import names, sources
 from plant_scenes import PLANTS, PlantScene
-from pydrake.geometry import Box
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.primitives import ConstantVectorSource
-from test_haptic_device import make_device
+from slider_device import make_device
 
 from drake_haptics import AddHapticRendering
 from drake_haptics.common.pose_vector import pose_to_vector
@@ -22,9 +22,6 @@ from drake_haptics.scene.schema import (
     Shading,
 )
 
-HALF, MASS, G = 0.02, 0.1, 9.81
-CUBE = Box(2 * HALF, 2 * HALF, 2 * HALF)
-CONTACT = Contact(stiffness_N_per_m=1e3, damping_Ns_per_m=3.0)
 REST = HALF + CONTACT.tolerance_m - MASS * G / 1e3
 BASE = {
     "body_motions",
@@ -42,23 +39,6 @@ OUTPUTS = {
     "contact_wrench",
     "F_Tool_W",
 }
-
-
-def make_scene(*, cart=False, config=PLANTS["sampled"], gravity=G, **options):
-    scene = PlantScene(config)
-    scene.add("tool", CUBE, mass=MASS)
-    if cart:
-        scene.add("cart", CUBE)
-    scene.add_slab()
-    scene.finalize(gravity)
-    rendering = AddHapticRendering(
-        scene.builder,
-        scene.plant,
-        scene.scene_graph,
-        "tool",
-        **{"contact": CONTACT, **options},
-    )
-    return scene, rendering
 
 
 def outputs(rendering):

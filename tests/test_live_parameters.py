@@ -6,15 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from box_contacts import box_core, query_at
 from contact_chain_diagram import ContactChain
 from contact_state import KV, T, random_states
 from contact_state import K as K_CONTACT
+from coupling_samples import BR, KR, X_HT, X_WH, B, K
 from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder
-from test_contact_query import box_core, query_at
-from test_virtual_coupling import BR, KR, X_HT, X_WH, B, K
 
 from drake_haptics._core import CouplingGains, cluster_contacts, share_stiffness
 from drake_haptics.common.pose_vector import pose_to_vector

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from box_contacts import box_core
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import LeafSystem
-from test_contact_query import box_core
 
 from drake_haptics._core import AutoDiffVector, ObjectFrames
 from drake_haptics.systems.contact.contact_query import ContactObject

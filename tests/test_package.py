@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import ast
+import pkgutil
 import subprocess
 import sys
-from importlib import metadata
+from importlib import import_module, metadata
 from pathlib import Path
 
 import pytest
+from pydrake.systems.framework import System
 
 import drake_haptics
+import drake_haptics.systems
 
 
 @pytest.mark.parametrize("name", drake_haptics.__all__)
@@ -47,9 +50,11 @@ def test_the_version_is_that_of_the_installed_package() -> None:
     assert "__version__" in dir(drake_haptics)
 
 
-def test_the_names_are_told_to_type_checkers_from_where_they_come() -> None:
+@pytest.mark.parametrize("name", ["", ".analysis", ".systems"])
+def test_the_names_are_told_to_type_checkers_from_where_they_come(name: str) -> None:
     """The package's file lists them three times: for checkers, `import *` and use."""
-    source = Path(drake_haptics.__file__).read_text()
+    package = import_module(f"drake_haptics{name}")
+    source = Path(package.__file__).read_text()
     told = {
         alias.name: node.module
         for node in ast.walk(ast.parse(source))
@@ -58,11 +63,40 @@ def test_the_names_are_told_to_type_checkers_from_where_they_come() -> None:
         if node.module.startswith("drake_haptics.")
     }
     kept = {
-        name: f"drake_haptics.{module}"
-        for name, module in drake_haptics._MODULE_OF.items()
+        name: f"{package.__name__}.{module}"
+        for name, module in package._MODULE_OF.items()
     }
     assert told == kept
-    assert sorted(kept) == drake_haptics.__all__
+    assert sorted(kept) == sorted(package.__all__)
+
+
+def test_every_system_is_in_the_package_of_systems_by_its_name() -> None:
+    package = drake_haptics.systems
+    modules = pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+    systems = {
+        name: value
+        for module in modules
+        if not module.ispkg
+        for name, value in vars(import_module(module.name)).items()
+        if isinstance(value, type)
+        and issubclass(value, System)
+        and value.__module__ == module.name
+        and not name.startswith("_")
+        and "𝓣" not in name  # an instance of a template has a plain name too
+    }
+    assert len(systems) > 30
+    assert {name: getattr(package, name, None) for name in systems} == systems
+
+
+def test_systems_are_loaded_when_they_are_asked_for() -> None:
+    program = (
+        "import sys, drake_haptics.systems as systems\n"
+        "assert not any(m.startswith('pydrake') for m in sys.modules)\n"
+        "systems.ToolGravity\n"
+        "assert 'drake_haptics.systems.tool.tool_gravity' in sys.modules\n"
+        "assert not any(m.endswith('.force_shading') for m in sys.modules)\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def test_the_geometry_imports_no_drake() -> None:

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from autodiff_check import REACH, derivative_errors
+from box_contacts import TOLERANCE, at_height, box_core, query_at
 from contact_chain_diagram import ContactChain
 from contact_state import METHODS, keeps_features, random_states
 from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
-from test_contact_query import TOLERANCE, at_height, box_core, query_at
 
 from drake_haptics._core import (
     AutoDiffPenaltyWrench,

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from box_contacts import at_height, box_core, query_at
 from effect_chain import make_chain
 from friction_bodies import burr
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
-from test_contact_query import at_height, box_core, query_at
 from twin_check import check_twin
 
 from drake_haptics._core import RigidToolDynamics, pre_contact_braking

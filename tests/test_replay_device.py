@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 from box_scenes import over_a_plate
+from device_diagram import make_diagram
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.analysis import Simulator
-from test_device_io import make_diagram
 from tick_log_samples import HEADER, make_rows, make_smooth_rows, write_log
 
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose

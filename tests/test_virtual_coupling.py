@@ -2,18 +2,16 @@
 
 import numpy as np
 import pytest
+from coupling_samples import BR, KR, X_HT, X_WH, B, K
 from pydrake.common.eigen_geometry import AngleAxis
-from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+from pydrake.math import RigidTransform, RotationMatrix
 from twin_check import check_twin
 
 from drake_haptics._core import CouplingGains
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
-K, B, KR, BR = 800.0, 2.0, 1.5, 0.004
 AT_REST = np.zeros(6)
-X_HT = RigidTransform(RollPitchYaw(0.1, 0.2, 0.3), [0.02, -0.01, 0.05])
-X_WH = RigidTransform(RollPitchYaw(-0.4, 0.5, 0.6), [0.1, 0.2, 0.3])
 
 
 @pytest.fixture

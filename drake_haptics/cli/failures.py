@@ -13,7 +13,6 @@ from typing import Any
 
 import click
 
-import drake_haptics
 from drake_haptics.cli.exit_codes import ExitCode
 from drake_haptics.common.errors import UserError
 
@@ -112,7 +111,7 @@ def _is_ours(module: str | None) -> bool:
 
 def _describe_defect(error: BaseException) -> str:
     """Returns that it is not the user's fault, and what to report."""
-    home = Path(drake_haptics.__file__).parent
+    home = Path(__file__).parents[1]
     places = [
         f" ({Path(frame.filename).relative_to(home)}:{frame.lineno})"
         for frame in traceback.extract_tb(error.__traceback__)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-import drake_haptics
 from drake_haptics.common.errors import MeshError
+from drake_haptics.models import FOLDER
 
 _SCHEME = "package://"
+_OURS = "drake_haptics"
 
 
 def resolve_package_url(file: str | os.PathLike[str]) -> str:
@@ -24,13 +25,16 @@ def resolve_package_url(file: str | os.PathLike[str]) -> str:
     if not file.startswith(_SCHEME):
         return file
     name, _, rest = file.removeprefix(_SCHEME).partition("/")
-    if name == drake_haptics.__name__:
-        return str(Path(drake_haptics.__file__).parent / rest)
+    if name == _OURS:
+        folder, _, inner = rest.partition("/")
+        if folder == FOLDER.name:
+            return str(FOLDER / inner)
+        return str(Path(__file__).parents[1] / rest)
     from pydrake.multibody.parsing import PackageMap  # not for meshes of our own
 
     packages = PackageMap()
     if not packages.Contains(name):
-        known = ", ".join([drake_haptics.__name__, *packages.GetPackageNames()])
+        known = ", ".join([_OURS, *packages.GetPackageNames()])
         raise MeshError(f"{file}: there is no package {name!r}; known: {known}")
     try:
         return str(Path(packages.GetPath(name)) / rest)

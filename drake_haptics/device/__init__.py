@@ -1,1 +1,1 @@
-"""Devices behind one interface: network, replay, page, mouse, adapters."""
+"""Devices behind one interface: network, Meshcat, Haply, LCM."""

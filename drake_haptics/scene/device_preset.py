@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from pydrake.common.yaml import yaml_load_typed
 
-import drake_haptics
 from drake_haptics.common.errors import SceneError
+from drake_haptics.models import FOLDER
 from drake_haptics.scene.validation import (
     require,
     require_all_positive,
@@ -18,7 +18,7 @@ from drake_haptics.scene.validation import (
 )
 from drake_haptics.scene.yaml_loading import check_keys, load_yaml, make_hint
 
-_DEVICES = Path(drake_haptics.__file__).parent / "models" / "devices"
+_DEVICES = FOLDER / "devices"
 _SUFFIXES = (".yaml", ".yml")
 NUM_JOINTS = 6
 

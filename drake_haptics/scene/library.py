@@ -5,23 +5,22 @@ from __future__ import annotations
 import difflib
 from pathlib import Path
 
-import drake_haptics
 from drake_haptics.common.errors import MeshError, SceneError, UserError
 from drake_haptics.common.missing_file import describe_missing
+from drake_haptics.models import FOLDER
 
 # Given for a scene by mistake; any other name may be a scene's.
 _MESH_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".npz")
-_MODELS = Path(drake_haptics.__file__).parent / "models"
 
 
 def list_scenes() -> dict[str, Path]:
     """Returns the file of every shipped scene by name, in order of name."""
-    return {path.stem: path for path in sorted((_MODELS / "scenes").glob("*.yaml"))}
+    return {path.stem: path for path in sorted((FOLDER / "scenes").glob("*.yaml"))}
 
 
 def list_meshes() -> dict[str, Path]:
     """Returns the file of every shipped mesh by name, in order of name; all in m."""
-    return {path.stem: path for path in sorted((_MODELS / "meshes").glob("*.obj"))}
+    return {path.stem: path for path in sorted((FOLDER / "meshes").glob("*.obj"))}
 
 
 def find_scene(name_or_path: str) -> Path:

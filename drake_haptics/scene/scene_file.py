@@ -9,13 +9,11 @@ from pathlib import Path
 from pydrake.common.yaml import yaml_dump_typed
 from pydrake.multibody.parsing import PackageMap
 
-import drake_haptics
+from drake_haptics.models import FOLDER
 from drake_haptics.scene.device_preset import is_preset_file
 from drake_haptics.scene.schema import EnvironmentObject, Scene, Tool
 
-_PACKAGE = Path(drake_haptics.__file__).parent
-# Links of the source tree are where their targets are.
-_SHIPPED = _PACKAGE / "models"
+_SHIPPED = "package://drake_haptics/models/"
 
 
 def write_scene(scene: Scene, path: str | Path, comments: Sequence[str] = ()) -> None:
@@ -58,6 +56,6 @@ def _name_file(file: str, folder: Path) -> str:
 
 def _list_places(folder: Path) -> Iterator[tuple[Path, str]]:
     """Yields folders with what a file in them is named by."""
-    yield _SHIPPED, f"package://{_PACKAGE.name}/{_SHIPPED.name}/"
+    yield FOLDER, _SHIPPED
     yield Path(PackageMap().GetPath("drake")), "package://drake/"
     yield folder, ""

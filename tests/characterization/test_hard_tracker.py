@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,10 +12,10 @@ from hard_cases.bodies import ball, box
 from hard_cases.passages import pose
 from scipy.spatial import ConvexHull
 
-import drake_haptics
 from drake_haptics import ContactTracker, Decomposition, Mesh, decompose, load_mesh
+from drake_haptics.models import FOLDER
 
-MESHES = Path(drake_haptics.__file__).parent / "models" / "meshes"
+MESHES = FOLDER / "meshes"
 CLEARANCE = 2e-6  # m, of the peg to each wall of its hole
 
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import drake_haptics
 from drake_haptics import _core
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import load_mesh
+from drake_haptics.models import FOLDER
 
-MESHES = Path(drake_haptics.__file__).parent / "models" / "meshes"
+MESHES = FOLDER / "meshes"
 
 
 def pieces(name: str) -> _core.Decomposition:

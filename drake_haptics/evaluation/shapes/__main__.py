@@ -3,9 +3,9 @@
 import sys
 from pathlib import Path
 
-import drake_haptics
 from drake_haptics.common.one_line import count
 from drake_haptics.evaluation.shapes import SHAPES
+from drake_haptics.models import FOLDER
 
 
 def main(folder: Path) -> None:
@@ -19,6 +19,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    # The shipped folder sits beside the package in a checkout.
-    shipped = Path(drake_haptics.__file__).parent / "models" / "meshes"
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else shipped)
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER / "meshes")
