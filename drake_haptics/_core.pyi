@@ -880,6 +880,12 @@ class ClusterSet:
         (k, k) derivative of `compression` by the depths tolerance − distance; symmetric, positive semidefinite.
         """
 
+    @property
+    def is_bounded(self) -> bool:
+        """
+        Whether the search for the compressions met the bound on its steps: they push, but are not quite those of the least energy.
+        """
+
     def __deepcopy__(self, arg: object, /) -> object: ...
 
     def __copy__(self) -> object: ...

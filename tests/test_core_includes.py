@@ -1,4 +1,4 @@
-"""Includes of the core go one way: between folders as CMake links them, and between files."""
+"""Includes of the core go one way, as CMake links its folders; files have no circle."""
 
 import re
 from graphlib import TopologicalSorter
