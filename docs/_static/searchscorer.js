@@ -32,7 +32,7 @@ var Scorer = (() => {
     "stability": "network delay latency vibration passive",
     "troubleshooting#buzzing": "vibration tremor hum noise",
     "troubleshooting#does-not-fit": "peg hole tolerance clearance",
-    "troubleshooting#meshes": "mesh in inch millimetre unit scale",
+    "troubleshooting#meshes": "mesh in inch millimeter unit scale",
     "troubleshooting#tunnelling": "tool sink fall through wall",
     "troubleshooting#weak-force": "weak soft force limit",
     "under-load": "slow overrun",

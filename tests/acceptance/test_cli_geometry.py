@@ -79,7 +79,7 @@ def test_errors_of_the_user_are_one_message(l_file, tmp_path):
         failed, 1, f"--json: there is no folder {nowhere.parent}"
     )
     failed = run("decompose", l_file, "--no-cache", "--out", nowhere)
-    assert fails_with_one_message(failed, 1, "-o: there is no folder")
+    assert fails_with_one_message(failed, 1, "--out: there is no folder")
 
 
 def test_a_terminal_without_unicode_is_served(l_file, monkeypatch):
