@@ -433,9 +433,10 @@ def test_thousands_of_frames_leave_no_more_behind(page):
         return nodes, page.browser.call("Runtime.getHeapUsage")["usedSize"]
 
     weigh()
-    (nodes, heap), (nodes_later, heap_later) = weigh(), weigh()
-    assert nodes_later == nodes
-    assert heap_later - heap < 200e3
+    nodes, heaps = zip(*[weigh() for _ in range(4)], strict=True)
+    assert len(set(nodes)) == 1
+    # What is left behind is left by every round; the browser's own work by some.
+    assert min(np.diff(heaps)) < 200e3
 
 
 @contextmanager
