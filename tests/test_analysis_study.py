@@ -256,7 +256,7 @@ def test_an_executor_that_cancels_is_told():
             future.cancel()
             return future
 
-    with pytest.raises(StudyError, match="closed, or cancelled"):
+    with pytest.raises(StudyError, match="closed, or canceled"):
         run_study(square, [1], executor=Cancelling())
 
 

@@ -403,7 +403,7 @@ def test_the_core_refuses_arguments_by_different_variables():
 def find_leaves_that_stay_doubles():
     """Returns the public names of the systems that have no AutoDiffXd twin."""
     names = set()
-    for found in pkgutil.iter_modules(systems.__path__, f"{systems.__name__}."):
+    for found in pkgutil.walk_packages(systems.__path__, f"{systems.__name__}."):
         module = importlib.import_module(found.name)
         here = [
             c
