@@ -1,12 +1,12 @@
 """Tabulates what accuracy costs in some scenes, and what budgets they hold.
 
-python tests/characterization/accuracy_table.py --write
+python docs/generate/accuracy_table.py --write
 
 Some minutes, on a machine that does nothing else. Ctrl-C keeps what is measured where
 --store names a folder. On any machine, this makes the errors of some knobs again and
 leaves the rest of the page as it is:
 
-python tests/characterization/accuracy_table.py --write --errors KNOB ...
+python docs/generate/accuracy_table.py --write --errors KNOB ...
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
 from page_stamp import amend_page, write_page
 
 from drake_haptics.cli.progress_bar import progress_bar
@@ -66,7 +65,7 @@ _BUDGET_RUNS = 3
 # Of the scene's own p99: a budget that costs something.
 _BUDGET_SHARE = 0.8
 _BUDGET_STEP_US = 10.0
-BEGIN = "<!-- {}: written by tests/characterization/accuracy_table.py -->\n"
+BEGIN = "<!-- {}: written by docs/generate/accuracy_table.py -->\n"
 END = "<!-- end of {} -->\n"
 COLUMNS_NAME, BUDGETS_NAME = "columns", "budgets"
 BUDGET_HEADINGS = ("scene", "budget, µs", "p99, µs", "scene's p99, µs", "given up")

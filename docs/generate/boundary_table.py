@@ -1,6 +1,6 @@
 """Tabulates the exact stability of sampled walls, and draws their boundary.
 
-python tests/characterization/boundary_table.py --write
+python docs/generate/boundary_table.py --write
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 
 import matplotlib
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from page_stamp import write_page
 from wall_motion import HAND, NO_HAND, TABLE, find_simulated_limit, make_wall
 
@@ -30,7 +30,7 @@ from drake_haptics.bounds.sampled_spring import (
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "stability-theory.md"
 PICTURE = _DOCS / "stability_boundary.png"
-BEGIN = "<!-- {}: written by tests/characterization/boundary_table.py -->\n"
+BEGIN = "<!-- {}: written by docs/generate/boundary_table.py -->\n"
 END = "<!-- end of {} -->\n"
 DELAYS = range(5)
 BETAS = (0.05, 0.1, 0.2)

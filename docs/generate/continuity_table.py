@@ -1,7 +1,7 @@
 """Tabulates how much the wrench changes in steps of a micrometre, and why it jumps.
 
-python tests/characterization/continuity_table.py --scenes box --steps 20000
-python tests/characterization/continuity_table.py --jobs 3 --write
+python docs/generate/continuity_table.py --scenes box --steps 20000
+python docs/generate/continuity_table.py --jobs 3 --write
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from continuity_rig import CAUSES, JUMP, Steps, measure
 from continuity_scenes import SCENES, make_scene
 from continuity_walk import EPISODE_STEPS
@@ -34,7 +34,7 @@ a knock. Here tools take {steps:,} random steps of about a micrometre in contact
 solids, around {episodes} random poses each, nowhere deeper than what carries
 {force:g} N. This page is written by
 
-    python tests/characterization/continuity_table.py --steps {steps} --jobs 3 --write
+    python docs/generate/continuity_table.py --steps {steps} --jobs 3 --write
 
 - **force**: largest |ΔF| / (k |Δx|) of a step, where |Δx| is the largest displacement
   of a point of the tool; **torque**: largest |Δτ| / (k L |Δx|) about the tool's middle,

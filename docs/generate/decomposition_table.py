@@ -1,7 +1,7 @@
 """What the decomposition makes of many meshes: counts, truth, time and memory.
 
-python tests/characterization/decomposition_table.py --meshes cup organ
-python tests/characterization/decomposition_table.py --write
+python docs/generate/decomposition_table.py --meshes cup organ
+python docs/generate/decomposition_table.py --write
 """
 
 from __future__ import annotations
@@ -19,18 +19,17 @@ from typing import Any
 
 import numpy as np
 
-TESTS = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(TESTS))
-from hull_truth import deepest_outside, deepest_surface, lost_share  # noqa: E402
-from mesh_samples import REAL_MESHES  # noqa: E402
-from page_stamp import write_page  # noqa: E402
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
+from hull_truth import deepest_outside, deepest_surface, lost_share
+from mesh_samples import REAL_MESHES
+from page_stamp import write_page
 
-from drake_haptics import Mesh, decompose, load_mesh  # noqa: E402
-from drake_haptics.evaluation.shapes import SHAPES  # noqa: E402
-from drake_haptics.evaluation.shapes.organ import make_organ  # noqa: E402
-from drake_haptics.geometry.mesh.decimation import decimate  # noqa: E402
+from drake_haptics import Mesh, decompose, load_mesh
+from drake_haptics.evaluation.shapes import SHAPES
+from drake_haptics.evaluation.shapes.organ import make_organ
+from drake_haptics.geometry.mesh.decimation import decimate
 
-PAGE = TESTS.parent / "docs" / "decomposition.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "decomposition.md"
 # Table 1 of Kim, Otaduy, Lin and Manocha, for meshes of the same kind and size.
 PAPER = {"torus": 67, "cup": 190, "spoon": 78, "hammer": 425, "organ": 9913}
 PAPER |= {

@@ -1,6 +1,6 @@
 """The program whose instructions `effect_costs.py` counts.
 
-python tests/benchmarks/effect_child.py loop|core EFFECT NUMBER
+python docs/generate/effect_child.py loop|core EFFECT NUMBER
 
 `loop` runs the scene with one effect, or with `none`, for a while and counts as many
 ticks more. `core` records the calls that one of its systems makes of the core in such

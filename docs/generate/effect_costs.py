@@ -1,6 +1,6 @@
 """Counts what each effect costs per tick, and that one not named costs nothing.
 
-python tests/benchmarks/effect_costs.py [--write] [--keep-times]
+python docs/generate/effect_costs.py [--write] [--keep-times]
 
 Needs valgrind. --write puts the tables into docs/effects.md. --keep-times only counts,
 which a busy machine can do as well: times stay as the page has them.
@@ -18,7 +18,6 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
 from effect_child import CORE_CALLS, EFFECTS, TICKS, WARM_UP, make_scene
 from effect_rows import make_rows
 from page_stamp import amend_page, write_page
@@ -29,7 +28,7 @@ from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import make_simulator
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "effects.md"
-_BEGIN = "<!-- figures: written by tests/benchmarks/effect_costs.py -->\n"
+_BEGIN = "<!-- figures: written by docs/generate/effect_costs.py -->\n"
 _END = "<!-- end of figures -->\n"
 _REPEATS = 3
 _PROOF = f"""\

@@ -1,6 +1,6 @@
 """Runs the tutorials from start to end and writes what they show into them.
 
-    python docs/tutorials/execute.py [NOTEBOOK ...]
+    python docs/generate/execute_tutorials.py [NOTEBOOK ...]
 
 All of them where none is named. Needs nbclient and ipykernel, of `drake_haptics[test]`.
 The notebooks are kept with their outputs, so that they can be read without running;
@@ -17,7 +17,7 @@ from pathlib import Path
 import nbformat
 from nbclient import NotebookClient
 
-FOLDER = Path(__file__).parent
+FOLDER = Path(__file__).parents[1] / "tutorials"
 _CELL_TIMEOUT_S = 180
 
 

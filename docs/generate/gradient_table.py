@@ -1,6 +1,6 @@
 """Tabulates errors of AutoDiff through contact against differences of fresh queries.
 
-python tests/characterization/gradient_table.py --write
+python docs/generate/gradient_table.py --write
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from autodiff_check import REACH, derivative_errors
 from cell_mesh import cell_mesh
 from contact_chain_diagram import ContactChain
@@ -30,7 +30,7 @@ from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import load_mesh
 
 PAGE = Path(__file__).parents[2] / "docs" / "gradients.md"
-BEGIN = "<!-- chain: written by tests/characterization/gradient_table.py -->\n"
+BEGIN = "<!-- chain: written by docs/generate/gradient_table.py -->\n"
 END = "<!-- end of chain -->\n"
 STEP = 5e-7
 TARGET = 1e-6

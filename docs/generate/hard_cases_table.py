@@ -1,6 +1,6 @@
 """Prints how this package, coal and Drake answer the hard cases.
 
-python tests/characterization/hard_cases_table.py --write
+python docs/generate/hard_cases_table.py --write
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import sys
 from functools import partial
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from hard_cases import HARD_CASES
 from page_stamp import write_page
 from pair_peers import ours, with_coal, with_drake

@@ -1,19 +1,16 @@
 """Tabulates what each stage of load shedding saves, in scenes of few and many contacts.
 
-python tests/characterization/load_table.py --write
+python docs/generate/load_table.py --write
 """
 
 from __future__ import annotations
 
 import argparse
-import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).parent))
 from boundary_table import to_markdown
 from page_stamp import write_page
 
@@ -24,7 +21,7 @@ from drake_haptics.evaluation.benchmark.scenes import scene_makers
 from drake_haptics.evaluation.measuring.machine import describe_machine
 
 PAGE = Path(__file__).parents[2] / "docs" / "under-load.md"
-BEGIN = "<!-- stages: written by tests/characterization/load_table.py -->\n"
+BEGIN = "<!-- stages: written by docs/generate/load_table.py -->\n"
 END = "<!-- end of stages -->\n"
 HEAD = ["scene", "left out", "contacts", "that push", "query, µs", "the rest, µs"]
 SCENES = ("spoon on cup", "peg in hole", "wrench in machine room")

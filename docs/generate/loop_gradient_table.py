@@ -1,6 +1,6 @@
 """Tabulates how well the derivatives of whole scenes agree with differences.
 
-python tests/characterization/loop_gradient_table.py --write
+python docs/generate/loop_gradient_table.py --write
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from loop_gradients import LoopGradients, build_scene, calc_gradients, contact_states
 from page_stamp import write_page
 
 from drake_haptics.analysis.diagram_systems import walk_leaves
 
 PAGE = Path(__file__).parents[2] / "docs" / "loop-gradients.md"
-MARK = "<!-- written by tests/characterization/loop_gradient_table.py -->\n"
+MARK = "<!-- written by docs/generate/loop_gradient_table.py -->\n"
 SCENES = (
     "can_box",
     "cup_spoon",

@@ -1,4 +1,4 @@
-"""Makes the pictures of the cockpit: `python docs/make_picture.py`.
+"""Makes the pictures of the cockpit: `python docs/generate/make_cockpit_pictures.py`.
 
 Runs the cup and the spoon as `drake-haptics run cup_spoon` does, opens the page in a
 Chromium without a window (needs what the tests need), and photographs it while the
@@ -18,11 +18,11 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from cockpit_page import CockpitRun, Page
 from headless_browser import HeadlessBrowser, find_browser
 
-_FOLDER = Path(__file__).parent
+_FOLDER = Path(__file__).parents[1]
 _SIZE = (1440, 900)
 # Ten seconds fill the traces.
 _FULL_S = 12.0
@@ -37,7 +37,7 @@ def main() -> None:
     """Writes the pictures."""
     executable = find_browser()
     if executable is None:
-        sys.exit("make_picture.py needs chromium on the PATH")
+        sys.exit("make_cockpit_pictures.py needs chromium on the PATH")
     run = CockpitRun("cup_spoon")
     # A browser without a graphics card takes all that it gets: the loop comes first.
     os.nice(10)

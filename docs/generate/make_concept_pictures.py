@@ -1,4 +1,6 @@
-"""Makes the pictures of docs/concepts.md: `python docs/make_concept_pictures.py`.
+"""Makes the pictures of docs/concepts.md.
+
+python docs/generate/make_concept_pictures.py
 
 Each is drawn from what the package answers, not by hand.
 """
@@ -35,7 +37,7 @@ from drake_haptics.common.colors import (
 )
 from drake_haptics.device.local_gate import LocalGate
 
-_FOLDER = Path(__file__).parent
+_FOLDER = Path(__file__).parents[1]
 _MESHES = _FOLDER.parent / "models" / "meshes"
 _TOLERANCE_M, _STIFFNESS_N_PER_M = 2e-3, 2e4
 _MAX_FORCE_N = 8.5

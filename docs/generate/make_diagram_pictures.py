@@ -1,7 +1,7 @@
-"""Draws the loop of two scenes: `python docs/make_diagram_pictures.py`.
+"""Draws the loop of two scenes: `python docs/generate/make_diagram_pictures.py`.
 
 Drake tells Graphviz what to draw. Only the looks are changed here, so that a whole loop
-can be read on a page. tests/test_docs_diagrams.py holds the pictures to the code.
+can be read on a page. tests/docs/test_diagrams.py holds the pictures to the code.
 """
 
 import re
@@ -13,7 +13,7 @@ from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.loading import load_scene
 
-_DOCS = Path(__file__).parent
+_DOCS = Path(__file__).parents[1]
 # File by scene: one without effects, one with all.
 PICTURES = {"cup_spoon": "loop_cup_spoon.svg", "rubbed_sphere": "loop_all_effects.svg"}
 

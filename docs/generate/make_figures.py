@@ -1,10 +1,10 @@
-"""Makes all figures of the pages again: `python docs/make_figures.py`.
+"""Makes all figures of the pages again: `python docs/generate/make_figures.py`.
 
 Hours, on a machine that does nothing else: times are among the figures. It says what
 comes next and how long that takes. Parts of names take some pages alone:
 
-python docs/make_figures.py sliding stability
-python docs/make_figures.py --list
+python docs/generate/make_figures.py sliding stability
+python docs/generate/make_figures.py --list
 
 Commit before, and do not edit meanwhile: each page says at which commit it was made.
 """
@@ -18,12 +18,11 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from mesh_samples import REAL_MESHES
 
-ROOT = Path(__file__).parents[1]
-_TABLES = "tests/characterization"
-_BENCHMARKS = "tests/benchmarks"
+ROOT = Path(__file__).parents[2]
+_PROGRAMS = "docs/generate"
 # What the command `drake-haptics` runs.
 _BENCH = "from drake_haptics.cli import main; main()"
 _BENCH_FIGURES = "build/bench.json"
@@ -56,7 +55,7 @@ class Figures:
 def _table(
     page: str, name: str, minutes: float, *options: str, timed: bool = False
 ) -> Figures:
-    command = (f"{_TABLES}/{name}_table.py", "--write", *options)
+    command = (f"{_PROGRAMS}/{name}_table.py", "--write", *options)
     return Figures(f"docs/{page}.md", (command,), minutes, timed)
 
 
@@ -78,13 +77,13 @@ FIGURES = (
     _table("under-load", "load", 1, timed=True),
     Figures(
         "docs/record-replay.md",
-        ((f"{_BENCHMARKS}/tick_log_costs.py", "--write"),),
+        ((f"{_PROGRAMS}/tick_log_costs.py", "--write"),),
         3,
         timed=True,
     ),
     Figures(
         "docs/effects.md",
-        ((f"{_BENCHMARKS}/effect_costs.py", "--write"),),
+        ((f"{_PROGRAMS}/effect_costs.py", "--write"),),
         20,
         timed=True,
     ),
@@ -94,12 +93,14 @@ FIGURES = (
         "docs/benchmarks.md",
         (
             ("-c", _BENCH, "bench", *_MESHES, "--json", _BENCH_FIGURES),
-            (f"{_BENCHMARKS}/write_docs.py", _BENCH_FIGURES),
+            (f"{_PROGRAMS}/write_docs.py", _BENCH_FIGURES),
         ),
         20,
         timed=True,
     ),
-    Figures("README.md", ((f"{_TABLES}/readme_tables.py", "--write"),), 2, timed=True),
+    Figures(
+        "README.md", ((f"{_PROGRAMS}/readme_tables.py", "--write"),), 2, timed=True
+    ),
     _table("numerics", "numerics", 0),
 )
 

@@ -1,4 +1,4 @@
-"""Makes the README's moving picture: `python docs/make_moving_picture.py`.
+"""Makes the README's moving picture: `python docs/generate/make_moving_picture.py`.
 
 Runs the cup and the spoon as `drake-haptics run cup_spoon` does, and takes down what
 its page is told while nobody draws it. Then the page is shown again, picture by
@@ -17,7 +17,7 @@ from pathlib import Path
 
 from PIL import Image
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from cockpit_page import CockpitRun, Page
 from headless_browser import HeadlessBrowser, find_browser
 from page_recording import PageRecording, record_page
@@ -25,7 +25,7 @@ from page_replay import PageReplay
 
 from drake_haptics import find_scene, load_scene
 
-_FILE = Path(__file__).parent / "cockpit.webp"
+_FILE = Path(__file__).parents[1] / "cockpit.webp"
 _SCENE = "cup_spoon"
 # Of what fits a screen that holds the page in full.
 _SIZE = (1200, 810)

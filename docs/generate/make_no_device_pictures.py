@@ -1,4 +1,6 @@
-"""Makes the pictures of docs/no-device.md: `python docs/make_no_device_pictures.py`.
+"""Makes the pictures of docs/no-device.md.
+
+python docs/generate/make_no_device_pictures.py
 
 Runs the cup and the spoon with the mouse, and with sliders, as `drake-haptics run`
 does, in a Chromium without a window (needs what the tests need), presses the spoon
@@ -14,11 +16,11 @@ from pathlib import Path
 
 from PIL import Image
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from cockpit_page import CockpitRun, Page
 from headless_browser import HeadlessBrowser, find_browser
 
-_FOLDER = Path(__file__).parent
+_FOLDER = Path(__file__).parents[1]
 _SIZE = (1200, 750)
 _PRESSED = "parseFloat(document.getElementById('force').textContent) > 1.5"
 

@@ -1,4 +1,6 @@
-"""Makes die_in_cup.png: `python docs/tutorials/make_picture.py` (needs Chromium).
+"""Makes die_in_cup.png of the tutorials (needs Chromium).
+
+python docs/generate/make_tutorial_picture.py
 
 Runs the second tutorial and photographs its Meshcat page after each of the two falls,
 in a browser without a window.
@@ -15,7 +17,7 @@ import matplotlib
 import nbformat
 from PIL import Image
 
-FOLDER = Path(__file__).parent
+FOLDER = Path(__file__).parents[1] / "tutorials"
 _SIZE = (450, 400)
 _FLAGS = (
     "--headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader"
@@ -54,7 +56,7 @@ def main() -> None:
     """Writes the picture: left on the hull, right in the cup."""
     browser = shutil.which("chromium") or shutil.which("google-chrome")
     if browser is None:
-        sys.exit("make_picture.py needs chromium or google-chrome on the PATH")
+        sys.exit("make_tutorial_picture.py needs chromium or google-chrome on the PATH")
     names = run_tutorial()
     meshcat = names["meshcat"]
     for path in ("/Grid", "/Axes"):

@@ -1,6 +1,6 @@
 """Sums up, for docs/numerics.md, what the pages on hard cases measured.
 
-python tests/characterization/numerics_table.py --write
+python docs/generate/numerics_table.py --write
 
 Nothing is measured here: each figure is that of the page in its row, written by that
 page's own command.
@@ -17,7 +17,7 @@ from boundary_table import to_markdown
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = DOCS / "numerics.md"
-BEGIN = "<!-- summary: written by tests/characterization/numerics_table.py -->\n"
+BEGIN = "<!-- summary: written by docs/generate/numerics_table.py -->\n"
 END = "<!-- end of summary -->\n"
 HEAD = ["what could be wrong", "tried on", "here", "for comparison", "page"]
 # Rows of docs/no-fall-through.md by their gains, and what they are called here.

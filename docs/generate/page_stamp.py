@@ -6,12 +6,19 @@ import re
 import subprocess
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 # What figures depend on: pages change while figures are written into them.
-_SOURCES = ("drake_haptics", "systems", "models", "tests", "pyproject.toml")
+_SOURCES = (
+    "drake_haptics",
+    "systems",
+    "models",
+    "tests",
+    "docs/generate",
+    "pyproject.toml",
+)
 _LINE = "Figures of `{}`: made at commit {}."
 STAMP = re.compile(
-    r"Figures of `(?P<generator>tests/\w+/\w+\.py)`: made at commit"
+    r"Figures of `(?P<generator>docs/generate/\w+\.py)`: made at commit"
     r" `(?P<commit>[0-9a-f]{7,})` of (?P<date>\d{4}-\d\d-\d\d)(?:, with changes)?"
     # Some of them later.
     r"(?:; [^;`]+ at commit `[0-9a-f]{7,}` of \d{4}-\d\d-\d\d(?:, with changes)?)*\."

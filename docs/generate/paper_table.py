@@ -1,6 +1,6 @@
 """Writes the paper's evaluation, made again, into docs/paper.md with its pictures.
 
-python tests/characterization/paper_table.py --write --meshes FOLDER
+python docs/generate/paper_table.py --write --meshes FOLDER
 
 Without --write it prints what it would write. Some two minutes. On a machine that does
 other things too, --keep-times writes all but times, which stay as the page has them.
@@ -14,10 +14,8 @@ import re
 import sys
 from pathlib import Path
 
-from PIL import Image
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
 from page_stamp import amend_page, write_page
+from PIL import Image
 
 from drake_haptics.evaluation.paper.evaluation import (
     QUICK,
@@ -34,7 +32,7 @@ from drake_haptics.evaluation.paper.report import (
 
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "paper.md"
-BEGIN = "<!-- figures: written by tests/characterization/paper_table.py -->\n"
+BEGIN = "<!-- figures: written by docs/generate/paper_table.py -->\n"
 END = "<!-- end of figures -->\n"
 _DPI, _COLOURS = 80, 128
 # Heads of columns, and words of sentences, in which times are.

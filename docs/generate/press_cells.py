@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from mesh_samples import REAL_MESHES
 from press_rig import GAINS, LARGEST_FORCE_N, Gains, sample_presses
 from press_tools import MODELS, PressTool, make_tools

@@ -41,7 +41,7 @@ device (press), or at 0.5 m/s to 10 mm inside the surface (jab); it rests {hold:
 goes back the way it came. With the thin skin each tick of the way in crosses the
 tolerance, so that the tool is in the solid before it has been near it. The core's own
 loop runs (contacts, clusters, penalty, coupling, rigid tool at 1 kHz); what happened is
-judged by the solid's triangles alone (`tests/press_verdict.py`).
+judged by the solid's triangles alone (`tests/support/press_verdict.py`).
 
 | gains | tolerance | stiffness | {force:g} N are carried | points | commit |
 |---|---|---|---|---|---|

@@ -1,7 +1,7 @@
 """Presses, jabs and slides tools at many points of many solids; tells what became.
 
-python tests/characterization/press_table.py --points 40 --gains sinking
-python tests/characterization/press_table.py --points 1000 --jobs 3 --write
+python docs/generate/press_table.py --points 40 --gains sinking
+python docs/generate/press_table.py --points 1000 --jobs 3 --write
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from press_cells import (
     REAL,
     SHIPPED,

@@ -1,10 +1,10 @@
 """Writes the tables of the README: what shipped scenes cost, and how that compares.
 
-python tests/characterization/readme_tables.py --write
+python docs/generate/readme_tables.py --write
 
 The scenes are measured, in two minutes, on a machine that does nothing else. The
 rest is taken from the pages whose figures they are: docs/benchmarks.md and
-docs/paper.md, written by `tests/benchmarks/write_docs.py` and `paper_table.py`.
+docs/paper.md, written by `docs/generate/write_docs.py` and `paper_table.py`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import re
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
 from boundary_table import to_markdown
 from page_stamp import describe_commit, make_stamp
 
@@ -25,7 +24,7 @@ from drake_haptics.loop.builder import HapticDiagram
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
-BEGIN = "<!-- {}: written by tests/characterization/readme_tables.py -->\n"
+BEGIN = "<!-- {}: written by docs/generate/readme_tables.py -->\n"
 END = "<!-- end of {} -->\n"
 # The first is the one of `make demo`.
 SCENES = ("cup_spoon", *(name for name in list_scenes() if name != "cup_spoon"))

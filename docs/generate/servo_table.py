@@ -1,6 +1,6 @@
 """Tabulates and draws what a stalled loop does to a device, with a servo and without.
 
-python tests/characterization/servo_table.py --write
+python docs/generate/servo_table.py --write
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from page_stamp import write_page
 from servo_loop import (
     HELD,
@@ -31,7 +31,7 @@ _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "servo.md"
 MAP = _DOCS / "servo.png"
 TRACES = _DOCS / "servo_stall.png"
-BEGIN = "<!-- {}: written by tests/characterization/servo_table.py -->\n"
+BEGIN = "<!-- {}: written by docs/generate/servo_table.py -->\n"
 END = "<!-- end of {} -->\n"
 RATES_HZ = (100, 250, 500, 1000)
 STALLS_S = (0.0, 0.02, 0.05, 0.121, 0.2)

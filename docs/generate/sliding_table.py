@@ -1,6 +1,6 @@
 """Tabulates what a tool feels that slides over a face in pieces.
 
-python tests/characterization/sliding_table.py --write
+python docs/generate/sliding_table.py --write
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from page_stamp import write_page
 from press_rig import GAINS
 from scipy.spatial.transform import Rotation
@@ -39,7 +39,7 @@ A tool is held level at a height over a flat face that is cut into pieces, and s
 The face is one plane, so each contact should have its normal and the nearest its
 distance, and the force should stay as it is. This page is written by
 
-    python tests/characterization/sliding_table.py --write
+    python docs/generate/sliding_table.py --write
 
 - **distance** and **normal**: largest error of the nearest contact's distance, and of
   any component of any contact's normal, on all ticks: the contact query alone.

@@ -1,6 +1,6 @@
 """Tabulates the stability of shipped scenes, and draws one of them.
 
-python tests/characterization/stability_table.py --write
+python docs/generate/stability_table.py --write
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
 from boundary_table import to_markdown
 from page_stamp import write_page
 
@@ -24,7 +23,7 @@ from drake_haptics.scene.loading import load_scene
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "stability.md"
 PICTURE = _DOCS / "stability_cup_spoon.png"
-BEGIN = "<!-- {}: written by tests/characterization/stability_table.py -->\n"
+BEGIN = "<!-- {}: written by docs/generate/stability_table.py -->\n"
 END = "<!-- end of {} -->\n"
 SCENES = ("cup_spoon", "torus_peg", "can_box")
 DRAWN = "cup_spoon"

@@ -1,7 +1,7 @@
 """Makes each symptom of docs/troubleshooting.md happen, cures it, and writes both down.
 
-python tests/characterization/symptom_table.py --write
-python tests/characterization/symptom_table.py --scenes FOLDER
+python docs/generate/symptom_table.py --write
+python docs/generate/symptom_table.py --scenes FOLDER
 
 The second writes the scenes, so that `drake-haptics run` shows them. Half a minute.
 """
@@ -16,7 +16,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
 from page_stamp import write_page
 from symptom_cases import CASES
 from symptom_run import Case
@@ -26,7 +25,7 @@ from drake_haptics.scene.schema import Encoder
 from drake_haptics.scene.validation import SceneWarning
 
 PAGE = Path(__file__).parents[2] / "docs" / "troubleshooting.md"
-BEGIN = "<!-- {}: written by tests/characterization/symptom_table.py -->\n"
+BEGIN = "<!-- {}: written by docs/generate/symptom_table.py -->\n"
 END = "<!-- end of {} -->\n"
 HEAD = ["shown by", "cured by", "is measured", "shown", "cured"]
 

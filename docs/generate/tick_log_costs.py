@@ -1,6 +1,6 @@
 """Measures what a log of every tick costs: instructions, time and bytes.
 
-python tests/benchmarks/tick_log_costs.py [--write] [--keep-times]
+python docs/generate/tick_log_costs.py [--write] [--keep-times]
 
 Needs valgrind. --write puts the table into docs/record-replay.md. Times are noisy on a
 computer that does other things too; instructions are not. --keep-times leaves the times
@@ -18,7 +18,6 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
 from page_stamp import amend_page, write_page
 
 from drake_haptics.evaluation.measuring.valgrind import count_instructions, counted
@@ -33,7 +32,7 @@ from drake_haptics.tick_log.tick_log import read_tick_log
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "record-replay.md"
-_BEGIN = "<!-- figures: written by tests/benchmarks/tick_log_costs.py -->\n"
+_BEGIN = "<!-- figures: written by docs/generate/tick_log_costs.py -->\n"
 _END = "<!-- end of figures -->\n"
 _SCENE = "rubbed_sphere"
 _WARM_UP = 1000

@@ -1,6 +1,6 @@
 """Tabulates what each part of the twin costs in stable stiffness of a coupling.
 
-python tests/characterization/twin_table.py --write
+python docs/generate/twin_table.py --write
 """
 
 from __future__ import annotations
@@ -13,14 +13,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from boundary_table import to_markdown
+from page_stamp import write_page
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import Context
-
-sys.path.insert(0, str(Path(__file__).parent))
-from boundary_table import to_markdown
-from page_stamp import write_page
 
 from drake_haptics.analysis.held_scene import build_quietly, stop_hand
 from drake_haptics.analysis.sampled_linearization import linearize_sampled
@@ -39,7 +37,7 @@ from drake_haptics.scene.schema import (
 )
 
 PAGE = Path(__file__).parents[2] / "docs" / "device-twin.md"
-BEGIN = "<!-- costs: written by tests/characterization/twin_table.py -->\n"
+BEGIN = "<!-- costs: written by docs/generate/twin_table.py -->\n"
 END = "<!-- end of costs -->\n"
 HEAD = [
     "`device.twin`",

@@ -1,6 +1,6 @@
 """Tabulates the wrenches of contacts that have a closed form.
 
-python tests/characterization/wrench_table.py --write
+python docs/generate/wrench_table.py --write
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from page_stamp import write_page
 from wrench_chain import (
     DAMPING_NS_PER_M,
@@ -64,23 +64,23 @@ SCENARIOS: dict[str, Callable[[str], Iterator[Case]]] = {
 
 # The tests that hold each equation of the paper against a truth of its own.
 _FORMULA = "characterization/test_wrench_scenarios.py::test_the_formula_holds"
-_PLAIN = "test_core_penalty_force.py::test_the_chain_agrees_with_the_equations"
+_PLAIN = "core/law/test_penalty_force.py::test_the_chain_agrees_with_the_equations"
 EQUATIONS = {
     "1, p̂ᵢ is the mean of the witness points": (
-        "test_contact.py::test_columns_name_features_as_kind_and_index",
+        "core/pair/test_contact.py::test_columns_name_features_as_kind_and_index",
         f"{_FORMULA}[octree-groove]",
     ),
     "2, contacts nearer than δ are one": (
-        "test_core_clustering.py::test_clusters_lie_within_the_stated_band",
+        "core/law/test_clustering.py::test_clusters_lie_within_the_stated_band",
         f"{_FORMULA}[octree-two_posts_of_one_object]",
     ),
     "3, n of a cluster": (f"{_FORMULA}[octree-groove]",),
     "4, p̂ of a cluster": (
-        "test_core_clustering.py::test_the_representative_follows_equations_3_to_5",
+        "core/law/test_clustering.py::test_the_representative_follows_equations_3_to_5",
         f"{_FORMULA}[octree-groove]",
     ),
     "5, d of a cluster": (
-        "test_core_clustering.py::test_the_representative_follows_equations_3_to_5",
+        "core/law/test_clustering.py::test_the_representative_follows_equations_3_to_5",
         f"{_FORMULA}[octree-groove]",
     ),
     "6, elastic force and damping": (_PLAIN, f"{_FORMULA}[shared-materials]"),
@@ -96,7 +96,7 @@ _TEXT = """\
 Contacts whose force and torque are known on paper, answered by the real chain: bodies
 cut into pieces, contact query, clusters, penalty force. This page is written by
 
-    python tests/characterization/wrench_table.py --write
+    python docs/generate/wrench_table.py --write
 
 Tolerance t = {tolerance:g} mm, k = {stiffness:g} N/m, k_v = {damping:g} N·s/m, f in N,
 τ in N·mm; friction has μ = {mu:g}, r = {r:g} (static over sliding) and b = {b:g} mm

@@ -1,7 +1,7 @@
 """Writes the figures of a run into docs/benchmarks.md.
 
 drake-haptics bench --json figures.json
-python tests/benchmarks/write_docs.py figures.json
+python docs/generate/write_docs.py figures.json
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ import json
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
 from page_stamp import write_page
 
 from drake_haptics.evaluation.benchmark.benchmark import BenchFigures
@@ -21,7 +20,7 @@ from drake_haptics.evaluation.benchmark.report import (
 )
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
-_BEGIN = "<!-- figures: written by tests/benchmarks/write_docs.py -->\n"
+_BEGIN = "<!-- figures: written by docs/generate/write_docs.py -->\n"
 _END = "<!-- end of figures -->\n"
 
 

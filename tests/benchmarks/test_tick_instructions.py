@@ -6,12 +6,8 @@ Instructions are the same on a busy machine and on an idle one; times are not.
 from __future__ import annotations
 
 import shutil
-import sys
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
 from tick_instructions import measure
 
 pytestmark = pytest.mark.skipif(

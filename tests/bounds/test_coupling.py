@@ -11,7 +11,7 @@ from drake_haptics.scene.schema import Coupling
 from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, NOMINAL_GRIP
 
 PERIOD = 1e-3
-SCENES = sorted((Path(__file__).parents[1] / "models" / "scenes").glob("*.yaml"))
+SCENES = sorted((Path(__file__).parents[2] / "models" / "scenes").glob("*.yaml"))
 
 
 def held_by(grip):

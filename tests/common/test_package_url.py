@@ -18,7 +18,7 @@ from drake_haptics.geometry.parsing.model_file import load_model_mesh
 from drake_haptics.loop.tick_log import make_log_header
 from drake_haptics.scene.schema import EnvironmentObject, Hand, HandPath, Tool, Waypoint
 
-MODELS = Path(__file__).parents[1] / "models"
+MODELS = Path(__file__).parents[2] / "models"
 PEG = "package://drake_haptics/models/meshes/peg.obj"
 BLOCK = "package://drake_haptics/models/meshes/block.obj"
 ARM = "package://drake_haptics/models/devices/phantom_premium_1_5_6dof.sdf"

@@ -13,7 +13,7 @@ import pytest
 
 import drake_haptics
 
-PROGRAM = Path(__file__).with_name("consumer") / "whole_api.py"
+PROGRAM = Path(__file__).with_name("whole_api.py")
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).parents[1] / "drake_haptics"
+PACKAGE = Path(__file__).parents[2] / "drake_haptics"
 CORE = PACKAGE / "core"
 FILES = {
     path.relative_to(CORE).as_posix(): path

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import re
 import shlex
-import sys
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent / "characterization"))
 from accuracy_samples import make_study
 from accuracy_table import (
     BUDGET_HEADINGS,

@@ -8,7 +8,7 @@ from system_pages import find_systems, list_system_modules
 
 import drake_haptics
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 
 
 def test_every_public_name_is_on_the_page_of_names_or_has_its_own():

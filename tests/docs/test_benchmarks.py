@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import re
-import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
 from bench_samples import EVERYTHING
 from write_docs import PAGE, figures_of, with_figures
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-PAGE = Path(__file__).parent.parent / "docs" / "compose.md"
+PAGE = Path(__file__).parents[2] / "docs" / "compose.md"
 PROGRAMS = re.findall(
     r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S
 )

@@ -14,7 +14,7 @@ from config_rules import find_rules
 from drake_haptics import BuildHapticDiagram, UserError, load_scene, run
 from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 
 
 def list_keys(schema: typing.Any) -> set[str]:

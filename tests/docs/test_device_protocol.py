@@ -16,7 +16,7 @@ from packet_samples import A_COMMAND, A_STATE
 from drake_haptics import _core
 from drake_haptics.device.backend import Fault, GateState
 
-REPO = Path(__file__).parents[1]
+REPO = Path(__file__).parents[2]
 PAGE = (REPO / "docs" / "device-protocol.md").read_text(encoding="utf-8")
 TYPES = {"u8": "B", "u16": "H", "u32": "I", "u64": "Q", "f32": "f", "f64": "d"}
 ROW = re.compile(r"^\| (\d+) \| (\d+) \| (\w+) \| (?:(\d) ?)?(\w+) \| ", re.MULTILINE)

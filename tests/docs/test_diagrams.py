@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 from make_diagram_pictures import PICTURES, make_graph
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 SVG = "{http://www.w3.org/2000/svg}"
 
 

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import asdict, fields, replace
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
 from effect_child import CORE_CALLS, EFFECTS, SCENE
 from effect_costs import PAGE, Costs, with_figures
 from effect_rows import make_rows

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "glossary.md").read_text(encoding="utf-8")
 UNITS = PAGE.partition("## Units")[2].partition("## Symbols")[0]
 ENDINGS = tuple(

@@ -7,7 +7,7 @@ from PIL import Image, ImageChops
 
 from drake_haptics import find_scene, load_scene
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 FILE = ROOT / "docs" / "cockpit.webp"
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from drake_haptics.device import followed_handle, gamepad, meshcat_device
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "no-device.md").read_text(encoding="utf-8")
 KEYS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowDown": "↓", "ArrowUp": "↑",
         "PageDown": "Page Down", "PageUp": "Page Up"}  # fmt: skip

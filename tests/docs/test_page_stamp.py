@@ -18,7 +18,7 @@ from page_stamp import (
 )
 
 # Sums up other pages, and measures nothing.
-SUMS = "tests/characterization/numerics_table.py"
+SUMS = "docs/generate/numerics_table.py"
 MADE = {figures.generator: figures for figures in FIGURES}
 
 
@@ -37,18 +37,17 @@ def test_a_page_says_at_which_commit_its_figures_were_made(generator):
 
 
 def test_every_program_that_writes_figures_is_among_those_of_the_one_command():
-    for folder in ("characterization", "benchmarks"):
-        for file in (ROOT / "tests" / folder).glob("*.py"):
-            writes = re.search(r'(?m)^ +write_page\(|"--write"', file.read_text())
-            if writes and file.name != "press_page.py":
-                assert file.relative_to(ROOT).as_posix() in MADE
+    for file in (ROOT / "docs" / "generate").glob("*.py"):
+        writes = re.search(r'(?m)^ +write_page\(|"--write"', file.read_text())
+        if writes and file.name not in ("press_page.py", "make_figures.py"):
+            assert file.relative_to(ROOT).as_posix() in MADE
     for figures in FIGURES:
         assert (ROOT / figures.page).is_file()
         assert (ROOT / figures.generator).is_file()
 
 
 def test_a_stamp_replaces_its_own_and_stands_beside_those_of_others():
-    one, other = (ROOT / f"tests/benchmarks/{x}.py" for x in ("one", "other"))
+    one, other = (ROOT / f"docs/generate/{x}.py" for x in ("one", "other"))
     old = make_stamp(one, "`0123456` of 2001-02-03")
     new = make_stamp(one, "`89abcde` of 2004-05-06, with changes")
     beside = make_stamp(other, "`0123456` of 2001-02-03")
@@ -59,7 +58,7 @@ def test_a_stamp_replaces_its_own_and_stands_beside_those_of_others():
 
 
 def test_a_stamp_tells_which_figures_were_made_again_later():
-    generator = ROOT / "tests/benchmarks/one.py"
+    generator = ROOT / "docs/generate/one.py"
     first = make_stamp(generator, "`0123456` of 2001-02-03")
     page = with_stamp("text\n", first)
     for commit in ("`89abcde` of 2004-05-06", "`fedcba9` of 2005-06-07, with changes"):
@@ -75,5 +74,5 @@ def test_sources_that_were_changed_since_the_commit_are_told(monkeypatch):
     said = {"log": "`0123456` of 2001-02-03", "status": ""}
     monkeypatch.setattr(page_stamp, "_git", lambda what, *_: said[what])
     assert describe_commit() == "`0123456` of 2001-02-03"
-    said["status"] = " M tests/page_stamp.py"
+    said["status"] = " M docs/generate/page_stamp.py"
     assert describe_commit() == "`0123456` of 2001-02-03, with changes"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-PAGE = Path(__file__).parent.parent / "docs" / "studies.md"
+PAGE = Path(__file__).parents[2] / "docs" / "studies.md"
 LOCAL, CLUSTER = re.findall(
     r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S
 )

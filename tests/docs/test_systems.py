@@ -32,7 +32,7 @@ from drake_haptics.systems.lcm.haptic_status_receiver import HapticStatusReceive
 from drake_haptics.systems.lcm.haptic_status_sender import HapticStatusSender
 from drake_haptics.systems.tool.handle_model import HandleModel
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 EVERY_KEY = DOCS / "reference" / "every-key.yaml"
 PERIOD_S = 1e-3
 

@@ -84,7 +84,7 @@ def test_drakes_largest_step_goes_through_the_plate(scheme):
 
 @pytest.mark.skipif("cenic" not in SCHEMES, reason="this Drake has no CENIC")
 def test_the_page_tells_how_fast_the_cube_comes_back():
-    page = (Path(__file__).parents[1] / "docs" / "compose.md").read_text("utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "compose.md").read_text("utf-8")
     told = re.findall(r"([\d.]+) m/s", page.split("CENIC also takes")[1])[:3]
     runs = [("cenic", 1e-3), ("runge_kutta3", 1e-3), ("cenic", 1e-6)]
     for (scheme, accuracy), said in zip(runs, told, strict=True):

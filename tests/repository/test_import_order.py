@@ -13,7 +13,7 @@ from import_graph import (
     find_upward,
 )
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 # So many modules may stand loose in the package; the compiled core is one of them.
 MOST_LOOSE = 6
 

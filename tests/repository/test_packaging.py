@@ -23,7 +23,7 @@ import pytest
 
 from drake_haptics import _core
 
-REPO = Path(__file__).resolve().parents[1]
+REPO = Path(__file__).resolve().parents[2]
 # Links for editors and type checkers; no program may need them.
 LINKS = ("drake_haptics/systems", "drake_haptics/models")
 # Scenes and presets, meshes.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).parents[1] / "drake_haptics"
+PACKAGE = Path(__file__).parents[2] / "drake_haptics"
 SOURCES = sorted(
     path
     for path in PACKAGE.rglob("*.py")

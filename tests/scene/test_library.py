@@ -8,7 +8,7 @@ import pytest
 from drake_haptics import MeshError, find_mesh, find_scene, list_meshes, list_scenes
 from drake_haptics.common.errors import SceneError
 
-MODELS = Path(__file__).parents[1] / "models"
+MODELS = Path(__file__).parents[2] / "models"
 
 
 def test_every_file_has_its_name():

@@ -1,6 +1,6 @@
 """How many examples the fuzz tests try: few and always the same, or many.
 
-`HYPOTHESIS_PROFILE=fuzz pytest tests/test_fuzz_*.py` tries thousands of new ones.
+`HYPOTHESIS_PROFILE=fuzz pytest tests/fuzz` tries thousands of new ones.
 """
 
 from __future__ import annotations

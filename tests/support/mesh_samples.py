@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-REAL_MESHES = Path(__file__).resolve().parents[2] / "shared" / "meshes"
+REAL_MESHES = Path(__file__).resolve().parents[3] / "shared" / "meshes"
 
 
 def real_mesh(name):

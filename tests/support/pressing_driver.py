@@ -1,4 +1,6 @@
-"""A driver whose handle presses down, as a program: tests/pressing_driver.py JSON_FILE.
+"""A driver whose handle presses down, as a program.
+
+    python tests/support/pressing_driver.py JSON_FILE
 
 The handle begins 50 mm above the origin of its base. As soon as a host has enabled it,
 it sinks to 10 mm, whatever the force, and stays. At SIGUSR1 it rises to 19.5 mm.

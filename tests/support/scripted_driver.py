@@ -1,6 +1,6 @@
 """A driver whose arm does what a test says, as a program.
 
-    python tests/scripted_driver.py JSON_FILE TROUBLE
+    python tests/support/scripted_driver.py JSON_FILE TROUBLE
 
 After 100 ticks at force the arm is in trouble for 20 ticks, once: `fast` (it moves
 at 5 m/s), `spins` (40 rad/s), `nan` (its pose is not a number) or `clock` (the

@@ -1,4 +1,4 @@
-"""A host whose Python stalls, as a program: python tests/stalling_host.py PORT.
+"""A host whose Python stalls, as a program: python tests/support/stalling_host.py PORT.
 
 Asks for 2 N along z until a line comes in; lets nothing of Python run until the next
 line; asks again until a third, and closes the device.

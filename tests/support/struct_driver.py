@@ -1,6 +1,6 @@
 """A driver that knows only the layout of the packets, by `struct` and `zlib`.
 
-    python tests/struct_driver.py
+    python tests/support/struct_driver.py
 
 serves as a process of its own: prints its port and sends 500 states per second once a
 host has spoken. When a byte has come in, it prints another as soon as the host has

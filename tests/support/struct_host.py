@@ -2,7 +2,7 @@
 
 As a program it is the host of a two-process test, which can be killed and paused:
 
-    python tests/struct_host.py PORT SECONDS FORCE
+    python tests/support/struct_host.py PORT SECONDS FORCE
 
 It enables the device, asks for FORCE newtons along z after every state for so many
 seconds and then disables it.

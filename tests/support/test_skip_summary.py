@@ -10,7 +10,8 @@ import pytest
 from mesh_samples import real_mesh
 from skip_summary import OTHER, REMEDIES, skip_summary
 
-TESTS = Path(__file__).parent
+SUPPORT = Path(__file__).parent
+CONFTEST = SUPPORT.parent / "conftest.py"
 
 
 def test_each_want_is_counted_with_what_helps() -> None:
@@ -32,7 +33,7 @@ def test_a_missing_mesh_is_counted_as_one() -> None:
 
 def test_the_line_comes_last_with_workers_too(tmp_path: Path) -> None:
     (tmp_path / "conftest.py").write_text("from conftest_of_all import *\n")
-    (tmp_path / "conftest_of_all.py").write_text((TESTS / "conftest.py").read_text())
+    (tmp_path / "conftest_of_all.py").write_text(CONFTEST.read_text())
     (tmp_path / "test_page.py").write_text(
         "import pytest\n\n\ndef test_page():\n"
         "    pytest.skip('no Chromium on the PATH')\n"
@@ -47,7 +48,7 @@ def test_the_line_comes_last_with_workers_too(tmp_path: Path) -> None:
         "-p",
         "no:cacheprovider",
     ]
-    setting = ["-o", f"pythonpath={TESTS} {tmp_path}", "-c", "/dev/null"]
+    setting = ["-o", f"pythonpath={SUPPORT} {tmp_path}", "-c", "/dev/null"]
     done = subprocess.run(
         [*command, *setting, "--rootdir", str(tmp_path), str(tmp_path)],
         capture_output=True,

@@ -19,6 +19,8 @@ from study_functions import (
 from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.analysis.jobs.study import run_study
 
+SUPPORT = Path(__file__).parents[2] / "support"
+
 SERIAL = SerialExecutor()
 
 
@@ -26,6 +28,8 @@ PROGRAM = """
 import sys
 from study_functions import Journal
 from drake_haptics.analysis.jobs.study import run_study
+
+SUPPORT = Path(__file__).parents[2] / "support"
 
 if __name__ == "__main__":
     journal, store, *tasks = sys.argv[1:]
@@ -44,7 +48,7 @@ def start(tmp_path):
         driver = subprocess.Popen(
             [sys.executable, file, *map(str, args)],
             cwd=tmp_path,
-            env={**os.environ, "PYTHONPATH": str(Path(__file__).parent)},
+            env={**os.environ, "PYTHONPATH": str(SUPPORT)},
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

@@ -8,7 +8,7 @@ import pytest
 
 from drake_haptics import _core
 
-BINDINGS = Path(__file__).parents[1] / "drake_haptics" / "core" / "bind"
+BINDINGS = Path(__file__).parents[3] / "drake_haptics" / "core" / "bind"
 WRENCH = np.array([0.1, -0.2, 0.3, 1.5, -2.5, 3.5])
 
 

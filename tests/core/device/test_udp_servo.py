@@ -23,7 +23,7 @@ PUSH = np.array([0, 0, 0, 2.0, 0, 0])
 STALE, OVERSPEED, DEVICE = 1, 3, 5
 LONG = {"ttl_s": 5.0, "hold_s": 5.0}  # nothing times out on a busy machine
 SHORT = {"ttl_s": 1.0, "hold_s": 5.0}  # a driver is missed soon, and not too soon
-TESTS = Path(__file__).parent
+SUPPORT = Path(__file__).parents[2] / "support"
 
 
 @pytest.fixture
@@ -411,7 +411,7 @@ def test_a_program_that_forgets_to_close_ends(driver):
 def test_it_answers_while_python_is_stalled_and_shows_nothing_stale():
     """The driver is another process; here one call keeps the lock until it has seen."""
     driver = subprocess.Popen(
-        [sys.executable, TESTS / "struct_driver.py"],
+        [sys.executable, SUPPORT / "struct_driver.py"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         bufsize=0,

@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 import math
 import re
-import sys
 import time
 from dataclasses import asdict
-from pathlib import Path
 
 import numpy as np
 import pytest
+from write_docs import PAGE, figures_of
 
 from drake_haptics.evaluation.benchmark.benchmark import BenchFigures, Effort
 from drake_haptics.evaluation.benchmark.loop import runs
@@ -27,9 +26,6 @@ from drake_haptics.evaluation.benchmark.loop.runs import make_loops, run_loops
 from drake_haptics.evaluation.benchmark.loop.table import loop_tables
 from drake_haptics.evaluation.benchmark.loop.this_package import NativeLoop, ThisLoop
 from drake_haptics.evaluation.benchmark.report import make_tables
-
-sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
-from write_docs import PAGE, figures_of
 
 # The spoon comes in and begins to scrape.
 _SECONDS = 1.2

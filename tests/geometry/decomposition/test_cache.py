@@ -136,6 +136,7 @@ def test_old_entries_and_abandoned_files_go(folder, mesh, monkeypatch):
     assert sum(path.stat().st_size for path in kept) <= total
 
 
+SUPPORT = str(Path(__file__).parents[2] / "support")
 WRITER = textwrap.dedent(
     """
     import sys
@@ -153,7 +154,7 @@ WRITER = textwrap.dedent(
 
 def start_writer(rounds):
     process = subprocess.Popen(
-        [sys.executable, "-c", WRITER, str(rounds), str(Path(__file__).parent)],
+        [sys.executable, "-c", WRITER, str(rounds), SUPPORT],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -9,7 +9,7 @@ import pytest
 from drake_haptics.scene.schema import Hand
 from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
 
-PAGE = Path(__file__).parents[1] / "docs" / "device-twin.md"
+PAGE = Path(__file__).parents[3] / "docs" / "device-twin.md"
 COLUMNS = (
     "stiffness_N_per_m",
     "damping_Ns_per_m",

@@ -1,4 +1,4 @@
-"""The coupling system; its law has its own test (test_core_virtual_coupling)."""
+"""The coupling system; its law has its own test (tests/core/tool)."""
 
 import numpy as np
 import pytest
