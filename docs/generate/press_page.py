@@ -13,7 +13,7 @@ from press_rig import GAINS, HOLD_S, LARGEST_FORCE_N, START_M
 
 PAGE = Path(__file__).parents[2] / "docs" / "no-fall-through.md"
 GENERATOR = Path(__file__).with_name("press_table.py")
-COMMAND = f"python tests/characterization/{GENERATOR.name}"
+COMMAND = f"python docs/generate/{GENERATOR.name}"
 
 # What the tool of soft gains sinks through: walls thinner than it sinks in.
 THIN = ("cup", "spoon")
