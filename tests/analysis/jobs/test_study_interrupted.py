@@ -20,7 +20,6 @@ from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.analysis.jobs.study import run_study
 
 SUPPORT = Path(__file__).parents[2] / "support"
-
 SERIAL = SerialExecutor()
 
 
@@ -28,8 +27,6 @@ PROGRAM = """
 import sys
 from study_functions import Journal
 from drake_haptics.analysis.jobs.study import run_study
-
-SUPPORT = Path(__file__).parents[2] / "support"
 
 if __name__ == "__main__":
     journal, store, *tasks = sys.argv[1:]
