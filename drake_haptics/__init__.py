@@ -28,14 +28,14 @@ if TYPE_CHECKING:
     )
     from drake_haptics.authoring.scene_from_meshes import make_scene_for_meshes
     from drake_haptics.common.errors import MeshError, SceneError, UserError
-    from drake_haptics.common.tick_clock import TickClock
+    from drake_haptics.common.files import get_include
+    from drake_haptics.common.real_time import TickClock
     from drake_haptics.device.backend import (
         DeviceBackend,
         DeviceCommand,
         DeviceError,
         DeviceReading,
     )
-    from drake_haptics.device.include_dir import get_include
     from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
     from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
     from drake_haptics.loop.builder import (
@@ -158,7 +158,7 @@ _MODULE_OF = {
     "Scene": "scene.schema",
     "SceneError": "common.errors",
     "SceneTracker": "_core",
-    "TickClock": "common.tick_clock",
+    "TickClock": "common.real_time",
     "TickRecorder": "tick_log.tick_recorder",
     "UserError": "common.errors",
     "carry_on": "simulation.transfer_state",
@@ -166,7 +166,7 @@ _MODULE_OF = {
     "explain_tick": "simulation.explain",
     "find_mesh": "scene.library",
     "find_scene": "scene.library",
-    "get_include": "device.include_dir",
+    "get_include": "common.files",
     "list_meshes": "scene.library",
     "list_scenes": "scene.library",
     "live_keys": "simulation.live_key",

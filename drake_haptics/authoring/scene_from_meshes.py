@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_haptics.common.errors import SceneError
-from drake_haptics.common.package_url import resolve_package_url
+from drake_haptics.common.files import resolve_package_url
 from drake_haptics.geometry.mesh.centering import center, find_origin_beside
 from drake_haptics.geometry.mesh.height_map import TouchMap
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh

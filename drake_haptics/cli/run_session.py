@@ -26,7 +26,7 @@ from drake_haptics.cockpit.taken_device import (
     TakenDevice,
     take_device,
 )
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceBackend, DeviceError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.open_device import NoPageError, open_device

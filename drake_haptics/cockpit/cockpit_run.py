@@ -15,7 +15,7 @@ from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import SceneChanges
 from drake_haptics.cockpit.segments import Segments
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from drake_haptics import _core
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceReading, Fault, GateState
 from drake_haptics.device.driver_socket import DriverSocket, Peer
 from drake_haptics.device.driver_statistics import DriverStatistics

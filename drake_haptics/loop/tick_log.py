@@ -7,7 +7,7 @@ from importlib.metadata import version
 from pydrake.common.yaml import yaml_dump_typed
 from pydrake.systems.framework import DiagramBuilder
 
-from drake_haptics.common.package_url import resolve_package_url
+from drake_haptics.common.files import resolve_package_url
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.loop.haptic_loop import HapticLoop
 from drake_haptics.loop.simulated_device import make_hand_path, place_base

@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from drake_haptics.common.errors import MeshError, SceneError
-from drake_haptics.common.missing_file import describe_missing
-from drake_haptics.common.package_url import resolve_package_url
+from drake_haptics.common.files import describe_missing, resolve_package_url
 from drake_haptics.scene.device_preset import is_preset_file
 
 if TYPE_CHECKING:

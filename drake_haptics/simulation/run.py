@@ -16,8 +16,7 @@ from pydrake.systems.analysis import (
 )
 from pydrake.systems.framework import Context, EventStatus
 
-from drake_haptics.common.realtime_priority import realtime_priority
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock, realtime_priority
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.skin import question_depth

@@ -9,7 +9,7 @@ from typing import TypedDict
 import numpy as np
 
 from drake_haptics.common.one_line import count
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
 from drake_haptics.systems.device.display_force_hold import LIMITED, NOT_FINITE

@@ -18,7 +18,7 @@ from pydrake.systems.framework import Context
 from drake_haptics.cockpit import cockpit
 from drake_haptics.cockpit.cockpit_run import CockpitRun
 from drake_haptics.common.errors import UserError
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.evaluation.measuring.valgrind import (
     count_by_library,
     counted,

@@ -13,7 +13,7 @@ import sys
 import time
 from contextlib import suppress
 
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.open_device import open_device
 from drake_haptics.scene.library import find_scene

@@ -1,7 +1,8 @@
-"""Files that are named by the package they come with, as `package://drake/...`."""
+"""Finds files that packages ship, and describes those that are missing."""
 
 from __future__ import annotations
 
+import difflib
 import os
 from pathlib import Path
 
@@ -40,3 +41,27 @@ def resolve_package_url(file: str | os.PathLike[str]) -> str:
         return str(Path(packages.GetPath(name)) / rest)
     except RuntimeError as error:
         raise MeshError(f"{file}: {error}") from error
+
+
+def describe_missing(path: str | os.PathLike[str]) -> str:
+    """Returns where a file was looked for, and which one may have been meant."""
+    path = Path(path)
+    where = "" if path.is_absolute() else f"; looked in {Path.cwd() / path.parent}"
+    words = f"{path}: no such file{where}"
+    if not path.parent.is_dir():
+        return f"{path}: no such file: there is no folder {path.parent}"
+    try:
+        names = [item.name for item in path.parent.iterdir()]
+    except OSError:  # A folder that may be entered, but not listed.
+        return words
+    near = difflib.get_close_matches(path.name, names, n=1)
+    return f"{words}; did you mean '{near[0]}'?" if near else words
+
+
+def get_include() -> str:
+    """Returns the folder to give to a C or C++ compiler with `-I`.
+
+    It holds `drake_haptics/wire.h` (the packets) and `drake_haptics/gate.h` (what a
+    driver obeys), as `numpy.get_include` does for NumPy's.
+    """
+    return str(Path(__file__).parents[1] / "include")

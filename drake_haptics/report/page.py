@@ -1,8 +1,11 @@
-"""A table of figures, before it is known where it is shown."""
+"""Tables and file names of the pages that commands write."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
+
+from drake_haptics.common.errors import UserError
 
 
 @dataclass(frozen=True)
@@ -32,3 +35,16 @@ class Table:
 
 def _row(cells: tuple[str, ...]) -> str:
     return f"| {' | '.join(cells)} |"
+
+
+def check_page_path(path: Path) -> None:
+    """Checks that page and picture are two files.
+
+    Raises:
+        UserError: The path has the picture's suffix.
+    """
+    if path.suffix == ".png":
+        raise UserError(
+            f"the page must not be called {path.name}: its picture will be. Give a"
+            " name that ends with .html"
+        )

@@ -1,9 +1,11 @@
-"""Paces a loop by the clock, and tells how late its ticks are."""
+"""Runs a loop in real time: paces its ticks, and raises the priority of its thread."""
 
 from __future__ import annotations
 
+import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -11,6 +13,8 @@ from drake_haptics.common.one_line import count
 
 # Percentiles are those of the latest ticks: a minute at 1 kHz.
 _MAX_RECORDS = 1 << 16
+# Below the servo's thread (core/device/realtime.cc), which must not wait for the loop.
+_ABOVE_LEAST = 5
 
 
 class TickClock:
@@ -103,3 +107,34 @@ class TickClock:
         newest = (self._ticks - 1 - np.arange(count)) % _MAX_RECORDS
         p50, p99, p99_9 = np.percentile(self._late_s[newest], [50.0, 99.0, 99.9])
         return (float(p50), float(p99), float(p99_9))
+
+
+@contextmanager
+def realtime_priority() -> Iterator[bool]:
+    """Asks for a real-time priority of the thread, and gives it back at the end.
+
+    Between its ticks a loop sleeps, and all else runs. Threads and processes that are
+    started meanwhile have no such priority.
+
+    Yields:
+        Whether it was granted. It is not without the right to it (on Linux an `rtprio`
+        in /etc/security/limits.conf), on one processor alone, which a loop that is too
+        slow would keep to itself, or on systems without such a call.
+    """
+    if (os.cpu_count() or 1) < 2 or not hasattr(os, "sched_setscheduler"):
+        yield False
+        return
+    # Of the calling thread, in spite of the names of these functions.
+    before = os.sched_getscheduler(0), os.sched_getparam(0)
+    priority = os.sched_get_priority_min(os.SCHED_RR) + _ABOVE_LEAST
+    try:
+        os.sched_setscheduler(
+            0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(priority)
+        )
+    except PermissionError:
+        yield False
+        return
+    try:
+        yield True
+    finally:
+        os.sched_setscheduler(0, *before)
