@@ -12,7 +12,7 @@ from pydrake.systems.framework import (
     OutputPort,
 )
 
-from drake_haptics.device.gate_status import GateStatus
+from drake_haptics.device.gate import GateStatus
 from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status
 
 

@@ -20,9 +20,13 @@ from drake_haptics.device.backend import (
     DeviceReading,
     LinkStatus,
 )
-from drake_haptics.device.haply.exchange import SILENT_NS, HaplyExchange
-from drake_haptics.device.haply.messages import ASK_FOR_DEVICES, ForceField
-from drake_haptics.device.local_gate import LocalGate
+from drake_haptics.device.gate import LocalGate
+from drake_haptics.device.haply.exchange import (
+    ASK_FOR_DEVICES,
+    SILENT_NS,
+    ForceField,
+    HaplyExchange,
+)
 
 _RETRY_S = 0.1
 _CONNECT_S = 1.0
