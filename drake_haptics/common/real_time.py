@@ -1,4 +1,4 @@
-"""Runs a loop in real time: paces its ticks, raises its priority, ends it at signals."""
+"""Runs a loop in real time: paces it, raises its priority, and ends it at signals."""
 
 from __future__ import annotations
 

@@ -11,6 +11,7 @@ from markdown_page import find_spans
 
 import drake_haptics
 from drake_haptics import _core
+from drake_haptics.device import gate
 from drake_haptics.scene.schema import Scene
 
 DOCS = Path(__file__).parents[2] / "docs"
