@@ -22,7 +22,7 @@ from drake_haptics import (
     load_mesh,
     make_device_port,
 )
-from drake_haptics.geometry.mesh.mass_properties import make_tool_dynamics
+from drake_haptics.geometry.mesh.mesh import make_tool_dynamics
 from drake_haptics.scene.schema import Contact, Coupling
 from drake_haptics.systems import ContactObject
 

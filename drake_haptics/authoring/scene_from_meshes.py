@@ -9,9 +9,8 @@ from numpy.typing import ArrayLike
 
 from drake_haptics.common.errors import SceneError
 from drake_haptics.common.files import resolve_package_url
-from drake_haptics.geometry.mesh.centering import center, find_origin_beside
-from drake_haptics.geometry.mesh.height_map import TouchMap
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+from drake_haptics.geometry.mesh.placement import TouchMap, center, find_origin_beside
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.mesh.units import METRES_PER_UNIT, guess_unit
 from drake_haptics.scene.schema import (

@@ -19,7 +19,7 @@ from drake_haptics.common.one_line import count
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.geometry.decomposition.decompose import Decomposition
-from drake_haptics.geometry.mesh.mass_properties import make_tool_dynamics
+from drake_haptics.geometry.mesh.mesh import make_tool_dynamics
 from drake_haptics.loop.contact import (
     add_contact_systems,
     connect_by_name,
@@ -138,7 +138,7 @@ def AddHapticLoop(
         device: Not yet in a builder, as of `make_device_port`.
         tool: Pieces of the tool, in its frame T: `decompose(mesh).core`.
         tool_dynamics: Mass and inertia of the tool, as of
-            `drake_haptics.geometry.mesh.mass_properties.make_tool_dynamics`.
+            `drake_haptics.geometry.mesh.mesh.make_tool_dynamics`.
         objects: What the tool meets.
         contact: Tolerance, clustering and gains.
         coupling: Gains between handle and tool; it yields at the device's limits.

@@ -9,8 +9,8 @@ import numpy as np
 from drake_haptics.geometry.mesh.checks import (
     LARGEST_USUAL_EXTENT_M,
     SMALLEST_USUAL_EXTENT_M,
+    question_tolerance,
 )
-from drake_haptics.geometry.mesh.plausible_size import question_tolerance
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.mesh.units import METRES_PER_UNIT, guess_unit
 from drake_haptics.rendering.bodies import RenderedBody

@@ -9,7 +9,7 @@ from pydrake.geometry import Meshcat
 
 from drake_haptics._core import ConvexPolytope
 from drake_haptics.common.colors import VIRTUAL_FACET, piece_color
-from drake_haptics.geometry.decomposition.surfaces import each_facet
+from drake_haptics.geometry.decomposition.pieces import each_facet
 
 # So many facets are sent in one go: what a tick does not notice, and a page that
 # has some hundred thousand of them still takes.

@@ -1,14 +1,19 @@
-"""The height at which a mesh, lowered straight down, first touches another."""
+"""Places meshes: centers one at its origin, and lowers one until it touches another."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.report import Finding, Severity, length
 
 # The smaller of the two meshes is this many nodes wide, unless that makes too many.
 _NODES_ACROSS = 100
 _MAX_NODES = 1 << 20
+# Share of the diagonal: an origin that is farther beside the mesh is there by chance.
+_FAR_ORIGIN = 0.1
 
 
 class TouchMap:
@@ -123,3 +128,54 @@ def _raise_to_triangle(
     plane = z[0] + v * (z[1] - z[0]) + w * (z[2] - z[0])
     block = heights[first[0] : last[0] + 1, first[1] : last[1] + 1]
     np.maximum(block, np.where(inside, plane, -np.inf), out=block)
+
+
+def center(mesh: Mesh) -> Mesh:
+    """Returns the mesh moved so that the middle of its box is at the origin.
+
+    Its report has the finding "centered", which tells by how much it moved.
+
+    Args:
+        mesh: From `load_mesh` or `Mesh.from_arrays`.
+    """
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    middle = (low + high) / 2.0
+    # Rounding may join two corners, so the mesh is taken in again.
+    moved = Mesh.from_arrays(
+        mesh.vertices - middle, mesh.triangles, name=mesh.report.source
+    )
+    place = ", ".join(f"{x:.4g}" for x in middle)
+    finding = Finding(
+        "centered",
+        Severity.NOTE,
+        1,
+        f"the middle of the mesh was at ({place}) m",
+        "moved to the origin",
+    )
+    report = replace(
+        moved.report,
+        metres_per_unit=mesh.report.metres_per_unit,
+        findings=(*mesh.report.findings, finding),
+    )
+    return replace(moved, report=report)
+
+
+def find_origin_beside(mesh: Mesh) -> float | None:
+    """Returns how far beside the mesh's box the origin is, m.
+
+    None where it is in the box or near it, as that of a tool that is held at its end.
+    """
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    beside_m = float(np.linalg.norm(np.maximum(np.maximum(low, -high), 0.0)))
+    is_far = beside_m > _FAR_ORIGIN * float(np.linalg.norm(high - low))
+    return beside_m if is_far else None
+
+
+def describe_origin_beside(name: str, beside_m: float) -> str:
+    """Returns in words that a mesh has its origin far beside it.
+
+    Args:
+        name: Of its file.
+        beside_m: As `find_origin_beside` returns it, m.
+    """
+    return f"the origin of {name} is {length(beside_m)} beside the mesh"
