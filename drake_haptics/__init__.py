@@ -56,7 +56,7 @@ if TYPE_CHECKING:
         list_meshes,
         list_scenes,
     )
-    from drake_haptics.scene.loading import load_scene
+    from drake_haptics.scene.scene_file import load_scene
     from drake_haptics.scene.schema import Scene
     from drake_haptics.simulation.callback_timer import CallbackTimer
     from drake_haptics.simulation.energy import EnergyLedger
@@ -171,7 +171,7 @@ _MODULE_OF = {
     "list_scenes": "scene.library",
     "live_keys": "simulation.live_key",
     "load_mesh": "geometry.mesh.mesh",
-    "load_scene": "scene.loading",
+    "load_scene": "scene.scene_file",
     "make_device_port": "loop.device_placement",
     "make_log_header": "loop.tick_log",
     "make_scene_for_meshes": "authoring.scene_from_meshes",

@@ -27,7 +27,7 @@ from drake_haptics.bounds.held_handle import calc_force_delay
 from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     Encoder,
     ForceDelay,

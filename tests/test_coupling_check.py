@@ -6,7 +6,7 @@ import pytest
 
 from drake_haptics import _core
 from drake_haptics.bounds.coupling import HeldHandle, check_coupling
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Coupling
 from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, NOMINAL_GRIP
 

@@ -13,8 +13,7 @@ from scipy.spatial.transform import Rotation
 from drake_haptics import EnergyLedger
 from drake_haptics.geometry.mesh.mesh import calc_mass_properties
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.effects import Braking, Friction, Gravity
-from drake_haptics.scene.schema import Effects
+from drake_haptics.scene.schema import Braking, Effects, Friction, Gravity
 from drake_haptics.simulation.run import make_simulator, run
 
 H = 1e-3

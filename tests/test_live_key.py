@@ -3,7 +3,7 @@
 from dataclasses import fields, replace
 
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     Contact,
     Coupling,

@@ -16,7 +16,7 @@ from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics
 

@@ -32,7 +32,7 @@ from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.open_device import NoPageError, open_device
 from drake_haptics.loop.tick_log import make_log_header
 from drake_haptics.scene.schema import Scene
-from drake_haptics.scene.skin import calc_skin_speed
+from drake_haptics.scene.validation import calc_skin_speed
 from drake_haptics.simulation.callback_timer import CallbackTimer
 from drake_haptics.simulation.device_monitor import DeviceWatch
 from drake_haptics.simulation.explain import Part, explain_tick

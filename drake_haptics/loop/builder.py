@@ -45,8 +45,7 @@ from drake_haptics.scene.schema import (
     Scene,
     Tool,
 )
-from drake_haptics.scene.skin import calc_skin_speed
-from drake_haptics.scene.validation import SceneWarning, check_values
+from drake_haptics.scene.validation import SceneWarning, calc_skin_speed, check_values
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.contact.load_shedding import LoadShedding, TickEnd, TickMeter

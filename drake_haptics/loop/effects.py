@@ -17,7 +17,7 @@ from drake_haptics import _core
 from drake_haptics.bounds.sampled_spring import calc_returnable_energy
 from drake_haptics.loop.contact import connect_by_name
 from drake_haptics.loop.haptic_loop import EffectSystems
-from drake_haptics.scene.effects import (
+from drake_haptics.scene.schema import (
     Braking,
     Effects,
     Friction,

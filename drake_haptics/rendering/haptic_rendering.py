@@ -12,7 +12,7 @@ from drake_haptics.loop.coupling import make_coupling_gains
 from drake_haptics.rendering.bodies import RenderedBody
 from drake_haptics.rendering.wiring import RenderingWiring
 from drake_haptics.scene.schema import Contact, Coupling, Effects, Material
-from drake_haptics.scene.skin import calc_skin_speed
+from drake_haptics.scene.validation import calc_skin_speed
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 

@@ -19,8 +19,7 @@ from pydrake.systems.framework import Context, EventStatus
 from drake_haptics.common.real_time import TickClock, realtime_priority
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.scene.skin import question_depth
-from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.scene.validation import SceneWarning, question_depth
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.simulation.statistics import RunStatistics
 

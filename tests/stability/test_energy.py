@@ -6,10 +6,9 @@ from pathlib import Path
 import pytest
 
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.effects import Braking, Friction, Gravity
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
-from drake_haptics.scene.schema import Effects
+from drake_haptics.scene.scene_file import load_scene
+from drake_haptics.scene.schema import Braking, Effects, Friction, Gravity
 from drake_haptics.simulation.run import run
 
 sys.path.insert(0, str(Path(__file__).parents[1]))

@@ -17,7 +17,7 @@ from drake_haptics.evaluation.accuracy.recorded_motion import (
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.geometry.mesh.mesh import calc_mass_properties
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Scene
 
 
