@@ -38,15 +38,12 @@ if TYPE_CHECKING:
     )
     from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
     from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
-    from drake_haptics.loop.builder import (
-        AddHapticLoop,
-        BuildHapticDiagram,
-        HapticDiagram,
-    )
+    from drake_haptics.loop.add_haptic_loop import AddHapticLoop
+    from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
     from drake_haptics.loop.device_placement import make_device_port
     from drake_haptics.loop.haptic_loop import ConnectMovingObject, HapticLoop
     from drake_haptics.loop.open_device import open_device
-    from drake_haptics.loop.tick_log import make_log_header
+    from drake_haptics.loop.outputs import make_log_header
     from drake_haptics.rendering.add_haptic_rendering import AddHapticRendering
     from drake_haptics.rendering.applied_force import AddAppliedSpatialForce
     from drake_haptics.rendering.haptic_rendering import HapticRendering
@@ -128,7 +125,7 @@ __all__ = [
 
 _MODULE_OF = {
     "AddAppliedSpatialForce": "rendering.applied_force",
-    "AddHapticLoop": "loop.builder",
+    "AddHapticLoop": "loop.add_haptic_loop",
     "AddHapticRendering": "rendering.add_haptic_rendering",
     "BuildHapticDiagram": "loop.builder",
     "CallbackTimer": "simulation.callback_timer",
@@ -173,7 +170,7 @@ _MODULE_OF = {
     "load_mesh": "geometry.mesh.mesh",
     "load_scene": "scene.scene_file",
     "make_device_port": "loop.device_placement",
-    "make_log_header": "loop.tick_log",
+    "make_log_header": "loop.outputs",
     "make_scene_for_meshes": "authoring.scene_from_meshes",
     "make_simulator": "simulation.run",
     "open_device": "loop.open_device",

@@ -15,7 +15,7 @@ from drake_haptics import (
 )
 from drake_haptics.common.files import resolve_package_url
 from drake_haptics.geometry.parsing.model_file import load_model_mesh
-from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.loop.outputs import make_log_header
 from drake_haptics.scene.schema import EnvironmentObject, Hand, HandPath, Tool, Waypoint
 
 MODELS = Path(__file__).parents[1] / "models"

@@ -23,7 +23,7 @@ from drake_haptics.cli.scene_options import (
     write_call,
 )
 from drake_haptics.common.real_time import stop_on_signals
-from drake_haptics.loop.simulated_driver import make_simulated_driver
+from drake_haptics.loop.drivers import make_simulated_driver
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.DEVICE)

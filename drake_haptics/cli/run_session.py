@@ -30,7 +30,7 @@ from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceBackend, DeviceError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.open_device import NoPageError, open_device
-from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.loop.outputs import make_log_header
 from drake_haptics.scene.schema import Scene
 from drake_haptics.scene.validation import calc_skin_speed
 from drake_haptics.simulation.callback_timer import CallbackTimer

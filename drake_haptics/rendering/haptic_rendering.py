@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram, InputPort, OutputPort
 
+from drake_haptics.loop.add_haptic_loop import make_coupling_gains
 from drake_haptics.loop.contact import connect_by_name
-from drake_haptics.loop.coupling import make_coupling_gains
 from drake_haptics.rendering.bodies import RenderedBody
 from drake_haptics.rendering.wiring import RenderingWiring
 from drake_haptics.scene.schema import Contact, Coupling, Effects, Material

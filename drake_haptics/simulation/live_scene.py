@@ -8,9 +8,9 @@ from typing import cast
 from pydrake.systems.framework import Context
 
 from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.loop.add_haptic_loop import make_coupling_gains
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.contact import find_contact_gains, find_query_tolerance
-from drake_haptics.loop.coupling import make_coupling_gains
 from drake_haptics.scene.schema import Contact, Coupling, Scene
 from drake_haptics.systems.contact.contact_clustering import (
     ClusteringMethod,

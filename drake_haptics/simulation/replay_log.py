@@ -15,7 +15,7 @@ from pydrake.systems.framework import Context, EventStatus
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
-from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.loop.outputs import make_log_header
 from drake_haptics.scene.schema import Scene
 from drake_haptics.scene.validation import check_values
 from drake_haptics.scene.yaml_loading import check_keys

@@ -1,21 +1,31 @@
-"""A scene's simulated arm in its simulated hand, as the hardware of a driver."""
+"""Makes devices of arms: of a scene's simulated arm over UDP, of any arm over LCM."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
+from pydrake.lcm import DrakeLcm
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
+from pydrake.systems.framework import DiagramBuilder, System
+from pydrake.systems.lcm import LcmPublisherSystem, LcmSubscriberSystem
 
 from drake_haptics._core import FrameChange
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.driver import DeviceDriver
+from drake_haptics.device.lcm.haptic_messages import (
+    lcmt_haptic_command,
+    lcmt_haptic_status,
+)
+from drake_haptics.device.lcm.lcm_device import COMMAND_CHANNEL, STATUS_CHANNEL
 from drake_haptics.loop.simulated_device import (
     make_hand_path,
     make_simulated_device,
     place_base,
 )
 from drake_haptics.scene.schema import Scene
+from drake_haptics.systems.lcm.haptic_command_receiver import HapticCommandReceiver
+from drake_haptics.systems.lcm.haptic_status_sender import HapticStatusSender
 
 
 class SimulatedDriverArm:
@@ -123,3 +133,62 @@ def make_simulated_driver(
         bind=bind,
         port=port,
     )
+
+
+def AddLcmDriver(
+    builder: DiagramBuilder,
+    arm: System,
+    lcm: DrakeLcm,
+    *,
+    period_s: float,
+    max_force_N: float,
+    max_torque_Nm: float,
+) -> HapticCommandReceiver:
+    """Adds what makes a device of an arm, behind the gate, for hosts on LCM.
+
+    Run the diagram in real time: the time of its context is the gate's clock.
+
+    Args:
+        builder: Has the arm, and Drake's `LcmInterfaceSystem` of the same `lcm`.
+        arm: A backend as `HapticDevice` documents it; its world is the base frame B.
+        lcm: Where to send and listen.
+        period_s: The device's tick, s.
+        max_force_N: Largest force ever shown, N.
+        max_torque_Nm: Largest torque ever shown, N·m.
+
+    Returns:
+        The gate, whose output `gate_status` tells how it stands.
+
+    Raises:
+        ValueError: The period or a limit is out of range.
+    """
+    gate = builder.AddNamedSystem(
+        "haptic_command_receiver",
+        HapticCommandReceiver(
+            period_s, max_force_N=max_force_N, max_torque_Nm=max_torque_Nm
+        ),
+    )
+    sender = builder.AddNamedSystem(
+        "haptic_status_sender", HapticStatusSender(period_s)
+    )
+    commands = builder.AddNamedSystem(
+        "haptic_command_subscriber",
+        LcmSubscriberSystem.Make(COMMAND_CHANNEL, lcmt_haptic_command, lcm),
+    )
+    statuses = builder.AddNamedSystem(
+        "haptic_status_publisher",
+        LcmPublisherSystem.Make(STATUS_CHANNEL, lcmt_haptic_status, lcm, period_s),
+    )
+    X_BH, V_BH = arm.GetOutputPort("X_WH"), arm.GetOutputPort("V_WH")
+    for output, input in [
+        (commands.get_output_port(), gate.get_command_input_port()),
+        (X_BH, gate.get_handle_pose_input_port()),
+        (V_BH, gate.get_handle_velocity_input_port()),
+        (gate.get_wrench_output_port(), arm.GetInputPort("F_applied")),
+        (X_BH, sender.get_handle_pose_input_port()),
+        (V_BH, sender.get_handle_velocity_input_port()),
+        (gate.get_gate_status_output_port(), sender.get_gate_status_input_port()),
+        (sender.get_status_output_port(), statuses.get_input_port()),
+    ]:
+        builder.Connect(output, input)
+    return gate
