@@ -44,8 +44,10 @@ if TYPE_CHECKING:
     from drake_haptics.loop.haptic_loop import ConnectMovingObject, HapticLoop
     from drake_haptics.loop.open_device import open_device
     from drake_haptics.loop.outputs import make_log_header
-    from drake_haptics.rendering.add_haptic_rendering import AddHapticRendering
-    from drake_haptics.rendering.applied_force import AddAppliedSpatialForce
+    from drake_haptics.rendering.add_haptic_rendering import (
+        AddAppliedSpatialForce,
+        AddHapticRendering,
+    )
     from drake_haptics.rendering.haptic_rendering import HapticRendering
     from drake_haptics.scene.library import (
         find_mesh,
@@ -55,11 +57,9 @@ if TYPE_CHECKING:
     )
     from drake_haptics.scene.scene_file import load_scene
     from drake_haptics.scene.schema import Scene
-    from drake_haptics.simulation.callback_timer import CallbackTimer
     from drake_haptics.simulation.energy import EnergyLedger
-    from drake_haptics.simulation.explain import explain_tick
-    from drake_haptics.simulation.live_key import live_keys
-    from drake_haptics.simulation.live_scene import write_live_values
+    from drake_haptics.simulation.live_values import live_keys, write_live_values
+    from drake_haptics.simulation.profiling import CallbackTimer, explain_tick
     from drake_haptics.simulation.replay_log import replay
     from drake_haptics.simulation.run import RunError, make_simulator, run
     from drake_haptics.simulation.transfer_state import carry_on
@@ -124,11 +124,11 @@ __all__ = [
 ]
 
 _MODULE_OF = {
-    "AddAppliedSpatialForce": "rendering.applied_force",
+    "AddAppliedSpatialForce": "rendering.add_haptic_rendering",
     "AddHapticLoop": "loop.add_haptic_loop",
     "AddHapticRendering": "rendering.add_haptic_rendering",
     "BuildHapticDiagram": "loop.builder",
-    "CallbackTimer": "simulation.callback_timer",
+    "CallbackTimer": "simulation.profiling",
     "ConnectMovingObject": "loop.haptic_loop",
     "Contact": "_core",
     "ContactSet": "_core",
@@ -160,13 +160,13 @@ _MODULE_OF = {
     "UserError": "common.errors",
     "carry_on": "simulation.transfer_state",
     "decompose": "geometry.decomposition.decompose",
-    "explain_tick": "simulation.explain",
+    "explain_tick": "simulation.profiling",
     "find_mesh": "scene.library",
     "find_scene": "scene.library",
     "get_include": "common.files",
     "list_meshes": "scene.library",
     "list_scenes": "scene.library",
-    "live_keys": "simulation.live_key",
+    "live_keys": "simulation.live_values",
     "load_mesh": "geometry.mesh.mesh",
     "load_scene": "scene.scene_file",
     "make_device_port": "loop.device_placement",
@@ -177,7 +177,7 @@ _MODULE_OF = {
     "read_tick_log": "tick_log.tick_log",
     "replay": "simulation.replay_log",
     "run": "simulation.run",
-    "write_live_values": "simulation.live_scene",
+    "write_live_values": "simulation.live_values",
 }
 
 

@@ -17,7 +17,7 @@ from drake_haptics.analysis.held_scene import (
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import Coupling, HandPath, Scene, Waypoint
-from drake_haptics.simulation.live_scene import write_live_values
+from drake_haptics.simulation.live_values import write_live_values
 from drake_haptics.systems.arm.arm_inverse_kinematics import (
     UnreachableError,
     solve_arm_positions,

@@ -81,7 +81,7 @@ def run(
             each tick. Only of a simulated device: what any other does between two
             readings is not known.
         on_tick: Called after every tick with the diagram's context, of which it may
-            change parameters alone, as `drake_haptics.simulation.live_scene` does.
+            change parameters alone, as `drake_haptics.simulation.live_values` does.
             Its time counts in the tick. Where it returns True the run ends.
         context: Where to go on; becomes the simulator's. Nothing in it is initialized.
             At the scene's start where not given.
