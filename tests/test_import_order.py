@@ -67,13 +67,13 @@ def test_every_kind_of_import_is_seen(tmp_path):
         "    from drake_haptics.report import table\n"
     )
     (common / "poses.py").write_text(
-        "def late():\n    import drake_haptics.report.page\n"
+        "def late():\n    import drake_haptics.report.table\n"
     )
     (report / "table.py").write_text(
         "from drake_haptics.common.words import say\n"
         "from drake_haptics.report.figure import draw\n"
     )
-    (report / "figure.py").write_text("import drake_haptics.report.page as table\n")
+    (report / "figure.py").write_text("import drake_haptics.report.table as table\n")
     modules = find_modules(tmp_path)
     imports = find_imports(modules)
     words, poses = f"{PACKAGE}.common.words", f"{PACKAGE}.common.poses"
