@@ -12,8 +12,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from drake_haptics.systems.arm.arm_twin import ArmTwin
     from drake_haptics.systems.arm.force_delay import ForceDelay
-    from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, HandGrip
-    from drake_haptics.systems.arm.hand_impedance import HandImpedance
+    from drake_haptics.systems.arm.hand_impedance import (
+        HAND_GRIPS,
+        HandGrip,
+        HandImpedance,
+    )
     from drake_haptics.systems.arm.hand_path import HandPath
     from drake_haptics.systems.arm.joint_encoder import JointEncoder
     from drake_haptics.systems.arm.joint_friction import JointFriction

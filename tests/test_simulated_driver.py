@@ -11,7 +11,7 @@ from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Pose, Waypoint
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 GRIP = HAND_GRIPS["firm"]
 

@@ -23,7 +23,7 @@ from drake_haptics.scene.schema import (
     Tool,
     Waypoint,
 )
-from drake_haptics.systems.arm.hand_grip import NOMINAL_GRIP
+from drake_haptics.systems.arm.hand_impedance import NOMINAL_GRIP
 
 _PRESS_N = 2.0
 _LARGEST_TOOL_M = 1.0

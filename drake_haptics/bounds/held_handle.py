@@ -20,7 +20,7 @@ from drake_haptics.bounds.coupling import (
 from drake_haptics.common.errors import SceneError
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
 from drake_haptics.scene.schema import Scene
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, LOOSEST_GRIP, HandGrip
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS, LOOSEST_GRIP, HandGrip
 from drake_haptics.systems.arm.simulated_arm import make_arm_plant, weld_hand
 from drake_haptics.systems.device.haptic_device import HapticDevice
 

@@ -37,7 +37,7 @@ from drake_haptics.simulation.device_monitor import DeviceWatch
 from drake_haptics.simulation.profiling import CallbackTimer, Part, explain_tick
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
+from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 

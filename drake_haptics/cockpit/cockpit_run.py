@@ -22,7 +22,7 @@ from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
+from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.web.camera import look_from_the_front
 from drake_haptics.web.live_page import LivePage
 

@@ -12,11 +12,10 @@ from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
 from drake_haptics.scene.schema import HandPath as ScenePath
 from drake_haptics.scene.schema import Pose, Scene, Twin
-from drake_haptics.systems.arm.arm_inverse_kinematics import UnreachableError
 from drake_haptics.systems.arm.arm_twin import ArmTwin
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.arm.hand_path import HandPath
-from drake_haptics.systems.arm.simulated_arm import SimulatedArm
+from drake_haptics.systems.arm.simulated_arm import SimulatedArm, UnreachableError
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 # The path is checked against the workspace at this many points of it.

@@ -12,7 +12,7 @@ from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.systems.arm.arm_inverse_kinematics import (
+from drake_haptics.systems.arm.simulated_arm import (
     UnreachableError,
     solve_arm_positions,
 )

@@ -8,7 +8,7 @@ import pytest
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import run
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from box_scenes import TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate
