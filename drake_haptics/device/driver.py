@@ -52,7 +52,7 @@ def read_clock_ns() -> int:
 
 
 class DrivenArm(Protocol):
-    """What a driver asks of the arm that it drives."""
+    """The interface of an arm that a driver drives."""
 
     def start(self) -> None:
         """Called once, before the first tick in which a wrench may be shown."""
@@ -77,7 +77,7 @@ class DeviceDriver:
     protocol is that of docs/device-protocol.md.
 
     Args:
-        arm: What it drives, at rest.
+        arm: Arm that it drives, at rest.
         max_force_N: Largest force that is ever shown, N.
         max_torque_Nm: Largest torque, N·m.
         max_ttl_s: A command that is not renewed is shown no longer than this, s.
@@ -87,7 +87,7 @@ class DeviceDriver:
         clock_ns: Reads a clock that never goes back, nor rests with the machine, ns.
 
     Raises:
-        UserError: The address or port cannot be had.
+        UserError: The address or port is not available.
         ValueError: A limit or the rate is out of range.
     """
 
@@ -127,7 +127,7 @@ class DeviceDriver:
 
     @property
     def address(self) -> Peer:
-        """Where it listens: host and port."""
+        """The host and port at which it listens."""
         return self._socket.address
 
     @property
@@ -139,17 +139,17 @@ class DeviceDriver:
 
     @property
     def pace(self) -> TickClock:
-        """What paces the ticks."""
+        """The pacer of the ticks."""
         return self._pace
 
     @property
     def reading(self) -> DeviceReading:
-        """What the device last told of itself."""
+        """The last reading of the device."""
         return self._reading
 
     @property
     def packets(self) -> dict[str, int]:
-        """How many packets came, by the gate's verdict on them."""
+        """The number of packets by the gate's verdict on them."""
         return {name: count for name, count in self._gate.counts.items() if count}
 
     def stop(self) -> None:
@@ -307,7 +307,7 @@ class DriverStatistics:
         """Counts a tick.
 
         Args:
-            reading: Of the device, with the wrench that it was made to show.
+            reading: Reading of the device, with the wrench that it was made to show.
         """
         F_BH = reading.F_BH.tolist()
         self._ticks += 1
@@ -370,7 +370,7 @@ class DriverSocket:
         port: To listen at; 0 lets the system choose.
 
     Raises:
-        UserError: The address or port cannot be had.
+        UserError: The address or port is not available.
     """
 
     def __init__(self, host: str, port: int):
@@ -386,7 +386,7 @@ class DriverSocket:
 
     @property
     def address(self) -> Peer:
-        """Where it listens: host and port."""
+        """The host and port at which it listens."""
         host, port = self._socket.getsockname()
         return host, port
 
@@ -417,7 +417,7 @@ class DriverSocket:
 
 
 def _explain(error: OSError, host: str, port: int) -> str:
-    """Returns what to do about an address that cannot be had."""
+    """Returns advice about an address that is not available."""
     if error.errno == errno.EADDRINUSE:
         return (
             f"port {port} is taken, perhaps by another `drake-haptics device`:"

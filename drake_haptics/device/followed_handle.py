@@ -268,7 +268,7 @@ def _split(X: np.ndarray) -> tuple[list[float], list[float]]:
 
 
 class FollowedHandle:
-    """What backends of input without a handle of its own have in common.
+    """The handle of a backend whose input device has none.
 
     Force cannot move such a handle; it is only shown.
     """

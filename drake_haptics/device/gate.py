@@ -93,7 +93,7 @@ class LocalGate:
 
 @dataclass(frozen=True, eq=False)
 class GateStatus:
-    """What a gate has decided.
+    """The decision of a gate, as a value that ports can carry.
 
     Attributes:
         F_BH: (6,) the wrench [τ; f] that is shown, N·m and N.

@@ -78,7 +78,7 @@ class GamepadReader:
         """Returns the speeds that the sticks ask for.
 
         Args:
-            axes: Of the sticks, -1 to 1; missing ones are at rest.
+            axes: Positions of the sticks, -1 to 1; missing ones are at rest.
 
         Returns:
             (6,) shares of the largest speeds, -1 to 1, of [x y z roll pitch yaw].

@@ -111,7 +111,7 @@ class TurnRate:
     The rate lags behind by the filter's time constant and half a sensor's period.
 
     Args:
-        time_constant_s: Of the low-pass, s.
+        time_constant_s: Time constant of the low-pass, s.
 
     Raises:
         ValueError: The time constant is not positive.

@@ -71,13 +71,13 @@ def AddHapticLoop(
         tool: Pieces of the tool, in its frame T: `decompose(mesh).core`.
         tool_dynamics: Mass and inertia of the tool, as of
             `drake_haptics.geometry.mesh.mesh.make_tool_dynamics`.
-        objects: What the tool meets.
+        objects: Objects that the tool meets.
         contact: Tolerance, clustering and gains.
         coupling: Gains between handle and tool; it yields at the device's limits.
         X_HT: Pose of the tool in the handle at rest.
-        X_WT: Where the tool starts.
+        X_WT: Initial pose of the tool in the world.
         period_s: The tick, s; also the device's.
-        effects: What is felt besides contact; nothing where not given.
+        effects: Effects besides contact. Defaults to none.
         materials: Of each object, in their order; what one does not give is that of
             `contact` and `effects`.
         load_shedding: Says what to leave out of ticks that take too long; not yet in a

@@ -51,14 +51,14 @@ class HapticDiagram:
     Attributes:
         diagram: Owns all systems, and has the outputs that `HapticLoop.outputs` lists:
             `diagram.GetOutputPort("F_applied").Eval(context)`, in its own context.
-        scene: What it was built from.
+        scene: Scene from which it was built.
         period_s: The tick, s.
         loop: The systems of the loop.
         tool: The tool's mesh and convex pieces.
         environment: The same for each object of the scene, in its order.
         visualizer: Draws it; None without a Meshcat.
         backend: The device behind the port; None where it is simulated.
-        X_WB: Where the base of that backend stands; None where it is simulated.
+        X_WB: Pose of the base of that backend; None if it is simulated.
     """
 
     diagram: Diagram
@@ -103,9 +103,9 @@ def BuildHapticDiagram(
     """Builds the diagram of a scene: loads, cuts, wires.
 
     Args:
-        scene: What to build.
+        scene: Scene to build.
         device: What is held: a backend, open, that remains the caller's to close, or
-            a port of one's own. If not given, the scene's hand holds a simulated one.
+            your own port. If not given, the scene's hand holds a simulated one.
         recorder: Notes every tick, by a `TickLogSink` that is otherwise not in the
             diagram; remains the caller's to close.
         meshcat: Draws the scene there, by a `HapticVisualizer` that is otherwise

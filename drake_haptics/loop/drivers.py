@@ -118,7 +118,7 @@ def make_simulated_driver(
 
     Raises:
         SceneError: The scene cannot be simulated.
-        UserError: The address or port cannot be had.
+        UserError: The address or port is not available.
         ValueError: A limit or the rate is out of range.
     """
     if rate_hz is not None:
@@ -151,7 +151,7 @@ def AddLcmDriver(
     Args:
         builder: Has the arm, and Drake's `LcmInterfaceSystem` of the same `lcm`.
         arm: A backend as `HapticDevice` documents it; its world is the base frame B.
-        lcm: Where to send and listen.
+        lcm: LCM instance to send and listen with.
         period_s: The device's tick, s.
         max_force_N: Largest force ever shown, N.
         max_torque_Nm: Largest torque ever shown, N·m.

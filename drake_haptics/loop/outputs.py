@@ -34,11 +34,11 @@ def add_picture(
     """Adds the system that draws a loop, and connects it.
 
     Args:
-        builder: Of the diagram with the loop.
-        loop: What `AddHapticLoop` returned.
-        meshcat: Where to draw.
+        builder: Builder of the diagram with the loop.
+        loop: Return value of `AddHapticLoop`.
+        meshcat: Meshcat to draw in.
         tool: Pieces of the tool, in its frame T.
-        objects: What it meets.
+        objects: Objects that the tool meets.
         period_s: The tick, s.
     """
     visualizer = builder.AddNamedSystem(
@@ -114,9 +114,9 @@ def AddTickLog(
     """Adds what notes every tick of a loop, and connects it.
 
     Args:
-        builder: Of the diagram with the loop.
-        loop: What `AddHapticLoop` returned.
-        recorder: Where to note.
+        builder: Builder of the diagram with the loop.
+        loop: Return value of `AddHapticLoop`.
+        recorder: Recorder that writes the log.
         period_s: The loop's tick, s.
 
     Returns:

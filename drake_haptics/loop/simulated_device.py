@@ -42,7 +42,7 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
 
     Args:
         scene: Names the device, the grasp and the grip.
-        path: Where the hand wants the tool.
+        path: Poses to which the hand moves the tool.
 
     Raises:
         SceneError: There is no such preset or grip, the preset has no model or one
@@ -95,7 +95,7 @@ def find_base(scene: Scene, path: HandPath) -> RigidTransform:
     Args:
         scene: Names the device and, if it does, the place. If not, the middle of the
             preset's workspace is put at the middle of the path.
-        path: Where the hand wants the tool.
+        path: Poses to which the hand moves the tool.
     """
     return _find_base(scene, _sample_handle(scene, path)[1])
 

@@ -71,7 +71,7 @@ def AddHapticRendering(
     `V_WH` of the result, which shows its wrench at the output `F_display`.
 
     Args:
-        builder: Of the diagram with the plant; not built yet.
+        builder: Builder of the diagram with the plant; not built yet.
         plant: Finalized, continuous or discrete.
         scene_graph: The plant's.
         tool_body: The body that is the tool, or its name or `model::name`.
@@ -84,14 +84,14 @@ def AddHapticRendering(
         contact: Tolerance, clustering and gains.
         materials: Of bodies of the environment, by the names of their ports; what one
             does not give is that of `contact` and `effects`.
-        effects: What is felt besides contact. Gravity is the plant's own; passivity
+        effects: Effects besides contact. Gravity is the plant's own; passivity
             control is of a device.
         coupling: Gains between a handle and the tool; None for no handle.
         device: The handle's, not yet in a builder, as of `make_device_port`.
         X_HT: Pose of the tool in the handle at rest; the identity where not given.
         period_s: The tick of effects with a memory, and the device's, s; where not
             given, the plant's time step, or 1 ms for a continuous plant.
-        name: Of the system in the builder.
+        name: Name of the system in the builder.
         progress: Called while meshes are cut with the name of the body and the share
             done, from 0 to 1.
 
@@ -282,7 +282,7 @@ def AddAppliedSpatialForce(
     `ExternallyAppliedSpatialForceMultiplexer`, and both act.
 
     Args:
-        builder: Of the diagram with the plant.
+        builder: Builder of the diagram with the plant.
         plant: Finalized.
         forces: A list of `ExternallyAppliedSpatialForce`, of a system in the builder.
 

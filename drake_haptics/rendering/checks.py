@@ -37,9 +37,9 @@ def check_rendering_stiffness(
     contact at a time; the coupling at the tool's origin.
 
     Args:
-        plant: Of the bodies.
+        plant: Plant of the bodies.
         tool: The body that is moved.
-        objects: What it meets.
+        objects: Objects that the tool meets.
         contact: Gains.
         materials: Of each object; gains that one does not give are those of `contact`.
         coupling: Gains between a handle and the tool, if there is one.
@@ -110,7 +110,7 @@ def question_rendered_sizes(
 
     Args:
         tool: The body that is moved.
-        objects: What it meets.
+        objects: Objects that the tool meets.
         tolerance_m: Distance at which contact begins, m.
 
     Returns:

@@ -60,7 +60,7 @@ def write_scene(scene: Scene, path: str | Path, comments: Sequence[str] = ()) ->
 
     Args:
         scene: From `load_scene`, or with such paths.
-        path: Of the file, which is replaced.
+        path: Path of the file, which is replaced.
         comments: Lines for people, at its head.
 
     Raises:
@@ -102,7 +102,7 @@ def place_files(scene: Scene, folder: Path) -> None:
 
     Args:
         scene: Is changed.
-        folder: Where relative paths begin.
+        folder: Folder at which relative paths begin.
 
     Raises:
         SceneError: A mesh is not there, or no package has that name.

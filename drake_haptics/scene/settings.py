@@ -140,7 +140,7 @@ def list_keys(schema: type, where: str = "") -> list[str]:
 
     Args:
         schema: A dataclass.
-        where: What keys begin with.
+        where: Prefix of the keys.
     """
     keys: list[str] = []
     for name, kind in typing.get_type_hints(schema).items():

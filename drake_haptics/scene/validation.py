@@ -336,7 +336,7 @@ def question_depth(depth_m: float, tolerance_m: float) -> str:
     push only as they overlap.
 
     Args:
-        depth_m: Of the deepest contact, m; not positive if none penetrates.
+        depth_m: Depth of the deepest contact, m; not positive if none penetrates.
         tolerance_m: The distance below which contacts push, m.
 
     Returns:

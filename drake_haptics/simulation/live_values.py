@@ -43,13 +43,13 @@ class LiveKey:
     """A value of a scene that can be changed while it runs.
 
     Attributes:
-        key: Of the scene file, such as `contact.tolerance_m`.
+        key: Key of the scene file, such as `contact.tolerance_m`.
         label: A word or two for people.
         unit: SI, or °; empty of a ratio.
         low: Smallest value to be offered, in that unit; others are valid too.
         high: Largest value to be offered.
         is_logarithmic: Whether equal steps of a slider are equal ratios.
-        help: What it is, from the docstring of its dataclass.
+        help: Explanation, from the docstring of its dataclass.
     """
 
     key: str
@@ -174,13 +174,13 @@ def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> Non
     `HapticDiagram.scene` stay as they are.
 
     Args:
-        haptic: What `BuildHapticDiagram` returned.
+        haptic: Return value of `BuildHapticDiagram`.
         root: Context of its diagram.
         scene: Differs from what was built in live keys and the clustering alone; see
             `is_live_change`.
 
     Raises:
-        ValueError: It differs in more, and the diagram must be built anew; or a value
+        ValueError: It differs in more, and the diagram must be built again; or a value
             is out of range. The context is as it was.
     """
     require_kinds(
@@ -295,7 +295,7 @@ class LiveGlide:
         What had no value yet has the scene's at once.
 
         Args:
-            scene: Where to.
+            scene: Scene with the goal's values.
         """
         self._keys = live_keys(scene)
         self._goal = {item.key: item.read(scene) for item in self._keys}

@@ -192,11 +192,11 @@ class Part:
     """A part of a tick.
 
     Attributes:
-        name: Of the system in the diagram, or "Drake and the rest".
+        name: Name of the system in the diagram, or "Drake and the rest".
         system: Its class.
         why: The key of the scene that asks for it, or why it is always there.
         mean_us: Time of its own, mean of the middle half of the ticks, µs.
-        share: Of the whole tick, 0 to 1.
+        share: Share of the whole tick, 0 to 1.
     """
 
     name: str
@@ -218,8 +218,8 @@ def explain_tick(haptic: HapticDiagram, timer: CallbackTimer) -> list[Part]:
     port; and what the run itself notes down.
 
     Args:
-        haptic: What ran.
-        timer: What it was built and run under.
+        haptic: Diagram that was run.
+        timer: Timer under which it was built and run.
 
     Returns:
         The systems of the diagram in its order, then the rest. Times and shares add

@@ -30,7 +30,7 @@ class RunError(RuntimeError):
     """A run was stopped because a value was no longer finite.
 
     Attributes:
-        statistics: Of the run up to there.
+        statistics: Statistics of the run up to there.
     """
 
     def __init__(self, message: str, statistics: RunStatistics):
@@ -45,8 +45,8 @@ def make_simulator(haptic: HapticDiagram, context: Context | None = None) -> Sim
     a shipped grip is slow against a tick (tests/test_simulation.py).
 
     Args:
-        haptic: What `BuildHapticDiagram` returned.
-        context: Where to start; becomes the simulator's. At time 0 if not given.
+        haptic: Return value of `BuildHapticDiagram`.
+        context: Initial context, which the simulator then owns. Defaults to time 0.
     """
     require_kinds(_MADE_BY, haptic=(haptic, HapticDiagram))
     simulator = Simulator(haptic.diagram, context)
@@ -72,7 +72,7 @@ def run(
     statistics.
 
     Args:
-        haptic: What `BuildHapticDiagram` returned.
+        haptic: Return value of `BuildHapticDiagram`.
         duration_s: Simulated time, s; for ever where not given.
         pace: Waits for each tick, so that simulated time is clock time; a device needs
             it, and the system is asked for a real-time priority. As fast as it can

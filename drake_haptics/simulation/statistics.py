@@ -1,4 +1,4 @@
-"""What a run measured, tick by tick."""
+"""Collects what a run measures, tick by tick."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class RunStatistics:
 
         Args:
             period_s: Simulated time of a tick, s.
-            pace: What paces the run, if it is paced.
+            pace: Pacer of the run, if there is one.
         """
         self._pace = pace
         self._ledger: EnergyLedger | None = None

@@ -32,9 +32,9 @@ def carry_on(old: HapticDiagram, old_context: Context, new: HapticDiagram) -> Co
     open it where `find_handle` tells, or the coupling pulls the tool away.
 
     Args:
-        old: What ran, of whatever scene.
-        old_context: Where it is.
-        new: Where to go on, with the same tool.
+        old: Diagram that ran, of any scene.
+        old_context: Its root context.
+        new: Diagram to continue in, with the same tool.
 
     Returns:
         A context of `new`, for `drake_haptics.simulation.run.run`.
@@ -47,15 +47,15 @@ def carry_on(old: HapticDiagram, old_context: Context, new: HapticDiagram) -> Co
     )
     context = new.diagram.CreateDefaultContext()
     context.SetTime(old_context.get_time())
-    begins_anew: list[System] = []
+    restarted: list[System] = []
     is_reached = True
     if not _has_same_device(old, new):
-        begins_anew.append(new.loop.device)
+        restarted.append(new.loop.device)
         is_reached = _take_handle(new, context, find_handle(old, old_context))
     if not is_reached:
-        begins_anew.append(new.loop.haptic_tool)
+        restarted.append(new.loop.haptic_tool)
     # A system that is new may read at its beginning what the others have.
-    copied = old.diagram, old_context, new.diagram, context, begins_anew
+    copied = old.diagram, old_context, new.diagram, context, restarted
     _copy_states(*copied)
     new.diagram.ExecuteInitializationEvents(context)
     _copy_states(*copied)
@@ -76,7 +76,7 @@ def find_handle(haptic: HapticDiagram, root: Context) -> RigidTransform:
     """Returns X_WH, where the handle is.
 
     Args:
-        haptic: What `BuildHapticDiagram` returned.
+        haptic: Return value of `BuildHapticDiagram`.
         root: Context of its diagram.
     """
     device = haptic.loop.device
@@ -133,10 +133,10 @@ def _copy_states(
     old_context: Context,
     new: System,
     context: Context,
-    begins_anew: Sequence[System],
+    restarted: Sequence[System],
 ) -> None:
     """Copies the state of each system that two have in the same place."""
-    if any(new is system for system in begins_anew):
+    if any(new is system for system in restarted):
         return
     if isinstance(new, Diagram):
         assert isinstance(old, Diagram)
@@ -151,7 +151,7 @@ def _copy_states(
                 old.GetSubsystemContext(old_part, old_context),
                 part,
                 new.GetMutableSubsystemContext(part, context),
-                begins_anew,
+                restarted,
             )
     elif _describe_state(old_context) == _describe_state(context):
         context.SetContinuousState(old_context.get_continuous_state_vector().value())
@@ -184,7 +184,7 @@ def retire(haptic: HapticDiagram) -> None:
     output or a cache entry by a method of theirs.
 
     Args:
-        haptic: What no simulator, port or onlooker uses any more.
+        haptic: Diagram that no simulator, port or viewer uses any more.
     """
     for system in list(_list_systems(haptic.diagram)):
         # Other bindings may give a system no attributes to keep its diagram by.

@@ -47,7 +47,7 @@ def open_meshcat(port: int | None = None) -> Meshcat:
         port: TCP port of the page; None takes the first free one from 7000 on.
 
     Raises:
-        UserError: The port cannot be had.
+        UserError: The port is not available.
     """
     # Drake gives no reason where it fails, so ask the system first.
     if port is not None:

@@ -317,7 +317,7 @@ def export_parts(
     Python calculates.
 
     Args:
-        builder: Of the diagram.
+        builder: Builder of the diagram.
         vector: Of a system in it.
         sizes: Size of each part by the name of its port, in order.
     """
@@ -338,7 +338,7 @@ def import_parts(
     Drake's own system joins them; a port that Python reads takes longer, in every tick.
 
     Args:
-        builder: Of the diagram.
+        builder: Builder of the diagram.
         vector: Of a system in it.
         sizes: Size of each part by the name of its port, in order.
         own: The last part, of a system in the diagram; no input.

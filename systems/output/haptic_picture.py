@@ -90,7 +90,7 @@ class HapticPicture:
         """Sends the geometry.
 
         Args:
-            meshcat: Where to draw.
+            meshcat: Meshcat to draw in.
             tool: The tool, in its frame T.
             objects: What it meets; those that never move are placed.
             X_HT: Pose of the tool in the handle at rest.

@@ -58,7 +58,7 @@ class ArrowPool:
         """Sends the arrows to Meshcat, hidden.
 
         Args:
-            meshcat: Where to draw.
+            meshcat: Meshcat to draw in.
             path: Folder of the arrows in the scene tree.
             capacity: How many arrows can be seen at once.
             colors: What an arrow can be colored.
@@ -178,7 +178,7 @@ class DrawnPieces:
         """Sends nothing yet.
 
         Args:
-            meshcat: Where to draw.
+            meshcat: Meshcat to draw in.
             path: Folder in the scene tree.
             pieces: What to draw, in the frame of the folder.
             alpha: Opacity of the facets on the mesh.

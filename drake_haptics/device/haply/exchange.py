@@ -44,10 +44,10 @@ class HaplyMessageError(ValueError):
 
 @dataclass(frozen=True)
 class HaplyState:
-    """What a message says of one device, in the frame B of its base.
+    """The state of one device in a message, in the frame B of its base.
 
     Attributes:
-        device_id: Of the Inverse3.
+        device_id: Identifier of the Inverse3.
         position: (3,) of the cursor, m.
         velocity: (3,) of the cursor, m/s.
         orientation: (4,) of the grip as [qw qx qy qz]; None without one.
@@ -68,7 +68,7 @@ def parse_state(
 
     Args:
         text: The message.
-        device_id: Of the Inverse3; the first one listed where not given.
+        device_id: Identifier of the Inverse3. Defaults to the first one listed.
         grip_id: Of the VerseGrip; the first one listed where not given, the wireless
             ones before those with a wire.
 
@@ -114,9 +114,9 @@ def format_force(
     """Returns the message that shows a force; the service answers with a state.
 
     Args:
-        device_id: Of the Inverse3.
+        device_id: Identifier of the Inverse3.
         force: (3,) on the cursor in B, N, finite.
-        force_field: What the service calls it.
+        force_field: Name that the service gives the force.
     """
     values = dict(zip("xyz", force, strict=True))
     command = {"set_cursor_force": {force_field: values}}
@@ -190,9 +190,9 @@ class HaplyExchange:
 
     Args:
         gate: Decides what force is shown.
-        device_id: Of the Inverse3; the first one listed where None.
-        grip_id: Of the VerseGrip, likewise.
-        force_field: What the service calls the force.
+        device_id: Identifier of the Inverse3. Defaults to the first one listed.
+        grip_id: Identifier of the VerseGrip, likewise.
+        force_field: Name that the service gives the force.
     """
 
     def __init__(
@@ -220,7 +220,7 @@ class HaplyExchange:
         self.rejected = 0
         """Messages that could not be used."""
         self.complaint = "it has said nothing"
-        """What is wrong with what the service said last."""
+        """The complaint about the last message of the service."""
 
     @property
     def is_released(self) -> bool:
@@ -240,7 +240,7 @@ class HaplyExchange:
         """Takes a message in and returns the answer.
 
         Args:
-            text: What the service said.
+            text: Message of the service.
             command: The newest one there is; each is obeyed once.
             now_ns: The time, ns; never goes back.
         """

@@ -76,10 +76,11 @@ class HaplyDevice(DeviceBackend):
         """Connects, and waits for the first state.
 
         Args:
-            uri: Where the service is.
-            device_id: Of the Inverse3; the first one listed where not given.
-            grip_id: Of the VerseGrip, likewise.
-            force_field: What the service calls the force: `values` before version 3.5.
+            uri: Address of the service.
+            device_id: Identifier of the Inverse3. Defaults to the first one listed.
+            grip_id: Identifier of the VerseGrip, likewise.
+            force_field: Name that the service gives the force: `values` before
+                version 3.5.
             max_force_N: Largest force ever shown, N.
             ttl_s: How long a written wrench holds without a newer one, s.
             rate_hz: Exchanges per second, Hz, as far as the service keeps up.
@@ -124,7 +125,7 @@ class HaplyDevice(DeviceBackend):
         """Returns the device at an address that a person wrote.
 
         Args:
-            uri: Where the service is.
+            uri: Address of the service.
             options: Arguments of the constructor, like
                 `max_force_N=4&device_id=049D`: any of `device_id`, `grip_id`,
                 `force_field` and `max_force_N`.

@@ -37,7 +37,7 @@ def member(lcm_type: str, length: int | None = None) -> Any:
 
     Args:
         lcm_type: Its type in the .lcm file.
-        length: Of an array; None for a single number.
+        length: Length of an array; None for a single number.
     """
     zero = _ZEROS.get(lcm_type, 0)
     return field(
@@ -48,11 +48,11 @@ def member(lcm_type: str, length: int | None = None) -> Any:
 
 @dataclass(frozen=True)
 class Layout:
-    """How a message's members lie in its bytes.
+    """The layout of a message's members in its bytes.
 
     Attributes:
         members: Name and length of each.
-        packer: Of the fingerprint and all numbers.
+        packer: Packs the fingerprint and all numbers.
         fingerprint: Tells one type from another.
     """
 

@@ -53,7 +53,7 @@ class HostHandshake:
 
     A device takes force only from a host that it has heard ask for none, and one at
     fault only after that. So a host releases until the device has answered a release,
-    and then enables. A fault after that, and a device that is started anew, falls
+    and then enables. A fault after that, and a device that is restarted, falls
     silent or serves this host no more, are left alone until somebody wants it back.
 
     Args:
@@ -216,7 +216,7 @@ class LcmDevice(DeviceBackend):
     def read(self) -> DeviceReading | None:
         """Returns the newest reading that has come; its time is the device's clock.
 
-        After 0.25 s without any, and where the device was started anew, it says
+        After 0.25 s without any, and where the device was restarted, it says
         `Fault.DEVICE`, until `recover`; nothing is asked of the device meanwhile.
         """
         if not self._is_closed:

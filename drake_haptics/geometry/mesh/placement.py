@@ -81,7 +81,7 @@ def _rasterize(
         vertices: (n, 3).
         triangles: (m, 3).
         low: (2,) x and y of the first node.
-        spacing: Of the nodes, in x and y.
+        spacing: Spacing of the nodes, in x and y.
         shape: (2,) number of nodes in x and y.
     """
     heights = np.full(shape, -np.inf)
@@ -175,7 +175,7 @@ def describe_origin_beside(name: str, beside_m: float) -> str:
     """Returns in words that a mesh has its origin far beside it.
 
     Args:
-        name: Of its file.
+        name: Name of its file.
         beside_m: As `find_origin_beside` returns it, m.
     """
     return f"the origin of {name} is {length(beside_m)} beside the mesh"

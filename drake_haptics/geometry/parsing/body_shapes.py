@@ -77,7 +77,7 @@ def decompose_body(
     Args:
         plant: Registered with a scene graph.
         inspector: Of that scene graph's model.
-        body: Of the plant.
+        body: Body of the plant.
         role: Which of its shapes: those for proximity or for illustration.
         chord_error_m: Largest distance of a polytope from the round shape that it
             stands for, m.
