@@ -19,6 +19,11 @@ from drake_haptics.common.errors import UserError
 from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceReading, Fault, GateState
 
+Peer = tuple[str, int]
+"""Host and port."""
+
+# More than any packet of the protocol: what is longer is cut, and refused for it.
+_BUFFER_BYTES = 2048
 # A tick looks at so many packets and leaves the rest: a host sends one or two, and a
 # flood must not keep the loop from its next tick.
 _MAX_PACKETS_PER_TICK = 64
@@ -35,9 +40,6 @@ _FORGETS_AFTER_NS = 5_000_000_000
 _MAX_LISTED = 1000
 # The gate scales a vector down to its limit, which rounding may miss by a few bits.
 _ROUNDING = 1.0 + 1e-12
-Peer = tuple[str, int]
-# More than any packet of the protocol: what is longer is cut, and refused for it.
-_BUFFER_BYTES = 2048
 
 
 def read_clock_ns() -> int:
