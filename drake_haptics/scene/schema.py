@@ -397,8 +397,8 @@ class Hand:
 
     Attributes:
         grip: Name of a grip: none, light, nominal or firm. Their masses, stiffnesses
-            and dampings are those of `drake_haptics.systems.HAND_GRIPS`: springs of 50,
-            300 and 1000 N/m.
+            and dampings are those of `drake_haptics.systems.HAND_GRIPS`:
+            springs of 50, 300 and 1000 N/m.
         path: Where the hand wants the tool to go.
     """
 
