@@ -1,4 +1,4 @@
-"""Base classes and ports that systems here share: AutoDiff twins, parts of a vector."""
+"""Base of systems with AutoDiff twins, and ports for parts of a vector."""
 
 from __future__ import annotations
 
