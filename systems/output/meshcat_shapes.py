@@ -28,6 +28,7 @@ DOUBLE_ARROW: Profile = (
     *((0.03, 0.74), (0.11, 0.74), (0.0, 1.0)),
 )
 """An arrow with two heads, as torques are drawn."""
+
 # So many facets are sent in one go: what a tick does not notice, and a page that
 # has some hundred thousand of them still takes.
 _SHEET = 128
