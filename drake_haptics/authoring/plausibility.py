@@ -1,4 +1,4 @@
-"""Questions about a scene that can be run, but hardly does what is wanted."""
+"""Warns about scenes that run but are probably not intended."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A scene for two meshes that nobody has written a scene for."""
+"""Makes a scene for two meshes."""
 
 from __future__ import annotations
 

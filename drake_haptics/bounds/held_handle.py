@@ -1,4 +1,4 @@
-"""What an arm in a hand is at its handle, and a scene's coupling on it."""
+"""Finds mass and damping of a held arm at its handle, and checks a coupling on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Says which argument is of another kind than it should be, before it is used."""
+"""Checks the types of arguments before they are used."""
 
 from __future__ import annotations
 

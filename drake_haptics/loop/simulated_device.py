@@ -1,4 +1,4 @@
-"""A scene's device, simulated, in a scene's hand."""
+"""Simulates a scene's device in a scene's hand."""
 
 from __future__ import annotations
 

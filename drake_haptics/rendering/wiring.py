@@ -1,4 +1,4 @@
-"""Adds the parts of a haptic rendering one by one, and knows their ports by name."""
+"""Adds the parts of a haptic rendering one by one, and connects them by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a haptic device told over LCM, as vectors."""
+"""Makes vectors of the LCM statuses of a haptic device."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a haptic device tells over LCM, from vectors."""
+"""Makes LCM statuses of a haptic device of vectors."""
 
 from __future__ import annotations
 

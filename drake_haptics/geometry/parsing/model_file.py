@@ -1,4 +1,4 @@
-"""Robot model files as meshes: what SDF, URDF and MJCF have for contact."""
+"""Reads the contact shapes of SDF, URDF and MJCF files as meshes."""
 
 from __future__ import annotations
 
