@@ -9,8 +9,14 @@ whether the loop has kept to the clock.
 import sys
 from contextlib import suppress
 
-from drake_haptics import BuildHapticDiagram, TickClock, find_scene, load_scene, run
-from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics import (
+    BuildHapticDiagram,
+    RunStatistics,
+    TickClock,
+    find_scene,
+    load_scene,
+    run,
+)
 from drake_haptics.visualization.meshcat import open_meshcat, set_stage
 
 meshcat = open_meshcat()

@@ -14,6 +14,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics import (
     AddHapticLoop,
+    Coupling,
     DeviceBackend,
     DeviceCommand,
     DeviceReading,
@@ -22,8 +23,8 @@ from drake_haptics import (
     load_mesh,
     make_device_port,
 )
-from drake_haptics.geometry.mesh.mass_properties import make_tool_dynamics
-from drake_haptics.scene.schema import Contact, Coupling
+from drake_haptics.geometry import make_tool_dynamics
+from drake_haptics.scene.schema import Contact
 from drake_haptics.systems import ContactObject
 
 PERIOD_S = 1e-3

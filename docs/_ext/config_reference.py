@@ -23,10 +23,9 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Scene
-from drake_haptics.simulation.live_key import live_keys
-from drake_haptics.simulation.live_scene import is_live_change
+from drake_haptics.simulation.live_values import is_live_change, live_keys
 
 _EVERY_KEY = "reference/every-key.yaml"
 _LIVE = "[Live](../live-values.md):"

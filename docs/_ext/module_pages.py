@@ -32,7 +32,7 @@ _GROUPS = {
     "Geometry": ["geometry", "geometry.*"],
     "Parts of the systems": ["systems", "systems.*"],
     "Devices": ["device", "device.*", "web.mouse_device"],
-    "Recorded runs": ["tick_log", "tick_log.*", "visualization.recording"],
+    "Recorded runs": ["tick_log", "tick_log.*", "visualization.meshcat"],
     "Stability": ["analysis", "analysis.*", "bounds", "bounds.*"],
     "The compiled core": ["_core"],
     LEFT_OUT: [*_PROGRAMS, *(f"{name}.*" for name in _PROGRAMS)],

@@ -54,7 +54,7 @@ from drake_haptics.evaluation.accuracy.words import (
     make_front,
 )
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 _DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = _DOCS / "accuracy.md"

@@ -22,7 +22,7 @@ from drake_haptics import _core
 from drake_haptics.evaluation.measuring.valgrind import counted
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Effects, Material, Scene
 from drake_haptics.simulation.run import make_simulator
 

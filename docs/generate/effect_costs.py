@@ -22,7 +22,7 @@ from effect_child import CORE_CALLS, EFFECTS, TICKS, WARM_UP, make_scene
 from effect_rows import make_rows
 from page_stamp import amend_page, write_page
 
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.evaluation.measuring.valgrind import count_instructions
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import make_simulator

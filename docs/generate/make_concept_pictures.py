@@ -35,7 +35,7 @@ from drake_haptics.common.colors import (
     TOOL,
     piece_color,
 )
-from drake_haptics.device.local_gate import LocalGate
+from drake_haptics.device.gate import LocalGate
 
 _FOLDER = Path(__file__).parents[1]
 _MESHES = _FOLDER.parent / "models" / "meshes"

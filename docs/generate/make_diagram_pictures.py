@@ -11,7 +11,7 @@ import pygraphviz
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 _DOCS = Path(__file__).parents[1]
 # File by scene: one without effects, one with all.

@@ -18,7 +18,7 @@ from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
 from drake_haptics.analysis.stability_page import describe_delay
 from drake_haptics.analysis.stiffness_limits import format_limit
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "stability.md"

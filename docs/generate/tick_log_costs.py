@@ -22,9 +22,9 @@ from page_stamp import amend_page, write_page
 
 from drake_haptics.evaluation.measuring.valgrind import count_instructions, counted
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.loop.outputs import make_log_header
 from drake_haptics.scene.library import find_scene, list_scenes
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.tick_log import tick_recorder
 from drake_haptics.tick_log.tick_block import pack_block

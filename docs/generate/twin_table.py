@@ -25,7 +25,7 @@ from drake_haptics.analysis.sampled_linearization import linearize_sampled
 from drake_haptics.analysis.stability_limit import calc_growth, find_stability_limit
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     Encoder,
     ForceDelay,

@@ -21,7 +21,7 @@ from drake_haptics.bounds.held_handle import calc_held_handle
 from drake_haptics.common.one_line import one_line
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
 from drake_haptics.scene.schema import Coupling
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, HandGrip
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS, HandGrip
 from drake_haptics.systems.arm.simulated_arm import make_arm_plant
 
 if TYPE_CHECKING:

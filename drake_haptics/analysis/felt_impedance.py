@@ -14,7 +14,7 @@ from drake_haptics.analysis.held_loop import HeldLoop
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.common.one_line import one_line
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 
 @dataclass(frozen=True)

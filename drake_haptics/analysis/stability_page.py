@@ -14,7 +14,7 @@ from drake_haptics.analysis.delay_margin import LONGEST_DELAY
 from drake_haptics.analysis.modes import describe_motion
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
-from drake_haptics.report.paths import check_page_path
+from drake_haptics.report.page import check_page_path
 
 _SLOWEST_SHOWN = 12
 _DPI = 110

@@ -1,4 +1,4 @@
-"""Questions about a scene that can be run, but hardly does what is wanted."""
+"""Warns about scenes that run but are probably not intended."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from pydrake.math import RigidTransform
 
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.geometry.decomposition.decompose import Decomposition
-from drake_haptics.geometry.mesh.centering import (
-    describe_origin_beside,
-    find_origin_beside,
-)
 from drake_haptics.geometry.mesh.checks import (
     LARGEST_USUAL_EXTENT_M,
     SMALLEST_USUAL_EXTENT_M,
+    question_tolerance,
 )
-from drake_haptics.geometry.mesh.plausible_size import question_tolerance
+from drake_haptics.geometry.mesh.placement import (
+    describe_origin_beside,
+    find_origin_beside,
+)
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.mesh.topology import winding_numbers
 from drake_haptics.geometry.mesh.units import METRES_PER_UNIT, guess_unit

@@ -1,4 +1,4 @@
-"""A scene for two meshes that nobody has written a scene for."""
+"""Makes a scene for two meshes."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_haptics.common.errors import SceneError
-from drake_haptics.common.package_url import resolve_package_url
-from drake_haptics.geometry.mesh.centering import center, find_origin_beside
-from drake_haptics.geometry.mesh.height_map import TouchMap
+from drake_haptics.common.files import resolve_package_url
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+from drake_haptics.geometry.mesh.placement import TouchMap, center, find_origin_beside
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.mesh.units import METRES_PER_UNIT, guess_unit
 from drake_haptics.scene.schema import (
@@ -24,7 +23,7 @@ from drake_haptics.scene.schema import (
     Tool,
     Waypoint,
 )
-from drake_haptics.systems.arm.hand_grip import NOMINAL_GRIP
+from drake_haptics.systems.arm.hand_impedance import NOMINAL_GRIP
 
 _PRESS_N = 2.0
 _LARGEST_TOOL_M = 1.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from drake_haptics.scene.schema import Scene
-from drake_haptics.simulation.explain import Part
+from drake_haptics.simulation.profiling import Part
 
 # Parts that take less of what a tick may take are not worth a change.
 _WORTH_IT = 0.1

@@ -1,4 +1,4 @@
-"""How stiff contact may be on bodies that a discrete plant steps explicitly.
+"""Limits the stiffness of contact on bodies that a discrete plant steps explicitly.
 
 A discrete `MultibodyPlant` takes applied forces as they are at the start of a step and
 moves bodies with the velocity at its end. On a mass m, a spring K and damper B stay

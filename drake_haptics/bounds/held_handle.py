@@ -1,4 +1,4 @@
-"""What an arm in a hand is at its handle, and a scene's coupling on it."""
+"""Finds mass and damping of a held arm at its handle, and checks a coupling on it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from drake_haptics.bounds.coupling import (
 from drake_haptics.common.errors import SceneError
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
 from drake_haptics.scene.schema import Scene
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, LOOSEST_GRIP, HandGrip
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS, LOOSEST_GRIP, HandGrip
 from drake_haptics.systems.arm.simulated_arm import make_arm_plant, weld_hand
 from drake_haptics.systems.device.haptic_device import HapticDevice
 

@@ -1,4 +1,4 @@
-"""How stiff and how damped a sampled spring may be on a device: the known bounds.
+"""Known limits of stiffness and damping of a sampled spring on a device.
 
 A spring K and damper B, calculated once per period T from sampled positions, held in
 between, and delayed by t_d, act on a handle of mass m whose device and hand damp it by

@@ -44,7 +44,7 @@ from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.accuracy.study import run_accuracy_study
 from drake_haptics.evaluation.accuracy.study_json import to_json_data
 from drake_haptics.evaluation.accuracy.words import name_setting
-from drake_haptics.report.paths import check_page_path
+from drake_haptics.report.page import check_page_path
 from drake_haptics.scene.scene_file import write_scene
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError

@@ -14,7 +14,7 @@ from drake_haptics.cli.mesh_options import (
     unit_options,
     write_json,
 )
-from drake_haptics.geometry.mesh.mesh import MeshError
+from drake_haptics.common.errors import MeshError
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.CHECK)

@@ -22,13 +22,13 @@ from drake_haptics.cli.mesh_options import (
 )
 from drake_haptics.cli.page_words import describe_page
 from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.geometry.decomposition.approximate import check_error
 from drake_haptics.geometry.decomposition.decompose import (
     METHODS,
     Decomposition,
     Method,
 )
 from drake_haptics.geometry.decomposition.decompose import decompose as decompose_mesh
-from drake_haptics.geometry.decomposition.merge import check_error
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.geometry.mesh.report import Severity, length
 

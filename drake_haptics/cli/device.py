@@ -22,8 +22,8 @@ from drake_haptics.cli.scene_options import (
     set_option,
     write_call,
 )
-from drake_haptics.device.stop_signals import stop_on_signals
-from drake_haptics.loop.simulated_driver import make_simulated_driver
+from drake_haptics.common.real_time import stop_on_signals
+from drake_haptics.loop.drivers import make_simulated_driver
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.DEVICE)

@@ -17,7 +17,7 @@ from drake_haptics.cli.scene_options import set_option, set_values
 from drake_haptics.common.errors import UserError
 from drake_haptics.common.one_line import count
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.replay_log import load_log_scene
 from drake_haptics.simulation.replay_log import replay as replay_log
 from drake_haptics.tick_log.log_diff import compare_logs

@@ -29,7 +29,7 @@ from drake_haptics.evaluation.paper.evaluation import (
 )
 from drake_haptics.evaluation.paper.page import summarize, write_paper_page
 from drake_haptics.evaluation.paper.report import describe_machine_line, make_sections
-from drake_haptics.report.paths import check_page_path
+from drake_haptics.report.page import check_page_path
 
 _STYLES = {
     "agrees": "green",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rich.table import Table
 
-from drake_haptics.simulation.explain import Part
+from drake_haptics.simulation.profiling import Part
 
 
 def make_parts_table(parts: Sequence[Part]) -> Table:

@@ -9,7 +9,7 @@ from drake_haptics.cli import lessons
 from drake_haptics.cli.console import make_console
 from drake_haptics.cli.lesson import TaughtCommand
 from drake_haptics.scene.library import list_scenes
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.SCENES)

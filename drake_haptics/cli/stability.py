@@ -31,7 +31,7 @@ from drake_haptics.cli.mesh_options import (
 from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.cli.scene_options import load_set_scene, set_option
 from drake_haptics.common.errors import UserError
-from drake_haptics.report.paths import check_page_path
+from drake_haptics.report.page import check_page_path
 from drake_haptics.simulation.run import RunError
 
 

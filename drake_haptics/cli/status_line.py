@@ -20,7 +20,7 @@ from drake_haptics.cli.device_words import (
 )
 from drake_haptics.cli.live_line import LiveLine
 from drake_haptics.common.one_line import count
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceReading, GateState
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.simulation.device_monitor import SILENT_S, DriverSilence

@@ -15,11 +15,11 @@ from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import SceneChanges
 from drake_haptics.cockpit.steering import Steering
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceReading, GateState
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.simulation.device_monitor import DriverSilence
-from drake_haptics.simulation.live_key import LiveKey
+from drake_haptics.simulation.live_values import LiveKey
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.web.live_page import LivePage, Outlook
 from drake_haptics.web.telemetry import ACTIVE, SIMULATED, WAITING

@@ -15,14 +15,14 @@ from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import SceneChanges
 from drake_haptics.cockpit.segments import Segments
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
+from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.web.camera import look_from_the_front
 from drake_haptics.web.live_page import LivePage
 

@@ -15,7 +15,7 @@ from drake_haptics.cockpit.scene_changes import (
 from drake_haptics.common.colors import make_legend
 from drake_haptics.loop.device_placement import DeviceSite
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
-from drake_haptics.systems.output.picture_views import PICTURE_VIEWS
+from drake_haptics.systems.output.haptic_picture import PICTURE_VIEWS
 from drake_haptics.visualization.meshcat import CAMERAS
 
 _LONGEST_DESCRIPTION = 2000

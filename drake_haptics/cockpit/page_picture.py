@@ -7,7 +7,7 @@ from typing import Any
 from pydrake.geometry import Meshcat
 
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.systems.output.picture_views import PICTURE_VIEWS, check_view
+from drake_haptics.systems.output.haptic_picture import PICTURE_VIEWS, check_view
 from drake_haptics.visualization.meshcat import aim_camera, find_framed_points
 
 # Of force and torque on the hand, in the picture's scene tree.

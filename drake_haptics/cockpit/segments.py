@@ -13,13 +13,12 @@ from drake_haptics.cockpit.cockpit import Cockpit
 from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.steering import Change
 from drake_haptics.common.errors import UserError
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.scene.validation import SceneWarning
-from drake_haptics.simulation.release_diagram import retire
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.simulation.transfer_state import carry_on, find_handle
+from drake_haptics.simulation.transfer_state import carry_on, find_handle, retire
 
 
 class Segments:

@@ -19,8 +19,11 @@ from drake_haptics.cockpit.scene_changes import (
 )
 from drake_haptics.common.errors import UserError
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.simulation.live_ramp import LiveGlide
-from drake_haptics.simulation.live_scene import is_live_change, put_live_values
+from drake_haptics.simulation.live_values import (
+    LiveGlide,
+    is_live_change,
+    put_live_values,
+)
 from drake_haptics.web.request import REFUSED
 
 # A slider that needs another diagram builds it when it has rested for so long.

@@ -1,4 +1,4 @@
-"""What a user did or gave that cannot be used, as opposed to a defect of ours."""
+"""Errors whose message is meant for the user, as opposed to defects of the program."""
 
 
 class UserError(ValueError):

@@ -1,4 +1,4 @@
-"""What an object says of itself in one line, where its fields would fill pages."""
+"""Short one-line texts of dataclasses with large fields, and of counts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the geometry takes as a pose, for annotations."""
+"""The type of poses that the geometry accepts, for annotations."""
 
 from __future__ import annotations
 

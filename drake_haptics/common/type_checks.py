@@ -1,4 +1,4 @@
-"""Says which argument is of another kind than it should be, before it is used."""
+"""Checks the types of arguments before they are used."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-_SCENE = "drake_haptics.scene."
 # Has all parts of a scene.
 _SCHEMA = "drake_haptics.scene.schema"
 # What is taken for these: also NumPy's numbers, and paths for the names of files.
@@ -90,7 +89,7 @@ def _look_into(name: str, value: Any, kind: Any) -> typing.Iterator[str]:
     elif parts and typing.get_origin(kind) is not Callable:
         for i, item in enumerate(value):
             yield _find_complaint(f"{name}[{i}]", item, parts[0])
-    elif kind.__module__.startswith(_SCENE):
+    elif kind.__module__ == _SCHEMA:
         for key, part in _find_fields(kind).items():
             yield _find_complaint(f"{name}.{key}", getattr(value, key), part)
 
@@ -120,6 +119,4 @@ def _name(kind: type) -> str:
     module = kind.__module__
     if module == "builtins":
         return kind.__qualname__
-    if module.startswith(_SCENE):
-        module = _SCHEMA
     return f"{module}.{kind.__qualname__}"

@@ -1,4 +1,4 @@
-"""What every haptic device offers, and what crosses between it and the loop.
+"""The interface that every haptic device implements, and the values that cross it.
 
 All poses, velocities and wrenches here are those of the device's handle H in the frame
 B of the device's base: a device knows nothing of the world it is put into.
@@ -7,7 +7,7 @@ B of the device's base: a device knows nothing of the world it is put into.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import TypeVar
 
@@ -184,3 +184,17 @@ class DeviceBackend(ABC):
     def __exit__(self, *_: object) -> None:
         """Closes the backend."""
         self.close()
+
+
+def make_silent(reading: DeviceReading) -> DeviceReading:
+    """Returns a last reading as that of a handle at rest without force, at fault.
+
+    It keeps its number: nothing new has come.
+    """
+    return replace(
+        reading,
+        V_BH=np.zeros(6),
+        F_BH=np.zeros(6),
+        gate=GateState.FAULT,
+        fault=Fault.DEVICE,
+    )

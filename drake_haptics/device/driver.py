@@ -1,23 +1,29 @@
-"""The reference driver: an arm, the gate and a UDP port, tick by tick."""
+"""Drives an arm as a UDP device: socket, gate, statistics and the loop of ticks."""
 
 from __future__ import annotations
 
+import errno
 import gc
 import math
 import secrets
 import socket
 import time
-from collections.abc import Callable
+from collections import Counter, deque
+from collections.abc import Callable, Iterator
 from typing import Any, Protocol
 
 import numpy as np
 
 from drake_haptics import _core
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.errors import UserError
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceReading, Fault, GateState
-from drake_haptics.device.driver_socket import DriverSocket, Peer
-from drake_haptics.device.driver_statistics import DriverStatistics
 
+Peer = tuple[str, int]
+"""Host and port."""
+
+# More than any packet of the protocol: what is longer is cut, and refused for it.
+_BUFFER_BYTES = 2048
 # A tick looks at so many packets and leaves the rest: a host sends one or two, and a
 # flood must not keep the loop from its next tick.
 _MAX_PACKETS_PER_TICK = 64
@@ -30,6 +36,10 @@ _ANSWERED = frozenset({"accepted", "not_disabled_first", "at_fault"})
 # A host that is silent for longer has gone, or never was: a forged address must not be
 # sent states for ever.
 _FORGETS_AFTER_NS = 5_000_000_000
+# Faults are listed with their times up to the latest so many; they are all counted.
+_MAX_LISTED = 1000
+# The gate scales a vector down to its limit, which rounding may miss by a few bits.
+_ROUNDING = 1.0 + 1e-12
 
 
 def read_clock_ns() -> int:
@@ -44,7 +54,7 @@ def read_clock_ns() -> int:
 
 
 class DrivenArm(Protocol):
-    """What a driver asks of the arm that it drives."""
+    """The interface of an arm that a driver drives."""
 
     def start(self) -> None:
         """Called once, before the first tick in which a wrench may be shown."""
@@ -69,7 +79,7 @@ class DeviceDriver:
     protocol is that of docs/device-protocol.md.
 
     Args:
-        arm: What it drives, at rest.
+        arm: Arm that it drives, at rest.
         max_force_N: Largest force that is ever shown, N.
         max_torque_Nm: Largest torque, N·m.
         max_ttl_s: A command that is not renewed is shown no longer than this, s.
@@ -79,7 +89,7 @@ class DeviceDriver:
         clock_ns: Reads a clock that never goes back, nor rests with the machine, ns.
 
     Raises:
-        UserError: The address or port cannot be had.
+        UserError: The address or port is not available.
         ValueError: A limit or the rate is out of range.
     """
 
@@ -119,7 +129,7 @@ class DeviceDriver:
 
     @property
     def address(self) -> Peer:
-        """Where it listens: host and port."""
+        """The host and port at which it listens."""
         return self._socket.address
 
     @property
@@ -131,17 +141,17 @@ class DeviceDriver:
 
     @property
     def pace(self) -> TickClock:
-        """What paces the ticks."""
+        """The pacer of the ticks."""
         return self._pace
 
     @property
     def reading(self) -> DeviceReading:
-        """What the device last told of itself."""
+        """The last reading of the device."""
         return self._reading
 
     @property
     def packets(self) -> dict[str, int]:
-        """How many packets came, by the gate's verdict on them."""
+        """The number of packets by the gate's verdict on them."""
         return {name: count for name, count in self._gate.counts.items() if count}
 
     def stop(self) -> None:
@@ -269,3 +279,155 @@ class DeviceDriver:
             },
             **self._statistics.to_dict(),
         }
+
+
+class DriverStatistics:
+    """Loads and faults of a driver.
+
+    Args:
+        max_force_N: Largest force that the device may show, N.
+        max_torque_Nm: Largest torque, N·m.
+    """
+
+    def __init__(self, max_force_N: float, max_torque_Nm: float):
+        self._limits = (max_torque_Nm, max_force_N)
+        self._largest = (0.0, 0.0)
+        self._ticks = 0
+        self._limit_violations = 0
+        self._non_finite = 0
+        self._fault = Fault.NONE
+        self._faults: Counter[str] = Counter()
+        self._recoveries: Counter[str] = Counter()
+        self._listed: deque[dict[str, Any]] = deque(maxlen=_MAX_LISTED)
+
+    @property
+    def ticks(self) -> int:
+        """Number of ticks so far."""
+        return self._ticks
+
+    def add_tick(self, reading: DeviceReading) -> None:
+        """Counts a tick.
+
+        Args:
+            reading: Reading of the device, with the wrench that it was made to show.
+        """
+        F_BH = reading.F_BH.tolist()
+        self._ticks += 1
+        torque, force = math.hypot(*F_BH[:3]), math.hypot(*F_BH[3:])
+        if not math.isfinite(torque + force):
+            self._non_finite += 1
+        else:
+            self._largest = (
+                max(self._largest[0], torque),
+                max(self._largest[1], force),
+            )
+        within = (
+            torque <= self._limits[0] * _ROUNDING
+            and force <= self._limits[1] * _ROUNDING
+            and (reading.gate == GateState.ACTIVE or torque == force == 0.0)
+        )
+        self._limit_violations += not within
+        self.note_fault(reading.time_s, reading.fault)
+
+    def note_fault(self, time_s: float, fault: int) -> None:
+        """Notes whether the device is at fault; between ticks too.
+
+        Args:
+            time_s: Since the driver began, s.
+            fault: A `Fault`, or its number.
+        """
+        if fault == self._fault:
+            return
+        fault = Fault(fault)
+        if self._fault != Fault.NONE and fault == Fault.NONE:
+            self._recoveries[self._fault.name] += 1
+        if fault != Fault.NONE:
+            self._faults[fault.name] += 1
+            self._listed.append({"time_s": round(time_s, 4), "fault": fault.name})
+        self._fault = fault
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns the figures under names that say their units.
+
+        `limit_violations` counts ticks with more than the limits, with a wrench that
+        is not finite, or with any at all while the gate is not active.
+        """
+        return {
+            "ticks": self._ticks,
+            "max_torque_Nm": self._largest[0],
+            "max_force_N": self._largest[1],
+            "limit_violations": self._limit_violations,
+            "non_finite_values": self._non_finite,
+            "faults": dict(self._faults),
+            "recoveries": dict(self._recoveries),
+            "fault_times": list(self._listed),
+        }
+
+
+class DriverSocket:
+    """Takes commands and sends states.
+
+    Args:
+        host: Address to listen at; only this machine can reach 127.0.0.1.
+        port: To listen at; 0 lets the system choose.
+
+    Raises:
+        UserError: The address or port is not available.
+    """
+
+    def __init__(self, host: str, port: int):
+        if not host:  # which would be every address that this machine has
+            raise UserError("bind is empty: give an address, such as 127.0.0.1")
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.setblocking(False)
+        try:
+            self._socket.bind((host, port))
+        except OSError as error:
+            self._socket.close()
+            raise UserError(_explain(error, host, port)) from error
+
+    @property
+    def address(self) -> Peer:
+        """The host and port at which it listens."""
+        host, port = self._socket.getsockname()
+        return host, port
+
+    def receive(self, most: int) -> Iterator[tuple[bytes, Peer]]:
+        """Yields the packets that have come and who sent each, oldest first.
+
+        Args:
+            most: So many at most; the others are left for the next call.
+        """
+        for _ in range(most):
+            try:
+                yield self._socket.recvfrom(_BUFFER_BYTES)
+            except BlockingIOError:
+                return
+            except ConnectionError:
+                continue  # some systems tell here that a state found nobody
+
+    def send(self, packet: bytes, peer: Peer) -> None:
+        """Sends a packet; one that cannot leave is lost, as on any network."""
+        try:
+            self._socket.sendto(packet, peer)
+        except OSError:
+            pass  # a network that is down: no command will come, and the gate sees it
+
+    def close(self) -> None:
+        """Gives the port up; may be called again."""
+        self._socket.close()
+
+
+def _explain(error: OSError, host: str, port: int) -> str:
+    """Returns advice about an address that is not available."""
+    if error.errno == errno.EADDRINUSE:
+        return (
+            f"port {port} is taken, perhaps by another `drake-haptics device`:"
+            " end that, or choose another (0: any free one)"
+        )
+    if error.errno == errno.EACCES:
+        return f"port {port} needs rights that you lack: choose one from 1024 on"
+    return (
+        f"bind {host}: {error.strerror or error}; give an address of this machine,"
+        " such as 127.0.0.1"
+    )

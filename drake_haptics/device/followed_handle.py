@@ -1,12 +1,34 @@
-"""A handle without a device: it goes where a person's input sends it."""
+"""A handle without a device: it follows the pose that a person's input asks for.
+
+The motion is a critically damped follower of a goal, in closed form, whose speed never
+exceeds a limit.
+"""
 
 from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from drake_haptics.device.backend import DeviceCommand, DeviceReading, GateState
-from drake_haptics.device.pose_filter import PoseFilter
+from drake_haptics.device.rotation_vector import (
+    calc_angular_velocity,
+    calc_rate,
+    invert,
+    multiply,
+    normalize,
+    to_quaternion,
+    to_rotation_vector,
+)
 
+# How far turning may lag behind its goal, rad: a rotation vector is then nearly
+# proportional to what it stands for.
+_LONGEST_LAG_RAD = 0.5
+# The runner turns at this share of the limit; a rotation vector's rate exceeds the
+# angular velocity by up to a hundredth, for a lag as long as that.
+_TURN_SHARE = 0.98
 # The handle is 50 ms behind a steady motion: less is felt as steps of the input, more
 # as a rubber band.
 _RATE_PER_S = 40.0
@@ -15,8 +37,238 @@ _MAX_SPEED_M_PER_S = 0.5
 _MAX_TURN_RAD_PER_S = 6.0
 
 
+@dataclass(frozen=True)
+class Pursuit:
+    """One run to a goal, of any number of coordinates that belong together.
+
+    A runner leaves the origin at time 0 with a constant velocity u, reaches its goal
+    at time T and stands there. The follower obeys
+
+        ẍ = λ² (s − x) − 2 λ ẋ
+
+    with the runner's place s. That is two equal first-order lags in series, so that
+    from rest, and from any state that such a run has left, `|ẋ| ≤ |u|` at all times.
+
+    Attributes:
+        rate_per_s: λ, 1/s.
+        start: x at time 0.
+        start_velocity: ẋ at time 0, 1/s.
+        run_velocity: u, 1/s.
+        run_s: T, s.
+    """
+
+    rate_per_s: float
+    start: Sequence[float]
+    start_velocity: Sequence[float]
+    run_velocity: Sequence[float]
+    run_s: float
+
+    @staticmethod
+    def to_goal(
+        rate_per_s: float,
+        start: Sequence[float],
+        start_velocity: Sequence[float],
+        goal: Sequence[float],
+        speed: float,
+    ) -> Pursuit:
+        """Returns the run to a goal, straight and at a speed, 1/s."""
+        distance = math.hypot(*goal)
+        share = speed / distance if distance > 0.0 else 0.0
+        return Pursuit(
+            rate_per_s,
+            start,
+            start_velocity,
+            [share * x for x in goal],
+            distance / speed,
+        )
+
+    def calc_runner(self, time_s: float) -> list[float]:
+        """Returns s at a time, s."""
+        run_s = min(time_s, self.run_s)
+        return [run_s * u for u in self.run_velocity]
+
+    def calc(self, time_s: float) -> tuple[list[float], list[float]]:
+        """Returns x and ẋ at a time from 0 s on, exactly."""
+        running_s = min(time_s, self.run_s)
+        place, velocity = self._calc_running(running_s)
+        standing_s = time_s - running_s
+        if standing_s == 0.0:
+            return place, velocity
+        goal = self.calc_runner(running_s)
+        offset = [x - s for x, s in zip(place, goal, strict=True)]
+        offset, velocity = self._settle(offset, velocity, standing_s)
+        return [s + z for s, z in zip(goal, offset, strict=True)], velocity
+
+    def _calc_running(self, time_s: float) -> tuple[list[float], list[float]]:
+        """Returns x and ẋ while the runner runs: it settles 2u/λ behind it."""
+        lag_s = 2.0 / self.rate_per_s
+        run = self.run_velocity
+        offset = [x + lag_s * u for x, u in zip(self.start, run, strict=True)]
+        change = [v - u for v, u in zip(self.start_velocity, run, strict=True)]
+        offset, change = self._settle(offset, change, time_s)
+        behind_s = time_s - lag_s
+        return (
+            [behind_s * u + z for u, z in zip(run, offset, strict=True)],
+            [u + z for u, z in zip(run, change, strict=True)],
+        )
+
+    def _settle(
+        self, offset: Sequence[float], change: Sequence[float], time_s: float
+    ) -> tuple[list[float], list[float]]:
+        """Returns z and ż of z̈ + 2λż + λ²z = 0 after a time."""
+        rate = self.rate_per_s
+        decay = math.exp(-rate * time_s)
+        slopes = [w + rate * z for z, w in zip(offset, change, strict=True)]
+        return (
+            [decay * (z + b * time_s) for z, b in zip(offset, slopes, strict=True)],
+            [
+                decay * (w - rate * time_s * b)
+                for w, b in zip(change, slopes, strict=True)
+            ],
+        )
+
+
+class PoseFilter:
+    """Follows a goal pose smoothly and never faster than it may.
+
+    A slider or a mouse gives poses 10 to 60 times a second, in steps; a loop asks for
+    pose and velocity 1000 times a second. A runner goes straight to each new goal at
+    the largest speed, turning about one axis, and the handle follows the runner,
+    critically damped (see `Pursuit`): its speed has no jumps and never exceeds the
+    limit, and its velocity is the derivative of its pose.
+
+    Rotations do the same by their rotation vector from where the runner was when the
+    goal was set. The solution is in closed form: what is asked for, and when, changes
+    nothing, and no gap is too long.
+    """
+
+    def __init__(
+        self,
+        X_BH: np.ndarray,
+        *,
+        rate_per_s: float,
+        max_speed_m_per_s: float,
+        max_turn_rad_per_s: float,
+    ):
+        """Starts at rest.
+
+        Args:
+            X_BH: (7,) pose [qw qx qy qz x y z], m.
+            rate_per_s: λ, 1/s; the handle is 2/λ behind a steady motion.
+            max_speed_m_per_s: Largest speed of Ho, m/s.
+            max_turn_rad_per_s: Largest rate of turning, rad/s.
+
+        Raises:
+            ValueError: The pose is not finite or has no quaternion, a number is not
+                positive, or the handle could lag behind by more than 0.5 rad.
+        """
+        for name, value in [
+            ("rate_per_s", rate_per_s),
+            ("max_speed_m_per_s", max_speed_m_per_s),
+            ("max_turn_rad_per_s", max_turn_rad_per_s),
+        ]:
+            if not (value > 0.0 and math.isfinite(value)):
+                raise ValueError(f"{name} must be positive and finite, is {value}")
+        most = _LONGEST_LAG_RAD * rate_per_s / 2.0
+        if max_turn_rad_per_s > most:
+            raise ValueError(
+                f"max_turn_rad_per_s must be at most rate_per_s / 4 = {most:g},"
+                f" is {max_turn_rad_per_s}"
+            )
+        self._rate_per_s = rate_per_s
+        self._max_speed_m_per_s = max_speed_m_per_s
+        self._max_turn_rad_per_s = _TURN_SHARE * max_turn_rad_per_s
+        # Origins of the two pursuits' coordinates.
+        self._q_B, self._p_B = _split(X_BH)
+        self._time_s = -math.inf
+        rest = Pursuit(rate_per_s, [0.0] * 3, [0.0] * 3, [0.0] * 3, 0.0)
+        self._turn = self._move = rest
+
+    def set_goal(self, X_BG: np.ndarray, time_s: float) -> None:
+        """Heads for another pose from now on.
+
+        Args:
+            X_BG: (7,) goal [qw qx qy qz x y z], m; the quaternion of any length.
+            time_s: Now, s; a time before the last goal's is taken as that.
+
+        Raises:
+            ValueError: The pose is not finite or has no quaternion.
+        """
+        q_BG, p_BG = _split(X_BG)
+        time_s = max(time_s, self._time_s)
+        since_s = self._since(time_s)
+        rate = self._rate_per_s
+
+        p, v = self._move.calc(since_s)
+        run = self._move.calc_runner(since_s)
+        origin = [o + s for o, s in zip(self._p_B, run, strict=True)]
+        self._move = Pursuit.to_goal(
+            rate,
+            [x - s for x, s in zip(p, run, strict=True)],
+            v,
+            [g - o for g, o in zip(p_BG, origin, strict=True)],
+            self._max_speed_m_per_s,
+        )
+        self._p_B = origin
+
+        r, change = self._turn.calc(since_s)
+        w = calc_angular_velocity(r, change)
+        q_BH = multiply(to_quaternion(r), self._q_B)
+        run = self._turn.calc_runner(since_s)
+        q_B = normalize(multiply(to_quaternion(run), self._q_B))
+        r = to_rotation_vector(multiply(q_BH, invert(q_B)))
+        self._turn = Pursuit.to_goal(
+            rate,
+            r,
+            calc_rate(r, w),
+            to_rotation_vector(multiply(q_BG, invert(q_B))),
+            self._max_turn_rad_per_s,
+        )
+        self._q_B = q_B
+        self._time_s = time_s
+
+    def calc(self, time_s: float) -> tuple[np.ndarray, np.ndarray]:
+        """Returns where the handle is, and how it moves.
+
+        Args:
+            time_s: When, s; a time before the last goal's is taken as that.
+
+        Returns:
+            X_BH (7,) [qw qx qy qz x y z], m, with a unit quaternion, and V_BH (6,)
+            [ω; v], rad/s and m/s.
+        """
+        since_s = self._since(time_s)
+        p, v = self._move.calc(since_s)
+        r, change = self._turn.calc(since_s)
+        q_BH = multiply(to_quaternion(r), self._q_B)
+        p_BH = [o + x for o, x in zip(self._p_B, p, strict=True)]
+        return (
+            np.array(q_BH + p_BH),
+            np.array(calc_angular_velocity(r, change) + v),
+        )
+
+    def _since(self, time_s: float) -> float:
+        """Returns the time since the last goal, s; 0 before the first one."""
+        return max(time_s - self._time_s, 0.0) if self._time_s > -math.inf else 0.0
+
+
+def _split(X: np.ndarray) -> tuple[list[float], list[float]]:
+    """Returns the unit quaternion and the position of a pose.
+
+    Raises:
+        ValueError: It is not finite or has no quaternion.
+    """
+    values = np.asarray(X, dtype=float)
+    if values.shape != (7,) or not np.isfinite(values).all():
+        raise ValueError(f"a pose must be 7 finite numbers, is {X}")
+    if not np.linalg.norm(values[:4]) > 1e-6:
+        raise ValueError(f"a pose's quaternion must not be zero, is {values[:4]}")
+    numbers = values.tolist()
+    return normalize(numbers[:4]), numbers[4:]
+
+
 class FollowedHandle:
-    """What backends of input without a handle of its own have in common.
+    """The handle of a backend whose input device has none.
 
     Force cannot move such a handle; it is only shown.
     """

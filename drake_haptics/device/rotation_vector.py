@@ -1,8 +1,9 @@
-"""Rotation vectors and quaternions in plain numbers: NumPy is slow for three of them.
+"""Rotation vectors, quaternions and angular velocity in plain numbers.
 
-A rotation vector r is axis times angle, rad; a quaternion is [w x y z]. The formulas
-are those of Solà, Deray and Atchuthan, "A micro Lie theory for state estimation in
-robotics", 2018, for the left Jacobian: R_AB(t) = exp(r(t)) R_AB(0) turns at ω in A.
+NumPy is slow for three of them. A rotation vector r is axis times angle, rad; a
+quaternion is [w x y z]. The formulas are those of Solà, Deray and Atchuthan, "A micro
+Lie theory for state estimation in robotics", 2018, for the left Jacobian:
+R_AB(t) = exp(r(t)) R_AB(0) turns at ω in A.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from collections.abc import Sequence
 
 # Below this angle, rad, series to the next order are exact to round-off.
 _SMALL_RAD = 1e-4
+# Orientations that stay the same for so long are those of a handle at rest.
+_REST_S = 0.05
 
 
 def to_quaternion(r: Sequence[float]) -> list[float]:
@@ -96,3 +99,55 @@ def _cross(a: Sequence[float], b: Sequence[float]) -> list[float]:
         a[2] * b[0] - a[0] * b[2],
         a[0] * b[1] - a[1] * b[0],
     ]
+
+
+class TurnRate:
+    """Differences of successive orientations, smoothed by a first-order low-pass.
+
+    A sensor that is slower than the loop repeats itself: only a new orientation makes
+    a new difference, over the time since the last new one. Between two the rate is
+    held, until 0.05 s have passed without any.
+
+    The rate lags behind by the filter's time constant and half a sensor's period.
+
+    Args:
+        time_constant_s: Time constant of the low-pass, s.
+
+    Raises:
+        ValueError: The time constant is not positive.
+    """
+
+    def __init__(self, time_constant_s: float):
+        if not time_constant_s > 0.0:
+            raise ValueError(f"time_constant_s must be positive, is {time_constant_s}")
+        self._time_constant_s = time_constant_s
+        self._time_s = -math.inf
+        self._orientation: tuple[float, ...] | None = None
+        self._rate = [0.0, 0.0, 0.0]
+
+    def update(self, orientation: Sequence[float], time_s: float) -> list[float]:
+        """Takes the sensor's word and returns the rate.
+
+        Args:
+            orientation: (4,) unit quaternion [qw qx qy qz] of the handle in B.
+            time_s: When it came, s; rises.
+
+        Returns:
+            (3,) ω of the handle in B, rad/s.
+        """
+        q = tuple(orientation)
+        elapsed_s = time_s - self._time_s
+        if self._orientation is None or elapsed_s > _REST_S:
+            # The first one, or the first after a rest: no difference means anything.
+            self._rate = [0.0, 0.0, 0.0]
+            if q != self._orientation:
+                self._orientation, self._time_s = q, time_s
+        elif q != self._orientation and elapsed_s > 0.0:
+            turn = to_rotation_vector(multiply(q, invert(self._orientation)))
+            share = -math.expm1(-elapsed_s / self._time_constant_s)
+            self._rate = [
+                rate + share * (angle / elapsed_s - rate)
+                for rate, angle in zip(self._rate, turn, strict=True)
+            ]
+            self._orientation, self._time_s = q, time_s
+        return list(self._rate)

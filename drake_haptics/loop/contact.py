@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ContactSystems:
-    """What finds contacts and answers them.
+    """The systems that find contacts and answer them.
 
     Attributes:
         contact_query: Finds the contacts.
@@ -71,7 +71,7 @@ def add_contact_systems(
     Args:
         builder: Gets the systems.
         tool: Pieces of the tool, in its frame T.
-        objects: What it meets.
+        objects: Objects that the tool meets.
         contact: Tolerance, clustering and gains.
         effects: Contacts are looked for as far as they need.
         materials: Of each object; gains that one does not give are those of `contact`.
@@ -178,9 +178,9 @@ def connect_by_name(
     """Connects the inputs of a system whose names say what they want.
 
     Args:
-        builder: Of the diagram with the system.
+        builder: Builder of the diagram with the system.
         system: Of it; inputs that are connected already are left alone.
-        sources: What there is, by the names of inputs.
+        sources: Output ports, by the names of the inputs that they go to.
     """
     for port in map(system.get_input_port, range(system.num_input_ports())):
         name = port.get_name()

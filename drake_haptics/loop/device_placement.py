@@ -1,4 +1,4 @@
-"""Where a device stands in a scene, and how it gets into the scene's diagram."""
+"""Places a device in a scene, and makes its port of the scene's diagram."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _QUATERNION_TOLERANCE = 1e-3
 
 @dataclass(frozen=True)
 class DeviceSite:
-    """Where a scene expects its device and the handle of it.
+    """The place at which a scene expects its device and the device's handle.
 
     Attributes:
         X_WB: Pose of the device's base in the world.
@@ -144,7 +144,7 @@ def make_haptic_device(
     Args:
         scene: Says the rate and the limits.
         backend: Open.
-        X_WB: Where its base stands.
+        X_WB: Pose of its base in the world.
 
     Raises:
         SceneError: As `find_device_site`.
@@ -175,7 +175,7 @@ def make_device_port(
 
     Args:
         backend: Open; remains the caller's to close.
-        X_WB: Where its base stands; the world's frame where not given.
+        X_WB: Pose of its base in the world. Defaults to the identity.
         period_s: The tick, s; also that of what the port is given to.
         max_force_N: Largest force shown, N.
         max_torque_Nm: Largest torque shown, N·m.

@@ -17,7 +17,7 @@ from drake_haptics import _core
 from drake_haptics.bounds.sampled_spring import calc_returnable_energy
 from drake_haptics.loop.contact import connect_by_name
 from drake_haptics.loop.haptic_loop import EffectSystems
-from drake_haptics.scene.effects import (
+from drake_haptics.scene.schema import (
     Braking,
     Effects,
     Friction,
@@ -35,7 +35,7 @@ _HIGHEST_LIFT_M = 0.5
 
 @dataclass(frozen=True)
 class EffectSite:
-    """Which effects go where, and what they are made from.
+    """The effects to add, their place in a diagram and what they are made from.
 
     Attributes:
         effects: Those to add are not None.
@@ -45,7 +45,7 @@ class EffectSite:
         tool: Pieces of the tool, in its frame T.
         tool_mass_kg: Its mass, kg.
         p_TTcm: Its center of mass (3,), m.
-        objects: What it meets.
+        objects: Objects that the tool meets.
         materials: Of each object.
         period_s: The tick, s.
         springs: What can push the device: the largest load and the stiffness of each,
@@ -71,7 +71,7 @@ def find_springs(
 
     Args:
         device: Its limits load them.
-        gains: Of the coupling.
+        gains: Gains of the coupling.
         contacts_N_per_m: Stiffness of contact with each object, N/m.
     """
     return [

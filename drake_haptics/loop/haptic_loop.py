@@ -77,14 +77,14 @@ class HapticLoop(BaseSystems):
 
     @property
     def contacts(self) -> OutputPort:
-        """What is clustered: the contacts, shaded if the scene asks for it."""
+        """The contacts that are clustered, shaded if the scene asks for it."""
         if self.effects.shading is not None:
             return self.effects.shading.get_contacts_output_port()
         return self.found_contacts
 
     @property
     def display_wrench(self) -> OutputPort:
-        """What the device is asked to show: the wrench (6) [τ; f] on its handle."""
+        """The wrench (6) [τ; f] on its handle that the device is asked to show."""
         if self.effects.passivity is not None:
             return self.effects.passivity.get_display_wrench_output_port()
         return self.virtual_coupling.get_display_wrench_output_port()
@@ -93,7 +93,7 @@ class HapticLoop(BaseSystems):
     def outputs(self) -> dict[str, OutputPort]:
         """What there is to see of the loop, by name.
 
-        `BuildHapticDiagram` exports each by this name. In a diagram of one's own each
+        `BuildHapticDiagram` exports each by this name. In your own diagram each
         can be read, logged, connected or exported like any port.
 
         * `X_WTool` (7) and `V_WTool` (6) are those of `HapticTool`: pose
@@ -142,8 +142,8 @@ def ConnectMovingObject(
     """Connects the motion of an object to every system of a loop that needs it.
 
     Args:
-        builder: Of the diagram with the loop.
-        loop: What `AddHapticLoop` returned.
+        builder: Builder of the diagram with the loop.
+        loop: Return value of `AddHapticLoop`.
         name: Of an object without a pose of its own.
         X_WO: Its pose (7) [qw qx qy qz x y z] in the world, m.
         V_WO: Its spatial velocity (6) [ω; v] in the world, rad/s and m/s.

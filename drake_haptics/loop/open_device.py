@@ -1,4 +1,4 @@
-"""Devices by their address, as the command line names them."""
+"""Opens devices by their address, as the command line names them."""
 
 from __future__ import annotations
 

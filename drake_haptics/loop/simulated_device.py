@@ -1,4 +1,4 @@
-"""A scene's device, simulated, in a scene's hand."""
+"""Simulates a scene's device in a scene's hand."""
 
 from __future__ import annotations
 
@@ -12,11 +12,10 @@ from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
 from drake_haptics.scene.schema import HandPath as ScenePath
 from drake_haptics.scene.schema import Pose, Scene, Twin
-from drake_haptics.systems.arm.arm_inverse_kinematics import UnreachableError
 from drake_haptics.systems.arm.arm_twin import ArmTwin
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.arm.hand_path import HandPath
-from drake_haptics.systems.arm.simulated_arm import SimulatedArm
+from drake_haptics.systems.arm.simulated_arm import SimulatedArm, UnreachableError
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 # The path is checked against the workspace at this many points of it.
@@ -43,7 +42,7 @@ def make_simulated_device(scene: Scene, path: HandPath) -> HapticDevice:
 
     Args:
         scene: Names the device, the grasp and the grip.
-        path: Where the hand wants the tool.
+        path: Poses to which the hand moves the tool.
 
     Raises:
         SceneError: There is no such preset or grip, the preset has no model or one
@@ -96,7 +95,7 @@ def find_base(scene: Scene, path: HandPath) -> RigidTransform:
     Args:
         scene: Names the device and, if it does, the place. If not, the middle of the
             preset's workspace is put at the middle of the path.
-        path: Where the hand wants the tool.
+        path: Poses to which the hand moves the tool.
     """
     return _find_base(scene, _sample_handle(scene, path)[1])
 

@@ -1,4 +1,4 @@
-"""Puts haptic rendering into a plant of one's own, with one call."""
+"""Adds haptic rendering to your own plant, and sums the forces applied to it."""
 
 from __future__ import annotations
 
@@ -7,15 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 
 from pydrake.geometry import Role, SceneGraph
 from pydrake.math import RigidTransform
-from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.plant import (
+    ExternallyAppliedSpatialForceMultiplexer,
+    MultibodyPlant,
+)
 from pydrake.multibody.tree import RigidBody
-from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.framework import DiagramBuilder, OutputPort
 
 from drake_haptics.common.type_checks import require_kinds
-from drake_haptics.rendering.applied_force import (
-    AddAppliedSpatialForce,
-    find_applied_force,
-)
 from drake_haptics.rendering.bodies import (
     RenderedBody,
     exclude_own_contact,
@@ -23,9 +22,11 @@ from drake_haptics.rendering.bodies import (
     find_environment,
     make_rendered_bodies,
 )
+from drake_haptics.rendering.checks import (
+    check_rendering_stiffness,
+    question_rendered_sizes,
+)
 from drake_haptics.rendering.haptic_rendering import HapticRendering
-from drake_haptics.rendering.sizes import question_rendered_sizes
-from drake_haptics.rendering.stiffness import check_rendering_stiffness
 from drake_haptics.scene.schema import Contact, Coupling, Effects, Material
 from drake_haptics.scene.validation import SceneWarning, check_rendering
 from drake_haptics.systems.device.haptic_device import HapticDevice
@@ -70,7 +71,7 @@ def AddHapticRendering(
     `V_WH` of the result, which shows its wrench at the output `F_display`.
 
     Args:
-        builder: Of the diagram with the plant; not built yet.
+        builder: Builder of the diagram with the plant; not built yet.
         plant: Finalized, continuous or discrete.
         scene_graph: The plant's.
         tool_body: The body that is the tool, or its name or `model::name`.
@@ -83,14 +84,14 @@ def AddHapticRendering(
         contact: Tolerance, clustering and gains.
         materials: Of bodies of the environment, by the names of their ports; what one
             does not give is that of `contact` and `effects`.
-        effects: What is felt besides contact. Gravity is the plant's own; passivity
+        effects: Effects besides contact. Gravity is the plant's own; passivity
             control is of a device.
         coupling: Gains between a handle and the tool; None for no handle.
         device: The handle's, not yet in a builder, as of `make_device_port`.
         X_HT: Pose of the tool in the handle at rest; the identity where not given.
         period_s: The tick of effects with a memory, and the device's, s; where not
             given, the plant's time step, or 1 ms for a continuous plant.
-        name: Of the system in the builder.
+        name: Name of the system in the builder.
         progress: Called while meshes are cut with the name of the body and the share
             done, from 0 to 1.
 
@@ -268,3 +269,60 @@ def _describe_own_contact(tool: RigidBody, others: Sequence[str]) -> list[str]:
         f" {', '.join(map(repr, others))}, unless another call renders them: name them"
         " in environment, or exclude them with a collision filter"
     ]
+
+
+def AddAppliedSpatialForce(
+    builder: DiagramBuilder, plant: MultibodyPlant, forces: OutputPort
+) -> None:
+    """Connects forces to a plant beside all that are connected to it already.
+
+    Where the plant's port `applied_spatial_force` is free, this is `Connect`. Where
+    something feeds it, such as another `AddHapticRendering`, a thruster, or the mouse
+    of a newer Drake's `AddDefaultVisualization`, that and `forces` go through an
+    `ExternallyAppliedSpatialForceMultiplexer`, and both act.
+
+    Args:
+        builder: Builder of the diagram with the plant.
+        plant: Finalized.
+        forces: A list of `ExternallyAppliedSpatialForce`, of a system in the builder.
+
+    Raises:
+        ValueError: The port is an input of the diagram itself, to which nothing can be
+            connected any more.
+    """
+    port = plant.get_applied_spatial_force_input_port()
+    earlier = find_applied_force(builder, plant)
+    if earlier is None:
+        builder.Connect(forces, port)
+        return
+    builder.Disconnect(earlier, port)
+    both = builder.AddNamedSystem(
+        f"{forces.get_system().get_name()}_{forces.get_name()}_beside_others",
+        ExternallyAppliedSpatialForceMultiplexer(num_inputs=2),
+    )
+    builder.Connect(earlier, both.get_input_port(0))
+    builder.Connect(forces, both.get_input_port(1))
+    builder.Connect(both.get_output_port(), port)
+
+
+def find_applied_force(
+    builder: DiagramBuilder, plant: MultibodyPlant
+) -> OutputPort | None:
+    """Returns what feeds a plant's port `applied_spatial_force` so far.
+
+    Raises:
+        ValueError: As `AddAppliedSpatialForce`.
+    """
+    port = plant.get_applied_spatial_force_input_port()
+    if not builder.IsConnectedOrExported(port):
+        return None
+    source = builder.connection_map().get((plant, port.get_index()))
+    if source is None:
+        raise ValueError(
+            f"plant {plant.get_name()!r}: its port {port.get_name()} is exported as an"
+            " input of the diagram, so that no other force can act: call ExportInput"
+            " not on it, but on an input of an ExternallyAppliedSpatialForceMultiplexer"
+            " that you pass to AddAppliedSpatialForce"
+        )
+    system, index = source
+    return system.get_output_port(index)

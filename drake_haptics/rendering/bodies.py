@@ -1,4 +1,4 @@
-"""Which bodies of a plant take part in haptic rendering, and as what."""
+"""Finds the bodies of a plant that take part in haptic rendering."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class RenderedBody:
     Attributes:
         name: Of its ports: that of the body, with its model instance where two of
             those that take part are called the same.
-        body: Of the plant. Its frame is that of the pieces.
+        body: Body of the plant. Its frame is that of the pieces.
         pieces: Its shapes.
         X_WB: Its pose, if it is welded to the world; None where it can move.
     """
@@ -175,10 +175,10 @@ def exclude_own_contact(
     """Keeps the plant's own contact from acting between the tool and what is rendered.
 
     Args:
-        plant: Of the bodies.
+        plant: Plant of the bodies.
         scene_graph: Its collision filters are changed, in the model.
         tool: The tool.
-        environment: What is rendered.
+        environment: Bodies that are rendered.
 
     Returns:
         Names of other bodies that the plant lets the tool touch.

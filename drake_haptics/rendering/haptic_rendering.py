@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram, InputPort, OutputPort
 
+from drake_haptics.loop.add_haptic_loop import make_coupling_gains
 from drake_haptics.loop.contact import connect_by_name
-from drake_haptics.loop.coupling import make_coupling_gains
 from drake_haptics.rendering.bodies import RenderedBody
 from drake_haptics.rendering.wiring import RenderingWiring
 from drake_haptics.scene.schema import Contact, Coupling, Effects, Material
-from drake_haptics.scene.skin import calc_skin_speed
+from drake_haptics.scene.validation import calc_skin_speed
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 
@@ -85,10 +85,10 @@ class HapticRendering(Diagram):
 
         Args:
             tool: The body that is moved.
-            objects: What it meets.
+            objects: Objects that the tool meets.
             contact: Tolerance, clustering and gains.
             materials: Of each object.
-            effects: What is felt besides contact.
+            effects: Effects besides contact.
             coupling: Gains between a handle and the tool; None for no handle.
             device: The handle's, if it is to be inside; not yet in a builder.
             X_HT: Pose of the tool in the handle at rest.
@@ -126,7 +126,7 @@ class HapticRendering(Diagram):
 
     @property
     def objects(self) -> tuple[RenderedBody, ...]:
-        """What it meets, in the order of `ContactSet.object_index`."""
+        """The objects that it meets, in the order of `ContactSet.object_index`."""
         return self._objects
 
     @property

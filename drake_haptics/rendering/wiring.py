@@ -1,4 +1,4 @@
-"""Adds the parts of a haptic rendering one by one, and knows their ports by name."""
+"""Adds the parts of a haptic rendering one by one, and connects them by name."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class RenderingWiring:
     """A `HapticRendering` under construction.
 
     Attributes:
-        builder: Of its diagram.
+        builder: Builder of its diagram.
         outputs: What it will export, by name.
     """
 
@@ -37,7 +37,7 @@ class RenderingWiring:
 
         Args:
             tool: The body that is moved.
-            objects: What it meets.
+            objects: Objects that the tool meets.
         """
         self.builder = DiagramBuilder()
         self._tool = tool

@@ -1,4 +1,4 @@
-"""Words round a picture of points: labels, numbers at the axes, legends."""
+"""Places labels, axis numbers and legends around the points of a plot."""
 
 from __future__ import annotations
 

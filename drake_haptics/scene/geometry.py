@@ -12,9 +12,9 @@ from drake_haptics.geometry.decomposition.decompose import (
     Method,
     decompose,
 )
-from drake_haptics.geometry.mesh.centering import center
 from drake_haptics.geometry.mesh.decimation import decimate
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+from drake_haptics.geometry.mesh.placement import center
 from drake_haptics.geometry.parsing.model_file import (
     DEFAULT_CHORD_ERROR_M,
     is_model_file,

@@ -6,7 +6,7 @@ import difflib
 from pathlib import Path
 
 from drake_haptics.common.errors import MeshError, SceneError, UserError
-from drake_haptics.common.missing_file import describe_missing
+from drake_haptics.common.files import describe_missing
 from drake_haptics.models import FOLDER
 
 # Given for a scene by mistake; any other name may be a scene's.

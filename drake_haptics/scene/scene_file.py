@@ -1,4 +1,4 @@
-"""Writes a scene as a file that `load_scene` reads from anywhere."""
+"""Reads scene files, checks them, and writes files that can be read from anywhere."""
 
 from __future__ import annotations
 
@@ -6,14 +6,50 @@ import copy
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from pydrake.common.yaml import yaml_dump_typed
+from pydrake.common.yaml import yaml_dump_typed, yaml_load_typed
 from pydrake.multibody.parsing import PackageMap
 
+from drake_haptics.common.errors import MeshError, SceneError
+from drake_haptics.common.files import describe_missing, resolve_package_url
 from drake_haptics.models import FOLDER
 from drake_haptics.scene.device_preset import is_preset_file
+from drake_haptics.scene.library import list_scenes
 from drake_haptics.scene.schema import EnvironmentObject, Scene, Tool
+from drake_haptics.scene.validation import check_values
+from drake_haptics.scene.yaml_loading import check_keys, load_yaml
 
 _SHIPPED = "package://drake_haptics/models/"
+
+
+def load_scene(path: str | Path) -> Scene:
+    """Reads and checks a scene file.
+
+    Args:
+        path: The YAML file. Relative paths in it are taken from its folder.
+
+    Returns:
+        The scene, with paths that no longer depend on the folder.
+
+    Raises:
+        SceneError: The file cannot be read, has a key or a value that means
+            nothing, names a mesh that is not there, or describes something
+            physically impossible. The message names the file and the key.
+    """
+    path = Path(path)
+    if str(path) in list_scenes() and not path.exists():
+        raise SceneError(
+            f"{path}: no such file; the scene of that name that is shipped is"
+            f" load_scene(find_scene('{path}'))"
+        )
+    data = load_yaml(path)
+    try:
+        check_keys(Scene, data)
+        scene: Scene = yaml_load_typed(schema=Scene, filename=str(path))
+        check_values(scene)
+        place_files(scene, path.parent)
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from error
+    return scene
 
 
 def write_scene(scene: Scene, path: str | Path, comments: Sequence[str] = ()) -> None:
@@ -24,7 +60,7 @@ def write_scene(scene: Scene, path: str | Path, comments: Sequence[str] = ()) ->
 
     Args:
         scene: From `load_scene`, or with such paths.
-        path: Of the file, which is replaced.
+        path: Path of the file, which is replaced.
         comments: Lines for people, at its head.
 
     Raises:
@@ -59,3 +95,33 @@ def _list_places(folder: Path) -> Iterator[tuple[Path, str]]:
     yield FOLDER, _SHIPPED
     yield Path(PackageMap().GetPath("drake")), "package://drake/"
     yield folder, ""
+
+
+def place_files(scene: Scene, folder: Path) -> None:
+    """Makes the paths of a scene's meshes and preset hold from any folder.
+
+    Args:
+        scene: Is changed.
+        folder: Folder at which relative paths begin.
+
+    Raises:
+        SceneError: A mesh is not there, or no package has that name.
+    """
+    parts: dict[str, Tool | EnvironmentObject] = {"tool": scene.tool}
+    parts |= {f"environment[{i}]": item for i, item in enumerate(scene.environment)}
+    for where, part in parts.items():
+        part.mesh = _find_absolute(f"{where}.mesh", part.mesh, folder)
+        if not Path(part.mesh).exists():
+            raise SceneError(f"{where}.mesh: {describe_missing(part.mesh)}")
+    preset = scene.device.preset
+    if is_preset_file(preset):
+        scene.device.preset = _find_absolute("device.preset", preset, folder)
+
+
+def _find_absolute(where: str, file: str, folder: Path) -> str:
+    """Returns the path of a file that holds from any folder."""
+    try:
+        resolved = resolve_package_url(file)
+    except MeshError as error:
+        raise SceneError(f"{where}: {error}") from error
+    return resolved if resolved != file else str((folder / file).resolve())

@@ -1,4 +1,4 @@
-"""Scenes: what is held, what it meets, who holds it, and with which gains.
+"""Defines a scene: what is held, what it meets, who holds it, and with which gains.
 
 A scene is a YAML file read into the dataclasses below. Every field has its unit
 in its name or its docstring, every default works, and an unknown key is an error.
@@ -10,47 +10,185 @@ from pathlib import Path
 import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw
 
-from drake_haptics.scene.effects import (
-    Braking,
-    Effects,
-    Friction,
-    Gravity,
-    Material,
-    Passivity,
-    Shading,
-)
-from drake_haptics.scene.twin import (
-    Encoder,
-    ForceDelay,
-    JointFriction,
-    Saturation,
-    Twin,
-)
 
-__all__ = [
-    "Braking",
-    "Contact",
-    "Coupling",
-    "Device",
-    "Effects",
-    "Encoder",
-    "EnvironmentObject",
-    "ForceDelay",
-    "Friction",
-    "Gravity",
-    "Hand",
-    "HandPath",
-    "JointFriction",
-    "Material",
-    "Passivity",
-    "Pose",
-    "Saturation",
-    "Scene",
-    "Shading",
-    "Tool",
-    "Twin",
-    "Waypoint",
-]
+@dataclass(slots=True)
+class Material:
+    """What an object is made of; what is not given is the scene's.
+
+    Attributes:
+        stiffness_N_per_m: Instead of `contact.stiffness_N_per_m`, N/m.
+        damping_Ns_per_m: Instead of `contact.damping_Ns_per_m`, N·s/m.
+        friction_coefficient: Instead of `effects.friction.coefficient`; the scene
+            must name that effect.
+        shading: Whether the object is shaded; the scene must name that effect.
+    """
+
+    stiffness_N_per_m: float | None = None
+    damping_Ns_per_m: float | None = None
+    friction_coefficient: float | None = None
+    shading: bool | None = None
+
+
+@dataclass(slots=True)
+class Shading:
+    """Force shading: facets feel smooth, edges stay sharp.
+
+    Attributes:
+        crease_angle_deg: Faces that meet at a larger angle than this form a sharp
+            edge, degrees, from 0 to 180.
+    """
+
+    crease_angle_deg: float = 30.0
+
+
+@dataclass(slots=True)
+class Friction:
+    """Stick-slip friction.
+
+    Attributes:
+        coefficient: Friction per normal force, of all objects whose material has
+            none of its own.
+        break_away_m: How far a contact that sticks gives way before it slips, m.
+    """
+
+    coefficient: float = 0.3
+    break_away_m: float = 1e-4
+
+
+@dataclass(slots=True)
+class Braking:
+    """Viscous braking before contact.
+
+    Attributes:
+        damping_Ns_per_m: Force per speed of approach at the surface, N·s/m.
+        distance_m: Where braking begins, m. Contacts are looked for that far, if it
+            is more than `contact.tolerance_m`.
+    """
+
+    damping_Ns_per_m: float = 2.0
+    distance_m: float = 4e-3
+
+
+@dataclass(slots=True)
+class Gravity:
+    """The tool's weight.
+
+    Attributes:
+        acceleration_m_per_s2: In the world, m/s².
+    """
+
+    acceleration_m_per_s2: list[float] = field(
+        default_factory=lambda: [0.0, 0.0, -9.81]
+    )
+
+
+@dataclass(slots=True)
+class Passivity:
+    """Energy-based passivity control between the coupling and the device.
+
+    Attributes:
+        max_damping_Ns_per_m: Largest damping that is added, N·s/m.
+        max_rotational_damping_Nms_per_rad: The same about an axis, N·m·s/rad.
+        reserve_J: Largest energy that is taken for the world's own, J; where not
+            given, that of the scene's springs at the device's limits and of the tool.
+    """
+
+    max_damping_Ns_per_m: float = 20.0
+    max_rotational_damping_Nms_per_rad: float = 0.02
+    reserve_J: float | None = None
+
+
+@dataclass(slots=True)
+class Effects:
+    """The effects of a scene. One that is None is not in the diagram.
+
+    In a file, an effect with its defaults is written `gravity: {}`.
+
+    Attributes:
+        shading: Smooths forces over facets.
+        friction: Stick-slip friction.
+        braking: Viscous braking before contact.
+        gravity: The tool's weight.
+        passivity: Takes energy that the loop has made.
+    """
+
+    shading: Shading | None = None
+    friction: Friction | None = None
+    braking: Braking | None = None
+    gravity: Gravity | None = None
+    passivity: Passivity | None = None
+
+
+@dataclass(slots=True)
+class Encoder:
+    """Encoders on the motors: the loop sees counted angles, not the true ones.
+
+    Attributes:
+        step_rad: Angle of a joint per count of its motor's encoder, six numbers, rad;
+            the preset's where not given.
+        velocity_window: Samples over which the speed is the difference of counts, at
+            least 1. Its resolution is the step per window, its delay half a window.
+    """
+
+    step_rad: list[float] | None = None
+    velocity_window: int = 4
+
+
+@dataclass(slots=True)
+class JointFriction:
+    """Dry and viscous friction of the motors, beyond the damping of the model.
+
+    Attributes:
+        coulomb_Nm: Torque against motion, six numbers, N·m; the preset's where not
+            given.
+        viscous_Nms_per_rad: Torque per speed, six numbers, N·m·s/rad; none where not
+            given.
+    """
+
+    coulomb_Nm: list[float] | None = None
+    viscous_Nms_per_rad: list[float] = field(default_factory=lambda: [0.0] * 6)
+
+
+@dataclass(slots=True)
+class ForceDelay:
+    """A way to the motors that takes whole ticks, on top of the hold.
+
+    Attributes:
+        samples: Ticks, at least 1.
+    """
+
+    samples: int = 1
+
+
+@dataclass(slots=True)
+class Saturation:
+    """Motors of limited torque.
+
+    Attributes:
+        peak_torque_Nm: Of each motor after its gear, six numbers, N·m; the preset's
+            where not given.
+    """
+
+    peak_torque_Nm: list[float] | None = None
+
+
+@dataclass(slots=True)
+class Twin:
+    """How faithful the simulated device is. A part that is None is not in the diagram.
+
+    In a file, a part with the preset's figures is written `encoder: {}`.
+
+    Attributes:
+        encoder: Counted angles and a speed estimated from them.
+        friction: Dry and viscous friction.
+        delay: The wrench arrives later.
+        saturation: No motor gives more than its peak torque.
+    """
+
+    encoder: Encoder | None = None
+    friction: JointFriction | None = None
+    delay: ForceDelay | None = None
+    saturation: Saturation | None = None
 
 
 @dataclass(slots=True)
@@ -259,7 +397,7 @@ class Hand:
 
     Attributes:
         grip: Name of a grip: none, light, nominal or firm. Their masses, stiffnesses
-            and dampings are those of `drake_haptics.systems.arm.hand_grip.HAND_GRIPS`:
+            and dampings are those of `drake_haptics.systems.HAND_GRIPS`:
             springs of 50, 300 and 1000 N/m.
         path: Where the hand wants the tool to go.
     """

@@ -1,9 +1,11 @@
-"""Changes single values of a scene by their keys."""
+"""Lists the keys of a scene file, and changes single values of a scene by them."""
 
 from __future__ import annotations
 
+import dataclasses
 import difflib
 import re
+import typing
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,8 +18,7 @@ from pydrake.common.yaml import (
 )
 
 from drake_haptics.common.errors import SceneError
-from drake_haptics.scene.keys import list_keys
-from drake_haptics.scene.paths import place_files
+from drake_haptics.scene.scene_file import place_files
 from drake_haptics.scene.schema import EnvironmentObject, Scene, Waypoint
 from drake_haptics.scene.validation import check_values
 from drake_haptics.scene.yaml_loading import check_keys
@@ -130,3 +131,23 @@ def _look_up(place: Any, steps: Sequence[str | int], i: int, key: str) -> Any:
         counted = f"a list of {len(place)}, the first of which is {steps[i - 1]}[0]"
         words += f"; {steps[i - 1]} is {counted}"
     raise SceneError(words)
+
+
+def list_keys(schema: type, where: str = "") -> list[str]:
+    """Returns the key of every single value, like `contact.tolerance_m` of a `Scene`.
+
+    Lists, as of objects and waypoints, are one value each.
+
+    Args:
+        schema: A dataclass.
+        where: Prefix of the keys.
+    """
+    keys: list[str] = []
+    for name, kind in typing.get_type_hints(schema).items():
+        parts = [t for t in (kind, *typing.get_args(kind)) if isinstance(t, type)]
+        inner = [part for part in parts if dataclasses.is_dataclass(part)]
+        if inner and typing.get_origin(kind) is not list:
+            keys += list_keys(inner[0], f"{where}{name}.")
+        else:
+            keys.append(f"{where}{name}")
+    return keys

@@ -1,29 +1,28 @@
-"""Checks of a scene: values that cannot be."""
+"""Checks the values of a scene, and asks about those that are probably wrong."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from drake_haptics.common.errors import SceneError
 from drake_haptics.geometry.decomposition.decompose import METHODS
+from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.parsing.model_file import is_model_file
+from drake_haptics.scene.schema import (
+    Contact,
+    Coupling,
+    Device,
+    Effects,
+    EnvironmentObject,
+    HandPath,
+    Material,
+    Scene,
+    Tool,
+    Twin,
+)
 from drake_haptics.scene.yaml_loading import join_key, make_hint
-
-if TYPE_CHECKING:
-    import drake_haptics.scene.schema
-    from drake_haptics.scene.effects import Effects, Material
-    from drake_haptics.scene.schema import (
-        Contact,
-        Coupling,
-        Device,
-        EnvironmentObject,
-        HandPath,
-        Scene,
-        Tool,
-    )
-    from drake_haptics.scene.twin import Twin
 
 _CLUSTERINGS = ("shared", "octree")
 _DEPTHS = ("tracked", "global")
@@ -31,6 +30,9 @@ _DEPTHS = ("tracked", "global")
 _RATE_SLACK = 1e-9
 # 5 mm of way at 0.1 m/s, more than near contacts are looked for.
 _LEAST_QUERY_RATE_HZ = 20.0
+# So deep the contact answers eleven times what its skin carries. The scenes that are
+# shipped press up to 2.3 tolerances deep, at the limit of their device.
+_DEEP = 10.0
 
 
 class SceneWarning(UserWarning):
@@ -74,7 +76,7 @@ def check_values(scene: Scene) -> None:
 
 
 def check_rendering(
-    contact: drake_haptics.scene.schema.Contact,
+    contact: Contact,
     materials: Mapping[str, Material],
     effects: Effects,
     coupling: Coupling | None,
@@ -315,3 +317,36 @@ def require(condition: bool, where: str, complaint: str) -> None:
     """Raises SceneError about a key unless a condition holds."""
     if not condition:
         raise SceneError(f"{where} {complaint}")
+
+
+def calc_skin_speed(contact: Contact, period_s: float) -> float:
+    """Returns the speed at which one step crosses the tolerance, m/s.
+
+    Args:
+        contact: Tolerance, and how often contacts are looked for.
+        period_s: How often they are where `contact` does not say, s.
+    """
+    return contact.tolerance_m * (contact.query_rate_hz or 1.0 / period_s)
+
+
+def question_depth(depth_m: float, tolerance_m: float) -> str:
+    """Asks about a contact that is deeper than ten tolerances.
+
+    Without a tolerance there is no skin to measure by, and nothing is asked: surfaces
+    push only as they overlap.
+
+    Args:
+        depth_m: Depth of the deepest contact, m; not positive if none penetrates.
+        tolerance_m: The distance below which contacts push, m.
+
+    Returns:
+        A sentence if it is; nothing if not.
+    """
+    if not depth_m > _DEEP * tolerance_m > 0.0:
+        return ""
+    return (
+        f"a contact is {length(depth_m)} deep, {depth_m / tolerance_m:.0f} times"
+        f" contact.tolerance_m ({length(tolerance_m)}): the tool began in a shape, was"
+        " carried into one by a step, or is pressed harder than the contact is stiff;"
+        " docs/troubleshooting.md tells them apart under Tunnelling"
+    )

@@ -1,4 +1,4 @@
-"""Files of YAML that become dataclasses, and what is wrong with them."""
+"""Reads YAML files that become dataclasses, and explains their errors."""
 
 from __future__ import annotations
 

@@ -1,1 +1,8 @@
-"""Runs a loop, measures it, and changes it while it runs."""
+"""Runs a haptic loop, measures it, and changes it while it runs.
+
+The names are imported when they are first asked for.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,4 +1,4 @@
-"""Where the energy of a haptic loop goes."""
+"""Accounts for the energy of a haptic loop."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class EnergyLedger:
         """Constructs a ledger without an entry.
 
         Args:
-            loop: What `AddHapticLoop` returned.
+            loop: Return value of `AddHapticLoop`.
             root: Context of the diagram that holds it, where it is read.
         """
         sources = dict(loop.wrench_sources)

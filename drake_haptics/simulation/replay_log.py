@@ -15,7 +15,7 @@ from pydrake.systems.framework import Context, EventStatus
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
-from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.loop.outputs import make_log_header
 from drake_haptics.scene.schema import Scene
 from drake_haptics.scene.validation import check_values
 from drake_haptics.scene.yaml_loading import check_keys
@@ -54,14 +54,14 @@ def replay(
     out: str | os.PathLike[str] | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> TickLog:
-    """Moves the handle as it was recorded, and computes everything else anew.
+    """Moves the handle as it was recorded, and computes everything else again.
 
     The tool starts where the log has it. In the scene of the log, the same program
     computes the same to the last bit, up to the first gap of the log. In a scene of
     another rate the handle stays, from tick to tick of the log, where it was.
 
     Args:
-        log: What `read_tick_log` returned.
+        log: Return value of `read_tick_log`.
         scene: Another scene than the log's.
         out: File for the log of this run; a temporary one if not given.
         progress: Called with what is done and its share, in [0, 1].

@@ -16,12 +16,10 @@ from pydrake.systems.analysis import (
 )
 from pydrake.systems.framework import Context, EventStatus
 
-from drake_haptics.common.realtime_priority import realtime_priority
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock, realtime_priority
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.scene.skin import question_depth
-from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.scene.validation import SceneWarning, question_depth
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.simulation.statistics import RunStatistics
 
@@ -32,7 +30,7 @@ class RunError(RuntimeError):
     """A run was stopped because a value was no longer finite.
 
     Attributes:
-        statistics: Of the run up to there.
+        statistics: Statistics of the run up to there.
     """
 
     def __init__(self, message: str, statistics: RunStatistics):
@@ -47,8 +45,8 @@ def make_simulator(haptic: HapticDiagram, context: Context | None = None) -> Sim
     a shipped grip is slow against a tick (tests/simulation/test_run.py).
 
     Args:
-        haptic: What `BuildHapticDiagram` returned.
-        context: Where to start; becomes the simulator's. At time 0 if not given.
+        haptic: Return value of `BuildHapticDiagram`.
+        context: Initial context, which the simulator then owns. Defaults to time 0.
     """
     require_kinds(_MADE_BY, haptic=(haptic, HapticDiagram))
     simulator = Simulator(haptic.diagram, context)
@@ -74,7 +72,7 @@ def run(
     statistics.
 
     Args:
-        haptic: What `BuildHapticDiagram` returned.
+        haptic: Return value of `BuildHapticDiagram`.
         duration_s: Simulated time, s; for ever where not given.
         pace: Waits for each tick, so that simulated time is clock time; a device needs
             it, and the system is asked for a real-time priority. As fast as it can
@@ -83,7 +81,7 @@ def run(
             each tick. Only of a simulated device: what any other does between two
             readings is not known.
         on_tick: Called after every tick with the diagram's context, of which it may
-            change parameters alone, as `drake_haptics.simulation.live_scene` does.
+            change parameters alone, as `drake_haptics.simulation.live_values` does.
             Its time counts in the tick. Where it returns True the run ends.
         context: Where to go on; becomes the simulator's. Nothing in it is initialized.
             At the scene's start where not given.

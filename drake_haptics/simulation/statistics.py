@@ -1,4 +1,4 @@
-"""What a run measured, tick by tick."""
+"""Collects what a run measures, tick by tick."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TypedDict
 import numpy as np
 
 from drake_haptics.common.one_line import count
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
 from drake_haptics.systems.device.display_force_hold import LIMITED, NOT_FINITE
@@ -65,7 +65,7 @@ class RunStatistics:
 
         Args:
             period_s: Simulated time of a tick, s.
-            pace: What paces the run, if it is paced.
+            pace: Pacer of the run, if there is one.
         """
         self._pace = pace
         self._ledger: EnergyLedger | None = None

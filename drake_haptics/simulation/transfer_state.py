@@ -1,8 +1,8 @@
-"""Goes on in another diagram where one is: effects come and go, a hand lets go."""
+"""Continues a simulation in another diagram, and frees the memory of the first."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
@@ -12,7 +12,7 @@ from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.systems.arm.arm_inverse_kinematics import (
+from drake_haptics.systems.arm.simulated_arm import (
     UnreachableError,
     solve_arm_positions,
 )
@@ -32,9 +32,9 @@ def carry_on(old: HapticDiagram, old_context: Context, new: HapticDiagram) -> Co
     open it where `find_handle` tells, or the coupling pulls the tool away.
 
     Args:
-        old: What ran, of whatever scene.
-        old_context: Where it is.
-        new: Where to go on, with the same tool.
+        old: Diagram that ran, of any scene.
+        old_context: Its root context.
+        new: Diagram to continue in, with the same tool.
 
     Returns:
         A context of `new`, for `drake_haptics.simulation.run.run`.
@@ -47,15 +47,15 @@ def carry_on(old: HapticDiagram, old_context: Context, new: HapticDiagram) -> Co
     )
     context = new.diagram.CreateDefaultContext()
     context.SetTime(old_context.get_time())
-    begins_anew: list[System] = []
+    restarted: list[System] = []
     is_reached = True
     if not _has_same_device(old, new):
-        begins_anew.append(new.loop.device)
+        restarted.append(new.loop.device)
         is_reached = _take_handle(new, context, find_handle(old, old_context))
     if not is_reached:
-        begins_anew.append(new.loop.haptic_tool)
+        restarted.append(new.loop.haptic_tool)
     # A system that is new may read at its beginning what the others have.
-    copied = old.diagram, old_context, new.diagram, context, begins_anew
+    copied = old.diagram, old_context, new.diagram, context, restarted
     _copy_states(*copied)
     new.diagram.ExecuteInitializationEvents(context)
     _copy_states(*copied)
@@ -76,7 +76,7 @@ def find_handle(haptic: HapticDiagram, root: Context) -> RigidTransform:
     """Returns X_WH, where the handle is.
 
     Args:
-        haptic: What `BuildHapticDiagram` returned.
+        haptic: Return value of `BuildHapticDiagram`.
         root: Context of its diagram.
     """
     device = haptic.loop.device
@@ -133,10 +133,10 @@ def _copy_states(
     old_context: Context,
     new: System,
     context: Context,
-    begins_anew: Sequence[System],
+    restarted: Sequence[System],
 ) -> None:
     """Copies the state of each system that two have in the same place."""
-    if any(new is system for system in begins_anew):
+    if any(new is system for system in restarted):
         return
     if isinstance(new, Diagram):
         assert isinstance(old, Diagram)
@@ -151,7 +151,7 @@ def _copy_states(
                 old.GetSubsystemContext(old_part, old_context),
                 part,
                 new.GetMutableSubsystemContext(part, context),
-                begins_anew,
+                restarted,
             )
     elif _describe_state(old_context) == _describe_state(context):
         context.SetContinuousState(old_context.get_continuous_state_vector().value())
@@ -171,3 +171,29 @@ def _describe_state(context: Context) -> tuple[object, ...]:
             for i in range(context.num_discrete_state_groups())
         ),
     )
+
+
+def retire(haptic: HapticDiagram) -> None:
+    """Lets a diagram be freed when the last reference to it goes.
+
+    pydrake never frees one that has a system in Python: such a system keeps its diagram
+    by an attribute (`ref_cycle` of its bindings), and the diagram keeps the system in
+    C++, where Python's garbage collector does not see it
+    (https://github.com/RobotLocomotion/drake/issues/22515). So all attributes go. What
+    pydrake still keeps is the bare system, some 40 kB, of those that calculate an
+    output or a cache entry by a method of theirs.
+
+    Args:
+        haptic: Diagram that no simulator, port or viewer uses any more.
+    """
+    for system in list(_list_systems(haptic.diagram)):
+        # Other bindings may give a system no attributes to keep its diagram by.
+        getattr(system, "__dict__", {}).clear()
+
+
+def _list_systems(system: System) -> Iterator[System]:
+    """Returns a system and all within it."""
+    yield system
+    if isinstance(system, Diagram):
+        for part in system.GetSystems():
+            yield from _list_systems(part)

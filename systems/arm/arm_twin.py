@@ -1,4 +1,4 @@
-"""What a simulated arm has of a real one's faults, and the systems that give it."""
+"""Gives a simulated arm the faults of a real one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a simulated hand wants the tool to go."""
+"""The path along which a simulated hand moves the tool."""
 
 from __future__ import annotations
 

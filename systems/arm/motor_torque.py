@@ -1,4 +1,4 @@
-"""What an arm's motors make of a wrench: their torques, up to what they can give."""
+"""Turns a wrench into torques of an arm's motors, up to their limits."""
 
 from __future__ import annotations
 

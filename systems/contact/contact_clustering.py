@@ -20,8 +20,7 @@ from drake_haptics._core import (
     share_stiffness,
     thin_contacts,
 )
-from drake_haptics.scene.skin import question_depth
-from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.scene.validation import SceneWarning, question_depth
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,

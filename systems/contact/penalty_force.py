@@ -24,8 +24,7 @@ from drake_haptics._core import (
     penalty_force,
     penalty_wrench_model,
 )
-from drake_haptics.systems.contact.contact_query import ContactObject
-from drake_haptics.systems.contact.object_motions import ObjectMotions
+from drake_haptics.systems.contact.contact_query import ContactObject, ObjectMotions
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,

@@ -15,8 +15,7 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics._core import AutoDiffVector, BrakingGains, pre_contact_braking
-from drake_haptics.systems.contact.contact_query import ContactObject
-from drake_haptics.systems.contact.object_motions import ObjectMotions
+from drake_haptics.systems.contact.contact_query import ContactObject, ObjectMotions
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,

@@ -19,7 +19,7 @@ from pydrake.systems.framework import (
 from drake_haptics._core import FrameChange
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import DeviceBackend, DeviceCommand, DeviceReading
-from drake_haptics.systems.framework.vector_ports import export_parts
+from drake_haptics.systems.framework.differentiable_system import export_parts
 
 
 class DeviceIo(Diagram):

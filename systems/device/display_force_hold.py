@@ -18,8 +18,8 @@ from drake_haptics._core import AutoDiffVector, limit_wrench
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    export_parts,
 )
-from drake_haptics.systems.framework.vector_ports import export_parts
 
 # Values of the port `status`.
 SHOWN_AS_ASKED = 0.0

@@ -11,7 +11,7 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
-from drake_haptics.systems.framework.vector_ports import export_parts
+from drake_haptics.systems.framework.differentiable_system import export_parts
 
 
 class ReplayedHandle(Diagram):

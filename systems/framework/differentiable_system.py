@@ -1,8 +1,8 @@
-"""Systems whose core has derivatives, and their twins of scalar type AutoDiffXd."""
+"""Base of systems with AutoDiff twins, and ports for parts of a vector."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,13 +16,16 @@ from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import (
     BasicVector_,
     Context_,
+    DiagramBuilder,
     DiscreteValues_,
+    InputPort,
     InputPort_,
     LeafSystem,
     LeafSystem_,
     OutputPort,
     PortDataType,
 )
+from pydrake.systems.primitives import Demultiplexer, Multiplexer
 from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics._core import AutoDiffVector
@@ -303,3 +306,47 @@ def _to_core(vector: np.ndarray, num_derivatives: int) -> AutoDiffVector:
 def _from_core(vector: AutoDiffVector) -> np.ndarray:
     """Takes scalars from the core."""
     return InitializeAutoDiff(vector.value, vector.gradient).ravel()
+
+
+def export_parts(
+    builder: DiagramBuilder, vector: OutputPort, sizes: Mapping[str, int]
+) -> None:
+    """Exports consecutive parts of a vector output as outputs of the diagram.
+
+    Drake's own system splits it, which takes no time to speak of beside a port that
+    Python calculates.
+
+    Args:
+        builder: Builder of the diagram.
+        vector: Of a system in it.
+        sizes: Size of each part by the name of its port, in order.
+    """
+    parts = builder.AddNamedSystem("parts", Demultiplexer(list(sizes.values())))
+    builder.Connect(vector, parts.get_input_port(0))
+    for i, name in enumerate(sizes):
+        builder.ExportOutput(parts.get_output_port(i), name)
+
+
+def import_parts(
+    builder: DiagramBuilder,
+    vector: InputPort,
+    sizes: Mapping[str, int],
+    own: OutputPort | None = None,
+) -> None:
+    """Exports consecutive parts of a vector input as inputs of the diagram.
+
+    Drake's own system joins them; a port that Python reads takes longer, in every tick.
+
+    Args:
+        builder: Builder of the diagram.
+        vector: Of a system in it.
+        sizes: Size of each part by the name of its port, in order.
+        own: The last part, of a system in the diagram; no input.
+    """
+    all_sizes = [*sizes.values(), *([] if own is None else [own.size()])]
+    joint = builder.AddNamedSystem("joint", Multiplexer(all_sizes))
+    builder.Connect(joint.get_output_port(), vector)
+    for i, name in enumerate(sizes):
+        builder.ExportInput(joint.get_input_port(i), name)
+    if own is not None:
+        builder.Connect(own, joint.get_input_port(len(sizes)))

@@ -18,7 +18,7 @@ from pydrake.systems.framework import (
 
 from drake_haptics import _core
 from drake_haptics.device.backend import Fault, GateState
-from drake_haptics.device.gate_status import GateStatus
+from drake_haptics.device.gate import GateStatus
 from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_command
 
 _UINT32 = (1 << 32) - 1

@@ -1,4 +1,4 @@
-"""What a haptic device is asked for over LCM, from a vector."""
+"""Makes LCM commands to a haptic device of vectors."""
 
 from __future__ import annotations
 

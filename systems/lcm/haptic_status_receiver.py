@@ -1,4 +1,4 @@
-"""What a haptic device told over LCM, as vectors."""
+"""Makes vectors of the LCM statuses of a haptic device."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ from pydrake.systems.framework import (
     OutputPort,
 )
 
-from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status
-from drake_haptics.device.lcm.status_check import find_flaw
+from drake_haptics.device.lcm.haptic_messages import find_flaw, lcmt_haptic_status
 
 # What is told before the first message.
 _AT_REST = lcmt_haptic_status(pose=(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))

@@ -1,4 +1,4 @@
-"""What a haptic device tells over LCM, from vectors."""
+"""Makes LCM statuses of a haptic device of vectors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pydrake.systems.framework import (
     OutputPort,
 )
 
-from drake_haptics.device.gate_status import GateStatus
+from drake_haptics.device.gate import GateStatus
 from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status
 
 

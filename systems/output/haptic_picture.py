@@ -1,8 +1,9 @@
-"""What the haptic loop looks like in Meshcat."""
+"""Draws the state of a haptic loop in Meshcat, in views that can be shown or hidden."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from types import MappingProxyType
 
 import numpy as np
 from pydrake.geometry import Cylinder, Meshcat, Rgba, Sphere
@@ -11,9 +12,12 @@ from pydrake.math import RigidTransform, RotationMatrix
 from drake_haptics._core import ClusterSet, ContactSet, Decomposition, FrictionStep
 from drake_haptics.common import colors
 from drake_haptics.systems.contact.contact_query import ContactObject
-from drake_haptics.systems.output.arrow_pool import DOUBLE_ARROW, LONG_ARROW, ArrowPool
-from drake_haptics.systems.output.drawn_pieces import DrawnPieces
-from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST, check_view
+from drake_haptics.systems.output.meshcat_shapes import (
+    DOUBLE_ARROW,
+    LONG_ARROW,
+    ArrowPool,
+    DrawnPieces,
+)
 
 _ROOT = "/haptics"
 _MAX_CONTACTS = 64
@@ -41,6 +45,24 @@ _FOLDERS = {
 _NO_SIZE = 1e-6
 # A line that is shorter has no direction.
 _NO_LENGTH_M = 1e-9
+PICTURE_VIEWS = MappingProxyType(
+    {
+        "pieces": "Convex pieces",
+        "virtual": "Virtual facets",
+        "ghost": "Handle's ghost",
+        "contacts": "Contacts",
+        "forces": "Forces",
+    }
+)
+"""Names of the views and what people read.
+
+`pieces` colors each convex piece; `virtual` shows, translucent, the facets of pieces
+that are not on the mesh; `ghost` is where the handle wants the tool, with the coupling;
+`contacts` are the small arrows, `forces` the large ones.
+"""
+
+SHOWN_AT_FIRST = frozenset({"ghost", "contacts", "forces"})
+"""Views that are to be seen until somebody hides them."""
 
 
 class HapticPicture:
@@ -68,7 +90,7 @@ class HapticPicture:
         """Sends the geometry.
 
         Args:
-            meshcat: Where to draw.
+            meshcat: Meshcat to draw in.
             tool: The tool, in its frame T.
             objects: What it meets; those that never move are placed.
             X_HT: Pose of the tool in the handle at rest.
@@ -318,3 +340,14 @@ class HapticPicture:
             np.asfortranarray(mesh.triangles.T),
             rgba,
         )
+
+
+def check_view(view: str) -> None:
+    """Checks the name of a view.
+
+    Raises:
+        ValueError: There is no such view.
+    """
+    if view not in PICTURE_VIEWS:
+        known = ", ".join(PICTURE_VIEWS)
+        raise ValueError(f"view must be one of {known}, is {view!r}")

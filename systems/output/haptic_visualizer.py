@@ -191,7 +191,7 @@ class HapticVisualizer(DifferentiableSystem):
         The next frame sends what has not been sent yet, in its slices like all of it.
 
         Args:
-            view: One of `drake_haptics.systems.output.picture_views.PICTURE_VIEWS`.
+            view: One of `drake_haptics.systems.output.haptic_picture.PICTURE_VIEWS`.
             visible: Whether it is to be seen.
 
         Raises:

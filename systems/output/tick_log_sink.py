@@ -55,7 +55,7 @@ class TickLogSink(Diagram):
         """Constructs the system.
 
         Args:
-            recorder: Where to note.
+            recorder: Recorder that writes the log.
             period_s: The tick, s.
             has_reading: Whether there is a port for a device's reading.
 

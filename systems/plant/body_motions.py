@@ -20,7 +20,7 @@ from pydrake.systems.framework import (
 )
 from pydrake.systems.scalar_conversion import TemplateSystem
 
-from drake_haptics.systems.framework.vector_ports import export_parts
+from drake_haptics.systems.framework.differentiable_system import export_parts
 
 
 class BodyMotions(Diagram):

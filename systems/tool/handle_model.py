@@ -1,4 +1,4 @@
-"""How the wrench on the handle changes as the handle moves on."""
+"""Models how the wrench on the handle changes with the handle's motion."""
 
 from __future__ import annotations
 

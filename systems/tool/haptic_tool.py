@@ -20,8 +20,8 @@ from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
+    export_parts,
 )
-from drake_haptics.systems.framework.vector_ports import export_parts
 
 
 class HapticTool(Diagram):

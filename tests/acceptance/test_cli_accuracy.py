@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from drake_haptics.cli import accuracy as command
 from drake_haptics.cli import main
 from drake_haptics.evaluation.accuracy.study_json import from_json_data
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import RunError
 
 # The installed command, beside the interpreter.

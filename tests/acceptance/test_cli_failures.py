@@ -11,7 +11,7 @@ import trimesh
 from click.testing import CliRunner
 
 from drake_haptics.cli import main, mesh_options
-from drake_haptics.geometry.decomposition import coacd as coacd_backend
+from drake_haptics.geometry.decomposition import approximate as coacd_backend
 from drake_haptics.geometry.decomposition import decompose as decomposition
 from drake_haptics.scene.library import list_scenes
 

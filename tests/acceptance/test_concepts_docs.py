@@ -11,7 +11,7 @@ from markdown_page import find_spans
 
 import drake_haptics
 from drake_haptics import _core
-from drake_haptics.device import local_gate
+from drake_haptics.device import gate
 from drake_haptics.scene.schema import Scene
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -38,7 +38,7 @@ def has_scene_key(name):
 def test_names_are_keys_of_a_scene_or_names_of_the_package(name):
     assert has_scene_key(name) or any(
         reduce(lambda part, key: getattr(part, key, None), name.split("."), place)
-        for place in (drake_haptics, _core, local_gate)
+        for place in (drake_haptics, _core, gate)
     )
 
 

@@ -125,7 +125,7 @@ def test_host_paused_and_device_killed(url, start_device):
 def test_figures_of_the_page():
     """The delay's price, and that every name exists."""
     from drake_haptics.device.lcm import haptic_messages
-    from drake_haptics.loop import lcm_driver
+    from drake_haptics.loop import drivers
 
     period_s = 1e-3
     direct, later = 1.0 / (period_s / 2), 1.0 / (period_s / 2 + 2 * period_s)
@@ -133,4 +133,4 @@ def test_figures_of_the_page():
     assert "a fifth of the stiffness" in TEXT
     for name in re.findall(r"`(lcmt_\w+)`", TEXT):
         assert hasattr(haptic_messages, name)
-    assert hasattr(lcm_driver, "AddLcmDriver")
+    assert hasattr(drivers, "AddLcmDriver")

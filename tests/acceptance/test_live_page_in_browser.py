@@ -8,7 +8,7 @@ from headless_browser import HeadlessBrowser, find_browser
 from pydrake.geometry import Rgba
 from visualizer_rig import MAX_TORQUE_NM, X_WH, make_context, make_mesh, make_visualizer
 
-from drake_haptics.systems.output.arrow_pool import ArrowPool
+from drake_haptics.systems.output.meshcat_shapes import ArrowPool
 from drake_haptics.visualization.meshcat import open_meshcat
 
 LENGTH_M = 0.02

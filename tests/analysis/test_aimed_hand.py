@@ -12,7 +12,7 @@ from drake_haptics.analysis.equilibrium import find_equilibrium
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.scene.schema import Coupling
 from drake_haptics.scene.validation import SceneError
-from drake_haptics.systems.arm.arm_inverse_kinematics import UnreachableError
+from drake_haptics.systems.arm.simulated_arm import UnreachableError
 
 GAINS = {
     "own": {},

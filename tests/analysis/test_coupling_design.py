@@ -12,7 +12,7 @@ from drake_haptics.analysis.coupling_design import suggest_coupling
 from drake_haptics.bounds.coupling import HeldHandle, check_coupling
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.validation import SceneError
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 PREMIUM = "phantom_premium_1_5_6dof"
 HANDLE = HeldHandle(0.1, 0.5, 5e-5, 1e-4)

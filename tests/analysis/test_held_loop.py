@@ -16,7 +16,7 @@ from drake_haptics.analysis.held_loop import (
 from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.analysis.z_width_map import z_width
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 # Stiffness and damping of translation: soft, the scenes' own, bouncing, stiff, and
 # beyond what is stable against a rigid wall.

@@ -16,7 +16,7 @@ from drake_haptics.analysis.held_scene import (
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.loop.simulated_device import make_hand_path, place_base
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Coupling, Gravity
 
 

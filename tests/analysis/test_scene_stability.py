@@ -19,7 +19,7 @@ from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.analysis.scene_stability import analyse_scene
 from drake_haptics.bounds.held_handle import check_scene_coupling
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Coupling
 
 

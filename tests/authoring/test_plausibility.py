@@ -13,7 +13,7 @@ from drake_haptics.geometry.mesh.report import length
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.library import list_scenes
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import EnvironmentObject, Pose, Scene, Tool, Waypoint
 
 PRESS = [(0.0, 0.0, 0.0, 0.03), (1.0, 0.0, 0.0, 0.005)]

@@ -4,7 +4,7 @@ import pytest
 
 from drake_haptics.authoring.speedup import find_key_that_helps, find_tick_relief
 from drake_haptics.scene.schema import Contact, Device, EnvironmentObject, Scene, Tool
-from drake_haptics.simulation.explain import Part
+from drake_haptics.simulation.profiling import Part
 
 
 def scene(**changes):

@@ -18,7 +18,7 @@ from pydrake.systems.framework import Context
 from drake_haptics.cockpit import cockpit
 from drake_haptics.cockpit.cockpit_run import CockpitRun
 from drake_haptics.common.errors import UserError
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.evaluation.measuring.valgrind import (
     count_by_library,
     counted,
@@ -26,7 +26,7 @@ from drake_haptics.evaluation.measuring.valgrind import (
 )
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.visualization.meshcat import open_meshcat

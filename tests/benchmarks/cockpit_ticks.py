@@ -23,10 +23,10 @@ from typing import Any
 from pydrake.systems.framework import Context
 
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics

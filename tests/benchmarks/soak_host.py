@@ -13,11 +13,11 @@ import sys
 import time
 from contextlib import suppress
 
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.open_device import open_device
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.device_monitor import DeviceWatch
 from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics

@@ -31,7 +31,7 @@ from drake_haptics.evaluation.measuring.valgrind import (
 )
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import make_simulator, run
 
 LOOPS = ("recorded", "simulated", "run")

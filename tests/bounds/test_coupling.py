@@ -6,9 +6,9 @@ import pytest
 
 from drake_haptics import _core
 from drake_haptics.bounds.coupling import HeldHandle, check_coupling
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Coupling
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS, NOMINAL_GRIP
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS, NOMINAL_GRIP
 
 PERIOD = 1e-3
 SCENES = sorted((Path(__file__).parents[2] / "models" / "scenes").glob("*.yaml"))

@@ -11,7 +11,7 @@ from pydrake.multibody.plant import ExternallyAppliedSpatialForce
 from drake_haptics.bounds.held_handle import calc_held_handle
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.validation import SceneWarning
-from drake_haptics.systems.arm.hand_grip import NOMINAL_GRIP
+from drake_haptics.systems.arm.hand_impedance import NOMINAL_GRIP
 
 START = (0.0, 0.0, 0.0, 0.05)
 

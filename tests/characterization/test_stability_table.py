@@ -9,7 +9,7 @@ from stability_table import PAGE, PICTURE, SCENES, limit_rows, place_rows, span_
 from drake_haptics.analysis import analyse_held_scene, hold_scene
 from drake_haptics.analysis.stiffness_limits import find_stiffness_limits
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 TEXT = PAGE.read_text(encoding="utf-8")
 

@@ -14,7 +14,7 @@ from symptom_run import Case, Ticks
 from symptom_table import HEAD, PAGE, describe_case, make_row, span_of
 
 from drake_haptics.cli.status_line import make_summary
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Gravity
 from drake_haptics.simulation.statistics import RunStatistics
 

@@ -11,7 +11,7 @@ from rich.console import Console
 from drake_haptics.cli import run_session as module
 from drake_haptics.cli.lasting_interrupt import lasting_interrupt
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 NUMBERS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 

@@ -12,11 +12,11 @@ from rich.console import Console
 
 from drake_haptics.cli.status_line import StatusLine, make_summary
 from drake_haptics.cockpit.taken_device import TakenDevice
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics
 

@@ -8,7 +8,7 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
 from drake_haptics.cockpit.cockpit_run import CockpitRun
 from drake_haptics.common.errors import UserError
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import GateState
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import RunError

@@ -20,7 +20,7 @@ from driver_process import device_command, running
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.cockpit import holding, segments
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice
 from drake_haptics.loop.builder import BuildHapticDiagram

@@ -20,10 +20,9 @@ from drake_haptics.cockpit.scene_changes import EFFECTS
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.schema import Effects, EnvironmentObject, Passivity, Scene
-from drake_haptics.simulation.live_key import live_keys
-from drake_haptics.simulation.live_scene import write_live_values
+from drake_haptics.simulation.live_values import live_keys, write_live_values
 from drake_haptics.simulation.run import run
-from drake_haptics.systems.output.picture_views import PICTURE_VIEWS
+from drake_haptics.systems.output.haptic_picture import PICTURE_VIEWS
 from drake_haptics.visualization.meshcat import CAMERAS, open_meshcat
 from drake_haptics.web.request import read_page_request
 from drake_haptics.web.telemetry import LARGEST_DATAGRAM

@@ -13,9 +13,9 @@ from drake_haptics import (
     load_mesh,
     make_scene_for_meshes,
 )
-from drake_haptics.common.package_url import resolve_package_url
+from drake_haptics.common.files import resolve_package_url
 from drake_haptics.geometry.parsing.model_file import load_model_mesh
-from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.loop.outputs import make_log_header
 from drake_haptics.scene.schema import EnvironmentObject, Hand, HandPath, Tool, Waypoint
 
 MODELS = Path(__file__).parents[2] / "models"

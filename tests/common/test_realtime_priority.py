@@ -8,7 +8,7 @@ import threading
 import pytest
 
 from drake_haptics import BuildHapticDiagram, TickClock, find_scene, load_scene, run
-from drake_haptics.common.realtime_priority import realtime_priority
+from drake_haptics.common.real_time import realtime_priority
 
 pytestmark = pytest.mark.skipif(
     not hasattr(os, "sched_setscheduler"), reason="the system has no such call"

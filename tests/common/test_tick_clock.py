@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 
 
 class Time:

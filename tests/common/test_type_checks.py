@@ -14,7 +14,7 @@ from pydrake.systems.framework import DiagramBuilder
 import drake_haptics
 from drake_haptics import AddHapticRendering, BuildHapticDiagram, find_scene, run
 from drake_haptics.common.type_checks import require_kinds
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     Contact,
     Coupling,

@@ -16,6 +16,7 @@ from drake_haptics import (
     AddAppliedSpatialForce,
     AddHapticLoop,
     AddHapticRendering,
+    Braking,
     BuildHapticDiagram,
     CallbackTimer,
     ConnectMovingObject,
@@ -26,24 +27,31 @@ from drake_haptics import (
     ContactTrajectory,
     ConvexPair,
     ConvexPolytope,
+    Coupling,
     Decomposition,
     DeviceBackend,
     DeviceCommand,
     DeviceError,
     DeviceReading,
+    Effects,
     EnergyLedger,
     Feature,
     FeatureKind,
+    Friction,
+    Gravity,
     HapticDiagram,
     HapticLoop,
     HapticRendering,
+    Material,
     Mesh,
     MeshError,
     PairTrajectory,
     RunError,
+    RunStatistics,
     Scene,
     SceneError,
     SceneTracker,
+    Shading,
     TickClock,
     TickRecorder,
     UserError,
@@ -69,8 +77,7 @@ from drake_haptics import (
     run,
     write_live_values,
 )
-from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.device.haptic_device import HapticDevice
+from drake_haptics.systems import HapticDevice
 
 
 class Still(DeviceBackend):
@@ -123,6 +130,8 @@ def use_a_scene(name: str) -> float:
     assert_type(list_scenes(), dict[str, Path])
     scene: Scene = load_scene(find_scene(name))
     scene.contact.stiffness_N_per_m = 4000.0
+    scene.coupling = Coupling(stiffness_N_per_m=500.0)
+    scene.effects.gravity = Gravity([0.0, 0.0, -1.6])
     made = make_scene_for_meshes(find_mesh("pen"), find_mesh("sphere"))
     assert_type(made, Scene)
     try:
@@ -156,7 +165,14 @@ def use_in_a_plant(
     builder: DiagramBuilder, plant: MultibodyPlant, scene_graph: SceneGraph
 ) -> HapticRendering:
     """A body of a plant that touches others by their true shapes."""
-    rendering = AddHapticRendering(builder, plant, scene_graph, "die")
+    rendering = AddHapticRendering(
+        builder,
+        plant,
+        scene_graph,
+        "die",
+        materials={"cup": Material(stiffness_N_per_m=500.0)},
+        effects=Effects(shading=Shading(), friction=Friction(), braking=Braking()),
+    )
     AddAppliedSpatialForce(builder, plant, rendering.get_applied_force_output_port())
     assert_type(rendering.tool.name, str)
     return rendering

@@ -5,7 +5,7 @@ import socket
 import pytest
 
 from drake_haptics.common.errors import UserError
-from drake_haptics.device.driver_socket import DriverSocket
+from drake_haptics.device.driver import DriverSocket
 
 
 @pytest.fixture

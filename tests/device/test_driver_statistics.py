@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from drake_haptics.device.backend import DeviceReading, Fault, GateState
-from drake_haptics.device.driver_statistics import DriverStatistics
+from drake_haptics.device.driver import DriverStatistics
 
 
 def tick(statistics, wrench, gate=GateState.ACTIVE, fault=Fault.NONE, time_s=0.0):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from drake_haptics.device.gamepad import GamepadReader
+from drake_haptics.device.meshcat_device import GamepadReader
 
 RIGHT, UP = 1.0, -1.0  # As browsers count a stick's axes: right and down.
 

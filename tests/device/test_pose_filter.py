@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from drake_haptics.device.pose_filter import PoseFilter
+from drake_haptics.device.followed_handle import PoseFilter
 
 START = np.array([1.0, 0, 0, 0, 0.1, 0.2, 0.3])
 RATE, SPEED, TURN = 40.0, 0.5, 6.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from drake_haptics.device.pursuit import Pursuit
+from drake_haptics.device.followed_handle import Pursuit
 
 RATE = 40.0
 

@@ -5,7 +5,7 @@ import signal
 
 import pytest
 
-from drake_haptics.device.stop_signals import stop_on_signals
+from drake_haptics.common.real_time import stop_on_signals
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from drake_haptics.device.turn_rate import TurnRate
+from drake_haptics.device.rotation_vector import TurnRate
 
 STEP_S = 1e-3
 TIME_CONSTANT_S = 0.01

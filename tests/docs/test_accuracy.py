@@ -29,7 +29,7 @@ from drake_haptics.cli import main
 from drake_haptics.evaluation.accuracy.knobs import list_settings
 from drake_haptics.evaluation.accuracy.table import COLUMNS
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 TEXT = PAGE.read_text(encoding="utf-8")
 

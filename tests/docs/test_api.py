@@ -21,7 +21,7 @@ def test_every_public_name_is_on_the_page_of_names_or_has_its_own():
 
 def test_every_module_is_in_a_group():
     groups = group_modules(list_modules())
-    assert "scene.effects" in groups["Scenes"]
+    assert "scene.schema" in groups["Scenes"]
     assert "systems.arm.hand_path" in groups["Parts of the systems"]
     assert "web.mouse_device" in groups["Devices"]
     assert "simulation.run" in groups["Building and running"]

@@ -12,7 +12,7 @@ from config_reference import FILES
 from config_rules import find_rules
 
 from drake_haptics import BuildHapticDiagram, UserError, load_scene, run
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 DOCS = Path(__file__).parents[2] / "docs"
 

@@ -10,7 +10,7 @@ from effect_costs import PAGE, Costs, with_figures
 from effect_rows import make_rows
 
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Effects
 
 COSTS = Costs(

@@ -9,7 +9,7 @@ from loop_gradients import calc_gradients, contact_states
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Effects
 
 

@@ -13,7 +13,8 @@ from drake_haptics._core import RigidToolDynamics
 from drake_haptics.common.errors import MeshError, SceneError
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.evaluation.shapes import SHAPES
-from drake_haptics.loop.builder import AddHapticLoop, BuildHapticDiagram
+from drake_haptics.loop.add_haptic_loop import AddHapticLoop
+from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.haptic_loop import ConnectMovingObject
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import Contact, Coupling, Effects, Pose

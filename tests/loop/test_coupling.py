@@ -8,10 +8,10 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from cube_scene import make_scene
 from slider_device import PERIOD, Slider
 
+from drake_haptics.loop.add_haptic_loop import make_coupling_gains
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.loop.coupling import make_coupling_gains
 from drake_haptics.scene.schema import Coupling
-from drake_haptics.simulation.live_scene import write_live_values
+from drake_haptics.simulation.live_values import write_live_values
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 COUPLING = Coupling(stiffness_N_per_m=500.0)

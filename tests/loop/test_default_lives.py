@@ -16,7 +16,7 @@ from struct_host import pack_command
 from drake_haptics.cli import main
 from drake_haptics.device.backend import DeviceCommand
 from drake_haptics.device.driver import DeviceDriver
-from drake_haptics.loop import simulated_driver
+from drake_haptics.loop import drivers
 from drake_haptics.loop.open_device import open_device
 
 AT_REST = np.array([1.0, 0, 0, 0, 0, 0, 0])
@@ -88,7 +88,7 @@ def measure_afterlife(monkeypatch, disable, packets):
             host.close()
             super().run(1e-9)
 
-    monkeypatch.setattr(simulated_driver, "DeviceDriver", HandDriver)
+    monkeypatch.setattr(drivers, "DeviceDriver", HandDriver)
     result = CliRunner().invoke(main, ["device", "sphere_pen", "--port", "0"])
     assert result.exit_code == 0, result.output
     return max(shown_s)

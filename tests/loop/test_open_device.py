@@ -8,7 +8,7 @@ from drake_haptics.device.backend import DeviceError
 from drake_haptics.loop.device_placement import find_device_site, wait_for_reading
 from drake_haptics.loop.open_device import open_device
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 
 @pytest.fixture(scope="module")

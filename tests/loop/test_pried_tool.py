@@ -14,8 +14,9 @@ from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
-from drake_haptics.geometry.mesh.mass_properties import make_tool_dynamics
-from drake_haptics.loop.builder import AddHapticLoop, BuildHapticDiagram
+from drake_haptics.geometry.mesh.mesh import make_tool_dynamics
+from drake_haptics.loop.add_haptic_loop import AddHapticLoop
+from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.device_placement import make_device_port
 from drake_haptics.scene.device_preset import list_device_presets, load_device_preset
 from drake_haptics.scene.schema import EnvironmentObject, Pose

@@ -5,13 +5,13 @@ import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 
 from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.loop.drivers import SimulatedDriverArm
 from drake_haptics.loop.simulated_device import make_hand_path
-from drake_haptics.loop.simulated_driver import SimulatedDriverArm
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Pose, Waypoint
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 GRIP = HAND_GRIPS["firm"]
 

@@ -8,7 +8,7 @@ from pydrake.geometry import Role, Sphere
 from pydrake.multibody.tree import SpatialInertia
 
 from drake_haptics.rendering.bodies import make_rendered_bodies
-from drake_haptics.rendering.stiffness import check_rendering_stiffness
+from drake_haptics.rendering.checks import check_rendering_stiffness
 from drake_haptics.scene.schema import Contact, Coupling, Material
 
 MASS, STEP = 0.1, 1e-3

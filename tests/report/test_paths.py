@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from drake_haptics.report.paths import check_page_path
+from drake_haptics.report.page import check_page_path
 
 
 @pytest.mark.parametrize("name", ["page.html", "page", "page.png.html"])

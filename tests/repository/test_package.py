@@ -15,6 +15,9 @@ from pydrake.systems.framework import System
 import drake_haptics
 import drake_haptics.systems
 
+# The documented places to import from.
+PLACES = ["", ".analysis", ".geometry", ".simulation", ".systems"]
+
 
 @pytest.mark.parametrize("name", drake_haptics.__all__)
 def test_every_public_name_is_there_and_documented(name: str) -> None:
@@ -36,13 +39,13 @@ def test_a_module_that_is_not_imported_yet_is_named_as_one() -> None:
     program = (
         "import drake_haptics\n"
         "try:\n"
-        "    drake_haptics.geometry\n"
+        "    drake_haptics.scene\n"
         "except AttributeError as error:\n"
         "    print(error)\n"
     )
     command = [sys.executable, "-c", program]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
-    assert "import drake_haptics.geometry" in done.stdout
+    assert "import drake_haptics.scene" in done.stdout
 
 
 def test_the_version_is_that_of_the_installed_package() -> None:
@@ -50,24 +53,34 @@ def test_the_version_is_that_of_the_installed_package() -> None:
     assert "__version__" in dir(drake_haptics)
 
 
-@pytest.mark.parametrize("name", ["", ".analysis", ".systems"])
+@pytest.mark.parametrize("name", PLACES)
 def test_the_names_are_told_to_type_checkers_from_where_they_come(name: str) -> None:
-    """The package's file lists them three times: for checkers, `import *` and use."""
+    """The stub lists each once: for checkers, `import *` and use."""
     package = import_module(f"drake_haptics{name}")
-    source = Path(package.__file__).read_text()
-    told = {
-        alias.name: node.module
-        for node in ast.walk(ast.parse(source))
-        if isinstance(node, ast.ImportFrom) and node.module
-        for alias in node.names
-        if node.module.startswith("drake_haptics.")
-    }
-    kept = {
-        name: f"{package.__name__}.{module}"
-        for name, module in package._MODULE_OF.items()
-    }
-    assert told == kept
-    assert sorted(kept) == sorted(package.__all__)
+    stub = Path(package.__file__).with_suffix(".pyi").read_text()
+    told = {}
+    for node in ast.walk(ast.parse(stub)):
+        if isinstance(node, ast.ImportFrom):
+            module = import_module(f"{package.__name__}.{node.module}")
+            for alias in node.names:
+                assert alias.asname == alias.name not in told  # offered, and once
+                told[alias.name] = getattr(module, alias.name)
+    assert sorted(told) == sorted(package.__all__)
+    for public, value in told.items():
+        assert getattr(package, public) is value
+        where = getattr(value, "__module__", "")  # constants have none
+        assert where in ("", "drake_haptics._core") or where.startswith(
+            package.__name__
+        )
+
+
+def test_a_function_is_offered_also_once_the_module_of_its_name_is_loaded() -> None:
+    program = (
+        "import drake_haptics.simulation.run\n"
+        "from drake_haptics.simulation import run\n"
+        "assert run is drake_haptics.run\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def test_every_system_is_in_the_package_of_systems_by_its_name() -> None:
@@ -101,7 +114,8 @@ def test_systems_are_loaded_when_they_are_asked_for() -> None:
 
 def test_the_geometry_imports_no_drake() -> None:
     program = (
-        "import sys, drake_haptics\n"
+        "import sys, drake_haptics, drake_haptics.geometry\n"
+        "from drake_haptics.geometry import *\n"
         "drake_haptics.load_mesh, drake_haptics.decompose\n"
         "assert not any(m.startswith('pydrake') for m in sys.modules)\n"
     )

@@ -74,6 +74,13 @@ def make_loop(folder: Path) -> list[object]:
     zero = np.zeros(6)
     return [
         scene,
+        scene.coupling,
+        drake_haptics.Material(),
+        drake_haptics.Effects(),
+        drake_haptics.Shading(),
+        drake_haptics.Friction(),
+        drake_haptics.Braking(),
+        drake_haptics.Gravity(),
         haptic,
         haptic.loop,
         drake_haptics.run(haptic, 0.01),

@@ -14,7 +14,7 @@ from drake_haptics.scene.device_preset import (
     list_device_presets,
     load_device_preset,
 )
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Encoder, Twin
 from drake_haptics.simulation.run import run
 

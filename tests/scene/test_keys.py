@@ -2,8 +2,8 @@
 
 from dataclasses import asdict
 
-from drake_haptics.scene.keys import list_keys
 from drake_haptics.scene.schema import Braking, Effects, EnvironmentObject, Scene
+from drake_haptics.scene.settings import list_keys
 
 
 def find_leaves(data, where=""):

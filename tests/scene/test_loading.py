@@ -8,7 +8,7 @@ import pytest
 from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.scene.library import find_scene, list_scenes
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     Braking,
     Contact,

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from drake_haptics.scene.library import find_scene, list_scenes
-from drake_haptics.scene.loading import load_scene
-from drake_haptics.scene.scene_file import write_scene
+from drake_haptics.scene.scene_file import load_scene, write_scene
 
 
 def resolve(scene):

@@ -5,8 +5,8 @@ import time
 import pytest
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from drake_haptics.simulation import callback_timer
-from drake_haptics.simulation.callback_timer import CallbackTimer
+from drake_haptics.simulation import profiling
+from drake_haptics.simulation.profiling import CallbackTimer
 
 
 class Clock:
@@ -139,7 +139,7 @@ class _Sealed(type):
     """Lets one attribute of its classes be replaced, and no second one."""
 
     def __setattr__(cls, name, value):
-        if name != callback_timer._DECLARATIONS[0]:
+        if name != profiling._DECLARATIONS[0]:
             raise TypeError(f"cannot set {name}")
         super().__setattr__(name, value)
 
@@ -156,7 +156,7 @@ def test_bindings_that_cannot_be_changed_leave_the_time_of_whole_ticks(
         DeclarePeriodicPublishEvent = None
 
     before = dict(vars(Sealed))
-    monkeypatch.setattr(callback_timer, "LeafSystem", Sealed)
+    monkeypatch.setattr(profiling, "LeafSystem", Sealed)
     with (
         pytest.warns(RuntimeWarning, match="only whole ticks are timed"),
         CallbackTimer() as timer,

@@ -11,10 +11,9 @@ from box_scenes import TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import EnergyLedger
-from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
+from drake_haptics.geometry.mesh.mesh import calc_mass_properties
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.effects import Braking, Friction, Gravity
-from drake_haptics.scene.schema import Effects
+from drake_haptics.scene.schema import Braking, Effects, Friction, Gravity
 from drake_haptics.simulation.run import make_simulator, run
 
 H = 1e-3

@@ -9,10 +9,10 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from drake_haptics.loop.builder import AddHapticLoop, BuildHapticDiagram
+from drake_haptics.loop.add_haptic_loop import AddHapticLoop
+from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.schema import Effects
-from drake_haptics.simulation.callback_timer import CallbackTimer
-from drake_haptics.simulation.explain import explain_tick
+from drake_haptics.simulation.profiling import CallbackTimer, explain_tick
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.device.haptic_device import HapticDevice

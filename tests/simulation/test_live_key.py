@@ -3,7 +3,7 @@
 from dataclasses import fields, replace
 
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     Contact,
     Coupling,
@@ -12,7 +12,7 @@ from drake_haptics.scene.schema import (
     Scene,
 )
 from drake_haptics.scene.validation import check_values
-from drake_haptics.simulation.live_key import live_keys
+from drake_haptics.simulation.live_values import live_keys
 
 SOFT = Material(stiffness_N_per_m=300.0, damping_Ns_per_m=1.0)
 

@@ -5,8 +5,7 @@ from itertools import pairwise
 import pytest
 
 from drake_haptics.scene.schema import Contact, Coupling, EnvironmentObject, Scene
-from drake_haptics.simulation.live_key import live_keys
-from drake_haptics.simulation.live_ramp import GLIDE_S, LiveGlide
+from drake_haptics.simulation.live_values import GLIDE_S, LiveGlide, live_keys
 
 PERIOD_S = 1e-3
 STEPS = round(GLIDE_S / PERIOD_S)

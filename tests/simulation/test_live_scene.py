@@ -9,8 +9,11 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.schema import Braking, Friction, Material, Passivity
 from drake_haptics.simulation.energy import EnergyLedger
-from drake_haptics.simulation.live_key import live_keys
-from drake_haptics.simulation.live_scene import is_live_change, write_live_values
+from drake_haptics.simulation.live_values import (
+    is_live_change,
+    live_keys,
+    write_live_values,
+)
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.simulation.transfer_state import carry_on
 

@@ -8,7 +8,7 @@ from box_scenes import over_a_plate
 from cockpit_rig import ABOVE, PRESSING, CockpitRig
 
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.simulation.release_diagram import retire
+from drake_haptics.simulation.transfer_state import retire
 from drake_haptics.visualization.meshcat import open_meshcat
 
 TOGGLES = 4

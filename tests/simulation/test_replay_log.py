@@ -12,9 +12,9 @@ from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import DeviceReading
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
-from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.loop.outputs import make_log_header
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     Braking,
     Effects,

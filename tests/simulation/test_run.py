@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import RunError, make_simulator, run
 from drake_haptics.simulation.statistics import RunStatistics

@@ -16,7 +16,7 @@ from pydrake.systems.primitives import LogVectorOutput
 from drake_haptics._core import CouplingGains
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import Coupling
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.arm.simulated_arm import SimulatedArm
 from drake_haptics.systems.device.haptic_device import HapticDevice

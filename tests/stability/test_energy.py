@@ -6,10 +6,9 @@ import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.effects import Braking, Friction, Gravity
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
-from drake_haptics.scene.schema import Effects
+from drake_haptics.scene.scene_file import load_scene
+from drake_haptics.scene.schema import Braking, Effects, Friction, Gravity
 from drake_haptics.simulation.run import run
 
 # Far below what can be felt, far above rounding.

@@ -14,7 +14,7 @@ from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.arm.simulated_arm import SimulatedArm
 from drake_haptics.systems.device.haptic_device import HapticDevice
-from drake_haptics.systems.framework.vector_ports import export_parts
+from drake_haptics.systems.framework.differentiable_system import export_parts
 from drake_haptics.systems.tool.passivity_control import PassivityControl
 
 PERIOD = 1e-3

@@ -6,7 +6,7 @@ from box_scenes import TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import run
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 PRESS_N = 2.0
 SETTLED_S, END_S = 3.0, 5.0

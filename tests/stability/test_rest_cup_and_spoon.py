@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.effects import Effects, Friction, Gravity, Shading
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
+from drake_haptics.scene.schema import Effects, Friction, Gravity, Shading
 from drake_haptics.simulation.run import run
 
 SETTLED_S, END_S = 3.0, 63.0

@@ -10,9 +10,9 @@ from hand_clock import HandClock
 from drake_haptics import SceneTracker
 from drake_haptics.loop import builder
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.effects import Braking, Effects, Friction
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
+from drake_haptics.scene.schema import Braking, Effects, Friction
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.contact.load_shedding import TickMeter
 

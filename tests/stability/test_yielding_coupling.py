@@ -13,11 +13,11 @@ import pytest
 
 from drake_haptics import _core
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.geometry.mesh.mass_properties import make_tool_dynamics
+from drake_haptics.geometry.mesh.mesh import make_tool_dynamics
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.simulated_device import make_hand_path
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 PERIOD_S = 1e-3
 FAR_M, SPEED_M_PER_S, HOLD_S = 0.3, 0.5, 1.0

@@ -10,10 +10,10 @@ from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import SceneChanges
 from drake_haptics.cockpit.segments import Segments
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
+from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.web.camera import look_from_the_front
 
 # Waypoints over a plate, of a path that presses it.

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from drake_haptics.geometry.decomposition.piece_data import PatchLabels
+from drake_haptics.geometry.decomposition.pieces import PatchLabels
 
 NUM_TRIANGLES = 400_000
 MESH = SimpleNamespace(triangles=np.zeros((NUM_TRIANGLES, 3), dtype=np.int32))

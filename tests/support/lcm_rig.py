@@ -18,9 +18,9 @@ from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_command,
     lcmt_haptic_status,
 )
-from drake_haptics.loop.lcm_driver import AddLcmDriver
+from drake_haptics.loop.drivers import AddLcmDriver
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.arm.simulated_arm import SimulatedArm
 from drake_haptics.systems.lcm.haptic_command_sender import HapticCommandSender

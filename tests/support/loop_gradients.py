@@ -19,7 +19,7 @@ from drake_haptics.analysis.sampled_map import SampledMap, SampledValues, get_st
 from drake_haptics.analysis.state_layout import find_state_layout
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 # Between looks for contact, s.
 _LOOK_S = 0.01

@@ -159,7 +159,7 @@ class Tick:
 def run_press(
     press: Press, tool: PressTool, solid: _core.Decomposition, gains: Gains
 ) -> Iterator[Tick]:
-    """Runs a press tick by tick, wired as by `drake_haptics.loop.builder`."""
+    """Runs a press tick by tick, wired as by `AddHapticLoop`."""
     tracker = _core.SceneTracker(tool.core, [solid], gains.tolerance_m)
     zeros3, zeros6 = np.zeros((1, 3)), np.zeros((1, 6))
     q_WH = press.q_WH(0.0, 0.0)

@@ -8,8 +8,7 @@ import numpy as np
 
 from drake_haptics import _core
 from drake_haptics.geometry.decomposition.decompose import decompose
-from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
-from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+from drake_haptics.geometry.mesh.mesh import Mesh, calc_mass_properties, load_mesh
 from drake_haptics.models import FOLDER
 
 MODELS = FOLDER / "meshes"

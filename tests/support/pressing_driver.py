@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
+from drake_haptics.common.real_time import stop_on_signals
 from drake_haptics.device.driver import DeviceDriver
-from drake_haptics.device.stop_signals import stop_on_signals
 
 HIGH_M, LOW_M, GENTLE_M = 0.05, 0.010, 0.0195
 SPEED_M_PER_S, TICK_S = 0.05, 1e-3

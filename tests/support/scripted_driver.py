@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
+from drake_haptics.common.real_time import stop_on_signals
 from drake_haptics.device.driver import DeviceDriver
-from drake_haptics.device.stop_signals import stop_on_signals
 
 FIRST, LAST = 100, 120
 

@@ -12,7 +12,7 @@ from drake_haptics.cli.failures import failures_in_words
 from drake_haptics.common.errors import UserError
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import list_scenes
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Pose
 from drake_haptics.visualization.meshcat import (
     CAMERAS,

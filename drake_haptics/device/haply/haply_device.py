@@ -12,7 +12,7 @@ import numpy as np
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import ClientConnection, connect
 
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceCommand,
@@ -20,9 +20,13 @@ from drake_haptics.device.backend import (
     DeviceReading,
     LinkStatus,
 )
-from drake_haptics.device.haply.exchange import SILENT_NS, HaplyExchange
-from drake_haptics.device.haply.messages import ASK_FOR_DEVICES, ForceField
-from drake_haptics.device.local_gate import LocalGate
+from drake_haptics.device.gate import LocalGate
+from drake_haptics.device.haply.exchange import (
+    ASK_FOR_DEVICES,
+    SILENT_NS,
+    ForceField,
+    HaplyExchange,
+)
 
 _RETRY_S = 0.1
 _CONNECT_S = 1.0
@@ -72,10 +76,11 @@ class HaplyDevice(DeviceBackend):
         """Connects, and waits for the first state.
 
         Args:
-            uri: Where the service is.
-            device_id: Of the Inverse3; the first one listed where not given.
-            grip_id: Of the VerseGrip, likewise.
-            force_field: What the service calls the force: `values` before version 3.5.
+            uri: Address of the service.
+            device_id: Identifier of the Inverse3. Defaults to the first one listed.
+            grip_id: Identifier of the VerseGrip, likewise.
+            force_field: Name that the service gives the force: `values` before
+                version 3.5.
             max_force_N: Largest force ever shown, N.
             ttl_s: How long a written wrench holds without a newer one, s.
             rate_hz: Exchanges per second, Hz, as far as the service keeps up.
@@ -120,7 +125,7 @@ class HaplyDevice(DeviceBackend):
         """Returns the device at an address that a person wrote.
 
         Args:
-            uri: Where the service is.
+            uri: Address of the service.
             options: Arguments of the constructor, like
                 `max_force_N=4&device_id=049D`: any of `device_id`, `grip_id`,
                 `force_field` and `max_force_N`.

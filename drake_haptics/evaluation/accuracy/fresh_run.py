@@ -10,8 +10,7 @@ from pathlib import Path
 from drake_haptics.common.errors import UserError
 from drake_haptics.evaluation.accuracy.tick_cost import time_ticks
 from drake_haptics.loop.simulated_device import make_hand_path
-from drake_haptics.scene.loading import load_scene
-from drake_haptics.scene.scene_file import write_scene
+from drake_haptics.scene.scene_file import load_scene, write_scene
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError
 

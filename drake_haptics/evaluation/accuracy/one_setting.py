@@ -11,8 +11,8 @@ from typing import Any
 
 from drake_haptics.common.errors import UserError
 from drake_haptics.evaluation.accuracy.setting import Setting
-from drake_haptics.scene.keys import list_keys
 from drake_haptics.scene.schema import EnvironmentObject, Scene
+from drake_haptics.scene.settings import list_keys
 from drake_haptics.scene.validation import check_values
 from drake_haptics.scene.yaml_loading import check_keys
 

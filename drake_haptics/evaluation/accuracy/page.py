@@ -41,7 +41,7 @@ from drake_haptics.evaluation.accuracy.words import (
     describe_verdict,
     make_front,
 )
-from drake_haptics.report.paths import check_page_path
+from drake_haptics.report.page import check_page_path
 
 _DPI = 110
 _PEER_COLUMNS = (

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.evaluation.accuracy.built_scenes import build_once
 from drake_haptics.evaluation.accuracy.figures import TickTimes
 from drake_haptics.scene.schema import Scene

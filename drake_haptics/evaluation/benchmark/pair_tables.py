@@ -15,7 +15,7 @@ from drake_haptics.evaluation.benchmark.pair_ratios import (
 )
 from drake_haptics.evaluation.benchmark.pair_runs import PairFigures
 from drake_haptics.evaluation.benchmark.python_figures import PythonFigures
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 _SMALL, _LARGE = 42, 2562
 

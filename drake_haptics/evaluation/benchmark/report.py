@@ -11,7 +11,7 @@ from drake_haptics.evaluation.benchmark.pair_tables import (
     time_table,
 )
 from drake_haptics.evaluation.benchmark.scene_table import scene_table
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 
 def make_tables(figures: BenchFigures) -> list[Table]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from drake_haptics.evaluation.benchmark.scene_runs import NAME, SceneFigures
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 
 def scene_table(figures: Sequence[SceneFigures]) -> Table:

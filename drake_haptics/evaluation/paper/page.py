@@ -20,7 +20,7 @@ from drake_haptics.evaluation.paper.report import (
     make_sections,
 )
 from drake_haptics.evaluation.paper.statement import MEANING, Statement
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 _DPI = 110
 

@@ -9,7 +9,7 @@ import numpy as np
 from pydrake.systems.framework import Context
 
 from drake_haptics.evaluation.paper.scenario import PERIOD_S, Scenario, build_loop
-from drake_haptics.simulation.callback_timer import CallbackTimer
+from drake_haptics.simulation.profiling import CallbackTimer
 from drake_haptics.simulation.run import run
 
 _WARM_UP_TICKS = 20

@@ -26,7 +26,7 @@ from drake_haptics.evaluation.paper.words import (
     judge_run,
     judge_table1,
 )
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

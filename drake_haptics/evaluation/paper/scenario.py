@@ -11,8 +11,9 @@ from pydrake.systems.framework import DiagramBuilder
 from drake_haptics import _core
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.geometry.decomposition.decompose import Decomposition
-from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
-from drake_haptics.loop.builder import AddHapticLoop, HapticDiagram
+from drake_haptics.geometry.mesh.mesh import calc_mass_properties
+from drake_haptics.loop.add_haptic_loop import AddHapticLoop
+from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Contact, Coupling, Scene
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.contact.contact_query import ContactObject

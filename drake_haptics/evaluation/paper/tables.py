@@ -9,7 +9,7 @@ from drake_haptics.evaluation.paper.evaluation import Analysis, Run
 from drake_haptics.evaluation.paper.pen_pass import EXACT, PenPass
 from drake_haptics.evaluation.paper.profile_figures import ProfileFigures, StateTimes
 from drake_haptics.evaluation.paper.table1 import ModelFigures
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 
 def make_table1(rows: Sequence[ModelFigures]) -> Table:

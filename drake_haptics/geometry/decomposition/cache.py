@@ -20,9 +20,12 @@ import numpy as np
 
 from drake_haptics import _core
 from drake_haptics.common.errors import DecompositionFileError
-from drake_haptics.geometry.decomposition.archive import FORMAT_VERSION
-from drake_haptics.geometry.decomposition.piece_data import PieceData
-from drake_haptics.geometry.decomposition.storage import read_pieces, write_pieces
+from drake_haptics.geometry.decomposition.pieces import PieceData
+from drake_haptics.geometry.decomposition.storage import (
+    FORMAT_VERSION,
+    read_pieces,
+    write_pieces,
+)
 from drake_haptics.geometry.mesh.mesh import Mesh
 
 _log = logging.getLogger(__name__)

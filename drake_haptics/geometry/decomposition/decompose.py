@@ -15,14 +15,18 @@ import numpy as np
 from drake_haptics import _core
 from drake_haptics.common.errors import UserError
 from drake_haptics.common.one_line import count
+from drake_haptics.geometry.decomposition.approximate import (
+    check_error,
+    coacd_hulls,
+    coacd_parameters,
+    merge_patches,
+)
 from drake_haptics.geometry.decomposition.cache import (
     cache_key,
     load_cached,
     store_cached,
 )
-from drake_haptics.geometry.decomposition.coacd import coacd_hulls, coacd_parameters
-from drake_haptics.geometry.decomposition.merge import check_error, merge_patches
-from drake_haptics.geometry.decomposition.piece_data import (
+from drake_haptics.geometry.decomposition.pieces import (
     ConvexHulls,
     MergedPatches,
     PatchLabels,
@@ -119,10 +123,10 @@ def decompose(
             of the mesh's size, by more only in a mesh far from its origin in
             single precision. Pieces of a surface that bounds no solid are
             one-sided. "merged" joins such pieces within `error_m`, see
-            `drake_haptics.geometry.decomposition.merge`. "hull" is one convex hull
-            for each component, felt all over: it fills hollows. "coacd" fills
-            solids with few pieces approximately (optional extra); it fills
-            cavities.
+            `drake_haptics.geometry.decomposition.approximate`. "hull" is one
+            convex hull for each component, felt all over: it fills hollows.
+            "coacd" fills solids with few pieces approximately (optional extra);
+            it fills cavities.
         error_m: for "merged", and only there: how far a piece may depart from the
             mesh, m.
         progress: called now and then with the share done, from 0 to 1. An

@@ -14,7 +14,7 @@ import numpy as np
 
 from drake_haptics.common.colors import BACKGROUND_BOTTOM, BACKGROUND_TOP, VIRTUAL_FACET
 from drake_haptics.geometry.decomposition.decompose import Decomposition
-from drake_haptics.geometry.decomposition.surfaces import (
+from drake_haptics.geometry.decomposition.pieces import (
     ColoredTriangles,
     piece_surfaces,
 )

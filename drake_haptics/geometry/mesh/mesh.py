@@ -1,4 +1,4 @@
-"""Mesh intake: from a file or arrays to a mesh that the core can treat.
+"""Loads a mesh from a file or arrays, and computes its mass properties.
 
 What is wrong beyond use is refused with a `MeshError`; every other defect is
 repaired or left as it is, and named in the mesh's report. Self-intersections
@@ -14,29 +14,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_haptics._core import RigidToolDynamics
 from drake_haptics.common.errors import MeshError
 from drake_haptics.common.one_line import count
-from drake_haptics.geometry.mesh.arrays import checked_arrays
 from drake_haptics.geometry.mesh.checks import (
     check_branching,
     check_components,
     check_holes,
     check_size,
+    checked_arrays,
 )
-from drake_haptics.geometry.mesh.cleanup import (
+from drake_haptics.geometry.mesh.reader import read_mesh_file
+from drake_haptics.geometry.mesh.repair import (
     distinct_faces,
     drop_unused_vertices,
     equal_vertices,
     join_open_parts,
+    remove_zero_area_faces,
     separate_components,
 )
-from drake_haptics.geometry.mesh.reader import read_mesh_file
 from drake_haptics.geometry.mesh.report import Finding, MeshReport, Severity
-from drake_haptics.geometry.mesh.slivers import remove_zero_area_faces
 from drake_haptics.geometry.mesh.units import metres_per_unit
 from drake_haptics.geometry.mesh.winding import Winding, wind_components
-
-__all__ = ["Component", "Mesh", "MeshError", "load_mesh"]
 
 
 @dataclass(frozen=True)
@@ -269,3 +268,50 @@ def _read_only(array: np.ndarray, dtype: Any) -> np.ndarray:
     result = np.array(array, dtype=dtype, order="C")  # a copy: the caller's is not ours
     result.flags.writeable = False
     return result
+
+
+def make_tool_dynamics(mesh: Mesh, mass_kg: float) -> RigidToolDynamics:
+    """Returns how a tool moves, for `AddHapticLoop`: as one of its mesh's shape does.
+
+    Args:
+        mesh: Of one density, as `calc_mass_properties` takes it.
+        mass_kg: Its mass, kg.
+
+    Raises:
+        ValueError: The mass is not above 0, or the mesh cannot be turned.
+    """
+    return RigidToolDynamics(mass_kg, *calc_mass_properties(mesh, mass_kg))
+
+
+def calc_mass_properties(mesh: Mesh, mass_kg: float) -> tuple[np.ndarray, np.ndarray]:
+    """Returns where the mass of a mesh is and how it resists turning.
+
+    A mesh that bounds solids is filled with one density; one that is open in any
+    part is a shell of one density per area.
+
+    Args:
+        mesh: The mesh, in a frame M.
+        mass_kg: Its mass, kg.
+
+    Returns:
+        p_MMcm (3,), m, and I_MMcm_M (3, 3), kg·m².
+    """
+    a, b, c = np.swapaxes(mesh.vertices[mesh.triangles], 0, 1)
+    corner_sum = a + b + c
+    if mesh.solid.all():
+        # Tetrahedra from the origin, signed (their fourth corner is 0).
+        weight = np.einsum("ni,ni->n", np.cross(a, b), c) / 6.0
+        first = corner_sum / 4.0
+        second = 1.0 / 20.0
+    else:
+        weight = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
+        first = corner_sum / 3.0
+        second = 1.0 / 12.0
+    weight = weight * (mass_kg / weight.sum())
+    p_MMcm = weight @ first / mass_kg
+    # The second moment of a simplex from its corners and their sum.
+    moment = np.zeros((3, 3))
+    for corner in (a, b, c, corner_sum):
+        moment += second * np.einsum("n,ni,nj->ij", weight, corner, corner)
+    moment -= mass_kg * np.outer(p_MMcm, p_MMcm)
+    return p_MMcm, np.trace(moment) * np.eye(3) - moment

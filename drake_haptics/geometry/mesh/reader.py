@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 
 from drake_haptics.common.errors import MeshError
-from drake_haptics.common.missing_file import describe_missing
+from drake_haptics.common.files import describe_missing, resolve_package_url
 from drake_haptics.common.one_line import count
-from drake_haptics.common.package_url import resolve_package_url
 from drake_haptics.geometry.mesh.units import unit_of_name
 
 # Bytes of a binary STL: 80 of anything and the number of triangles; each triangle.

@@ -1,4 +1,4 @@
-"""Edges, connectivity and orientation of triangle meshes, vectorised."""
+"""Edges, connectivity and orientation of triangle meshes, vectorized."""
 
 from __future__ import annotations
 

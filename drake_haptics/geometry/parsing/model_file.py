@@ -1,4 +1,4 @@
-"""Robot model files as meshes: what SDF, URDF and MJCF have for contact."""
+"""Reads the contact shapes of SDF, URDF and MJCF files as meshes."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics.common.errors import MeshError
-from drake_haptics.common.missing_file import describe_missing
-from drake_haptics.common.package_url import resolve_package_url
+from drake_haptics.common.files import describe_missing, resolve_package_url
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.geometry.parsing.body_shapes import (
     decompose_body,

@@ -10,8 +10,7 @@ import pytest
 from drake_haptics import _core
 from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.geometry.decomposition.decompose import decompose
-from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
-from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.mesh import Mesh, calc_mass_properties
 
 _TICKS = 400
 _PERIOD_S = 1e-3

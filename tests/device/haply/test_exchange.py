@@ -10,9 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from drake_haptics.device.backend import DeviceCommand, Fault, GateState
-from drake_haptics.device.haply.exchange import HaplyExchange
-from drake_haptics.device.haply.messages import ASK_FOR_DEVICES
-from drake_haptics.device.local_gate import LocalGate
+from drake_haptics.device.gate import LocalGate
+from drake_haptics.device.haply.exchange import ASK_FOR_DEVICES, HaplyExchange
 
 MAX_FORCE_N = 2.0
 TTL_S = 0.1

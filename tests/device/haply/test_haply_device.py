@@ -16,7 +16,7 @@ from drake_haptics.device.backend import (
 from drake_haptics.device.haply.haply_device import HaplyDevice
 from drake_haptics.loop.open_device import open_device as open_device_at
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 STIFFNESS_N_PER_M = 300.0
 MAX_FORCE_N = 2.0

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drake_haptics.device.haply.messages import (
+from drake_haptics.device.haply.exchange import (
     HaplyMessageError,
     format_force,
     parse_state,

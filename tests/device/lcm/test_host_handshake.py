@@ -6,7 +6,7 @@ import pytest
 
 from drake_haptics.device.backend import GateState
 from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_status
-from drake_haptics.device.lcm.host_handshake import HostHandshake
+from drake_haptics.device.lcm.lcm_device import HostHandshake
 
 IDLE = lcmt_haptic_status(boot=1, gate=GateState.IDLE)
 SESSION = 5

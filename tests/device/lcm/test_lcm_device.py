@@ -29,7 +29,7 @@ from drake_haptics.device.lcm.haptic_messages import (
 from drake_haptics.device.lcm.lcm_device import LcmDevice
 from drake_haptics.loop.open_device import open_device
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 pytestmark = HANDLERS_MAY_CRASH
 

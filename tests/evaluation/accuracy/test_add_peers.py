@@ -9,7 +9,7 @@ from drake_haptics.evaluation.accuracy import add_peers as module
 from drake_haptics.evaluation.accuracy.recorded_motion import record_motion
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 
 def test_peers_get_the_motion_and_the_truth_of_the_study(monkeypatch):

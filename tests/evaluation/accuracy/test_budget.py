@@ -17,7 +17,7 @@ from drake_haptics.evaluation.accuracy.budget_words import (
 )
 from drake_haptics.evaluation.accuracy.combinations import Combination
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 STUDY = make_study(
     make_row("the scene", "as it is", 100.0, 10.0, 0.0, is_scene=True),

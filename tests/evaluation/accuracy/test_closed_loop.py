@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import sys
 from functools import partial
 
 import numpy as np
@@ -17,7 +18,6 @@ from drake_haptics.evaluation.accuracy.closed_loop import (
     find_stable_stiffness,
     measure_created_energy,
 )
-from drake_haptics.simulation import run as simulation
 from drake_haptics.simulation.run import make_simulator, run
 
 PRESS = [(0.0, 0.0, 0.0, 0.015), (0.15, 0.0, 0.0, 0.006), (0.3, 0.01, 0.0, 0.006)]
@@ -45,7 +45,8 @@ def test_a_loop_that_diverges_makes_infinitely_much(tmp_path, monkeypatch):
         context.get_mutable_discrete_state_vector().SetAtIndex(9, np.nan)
         return simulator
 
-    monkeypatch.setattr(simulation, "make_simulator", make_broken_simulator)
+    module = sys.modules["drake_haptics.simulation.run"]
+    monkeypatch.setattr(module, "make_simulator", make_broken_simulator)
     assert measure_created_energy(over_a_plate(tmp_path, PRESS), 0.1) == math.inf
 
 

@@ -10,7 +10,7 @@ from drake_haptics.evaluation.accuracy.combinations import list_combinations
 from drake_haptics.evaluation.accuracy.figures import Row
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 # A row's p99 is twice its median: make_row's tick.
 SCENE = make_row("the scene", "as it is", 100.0, 10.0, 0.0, is_scene=True)

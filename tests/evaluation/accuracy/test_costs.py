@@ -15,7 +15,7 @@ from drake_haptics.evaluation.accuracy.study_rows import list_timing_tasks
 from drake_haptics.evaluation.accuracy.tick_cost import combine
 from drake_haptics.evaluation.accuracy.tool_replay import replay_tool
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Braking, Material
 
 

@@ -15,7 +15,7 @@ from drake_haptics.evaluation.accuracy.knobs import (
 )
 from drake_haptics.evaluation.accuracy.not_knobs import NOT_KNOBS
 from drake_haptics.scene.library import find_scene, list_scenes
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Gravity, Scene
 from drake_haptics.scene.validation import check_values
 

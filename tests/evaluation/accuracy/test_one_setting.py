@@ -12,7 +12,7 @@ from drake_haptics.evaluation.accuracy.one_setting import (
 )
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from drake_haptics.evaluation.accuracy.recorded_motion import record_motion
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.accuracy.truth import Truth, find_truth
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 N = 10
 

@@ -11,7 +11,7 @@ from drake_haptics.evaluation.accuracy.recorded_motion import (
 )
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import HandPath
 from drake_haptics.simulation.run import make_simulator
 

@@ -12,8 +12,8 @@ from mesh_samples import box, joined, l_prism, real_mesh
 from drake_haptics import SceneTracker
 from drake_haptics.common.errors import DecompositionFileError, UserError
 from drake_haptics.geometry.decomposition import decompose as decomposition
-from drake_haptics.geometry.decomposition.archive import read_archive, write_archive
 from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
+from drake_haptics.geometry.decomposition.storage import read_archive, write_archive
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 
 
@@ -94,7 +94,9 @@ def test_without_coacd_the_error_says_what_to_install(monkeypatch):
     def missing(name):
         raise decomposition.coacd_parameters.__globals__["PackageNotFoundError"](name)
 
-    monkeypatch.setattr("drake_haptics.geometry.decomposition.coacd.version", missing)
+    monkeypatch.setattr(
+        "drake_haptics.geometry.decomposition.approximate.version", missing
+    )
     with pytest.raises(UserError, match=r"pip install 'drake_haptics\[coacd\]'"):
         decompose(Mesh.from_arrays(*box()), "coacd", cache=False)
 

@@ -9,7 +9,7 @@ from mesh_samples import box, l_prism
 from drake_haptics import _core
 from drake_haptics.common.colors import VIRTUAL_FACET, piece_color
 from drake_haptics.geometry.decomposition.decompose import decompose
-from drake_haptics.geometry.decomposition.surfaces import piece_surfaces
+from drake_haptics.geometry.decomposition.pieces import piece_surfaces
 from drake_haptics.geometry.decomposition.viewer import DecompositionViewer
 from drake_haptics.geometry.mesh.mesh import Mesh
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.geometry.mesh.centering import center, find_origin_beside
 from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.placement import center, find_origin_beside
 from drake_haptics.scene.geometry import cut_scene
 from drake_haptics.scene.schema import EnvironmentObject, Scene, Tool
 

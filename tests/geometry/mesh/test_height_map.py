@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.geometry.mesh.height_map import TouchMap
 from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.mesh.placement import TouchMap
 
 
 def intake(mesh, shift=(0, 0, 0)):

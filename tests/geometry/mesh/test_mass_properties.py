@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.geometry.mesh.mass_properties import (
+from drake_haptics.geometry.mesh.mesh import (
+    Mesh,
     calc_mass_properties,
     make_tool_dynamics,
 )
-from drake_haptics.geometry.mesh.mesh import Mesh
 
 MASS = 0.3
 

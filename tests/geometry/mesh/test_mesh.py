@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mesh_samples import box, corner_set, joined, l_prism, real_mesh
 
-from drake_haptics.geometry.mesh.mesh import Mesh, MeshError, load_mesh
+from drake_haptics.common.errors import MeshError
+from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 
 
 def codes(mesh):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from drake_haptics.geometry.mesh.plausible_size import question_tolerance
+from drake_haptics.geometry.mesh.checks import question_tolerance
 
 
 @pytest.mark.parametrize("tolerance_m", [0.0, 1e-3, 0.02])

@@ -9,7 +9,7 @@ from pydrake.common import MemoryFile
 from pydrake.geometry import InMemoryMesh, Mesh, MeshSource
 
 from drake_haptics.common.errors import MeshError
-from drake_haptics.geometry.parsing.mesh_source import read_mesh_source
+from drake_haptics.geometry.parsing.body_shapes import read_mesh_source
 
 ONE = np.ones(3)
 

@@ -5,7 +5,7 @@ import pytest
 
 from drake_haptics.common.errors import MeshError
 from drake_haptics.geometry.decomposition.decompose import decompose
-from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
+from drake_haptics.geometry.mesh.mesh import calc_mass_properties
 from drake_haptics.geometry.parsing.model_file import is_model_file, load_model_mesh
 
 # A crank: a box, and a ball on a pin that stands 0.1 m beside it.

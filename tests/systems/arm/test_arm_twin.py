@@ -27,7 +27,7 @@ from drake_haptics.bounds.held_handle import calc_force_delay
 from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     Encoder,
     ForceDelay,
@@ -36,10 +36,9 @@ from drake_haptics.scene.schema import (
     Twin,
 )
 from drake_haptics.simulation.run import run
-from drake_haptics.systems.arm.arm_inverse_kinematics import solve_arm_positions
 from drake_haptics.systems.arm.hand_impedance import HandImpedance
-from drake_haptics.systems.arm.simulated_arm import make_arm_plant
-from drake_haptics.systems.framework.vector_ports import export_parts
+from drake_haptics.systems.arm.simulated_arm import make_arm_plant, solve_arm_positions
+from drake_haptics.systems.framework.differentiable_system import export_parts
 
 ALWAYS = {"arm", "hand_impedance", "parts"}
 PARTS = {

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from drake_haptics.scene.schema import Hand
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 PAGE = Path(__file__).parents[3] / "docs" / "device-twin.md"
 COLUMNS = (

@@ -15,13 +15,13 @@ from twin_check import check_twin
 from drake_haptics._core import CouplingGains
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.systems.arm.arm_inverse_kinematics import (
-    UnreachableError,
-    solve_arm_positions,
-)
 from drake_haptics.systems.arm.hand_impedance import HandImpedance
 from drake_haptics.systems.arm.hand_path import HandPath
-from drake_haptics.systems.arm.simulated_arm import make_arm_plant
+from drake_haptics.systems.arm.simulated_arm import (
+    UnreachableError,
+    make_arm_plant,
+    solve_arm_positions,
+)
 
 L1, L2 = 0.215, 0.170
 AT_REST = np.zeros(6)

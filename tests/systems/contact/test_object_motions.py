@@ -7,8 +7,7 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import LeafSystem
 
 from drake_haptics._core import AutoDiffVector, ObjectFrames
-from drake_haptics.systems.contact.contact_query import ContactObject
-from drake_haptics.systems.contact.object_motions import ObjectMotions
+from drake_haptics.systems.contact.contact_query import ContactObject, ObjectMotions
 
 
 class Asking(LeafSystem):

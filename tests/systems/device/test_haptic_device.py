@@ -13,7 +13,7 @@ from twin_check import check_twin
 from drake_haptics._core import CouplingGains
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 
 def test_topology():

@@ -21,7 +21,7 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import DiscreteTimeDelay
 
 from drake_haptics.device.backend import Fault, GateState
-from drake_haptics.device.gate_status import GateStatus
+from drake_haptics.device.gate import GateStatus
 from drake_haptics.device.lcm.haptic_messages import (
     lcmt_haptic_command,
     lcmt_haptic_status,

@@ -4,10 +4,10 @@ import numpy as np
 
 from drake_haptics.common.colors import VIRTUAL_FACET, piece_color
 from drake_haptics.geometry.decomposition.decompose import decompose
-from drake_haptics.geometry.decomposition.surfaces import each_facet
+from drake_haptics.geometry.decomposition.pieces import each_facet
 from drake_haptics.geometry.mesh.mesh import load_mesh
 from drake_haptics.scene.library import find_scene
-from drake_haptics.systems.output.drawn_pieces import DrawnPieces
+from drake_haptics.systems.output.meshcat_shapes import DrawnPieces
 
 ALPHA = 0.4
 

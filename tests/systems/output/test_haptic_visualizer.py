@@ -27,7 +27,7 @@ from visualizer_rig import (
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.output import haptic_visualizer
-from drake_haptics.systems.output.arrow_pool import ArrowPool
+from drake_haptics.systems.output.meshcat_shapes import ArrowPool
 
 
 def test_ports_have_drakes_names_and_sizes():

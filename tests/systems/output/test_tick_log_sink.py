@@ -10,7 +10,7 @@ from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.device.backend import DeviceReading, Fault, GateState
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
-from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.loop.outputs import make_log_header
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.systems.output.tick_log_sink import TickLogSink
 from drake_haptics.tick_log.tick_log import read_tick_log

@@ -23,8 +23,7 @@ from drake_haptics.evaluation.accuracy.peers.problem import (
 )
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.accuracy.truth import Truth, find_truth, shift_wrench
-from drake_haptics.scene.effects import Effects
-from drake_haptics.scene.schema import Scene
+from drake_haptics.scene.schema import Effects, Scene
 
 
 @dataclass(frozen=True)

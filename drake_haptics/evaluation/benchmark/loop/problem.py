@@ -15,9 +15,9 @@ from drake_haptics.evaluation.accuracy.recorded_motion import (
     record_motion,
 )
 from drake_haptics.geometry.decomposition.decompose import Decomposition
-from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
+from drake_haptics.geometry.mesh.mesh import calc_mass_properties
 from drake_haptics.scene.library import find_scene
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Scene
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures, LoopTimes
 from drake_haptics.evaluation.benchmark.loop.names import NATIVE, OURS
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 # What each of them does in a tick.
 _COMPUTES = (

@@ -13,7 +13,7 @@ from pydrake.trajectories import PiecewisePolynomial
 
 from drake_haptics import _core
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.evaluation.benchmark.loop.problem import LoopCourse, LoopProblem
 from drake_haptics.evaluation.measuring.timing import clock_interval
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram

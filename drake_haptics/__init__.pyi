@@ -1,0 +1,68 @@
+"""The public names of the package, each with the module that defines it."""
+
+from ._core import Contact as Contact
+from ._core import ContactSet as ContactSet
+from ._core import ContactStatus as ContactStatus
+from ._core import ContactTracker as ContactTracker
+from ._core import ContactTrajectory as ContactTrajectory
+from ._core import ConvexPair as ConvexPair
+from ._core import ConvexPolytope as ConvexPolytope
+from ._core import Feature as Feature
+from ._core import FeatureKind as FeatureKind
+from ._core import PairTrajectory as PairTrajectory
+from ._core import SceneTracker as SceneTracker
+from .authoring.scene_from_meshes import make_scene_for_meshes as make_scene_for_meshes
+from .common.errors import MeshError as MeshError
+from .common.errors import SceneError as SceneError
+from .common.errors import UserError as UserError
+from .common.files import get_include as get_include
+from .common.real_time import TickClock as TickClock
+from .device.backend import DeviceBackend as DeviceBackend
+from .device.backend import DeviceCommand as DeviceCommand
+from .device.backend import DeviceError as DeviceError
+from .device.backend import DeviceReading as DeviceReading
+from .geometry.decomposition.decompose import Decomposition as Decomposition
+from .geometry.decomposition.decompose import decompose as decompose
+from .geometry.mesh.mesh import Mesh as Mesh
+from .geometry.mesh.mesh import load_mesh as load_mesh
+from .loop.add_haptic_loop import AddHapticLoop as AddHapticLoop
+from .loop.builder import BuildHapticDiagram as BuildHapticDiagram
+from .loop.builder import HapticDiagram as HapticDiagram
+from .loop.device_placement import make_device_port as make_device_port
+from .loop.haptic_loop import ConnectMovingObject as ConnectMovingObject
+from .loop.haptic_loop import HapticLoop as HapticLoop
+from .loop.open_device import open_device as open_device
+from .loop.outputs import make_log_header as make_log_header
+from .rendering.add_haptic_rendering import (
+    AddAppliedSpatialForce as AddAppliedSpatialForce,
+)
+from .rendering.add_haptic_rendering import AddHapticRendering as AddHapticRendering
+from .rendering.haptic_rendering import HapticRendering as HapticRendering
+from .scene.library import find_mesh as find_mesh
+from .scene.library import find_scene as find_scene
+from .scene.library import list_meshes as list_meshes
+from .scene.library import list_scenes as list_scenes
+from .scene.scene_file import load_scene as load_scene
+from .scene.schema import Braking as Braking
+from .scene.schema import Coupling as Coupling
+from .scene.schema import Effects as Effects
+from .scene.schema import Friction as Friction
+from .scene.schema import Gravity as Gravity
+from .scene.schema import Material as Material
+from .scene.schema import Scene as Scene
+from .scene.schema import Shading as Shading
+from .simulation.energy import EnergyLedger as EnergyLedger
+from .simulation.live_values import live_keys as live_keys
+from .simulation.live_values import write_live_values as write_live_values
+from .simulation.profiling import CallbackTimer as CallbackTimer
+from .simulation.profiling import explain_tick as explain_tick
+from .simulation.replay_log import replay as replay
+from .simulation.run import RunError as RunError
+from .simulation.run import make_simulator as make_simulator
+from .simulation.run import run as run
+from .simulation.statistics import RunStatistics as RunStatistics
+from .simulation.transfer_state import carry_on as carry_on
+from .tick_log.tick_log import read_tick_log as read_tick_log
+from .tick_log.tick_recorder import TickRecorder as TickRecorder
+
+__version__: str

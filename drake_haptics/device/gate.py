@@ -1,0 +1,120 @@
+"""Runs the gate of a device whose driver is in this process, and carries its state."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from drake_haptics import _core
+from drake_haptics.device.backend import Fault, GateState
+
+_UINT32 = (1 << 32) - 1
+
+
+class LocalGate:
+    """A `DeviceGate` with the one host that it can have.
+
+    The commands go to the gate as packets, so that they are judged by the code that
+    judges those from afar.
+
+    Args:
+        max_force_N: Largest force ever shown, N.
+        max_torque_Nm: Largest torque ever shown, N·m.
+        ttl_s: How long a wrench holds without a newer one, s.
+
+    Raises:
+        ValueError: A limit or the time is out of the bounds of `DeviceGate`.
+    """
+
+    def __init__(self, *, max_force_N: float, max_torque_Nm: float, ttl_s: float):
+        self._gate = _core.DeviceGate(
+            max_force_N=max_force_N, max_torque_Nm=max_torque_Nm, max_ttl_s=ttl_s
+        )
+        self._ttl_us = round(1e6 * ttl_s)
+        self._session = secrets.randbelow(_UINT32) + 1
+        self._sequence = 0
+
+    @property
+    def state(self) -> GateState:
+        """Whether force is shown."""
+        return GateState(int(self._gate.state))
+
+    @property
+    def fault(self) -> Fault:
+        """Why not, where it is at fault."""
+        return Fault(int(self._gate.fault))
+
+    def show(self, F_BH: np.ndarray, now_ns: int) -> None:
+        """Asks for a wrench, and enables an idle gate that was released before.
+
+        Args:
+            F_BH: (6,) [τ; f], N·m and N; what is not finite is a fault.
+            now_ns: The time, ns; never goes back.
+        """
+        self._send(F_BH, now_ns, enable=True)
+
+    def release(self, now_ns: int) -> None:
+        """Asks for no force: it ramps out, or a fault is left."""
+        self._send(np.zeros(6), now_ns, enable=False)
+
+    def fail(self) -> None:
+        """Ends at zero force at once: the device itself is lost or at fault."""
+        self._gate.fail()
+
+    def step(self, X_BH: np.ndarray, V_BH: np.ndarray, now_ns: int) -> np.ndarray:
+        """Moves the time on.
+
+        Args:
+            X_BH: (7,) the handle's pose [qw qx qy qz x y z], m.
+            V_BH: (6,) its velocity [ω; v], rad/s and m/s.
+            now_ns: The time, ns.
+
+        Returns:
+            (6,) the wrench [τ; f] to show, N·m and N, within the limits.
+        """
+        return self._gate.step(now_ns, X_BH, V_BH)
+
+    def _send(self, F_BH: np.ndarray, now_ns: int, *, enable: bool) -> None:
+        """Gives the gate a command."""
+        self._sequence = (self._sequence + 1) & _UINT32
+        packet = _core.pack_command(
+            session=self._session,
+            sequence=self._sequence,
+            time_ns=now_ns,
+            F_BH=F_BH,
+            state_sequence=0,
+            ttl_us=self._ttl_us,
+            enable=enable,
+        )
+        self._gate.receive(now_ns, packet)
+
+
+@dataclass(frozen=True, eq=False)
+class GateStatus:
+    """The decision of a gate, as a value that ports can carry.
+
+    Attributes:
+        F_BH: (6,) the wrench [τ; f] that is shown, N·m and N.
+        session: The run of a host that is served, 0 for none.
+        command_sequence: The newest command that was accepted.
+        rejected: How many were refused.
+        state: Whether force is shown.
+        fault: Why not, where it is at fault.
+        max_force_N: Largest force ever shown, N.
+        max_torque_Nm: Largest torque, N·m.
+    """
+
+    F_BH: np.ndarray = field(default_factory=lambda: np.zeros(6))
+    session: int = 0
+    command_sequence: int = 0
+    rejected: int = 0
+    state: GateState = GateState.IDLE
+    fault: Fault = Fault.NONE
+    max_force_N: float = 0.0
+    max_torque_Nm: float = 0.0
+
+    def __deepcopy__(self, memo: object) -> GateStatus:
+        """Returns itself: it cannot change, so ports may share it."""
+        return self

@@ -1,0 +1,123 @@
+"""Decomposes a mesh into fewer convex pieces than the exact ones, approximately.
+
+The method "merged" joins neighboring pieces of the surface decomposition, the cheapest
+two first, for as long as the hull of what they hold departs from the mesh by no more
+than a stated error: no point of a hull is farther outside of the solid, and no point of
+the mesh is buried deeper in a hull. The hulls are those of corners of the mesh, so that
+they fill hollows and cut nothing away.
+
+The method "coacd", an optional extra, is that of Wei, Liu, Ling and Su, "Approximate
+Convex Decomposition for 3D Meshes with Collision-Aware Concavity and Tree Search",
+SIGGRAPH 2022.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+import numpy as np
+
+from drake_haptics import _core
+from drake_haptics.common.errors import UserError
+from drake_haptics.geometry.decomposition.pieces import MergedPatches
+from drake_haptics.geometry.mesh.mesh import Mesh
+
+# CoACD's own default: how far, relative to the size, pieces may fill concavities.
+CONCAVITY = 0.05
+
+_HOW_TO_INSTALL = (
+    "the method coacd needs an optional package: pip install 'drake_haptics[coacd]'"
+)
+
+
+def check_error(method: str, error_m: float | None) -> None:
+    """Checks that an error is given where, and only where, there is one.
+
+    Raises:
+        UserError: It is missing, means nothing or is out of range.
+    """
+    if (method == "merged") != (error_m is not None):
+        raise UserError(
+            "the method merged needs an error_m, how far its pieces may depart from"
+            " the mesh, m"
+            if error_m is None
+            else f"error_m is for the method merged; {method} has none"
+        )
+    if error_m is not None and not 0.0 <= error_m < np.inf:
+        raise UserError(f"error_m must be zero or more, in m, is {error_m}")
+
+
+def merge_patches(
+    mesh: Mesh,
+    piece_of_triangle: np.ndarray,
+    error_m: float,
+    progress: Callable[[float], None],
+) -> MergedPatches:
+    """Joins the pieces of the surface decomposition of a mesh.
+
+    Args:
+        mesh: The mesh.
+        piece_of_triangle: (m,) int32, of its surface decomposition.
+        error_m: How far a piece may depart from the mesh, m.
+        progress: Called with the share done, from 0 to 1.
+    """
+    start = time.perf_counter()
+
+    def step(share: float) -> bool:
+        progress(share)
+        return True
+
+    merged = _core.merge_pieces(
+        mesh.vertices, mesh.triangles, mesh.solid, piece_of_triangle, error_m, step
+    )
+    return MergedPatches(
+        piece_of_triangle=piece_of_triangle,
+        group_of_piece=np.array(merged.group_of_piece, dtype=np.int32),
+        error_m=error_m,
+        departure_m=merged.departure,
+        seconds=time.perf_counter() - start,
+    )
+
+
+def coacd_parameters() -> dict[str, Any]:
+    """Returns all that the result depends on besides the mesh.
+
+    Raises:
+        UserError: if CoACD is not installed.
+    """
+    try:
+        return {"coacd": version("coacd"), "concavity": CONCAVITY}
+    except PackageNotFoundError as error:
+        raise UserError(_HOW_TO_INSTALL) from error
+
+
+def coacd_hulls(mesh: Mesh, progress: Callable[[float], None]) -> list[np.ndarray]:
+    """Cuts each component into convex pieces that fill it approximately.
+
+    Cavities are filled, and open surfaces are closed as CoACD sees fit.
+
+    Returns:
+        The points (n_i, 3) of each piece, m.
+
+    Raises:
+        UserError: if CoACD is not installed.
+    """
+    try:
+        import coacd
+    except ImportError as error:
+        raise UserError(_HOW_TO_INSTALL) from error
+    coacd.set_log_level("error")
+    hulls: list[np.ndarray] = []
+    for index, component in enumerate(mesh.components):
+        if component.cavity:
+            continue
+        F = mesh.triangles[mesh.component_of_triangle == index]
+        used, F_own = np.unique(F, return_inverse=True)
+        part = coacd.Mesh(mesh.vertices[used], F_own.reshape(-1, 3))
+        parts = coacd.run_coacd(part, threshold=CONCAVITY, seed=0)
+        hulls += [np.asarray(vertices, dtype=np.float64) for vertices, _ in parts]
+        progress((index + 1) / len(mesh.components))
+    return hulls

@@ -1,0 +1,198 @@
+"""Convex pieces of a mesh, as stored data and as triangles to draw."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from drake_haptics import _core
+from drake_haptics.common.colors import VIRTUAL_FACET, piece_color
+from drake_haptics.geometry.mesh.mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class PatchLabels:
+    """Pieces that are patches of the mesh's surface.
+
+    Attributes:
+        piece_of_triangle: (m,) int32 in [0, number of pieces).
+        seconds: that the search took, s.
+    """
+
+    piece_of_triangle: np.ndarray
+    seconds: float
+
+    def assemble(self, mesh: Mesh) -> _core.Decomposition:
+        """Makes the pieces, without the search."""
+        return _core.assemble_surface_pieces(
+            mesh.vertices, mesh.triangles, self.piece_of_triangle
+        )
+
+    def fits(self, mesh: Mesh) -> bool:
+        """Tells whether the labels can belong to the mesh."""
+        return _are_labels(self.piece_of_triangle, len(mesh.triangles))
+
+
+@dataclass(frozen=True, eq=False)
+class MergedPatches:
+    """Pieces that are hulls of several patches of the mesh's surface.
+
+    Attributes:
+        piece_of_triangle: (m,) int32 of the patches.
+        group_of_piece: (k,) int32: patches of one group are one piece.
+        error_m: allowed departure from the mesh, m.
+        departure_m: bound on the largest departure that there is, m.
+        seconds: that the search took, s.
+    """
+
+    piece_of_triangle: np.ndarray
+    group_of_piece: np.ndarray
+    error_m: float
+    departure_m: float
+    seconds: float
+
+    def assemble(self, mesh: Mesh) -> _core.Decomposition:
+        """Makes the pieces, without the search."""
+        return _core.assemble_merged_pieces(
+            mesh.vertices,
+            mesh.triangles,
+            mesh.solid,
+            self.piece_of_triangle,
+            self.group_of_piece,
+            self.error_m,
+        )
+
+    def fits(self, mesh: Mesh) -> bool:
+        """Tells whether the labels can belong to the mesh."""
+        labels = self.piece_of_triangle
+        return (
+            _are_labels(labels, len(mesh.triangles))
+            and _are_labels(self.group_of_piece, int(labels.max()) + 1)
+            and 0.0 <= self.error_m < np.inf
+        )
+
+
+def _are_labels(labels: np.ndarray, count: int) -> bool:
+    """Whether an array is one of `count` numbers from 0 without gaps."""
+    if labels.dtype != np.int32 or labels.shape != (count,) or labels.min() < 0:
+        return False
+    return bool((np.bincount(labels, minlength=1) > 0).all())
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexHulls:
+    """Pieces that were made elsewhere, as the points that they are the hulls of.
+
+    Attributes:
+        points: (p, 3) of all hulls, m.
+        start: (k + 1,) int32: hull i has the points start[i] to start[i + 1].
+        tolerance: within which a hull's facet is on the mesh, m; infinite where the
+            hulls take the place of the mesh.
+        seconds: that making them took, s.
+    """
+
+    points: np.ndarray
+    start: np.ndarray
+    tolerance: float
+    seconds: float
+
+    @staticmethod
+    def of(hulls: list[np.ndarray], tolerance: float, seconds: float) -> ConvexHulls:
+        """Packs the hulls' points, each (n_i, 3)."""
+        start = np.cumsum([0, *map(len, hulls)]).astype(np.int32)
+        points = np.ascontiguousarray(np.concatenate(hulls), dtype=np.float64)
+        return ConvexHulls(points, start, tolerance, seconds)
+
+    def assemble(self, mesh: Mesh) -> _core.Decomposition:
+        """Makes the pieces and finds out which of their facets are on the mesh."""
+        hulls = [
+            self.points[a:b]
+            for a, b in zip(self.start[:-1], self.start[1:], strict=True)
+        ]
+        return _core.adopt_convex_pieces(
+            mesh.vertices, mesh.triangles, hulls, self.tolerance
+        )
+
+    def fits(self, mesh: Mesh) -> bool:
+        """Tells whether the hulls are well formed; they may fit any mesh."""
+        return bool(
+            self.points.dtype == np.float64
+            and self.points.ndim == 2
+            and self.points.shape[1] == 3
+            and np.isfinite(self.points).all()
+            and self.start.dtype == np.int32
+            and self.start.ndim == 1
+            and len(self.start) >= 2
+            and self.start[0] == 0
+            and self.start[-1] == len(self.points)
+            and (np.diff(self.start) > 0).all()
+            and self.tolerance > 0
+        )
+
+
+PieceData = PatchLabels | MergedPatches | ConvexHulls
+
+
+@dataclass(frozen=True, eq=False)
+class ColoredTriangles:
+    """Triangles that share no vertices, so that each is shaded flat.
+
+    Attributes:
+        vertices: (3 k, 3), m.
+        colors: (3 k, 3) red, green, blue in [0, 1].
+        piece: (3 k,) piece of each vertex.
+    """
+
+    vertices: np.ndarray
+    colors: np.ndarray
+    piece: np.ndarray
+
+    @property
+    def faces(self) -> np.ndarray:
+        """(k, 3) indices into the vertices."""
+        return np.arange(len(self.vertices)).reshape(-1, 3)
+
+
+def each_facet(
+    pieces: Sequence[_core.ConvexPolytope],
+) -> Iterator[tuple[int, bool, np.ndarray]]:
+    """Yields the facets of pieces that are to be drawn, one by one.
+
+    Of a flat piece only the front is drawn: its back is in the same place.
+
+    Yields:
+        The index of the piece, whether the facet is on the mesh (a virtual one is
+        not), and the corners (3 k, 3) of its triangles, m.
+    """
+    for index, piece in enumerate(pieces):
+        points = np.asarray(piece.vertices)
+        sides = list(zip(piece.facets, piece.facet_original, strict=True))
+        for loop, original in sides if piece.dimension == 3 else sides[:1]:
+            fan = np.array([(loop[0], *pair) for pair in pairwise(loop[1:])])
+            yield index, original, points[fan.ravel()]
+
+
+def piece_surfaces(
+    pieces: list[_core.ConvexPolytope],
+) -> tuple[ColoredTriangles, ColoredTriangles]:
+    """Returns the facets on the mesh, a color for each piece, and the virtual ones."""
+    corners: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    owners: tuple[list[int], list[int]] = ([], [])
+    for index, original, points in each_facet(pieces):
+        kind = 0 if original else 1
+        corners[kind].append(points)
+        owners[kind].append(index)
+    palette = np.array([piece_color(i)[:3] for i in range(len(pieces))])
+    surfaces = []
+    for kind in (0, 1):
+        vertices = np.concatenate([np.empty((0, 3)), *corners[kind]])
+        counts = [len(points) for points in corners[kind]]
+        piece_of = np.repeat(np.array(owners[kind], dtype=int), counts)
+        colors = palette[piece_of] if kind == 0 else np.empty_like(vertices)
+        if kind == 1:
+            colors[:] = VIRTUAL_FACET[:3]
+        surfaces.append(ColoredTriangles(vertices, colors, piece_of))
+    return surfaces[0], surfaces[1]

@@ -1,0 +1,194 @@
+"""Makes devices of arms: of a scene's simulated arm over UDP, of any arm over LCM."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from pydrake.lcm import DrakeLcm
+from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
+from pydrake.systems.framework import DiagramBuilder, System
+from pydrake.systems.lcm import LcmPublisherSystem, LcmSubscriberSystem
+
+from drake_haptics._core import FrameChange
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.device.driver import DeviceDriver
+from drake_haptics.device.lcm.haptic_messages import (
+    lcmt_haptic_command,
+    lcmt_haptic_status,
+)
+from drake_haptics.device.lcm.lcm_device import COMMAND_CHANNEL, STATUS_CHANNEL
+from drake_haptics.loop.simulated_device import (
+    make_hand_path,
+    make_simulated_device,
+    place_base,
+)
+from drake_haptics.scene.schema import Scene
+from drake_haptics.systems.lcm.haptic_command_receiver import HapticCommandReceiver
+from drake_haptics.systems.lcm.haptic_status_sender import HapticStatusSender
+
+
+class SimulatedDriverArm:
+    """An arm that a driver can drive: `drake_haptics.device.driver.DrivenArm`.
+
+    It and the hand are those of the scene as `BuildHapticDiagram` makes them. The
+    hand holds the handle where its path starts until the device first becomes active,
+    and then follows the path.
+
+    Args:
+        scene: Names device, base, grasp and hand; its rate is the driver's.
+
+    Raises:
+        SceneError: A preset, a grip or the path is impossible.
+    """
+
+    def __init__(self, scene: Scene):
+        path = make_hand_path(scene.hand.path)
+        device = make_simulated_device(scene, path)
+        self._max_force_N = device.max_force_N
+        self._max_torque_Nm = device.max_torque_Nm
+        self._period_s = 1.0 / scene.device.rate_hz
+        self._ticks = 0
+        self._starts = False
+        simulator = Simulator(device)
+        ResetIntegratorFromFlags(simulator, "runge_kutta2", self._period_s)
+        simulator.get_mutable_integrator().set_fixed_step_mode(True)
+        simulator.Initialize()
+        self._simulator = simulator
+        self._context = simulator.get_context()
+        self._F_WH = device.get_display_wrench_input_port().FixValue(
+            simulator.get_mutable_context(), np.zeros(6)
+        )
+        self._X_WH = device.get_handle_pose_output_port()
+        self._V_WH = device.get_handle_velocity_output_port()
+        X_BW = place_base(scene, path).inverse()
+        self._to_base = FrameChange(pose_to_vector(X_BW))
+
+    @property
+    def max_force_N(self) -> float:
+        """Largest force that the device shows, N."""
+        return self._max_force_N
+
+    @property
+    def max_torque_Nm(self) -> float:
+        """Largest torque that the device shows, N·m."""
+        return self._max_torque_Nm
+
+    def start(self) -> None:
+        """Lets the hand set out."""
+        self._starts = True
+
+    def step(self, F_BH: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Moves arm and hand on by one period.
+
+        Args:
+            F_BH: (6,) wrench [τ; f] of the motors on the handle, N·m and N.
+
+        Returns:
+            X_BH (7,) = [qw qx qy qz x y z], m, and V_BH (6,) = [ω; v], rad/s and m/s;
+            both NaN once the simulation has diverged.
+        """
+        if self._starts:
+            self._ticks += 1
+            # The wrench stays as it is over the period, as motors hold it.
+            self._F_WH.GetMutableData().get_mutable_value().SetFromVector(
+                self._to_base.change_wrench_back(F_BH)
+            )
+            try:
+                self._simulator.AdvanceTo(self._ticks * self._period_s)
+            except FloatingPointError:
+                return np.full(7, np.nan), np.full(6, np.nan)
+        motion = self._to_base.change_motion(
+            self._X_WH.Eval(self._context), self._V_WH.Eval(self._context)
+        )
+        return motion[:7], motion[7:]
+
+
+def make_simulated_driver(
+    scene: Scene, *, rate_hz: float | None, max_ttl_s: float, bind: str, port: int
+) -> DeviceDriver:
+    """Returns a driver of a scene's simulated device, within that device's limits.
+
+    Args:
+        scene: What the device, its place and its hand are.
+        rate_hz: Ticks per second, Hz; the scene's if None.
+        max_ttl_s: As for `DeviceDriver`, like what follows.
+        bind: Address to listen at.
+        port: UDP port to listen at.
+
+    Raises:
+        SceneError: The scene cannot be simulated.
+        UserError: The address or port is not available.
+        ValueError: A limit or the rate is out of range.
+    """
+    if rate_hz is not None:
+        scene = replace(scene, device=replace(scene.device, rate_hz=rate_hz))
+    arm = SimulatedDriverArm(scene)
+    return DeviceDriver(
+        arm,
+        max_force_N=arm.max_force_N,
+        max_torque_Nm=arm.max_torque_Nm,
+        max_ttl_s=max_ttl_s,
+        rate_hz=scene.device.rate_hz,
+        bind=bind,
+        port=port,
+    )
+
+
+def AddLcmDriver(
+    builder: DiagramBuilder,
+    arm: System,
+    lcm: DrakeLcm,
+    *,
+    period_s: float,
+    max_force_N: float,
+    max_torque_Nm: float,
+) -> HapticCommandReceiver:
+    """Adds what makes a device of an arm, behind the gate, for hosts on LCM.
+
+    Run the diagram in real time: the time of its context is the gate's clock.
+
+    Args:
+        builder: Has the arm, and Drake's `LcmInterfaceSystem` of the same `lcm`.
+        arm: A backend as `HapticDevice` documents it; its world is the base frame B.
+        lcm: LCM instance to send and listen with.
+        period_s: The device's tick, s.
+        max_force_N: Largest force ever shown, N.
+        max_torque_Nm: Largest torque ever shown, N·m.
+
+    Returns:
+        The gate, whose output `gate_status` tells how it stands.
+
+    Raises:
+        ValueError: The period or a limit is out of range.
+    """
+    gate = builder.AddNamedSystem(
+        "haptic_command_receiver",
+        HapticCommandReceiver(
+            period_s, max_force_N=max_force_N, max_torque_Nm=max_torque_Nm
+        ),
+    )
+    sender = builder.AddNamedSystem(
+        "haptic_status_sender", HapticStatusSender(period_s)
+    )
+    commands = builder.AddNamedSystem(
+        "haptic_command_subscriber",
+        LcmSubscriberSystem.Make(COMMAND_CHANNEL, lcmt_haptic_command, lcm),
+    )
+    statuses = builder.AddNamedSystem(
+        "haptic_status_publisher",
+        LcmPublisherSystem.Make(STATUS_CHANNEL, lcmt_haptic_status, lcm, period_s),
+    )
+    X_BH, V_BH = arm.GetOutputPort("X_WH"), arm.GetOutputPort("V_WH")
+    for output, input in [
+        (commands.get_output_port(), gate.get_command_input_port()),
+        (X_BH, gate.get_handle_pose_input_port()),
+        (V_BH, gate.get_handle_velocity_input_port()),
+        (gate.get_wrench_output_port(), arm.GetInputPort("F_applied")),
+        (X_BH, sender.get_handle_pose_input_port()),
+        (V_BH, sender.get_handle_velocity_input_port()),
+        (gate.get_gate_status_output_port(), sender.get_gate_status_input_port()),
+        (sender.get_status_output_port(), statuses.get_input_port()),
+    ]:
+        builder.Connect(output, input)
+    return gate

@@ -1,0 +1,145 @@
+"""Connects to a haptic loop what shows it and what records it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.metadata import version
+
+from pydrake.common.yaml import yaml_dump_typed
+from pydrake.geometry import Meshcat
+from pydrake.systems.framework import DiagramBuilder
+
+from drake_haptics import _core
+from drake_haptics.common.files import resolve_package_url
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.loop.haptic_loop import HapticLoop
+from drake_haptics.loop.simulated_device import make_hand_path, place_base
+from drake_haptics.scene.schema import EnvironmentObject, Scene, Tool
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.output.haptic_visualizer import HapticVisualizer
+from drake_haptics.systems.output.tick_log_sink import TickLogSink
+from drake_haptics.tick_log.mesh_digest import hash_file
+from drake_haptics.tick_log.tick_log_header import TickLogHeader
+from drake_haptics.tick_log.tick_recorder import TickRecorder
+
+
+def add_picture(
+    builder: DiagramBuilder,
+    loop: HapticLoop,
+    meshcat: Meshcat,
+    tool: _core.Decomposition,
+    objects: Sequence[ContactObject],
+    period_s: float,
+) -> HapticVisualizer:
+    """Adds the system that draws a loop, and connects it.
+
+    Args:
+        builder: Builder of the diagram with the loop.
+        loop: Return value of `AddHapticLoop`.
+        meshcat: Meshcat to draw in.
+        tool: Pieces of the tool, in its frame T.
+        objects: Objects that the tool meets.
+        period_s: The tick, s.
+    """
+    visualizer = builder.AddNamedSystem(
+        "haptic_visualizer",
+        HapticVisualizer(
+            meshcat,
+            tool,
+            objects,
+            loop.virtual_coupling.X_HT,
+            period_s,
+            max_force_N=loop.device.max_force_N,
+            max_torque_Nm=loop.device.max_torque_Nm,
+            has_friction=loop.effects.friction is not None,
+            sheds_load=loop.load_shedding is not None,
+        ),
+    )
+    for output, input in [
+        (
+            loop.device.get_handle_pose_output_port(),
+            visualizer.get_handle_pose_input_port(),
+        ),
+        (
+            loop.haptic_tool.get_pose_output_port(),
+            visualizer.get_tool_pose_input_port(),
+        ),
+        (loop.contacts, visualizer.get_contacts_input_port()),
+        (
+            loop.contact_clustering.get_clusters_output_port(),
+            visualizer.get_clusters_input_port(),
+        ),
+        (
+            loop.penalty_force.get_contact_wrench_output_port(),
+            visualizer.get_contact_wrench_input_port(),
+        ),
+        (loop.display_wrench, visualizer.get_display_wrench_input_port()),
+    ]:
+        builder.Connect(output, input)
+    if loop.effects.friction is not None:
+        builder.Connect(
+            loop.effects.friction.get_friction_force_output_port(),
+            visualizer.get_friction_force_input_port(),
+        )
+    if loop.load_shedding is not None:
+        builder.Connect(
+            loop.load_shedding.get_relief_output_port(),
+            visualizer.get_relief_input_port(),
+        )
+    return visualizer
+
+
+def make_log_header(scene: Scene) -> TickLogHeader:
+    """Returns the head of a log of a run of a scene.
+
+    Raises:
+        SceneError: The scene has no such preset or its path leaves the workspace.
+        OSError: A mesh file cannot be read.
+    """
+    X_WB = place_base(scene, make_hand_path(scene.hand.path))
+    parts: list[Tool | EnvironmentObject] = [scene.tool, *scene.environment]
+    files = [resolve_package_url(part.mesh) for part in parts]
+    return TickLogHeader(
+        program_version=version("drake_haptics"),
+        period_s=1.0 / scene.device.rate_hz,
+        scene=yaml_dump_typed(scene),
+        mesh_sha256={file: hash_file(file) for file in files},
+        X_WB=pose_to_vector(X_WB).tolist(),
+    )
+
+
+def AddTickLog(
+    builder: DiagramBuilder, loop: HapticLoop, recorder: TickRecorder, period_s: float
+) -> TickLogSink:
+    """Adds what notes every tick of a loop, and connects it.
+
+    Args:
+        builder: Builder of the diagram with the loop.
+        loop: Return value of `AddHapticLoop`.
+        recorder: Recorder that writes the log.
+        period_s: The loop's tick, s.
+
+    Returns:
+        The system, named tick_log_sink.
+    """
+    device, tool = loop.device, loop.haptic_tool
+    sources = {
+        "X_WH": device.get_handle_pose_output_port(),
+        "V_WH": device.get_handle_velocity_output_port(),
+        "F_display": loop.display_wrench,
+        "F_applied": device.get_applied_wrench_output_port(),
+        "X_WTool": tool.get_pose_output_port(),
+        "V_WTool": tool.get_velocity_output_port(),
+        "status": device.get_status_output_port(),
+        "contacts": loop.found_contacts,
+        "clusters": loop.contact_clustering.get_clusters_output_port(),
+    }
+    if device.HasOutputPort("reading"):
+        sources["reading"] = device.GetOutputPort("reading")
+    sink = builder.AddNamedSystem(
+        "tick_log_sink",
+        TickLogSink(recorder, period_s, has_reading="reading" in sources),
+    )
+    for name, source in sources.items():
+        builder.Connect(source, sink.GetInputPort(name))
+    return sink

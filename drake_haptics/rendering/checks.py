@@ -1,0 +1,142 @@
+"""Asks about bodies whose unit or stiffness is probably wrong for haptic rendering."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pydrake.multibody.plant import MultibodyPlant
+
+from drake_haptics.bounds.explicit_step import (
+    calc_largest_point_mobility,
+    calc_spatial_mobility,
+    check_explicit_stiffness,
+)
+from drake_haptics.geometry.mesh.checks import (
+    LARGEST_USUAL_EXTENT_M,
+    SMALLEST_USUAL_EXTENT_M,
+    question_tolerance,
+)
+from drake_haptics.geometry.mesh.report import length
+from drake_haptics.geometry.mesh.units import METRES_PER_UNIT, guess_unit
+from drake_haptics.rendering.bodies import RenderedBody
+from drake_haptics.scene.schema import Contact, Coupling, Material
+
+
+def check_rendering_stiffness(
+    plant: MultibodyPlant,
+    tool: RenderedBody,
+    objects: Sequence[RenderedBody],
+    contact: Contact,
+    materials: Sequence[Material],
+    coupling: Coupling | None,
+) -> list[str]:
+    """Checks each stiffness by itself on a discrete plant in its default positions.
+
+    Contact is checked at the corners of tool and object where they give way most, one
+    contact at a time; the coupling at the tool's origin.
+
+    Args:
+        plant: Plant of the bodies.
+        tool: The body that is moved.
+        objects: Objects that the tool meets.
+        contact: Gains.
+        materials: Of each object; gains that one does not give are those of `contact`.
+        coupling: Gains between a handle and the tool, if there is one.
+
+    Returns:
+        A sentence for each bound that is broken. None for a continuous plant.
+    """
+    if plant.time_step() == 0.0:
+        return []
+    found = []
+    on_tool = _calc_mobility(plant, tool)
+    for item, material in zip(objects, materials, strict=True):
+        stiffness, damping = material.stiffness_N_per_m, material.damping_Ns_per_m
+        found.append(
+            check_explicit_stiffness(
+                f"contact of {tool.name!r} with {item.name!r}",
+                contact.stiffness_N_per_m if stiffness is None else stiffness,
+                contact.damping_Ns_per_m if damping is None else damping,
+                [
+                    on_tool,
+                    0.0 if item.X_WB is not None else _calc_mobility(plant, item),
+                ],
+                plant.time_step(),
+            )
+        )
+    if coupling is not None:
+        found += _check_coupling(plant, tool, coupling)
+    return [sentence for sentence in found if sentence]
+
+
+def _calc_mobility(plant: MultibodyPlant, item: RenderedBody) -> float:
+    return calc_largest_point_mobility(
+        plant, item.body, np.asarray(item.pieces.vertices)
+    )
+
+
+def _check_coupling(
+    plant: MultibodyPlant, tool: RenderedBody, coupling: Coupling
+) -> list[str | None]:
+    """Checks translation and rotation of the coupling."""
+    mobility = calc_spatial_mobility(plant, tool.body)
+    return [
+        check_explicit_stiffness(
+            f"coupling of {tool.name!r}",
+            coupling.stiffness_N_per_m,
+            coupling.damping_Ns_per_m,
+            [float(np.linalg.norm(mobility[3:, 3:], 2))],
+            plant.time_step(),
+        ),
+        check_explicit_stiffness(
+            f"coupling of {tool.name!r}",
+            coupling.rotational_stiffness_Nm_per_rad,
+            coupling.rotational_damping_Nms_per_rad,
+            [float(np.linalg.norm(mobility[:3, :3], 2))],
+            plant.time_step(),
+            ("N·m/rad", "kg·m²"),
+        ),
+    ]
+
+
+def question_rendered_sizes(
+    tool: RenderedBody, objects: Sequence[RenderedBody], tolerance_m: float
+) -> list[str]:
+    """Asks for the unit of bodies that are unlike anything that a hand touches.
+
+    A file in millimeters that is read as meters is a thousand times too large. What the
+    tool meets may be as large as it likes: a ground is.
+
+    Args:
+        tool: The body that is moved.
+        objects: Objects that the tool meets.
+        tolerance_m: Distance at which contact begins, m.
+
+    Returns:
+        A sentence for each body that is probably in another unit, and one for a
+        tolerance that probably is.
+    """
+    asked = [_question_size("tool_body", tool, LARGEST_USUAL_EXTENT_M)]
+    asked += [_question_size("environment", item, np.inf) for item in objects]
+    asked += question_tolerance(tolerance_m, repr(tool.name), _calc_extent(tool))
+    return [sentence for sentence in asked if sentence]
+
+
+def _calc_extent(item: RenderedBody) -> float:
+    """Returns the largest side of a body's box, m."""
+    return float(np.ptp(np.asarray(item.pieces.vertices), axis=0).max())
+
+
+def _question_size(argument: str, item: RenderedBody, largest_m: float) -> str:
+    extent_m = _calc_extent(item)
+    if SMALLEST_USUAL_EXTENT_M <= extent_m <= largest_m:
+        return ""
+    sentence = f"{argument}: {item.name!r} is {length(extent_m)} wide"
+    unit = guess_unit(extent_m, SMALLEST_USUAL_EXTENT_M, LARGEST_USUAL_EXTENT_M)
+    if unit is None:
+        return f"{sentence}; is the scale of its geometry right?"
+    factor = METRES_PER_UNIT[unit]
+    return (
+        f"{sentence}; if its mesh is in {unit}, give the geometry a scale of {factor:g}"
+    )

@@ -1,0 +1,335 @@
+"""Changes values of a scene while it runs, at once or without a step of force."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
+from typing import Any, cast
+
+from pydrake.systems.framework import Context
+
+from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.loop.add_haptic_loop import make_coupling_gains
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.loop.contact import find_contact_gains, find_query_tolerance
+from drake_haptics.scene.schema import Contact, Coupling, Scene
+from drake_haptics.systems.contact.contact_clustering import (
+    ClusteringMethod,
+    ClusteringRule,
+)
+
+# Of effects: label, unit, and the least and largest value to be offered.
+_OF_EFFECTS = {
+    "shading.crease_angle_deg": ("Crease angle", "°", 0.0, 90.0),
+    "friction.coefficient": ("Friction coefficient", "", 0.0, 1.0),
+    "friction.break_away_m": ("Friction's break-away", "m", 1e-5, 1e-3),
+    "braking.damping_Ns_per_m": ("Braking's damping", "N·s/m", 0.0, 20.0),
+    "braking.distance_m": ("Braking's distance", "m", 1e-3, 2e-2),
+    "passivity.max_damping_Ns_per_m": ("Largest damping", "N·s/m", 0.0, 50.0),
+    "passivity.max_rotational_damping_Nms_per_rad": (
+        *("Largest rotational damping", "N·m·s/rad"),
+        *(0.0, 0.05),
+    ),
+}
+GLIDE_S = 0.2
+"""From one value to another, s: what a device's gate takes to let a force in."""
+
+
+@dataclass(frozen=True)
+class LiveKey:
+    """A value of a scene that can be changed while it runs.
+
+    Attributes:
+        key: Key of the scene file, such as `contact.tolerance_m`.
+        label: A word or two for people.
+        unit: SI, or °; empty of a ratio.
+        low: Smallest value to be offered, in that unit; others are valid too.
+        high: Largest value to be offered.
+        is_logarithmic: Whether equal steps of a slider are equal ratios.
+        help: Explanation, from the docstring of its dataclass.
+    """
+
+    key: str
+    label: str
+    unit: str
+    low: float
+    high: float
+    is_logarithmic: bool
+    help: str
+
+    @property
+    def group(self) -> str:
+        """The part of the scene: `coupling`, `contact` or `effects`."""
+        return self.key.partition(".")[0]
+
+    def read(self, scene: Scene) -> float:
+        """Returns the value in a scene."""
+        start: Any = scene
+        value: float = reduce(getattr, self.key.split("."), start)
+        return value
+
+    def change(self, scene: Scene, value: float) -> Scene:
+        """Returns a copy of a scene with another value; not checked."""
+        changed: Scene = _replace(scene, self.key, value)
+        return changed
+
+
+def live_keys(scene: Scene) -> tuple[LiveKey, ...]:
+    """Returns the values of a scene that `write_live_values` writes into a context.
+
+    Of contact those that no material overrides everywhere, and the cluster size where
+    there are clusters.
+    """
+    found = [
+        _make_key(scene, "coupling.stiffness_N_per_m", "Stiffness", "N/m", 50.0, 5e3),
+        _make_key(scene, "coupling.damping_Ns_per_m", "Damping", "N·s/m", 0.0, 20.0),
+        _make_key(
+            scene,
+            "coupling.rotational_stiffness_Nm_per_rad",
+            "Rotational stiffness",
+            "N·m/rad",
+            0.05,
+            10.0,
+        ),
+        _make_key(
+            scene,
+            "coupling.rotational_damping_Nms_per_rad",
+            "Rotational damping",
+            "N·m·s/rad",
+            0.0,
+            0.04,
+        ),
+    ]
+    materials = [item.material for item in scene.environment]
+    if any(material.stiffness_N_per_m is None for material in materials):
+        key = "contact.stiffness_N_per_m"
+        found.append(_make_key(scene, key, "Stiffness", "N/m", 100.0, 1e5))
+    if any(material.damping_Ns_per_m is None for material in materials):
+        key = "contact.damping_Ns_per_m"
+        found.append(_make_key(scene, key, "Damping", "N·s/m", 0.0, 50.0))
+    key = "contact.tolerance_m"
+    found.append(_make_key(scene, key, "Tolerance", "m", 1e-4, 1e-2))
+    if scene.contact.clustering == "octree":
+        key = "contact.cluster_size_m"
+        found.append(_make_key(scene, key, "Cluster size", "m", 5e-4, 5e-2))
+    return tuple(found)
+
+
+def effect_keys(scene: Scene) -> tuple[LiveKey, ...]:
+    """Returns the values of the effects that a scene names.
+
+    Another value needs another diagram, as an effect that comes or goes does: see
+    `drake_haptics.carry_on`. A coefficient that every material overrides is left out.
+    """
+    materials = [item.material for item in scene.environment]
+    idle = {
+        "friction.coefficient": all(
+            material.friction_coefficient is not None for material in materials
+        )
+    }
+    return tuple(
+        _make_key(scene, f"effects.{key}", *range_)
+        for key, range_ in _OF_EFFECTS.items()
+        if getattr(scene.effects, key.partition(".")[0]) is not None
+        and not idle.get(key, False)
+    )
+
+
+def _make_key(
+    scene: Scene, key: str, label: str, unit: str, low: float, high: float
+) -> LiveKey:
+    """Returns a key whose range holds the scene's value; from 0 it is linear."""
+    *path, name = key.split(".")
+    start: Any = scene
+    part = reduce(getattr, path, start)
+    value: float = getattr(part, name)
+    low, high = min(low, value), max(high, value)
+    return LiveKey(
+        key, label, unit, low, high, low > 0.0, _read_attribute_help(type(part), name)
+    )
+
+
+def _replace(part: Any, key: str, value: float) -> Any:
+    """Returns a copy of a dataclass with another value at a key of it."""
+    name, _, rest = key.partition(".")
+    new = _replace(getattr(part, name), rest, value) if rest else value
+    return replace(part, **{name: new})
+
+
+def _read_attribute_help(schema: type, name: str) -> str:
+    """Returns what the docstring of a dataclass says of an attribute, in one line."""
+    found = re.search(
+        rf"^    {name}: (.+(?:\n {{8}}.+)*)", inspect.getdoc(schema) or "", re.MULTILINE
+    )
+    return " ".join(found[1].split()) if found else ""
+
+
+def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
+    """Writes what a scene says of its live keys into a context.
+
+    They hold from the next tick on, in this context alone. The diagram and its
+    `HapticDiagram.scene` stay as they are.
+
+    Args:
+        haptic: Return value of `BuildHapticDiagram`.
+        root: Context of its diagram.
+        scene: Differs from what was built in live keys and the clustering alone; see
+            `is_live_change`.
+
+    Raises:
+        ValueError: It differs in more, and the diagram must be built again; or a value
+            is out of range. The context is as it was.
+    """
+    require_kinds(
+        "write_live_values(haptic, root, scene) is their order",
+        haptic=(haptic, HapticDiagram),
+        root=(root, Context),
+        scene=(scene, Scene),
+    )
+    if not is_live_change(haptic.scene, scene):
+        raise ValueError(
+            "scene differs from what was built in more than its live keys: build its"
+            " diagram and carry on there (drake_haptics.carry_on)"
+        )
+    put_live_values(haptic, root, scene)
+
+
+def put_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
+    """Writes live values into a context whatever else its diagram was built with.
+
+    As `write_live_values`, for values that are on their way to those of the diagram.
+    """
+    contact, loop = scene.contact, haptic.loop
+    gains = make_coupling_gains(scene.coupling, loop.device)
+    rule = ClusteringRule(
+        cast(ClusteringMethod, contact.clustering),
+        contact.tolerance_m,
+        contact.cluster_size_m,
+    )
+    contact_gains = find_contact_gains(
+        contact, [item.material for item in scene.environment]
+    )
+    coupling, force = loop.virtual_coupling, loop.penalty_force
+    clustering, query = loop.contact_clustering, loop.contact_query
+    coupling.set_gains(coupling.GetMyMutableContextFromRoot(root), gains)
+    force.set_gains(force.GetMyMutableContextFromRoot(root), contact_gains)
+    clustering.set_rule(clustering.GetMyMutableContextFromRoot(root), rule)
+    query.set_tolerance(
+        query.GetMyMutableContextFromRoot(root),
+        find_query_tolerance(contact, scene.effects),
+    )
+
+
+def is_live_change(built: Scene, scene: Scene) -> bool:
+    """Returns whether one scene becomes the other without a new diagram.
+
+    Live are the keys of `drake_haptics.live_keys` and `contact.clustering`. But where
+    passivity control finds its reserve by itself, that is a number of the stiffnesses:
+    another one of these needs another diagram.
+    """
+    passivity = scene.effects.passivity
+    if (
+        passivity is not None
+        and passivity.reserve_J is None
+        and _list_springs(built) != _list_springs(scene)
+    ):
+        return False
+    return _without_live_values(built) == _without_live_values(scene)
+
+
+def _list_springs(scene: Scene) -> tuple[float, ...]:
+    """Returns the stiffnesses that the reserve of passivity control comes of."""
+    coupling = scene.coupling
+    return (
+        coupling.stiffness_N_per_m,
+        coupling.rotational_stiffness_Nm_per_rad,
+        scene.contact.stiffness_N_per_m,
+    )
+
+
+def _without_live_values(scene: Scene) -> Scene:
+    """Returns a scene with the default of each live value."""
+    default = Contact()
+    contact = replace(
+        scene.contact,
+        tolerance_m=default.tolerance_m,
+        stiffness_N_per_m=default.stiffness_N_per_m,
+        damping_Ns_per_m=default.damping_Ns_per_m,
+        clustering=default.clustering,
+        cluster_size_m=default.cluster_size_m,
+    )
+    return replace(scene, coupling=Coupling(), contact=contact)
+
+
+class LiveGlide:
+    """Live values on their way.
+
+    A gain that rises by a factor makes a force that is held rise by as much: written
+    at once it kicks whoever holds the device. Here a force changes by no more than a
+    few hundredths of itself in a tick.
+
+    Attributes:
+        is_moving: Whether a value is on its way.
+    """
+
+    def __init__(self, period_s: float):
+        """Begins without values.
+
+        Args:
+            period_s: The tick, s.
+        """
+        self._steps = max(1, round(GLIDE_S / period_s))
+        self._keys: Sequence[LiveKey] = ()
+        self._start: dict[str, float] = {}
+        self._goal: dict[str, float] = {}
+        self._now: dict[str, float] = {}
+        self._step = self._steps
+        self.is_moving = False
+
+    def aim(self, scene: Scene) -> None:
+        """Sets out for the values of a scene, from where the values are.
+
+        What had no value yet has the scene's at once.
+
+        Args:
+            scene: Scene with the goal's values.
+        """
+        self._keys = live_keys(scene)
+        self._goal = {item.key: item.read(scene) for item in self._keys}
+        self._start = {**self._goal, **self._now}
+        self._now = {key: self._start[key] for key in self._goal}
+        self._step = 0
+        self.is_moving = self._now != self._goal
+
+    def advance(self) -> None:
+        """Goes on by a tick."""
+        self._step += 1
+        share = self._step / self._steps
+        if share >= 1.0:
+            self._now, self.is_moving = dict(self._goal), False
+            return
+        self._now = {
+            item.key: _blend(item, self._start[item.key], self._goal[item.key], share)
+            for item in self._keys
+        }
+
+    def apply(self, scene: Scene) -> Scene:
+        """Returns a scene with the values as they are now."""
+        for item in self._keys:
+            scene = item.change(scene, self._now[item.key])
+        return scene
+
+
+def _blend(item: LiveKey, start: float, goal: float, share: float) -> float:
+    """Returns the value so far on the way: of gains in equal ratios.
+
+    A force is in proportion to a gain, but grows by so much for each meter.
+    """
+    if start == goal:
+        return goal
+    if item.unit == "m" or min(start, goal) <= 0.0:
+        return start + share * (goal - start)
+    return start * (goal / start) ** share
