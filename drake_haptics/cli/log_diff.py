@@ -44,7 +44,7 @@ def diff(
         warn_of_gaps(file, log.describe_gaps())
     difference = compare_logs(*logs)
     if plot is not None:
-        from drake_haptics.tick_log.diff_plot import plot_diff
+        from drake_haptics.tick_log.log_diff import plot_diff
 
         try:
             plot_diff(*logs, names=(a.name, b.name), path=plot)

@@ -21,7 +21,7 @@ from drake_haptics.scene.loading import load_scene
 from drake_haptics.simulation.replay_log import load_log_scene
 from drake_haptics.simulation.replay_log import replay as replay_log
 from drake_haptics.tick_log.log_diff import compare_logs
-from drake_haptics.tick_log.mesh_digest import find_changed_meshes
+from drake_haptics.tick_log.log_format import find_changed_meshes
 from drake_haptics.tick_log.tick_log import read_tick_log
 
 

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import IO
 
 from drake_haptics.device.backend import Fault, GateState
+from drake_haptics.tick_log.log_format import TickRows, iterate_column_names
 from drake_haptics.tick_log.tick_log import TickLogReader
-from drake_haptics.tick_log.tick_rows import TickRows, iterate_column_names
 
 _GATES = {int(gate): gate.name.lower() for gate in GateState}
 _FAULTS = {int(fault): fault.name.lower() for fault in Fault}

@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from drake_haptics.tick_log.mesh_digest import find_changed_meshes
+from drake_haptics.tick_log.log_format import TickLogHeader, find_changed_meshes
 from drake_haptics.tick_log.tick_log import TickLogReader
-from drake_haptics.tick_log.tick_log_header import TickLogHeader
 
 # Values of `status` as `DisplayForceHold` has them.
 _LIMITED = 1

@@ -13,10 +13,16 @@ from typing import BinaryIO
 import numpy as np
 
 from drake_haptics.common.one_line import count
-from drake_haptics.tick_log.tick_block import MAX_BLOCK_TICKS, pack_block
-from drake_haptics.tick_log.tick_log_error import TickLogError
-from drake_haptics.tick_log.tick_log_header import TickLogHeader, pack_header
-from drake_haptics.tick_log.tick_rows import COUNTS, FIRST_SIGNAL, NUM_REALS
+from drake_haptics.tick_log.log_format import (
+    COUNTS,
+    FIRST_SIGNAL,
+    MAX_BLOCK_TICKS,
+    NUM_REALS,
+    TickLogError,
+    TickLogHeader,
+    pack_block,
+    pack_header,
+)
 
 # How often what has been recorded is handed to the system, s.
 _WRITE_PERIOD_S = 0.25
