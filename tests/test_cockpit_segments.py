@@ -19,7 +19,8 @@ from cockpit_rig import (
 from driver_process import device_command, running
 from fake_device import ScriptedDevice, make_reading
 
-from drake_haptics.cockpit import holding, segments
+from drake_haptics.cockpit import cockpit_run as segments
+from drake_haptics.cockpit import holding
 from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice
@@ -29,7 +30,7 @@ from drake_haptics.scene.validation import SceneError
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.transfer_state import find_handle
 from drake_haptics.visualization.meshcat import open_meshcat
-from drake_haptics.web.telemetry import GATES
+from drake_haptics.web.messages import GATES
 
 RETAKE = {"do": "handle", "to": "device"}
 TURN = {"do": "turn", "by": [0.3, 0.0, 0.0]}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from drake_haptics.cockpit.taken_device import TakenDevice
+from drake_haptics.cockpit.holding import TakenDevice
 from drake_haptics.common.one_line import count
 from drake_haptics.device.backend import (
     DeviceBackend,

@@ -35,7 +35,7 @@ from drake_haptics.scene.schema import Scene
 from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
 from drake_haptics.visualization.meshcat import open_meshcat, set_stage
 from drake_haptics.visualization.recording import write_recording
-from drake_haptics.web.port import open_page_port
+from drake_haptics.web.link import open_page_port
 
 _MESH_OPTIONS = {
     "tool.mesh": "--tool",

@@ -21,7 +21,7 @@ from drake_haptics.cli.enter_key import is_enter_pressed
 from drake_haptics.cli.failures import warn
 from drake_haptics.cli.status_line import StatusLine
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.cockpit.taken_device import (
+from drake_haptics.cockpit.holding import (
     ForceOnRequest,
     TakenDevice,
     take_device,

@@ -1,7 +1,8 @@
-"""The loop's end of the way to the page: never waits for it."""
+"""Opens the page's port, starts its process, and talks with it without waiting."""
 
 from __future__ import annotations
 
+import itertools
 import json
 import logging
 import os
@@ -12,8 +13,35 @@ from time import monotonic
 from typing import Any
 from urllib.parse import urlsplit
 
-from drake_haptics.web.port import open_page_port
-from drake_haptics.web.telemetry import LARGEST_DATAGRAM
+from drake_haptics.common.errors import UserError
+from drake_haptics.web.messages import LARGEST_DATAGRAM
+
+_ADDRESS = "127.0.0.1"
+FIRST_PORT = 7100
+_MOST_PORTS = 100
+
+
+def open_page_port(port: int | None = None) -> socket.socket:
+    """Returns a socket that listens on a port of this machine, for it alone.
+
+    Args:
+        port: None takes the first free one from `FIRST_PORT` on.
+
+    Raises:
+        UserError: The port cannot be used.
+    """
+    for candidate in itertools.count(FIRST_PORT) if port is None else [port]:
+        try:
+            return socket.create_server((_ADDRESS, candidate))
+        except (OSError, OverflowError) as error:
+            if port is None and candidate < FIRST_PORT + _MOST_PORTS:
+                continue
+            raise UserError(
+                f"port {candidate} cannot be used for the page: {error}. Give another"
+                f" one, or none for the first free one from {FIRST_PORT}"
+            ) from error
+    raise AssertionError("counting does not end")
+
 
 _PROCESS = "drake_haptics.web.process"
 _SOCKET_BYTES = 1 << 18

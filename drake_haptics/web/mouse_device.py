@@ -9,11 +9,10 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 
 from drake_haptics.device.backend import DeviceCommand, DeviceReading
-from drake_haptics.web.camera import look_from_the_front
 from drake_haptics.web.handle import PageHandle
-from drake_haptics.web.live_page import LivePage, Outlook
-from drake_haptics.web.port import open_page_port
-from drake_haptics.web.telemetry import NOT_KNOWN
+from drake_haptics.web.link import open_page_port
+from drake_haptics.web.live_page import LivePage, Outlook, look_from_the_front
+from drake_haptics.web.messages import NOT_KNOWN
 
 # Until a page tells, the camera is this many radii in front of the workspace: at -y.
 _FIRST_DISTANCE = 4.0
