@@ -1,4 +1,4 @@
-"""Does what a page asks for: at once in the picture or a Context, or after a segment."""
+"""Does what pages ask for: in the picture or a Context at once, or after a segment."""
 
 from __future__ import annotations
 
