@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from drake_haptics.cli import check as command
 from drake_haptics.cli import main
-from drake_haptics.cli.exit_codes import ExitCode
+from drake_haptics.cli import meshes as command
+from drake_haptics.cli.endings import ExitCode
 from drake_haptics.common.errors import UserError
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "command-line.md"
