@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from drake_haptics.analysis.axis_design import AxisDesign, GripMargins
     from drake_haptics.analysis.coupling_design import CouplingDesign, suggest_coupling
-    from drake_haptics.analysis.delay_bounds import DelayBounds, calc_delay_bounds
     from drake_haptics.analysis.delay_margin import calc_delay_margin
-    from drake_haptics.analysis.drake_errors import explain_drake_errors
     from drake_haptics.analysis.equilibrium import Equilibrium, find_equilibrium
     from drake_haptics.analysis.exact_boundary import (
         BoundaryPoint,
@@ -40,11 +38,12 @@ if TYPE_CHECKING:
     from drake_haptics.analysis.mode_plot import plot_poles
     from drake_haptics.analysis.modes import Mode, ModeKind, find_modes
     from drake_haptics.analysis.multirate import Monodromy, monodromy
-    from drake_haptics.analysis.passivity import Passivity, calc_passivity
-    from drake_haptics.analysis.quantization import (
-        QuantizationBounds,
-        calc_quantization_bounds,
+    from drake_haptics.analysis.passivity import (
+        Passivity,
+        calc_passivity,
+        make_spring_damper,
     )
+    from drake_haptics.analysis.preconditions import explain_drake_errors
     from drake_haptics.analysis.sampled_linearization import (
         SampledLinearization,
         linearize_sampled,
@@ -56,19 +55,23 @@ if TYPE_CHECKING:
         calc_largest_stiffness,
     )
     from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
-    from drake_haptics.analysis.simulated_growth import measure_growth
     from drake_haptics.analysis.stability_limit import (
         StabilityLimit,
         calc_growth,
         find_stability_limit,
+        measure_growth,
     )
     from drake_haptics.analysis.stiffness_limits import (
         StiffnessLimits,
         find_stiffness_limits,
     )
-    from drake_haptics.analysis.transfer_function import make_spring_damper
-    from drake_haptics.analysis.z_width_map import ZWidth, z_width
-    from drake_haptics.analysis.z_width_plot import HeldBounds
+    from drake_haptics.analysis.wall_bounds import (
+        DelayBounds,
+        QuantizationBounds,
+        calc_delay_bounds,
+        calc_quantization_bounds,
+    )
+    from drake_haptics.analysis.z_width_map import HeldBounds, ZWidth, z_width
 
 __all__ = [
     "AxisDesign",
@@ -133,19 +136,19 @@ _MODULE_OF = {
     "BoundaryPoint": "exact_boundary",
     "CouplingDesign": "coupling_design",
     "CouplingGrowth": "held_loop",
-    "DelayBounds": "delay_bounds",
+    "DelayBounds": "wall_bounds",
     "Equilibrium": "equilibrium",
     "ExactBoundary": "exact_boundary",
     "FeltImpedance": "felt_impedance",
     "GripMargins": "axis_design",
-    "HeldBounds": "z_width_plot",
+    "HeldBounds": "z_width_map",
     "HeldLoop": "held_loop",
     "HeldScene": "held_scene",
     "Mode": "modes",
     "ModeKind": "modes",
     "Monodromy": "multirate",
     "Passivity": "passivity",
-    "QuantizationBounds": "quantization",
+    "QuantizationBounds": "wall_bounds",
     "SampledLinearization": "sampled_linearization",
     "SampledWall": "sampled_wall",
     "SceneStability": "scene_stability",
@@ -158,7 +161,7 @@ _MODULE_OF = {
     "analyse_held_scene": "held_loop",
     "analyse_scene": "scene_stability",
     "calc_boundary_peak": "exact_boundary",
-    "calc_delay_bounds": "delay_bounds",
+    "calc_delay_bounds": "wall_bounds",
     "calc_delay_margin": "delay_margin",
     "calc_exact_alpha": "exact_boundary",
     "calc_exact_boundary": "exact_boundary",
@@ -168,8 +171,8 @@ _MODULE_OF = {
     "calc_largest_delay": "sampled_wall",
     "calc_largest_stiffness": "sampled_wall",
     "calc_passivity": "passivity",
-    "calc_quantization_bounds": "quantization",
-    "explain_drake_errors": "drake_errors",
+    "calc_quantization_bounds": "wall_bounds",
+    "explain_drake_errors": "preconditions",
     "find_equilibrium": "equilibrium",
     "find_firmest_contact": "held_scene",
     "find_modes": "modes",
@@ -177,8 +180,8 @@ _MODULE_OF = {
     "find_stiffness_limits": "stiffness_limits",
     "hold_scene": "held_scene",
     "linearize_sampled": "sampled_linearization",
-    "make_spring_damper": "transfer_function",
-    "measure_growth": "simulated_growth",
+    "make_spring_damper": "passivity",
+    "measure_growth": "stability_limit",
     "monodromy": "multirate",
     "plot_poles": "mode_plot",
     "run_study": "jobs.study",

@@ -13,7 +13,7 @@ from pydrake.systems.framework import Context
 
 from drake_haptics.analysis.equilibrium import find_equilibrium
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
-from drake_haptics.analysis.sampled_preconditions import check_conversion
+from drake_haptics.analysis.preconditions import check_conversion
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
@@ -99,7 +99,7 @@ def hold_scene(
 
     The way there is simulated as in a run, so that the tool touches from where it
     came. Where the scene's own coupling does not settle, softer ones are tried for
-    the way; `drake_haptics.analysis.aimed_hand.build_aimed` gives it its own again.
+    the way; `drake_haptics.analysis.held_loop.build_aimed` gives it its own again.
 
     Args:
         scene: What to hold.

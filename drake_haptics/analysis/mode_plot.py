@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drake_haptics.analysis.modes import Mode, ModeKind, find_modes
-from drake_haptics.analysis.period_map import PeriodMap
+from drake_haptics.analysis.modes import Mode, ModeKind, PeriodMap, find_modes
 from drake_haptics.common.colors import STABLE, UNSTABLE
 
 if TYPE_CHECKING:

@@ -15,8 +15,12 @@ from pydrake.systems.framework import (
     System,
 )
 
-from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
-from drake_haptics.analysis.diagram_systems import Timing, calc_path, walk_leaves
+from drake_haptics.analysis.diagram_systems import (
+    AutoDiffTwin,
+    Timing,
+    calc_path,
+    walk_leaves,
+)
 from drake_haptics.common.one_line import one_line
 
 

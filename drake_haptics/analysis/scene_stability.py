@@ -30,8 +30,7 @@ from drake_haptics.analysis.stiffness_limits import (
     find_stiffness_limits,
     none_unless_finite,
 )
-from drake_haptics.analysis.z_width_map import ZWidth, z_width
-from drake_haptics.analysis.z_width_plot import HeldBounds
+from drake_haptics.analysis.z_width_map import HeldBounds, ZWidth, z_width
 from drake_haptics.bounds.coupling import HeldHandle
 from drake_haptics.bounds.held_handle import calc_scene_handle, check_scene_coupling
 from drake_haptics.common.one_line import one_line

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drake_haptics.analysis.mode_plot import plot_poles
-from drake_haptics.analysis.period_map import PeriodMap
+from drake_haptics.analysis.modes import PeriodMap
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
-from drake_haptics.analysis.z_width_map import ZWidth
-from drake_haptics.analysis.z_width_plot import HeldBounds
+from drake_haptics.analysis.z_width_map import HeldBounds, ZWidth
 from drake_haptics.common.colors import (
     EIGENVALUE,
     FORMULA,

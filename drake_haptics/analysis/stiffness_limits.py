@@ -9,8 +9,7 @@ from typing import Any, Literal
 
 from scipy.optimize import brentq
 
-from drake_haptics.analysis.aimed_hand import build_aimed
-from drake_haptics.analysis.held_loop import HeldLoop, analyse_held_scene
+from drake_haptics.analysis.held_loop import HeldLoop, analyse_held_scene, build_aimed
 from drake_haptics.analysis.held_scene import HeldScene
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.modes import describe_motion, find_modes
