@@ -31,10 +31,9 @@ if TYPE_CHECKING:
         find_firmest_contact,
         hold_scene,
     )
-    from drake_haptics.analysis.jobs.error import StudyError
     from drake_haptics.analysis.jobs.pool import SerialExecutor
     from drake_haptics.analysis.jobs.progress import StudyProgress
-    from drake_haptics.analysis.jobs.study import run_study
+    from drake_haptics.analysis.jobs.study import StudyError, run_study
     from drake_haptics.analysis.mode_plot import plot_poles
     from drake_haptics.analysis.modes import Mode, ModeKind, find_modes
     from drake_haptics.analysis.multirate import Monodromy, monodromy
@@ -155,7 +154,7 @@ _MODULE_OF = {
     "SerialExecutor": "jobs.pool",
     "StabilityLimit": "stability_limit",
     "StiffnessLimits": "stiffness_limits",
-    "StudyError": "jobs.error",
+    "StudyError": "jobs.study",
     "StudyProgress": "jobs.progress",
     "ZWidth": "z_width_map",
     "analyse_held_scene": "held_loop",

@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from drake_haptics.analysis.jobs.error import StudyError
+from drake_haptics.analysis.jobs.study import StudyError
 from drake_haptics.cli import lessons
 from drake_haptics.cli.completion import complete_knob, complete_scene
 from drake_haptics.cli.console import make_console, progress_bar
