@@ -1,4 +1,4 @@
-"""How stable a diagram is: linear maps over a period, modes, bounds and maps of them.
+"""Analyzes how stable a diagram is: linear maps over a period, modes and bounds.
 
 Works on any Drake diagram. The names are imported when they are first asked for.
 """

@@ -49,10 +49,10 @@ def plot_axis_design(
 
     Args:
         axes: Where.
-        design: Of one kind of motion.
+        design: The design for one kind of motion.
         period_s: T, s.
         delay_s: t_d, s.
-        units: Of K and of B.
+        units: Units of K and of B.
     """
     device = design.device
     B = np.linspace(0.0, 3.0 * design.damping, _POINTS)
@@ -105,8 +105,8 @@ class CouplingDesign:
         period_s: T, s.
         delay_s: t_d on top of the hold's half period, s.
         margin: What the design asked for: so many times the gains are stable.
-        translation: Of N/m and N·s/m.
-        rotation: Of N·m/rad and N·m·s/rad; None for a device that shows no torque.
+        translation: Design in N/m and N·s/m.
+        rotation: Design in N·m/rad and N·m·s/rad; None for a device without torque.
     """
 
     coupling: Coupling
@@ -206,7 +206,7 @@ def suggest_coupling(
         device: Name of a preset, or the preset: its arm at its default angles. Or
             what is known of a handle without a hand, as `calc_held_handle` tells of
             any plant at its default angles; it has no ratings.
-        rate_hz: Of the haptic loop, Hz.
+        rate_hz: Rate of the haptic loop, Hz.
         hand: A grip of `HAND_GRIPS` in which the coupling must also be passive: then
             B is lower. Where not given, the design only says which grips make it so.
         delay_s: t_d on top of the hold's half period, s.

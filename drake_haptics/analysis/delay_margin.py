@@ -1,4 +1,4 @@
-"""How much later a loop's force may come before the loop is unstable."""
+"""The delay margin: how late a loop's force may come before the loop is unstable."""
 
 from __future__ import annotations
 

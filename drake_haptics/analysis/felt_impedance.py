@@ -1,4 +1,4 @@
-"""What a device feels of a virtual scene: its impedance at the handle."""
+"""The impedance of a virtual scene that the device feels at its handle."""
 
 from __future__ import annotations
 

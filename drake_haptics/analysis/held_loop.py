@@ -264,7 +264,7 @@ class CouplingGrowth:
         """Returns the growth per tick.
 
         Args:
-            stiffness: Of the coupling's translation, N/m.
+            stiffness: Stiffness of the coupling in translation, N/m.
             damping: N·s/m.
 
         Raises:

@@ -1,4 +1,4 @@
-"""A scene whose hand stops on its way and holds still, to be analysed there."""
+"""A scene whose hand stops on its way and holds still, to be analyzed there."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
     frequency cross them. Both are labeled: ζ, and Hz.
 
     Args:
-        linear: From `linearize_sampled` or `monodromy`.
+        linear: The map from `linearize_sampled` or `monodromy`.
         axes: Where to draw; new ones if not given.
 
     Returns:

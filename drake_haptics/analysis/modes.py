@@ -267,7 +267,7 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
     """Returns the modes of a linear map over a period.
 
     Args:
-        linear: From `linearize_sampled` or `monodromy`.
+        linear: The map from `linearize_sampled` or `monodromy`.
 
     Returns:
         Motions first, the fastest growing or slowest dying before the others; then

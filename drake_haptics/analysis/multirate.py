@@ -59,12 +59,12 @@ def find_hyperperiod(
     """Returns the smallest common multiple of all periods, s, or checks a given one.
 
     Args:
-        timings: Of all periodic updates.
+        timings: Timings of all periodic updates.
         hyperperiod_s: Returned, if it is a multiple of all periods.
 
     Raises:
-        ValueError: It is none; or it is not given, and there are no periods, or no
-            common multiple below 10000 of the shortest.
+        ValueError: It is not a common period; or it is not given, and there are no
+            periods, or no common multiple below 10000 of the shortest.
     """
     periods = sorted({timing.period_s for timing in timings})
     if hyperperiod_s is not None:
@@ -123,7 +123,7 @@ class Monodromy(PeriodMap):
     """x⁺ = A x about an equilibrium over one hyperperiod, from a simulation.
 
     Attributes:
-        step_s: Of the integrator, s.
+        step_s: Step of the integrator, s.
     """
 
     step_s: float

@@ -1,4 +1,4 @@
-"""How much physical damping makes a sampled wall passive, frequency by frequency.
+"""The physical damping that makes a sampled wall passive, frequency by frequency.
 
 A device with damping matrix D moves in continuous time. Its position is sampled, a
 discrete law -H(z) x gives a force, and the force is held for a period T. Whatever

@@ -1,4 +1,4 @@
-"""How fast a disturbance of a loop grows, and where the loop stops being stable."""
+"""The growth of a disturbance of a loop, and the limit where the loop is unstable."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def find_stability_limit(
         start: Where to begin, in the range.
         lowest: Above 0.
         highest: Above `lowest`.
-        relative_tolerance: Of the limit.
+        relative_tolerance: Relative tolerance of the limit.
 
     Raises:
         ValueError: The range is not one, or `start` is not in it.

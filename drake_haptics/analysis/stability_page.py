@@ -97,7 +97,7 @@ def _describe_room(limits: tuple[StiffnessLimits, ...]) -> str:
 
 
 def describe_situation(stability: SceneStability) -> str:
-    """Says what was analysed."""
+    """Says what was analyzed."""
     scene, handle = stability.scene, stability.handle
     grip = scene.hand.grip
     held = "without a hand" if grip == "none" else f"in a {grip} grip"

@@ -1,4 +1,4 @@
-"""How stiff a scene's coupling may be: by eigenvalues, by simulation, by formula."""
+"""The largest stable stiffness of a scene's coupling, calculated in four ways."""
 
 from __future__ import annotations
 

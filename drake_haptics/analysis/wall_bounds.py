@@ -1,4 +1,4 @@
-"""How much stiffness of a wall a delay or an encoder's resolution costs."""
+"""Bounds on the stiffness of a wall over delay and over the encoder's resolution."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class DelayBounds:
         wall: What was asked for.
         delays_s: t_d on top of the hold's half period, s, (n,).
         exact: The largest stable K by eigenvalues, N/m, (n,).
-        law: That of Gil et al., (b + B + b_h)/(T/2 + t_d), (n,).
+        law: The law of Gil et al., (b + B + b_h)/(T/2 + t_d), (n,).
         passive: The largest passive K with the same B, (n,); 0 where B alone is not.
         largest_delay_s: The longest delay with which `wall` is stable, s.
     """
@@ -91,7 +91,7 @@ def calc_delay_bounds(
     Args:
         wall: All but its delay and its stiffness, which are those of the point that
             is drawn and of `largest_delay_s`.
-        delays_s: From 0 to 10 periods if not given, s.
+        delays_s: Delays, s. Defaults to 0 to 10 periods.
 
     Raises:
         ValueError: There is no delay, or a negative one.

@@ -32,8 +32,11 @@ _COMMANDS = {
         ),
     },
     "What there is": {
-        "scenes": ("drake_haptics.cli.listings", "List the scenes that come along."),
-        "devices": ("drake_haptics.cli.listings", "List the devices that come along."),
+        "scenes": ("drake_haptics.cli.listings", "List the scenes that are included."),
+        "devices": (
+            "drake_haptics.cli.listings",
+            "List the devices that are included.",
+        ),
     },
     "Your meshes": {
         "check": ("drake_haptics.cli.meshes", "Report what a mesh file is and lacks."),

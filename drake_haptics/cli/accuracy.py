@@ -73,7 +73,7 @@ from drake_haptics.simulation.run import RunError
 
 
 def print_study(console: Console, study: AccuracyStudy) -> None:
-    """Prints verdict, price list, knees, and what to know of them."""
+    """Prints the verdict, the price list, its knees, and notes on them."""
     for sentence in describe_verdict(study):
         console.print(sentence, style="bold")
     console.print(describe_reference(study), style="dim")
@@ -100,7 +100,7 @@ def print_study(console: Console, study: AccuracyStudy) -> None:
 def print_choice(
     console: Console, choice: BudgetChoice, scene: Scene, name: str
 ) -> None:
-    """Prints what came of a budget, and what is given up for it."""
+    """Prints the outcome for a budget, and what is given up for it."""
     console.print(describe_outcome(choice, name), style="bold")
     if not choice.holds:
         for sentence in describe_help(choice):
@@ -244,7 +244,7 @@ def accuracy(
 
 @contextmanager
 def _errors_in_a_line() -> Iterator[None]:
-    """Turns what may go wrong while it is measured into messages."""
+    """Turns expected failures of the measurement into messages."""
     try:
         yield
     except (ValueError, RunError, StudyError) as error:
@@ -252,7 +252,7 @@ def _errors_in_a_line() -> Iterator[None]:
 
 
 def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None:
-    """Returns the setting that --only names; None for those of all knobs."""
+    """Returns the setting that --only names; None for the settings of all knobs."""
     if not words:
         return None
     with naming("--only"):
@@ -262,7 +262,7 @@ def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None
 
 
 def _require_measured(study: AccuracyStudy, settings: list[Setting]) -> None:
-    """Raises UserError where the one setting that was asked for cannot be had."""
+    """Raises UserError where the one requested setting could not be measured."""
     for row in study.rows:
         if row.setting in settings and row.why_not:
             raise UserError(f"--only: {name_setting(row)}: {row.why_not}")
@@ -283,7 +283,7 @@ def _show_study(study: AccuracyStudy, page: Path | None, json_file: str | None) 
 def _show_choice(
     choice: BudgetChoice, scene: Scene, name: str, file: Path, json_file: str | None
 ) -> None:
-    """Prints what came of a budget, and writes the scene that holds it."""
+    """Prints the outcome for a budget, and writes the scene that holds it."""
     if choice.holds:
         write_scene(choice.scene, file, describe_file(choice, scene, name))
     if json_file is not None:

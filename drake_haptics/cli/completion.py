@@ -63,7 +63,7 @@ def complete_unit(
 def complete_setting(
     _: click.Context, __: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
-    """Completes KEY=VALUE of a scene: keys, and what some of them may be."""
+    """Completes KEY=VALUE of a scene: keys, and the values of some of them."""
     from drake_haptics.scene.settings import list_setting_keys
 
     return _complete_value(list_setting_keys(), incomplete)

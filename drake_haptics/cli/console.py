@@ -12,18 +12,18 @@ from urllib.parse import urlsplit
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-# Of a file or a pipe, so that `grep` and `less -S` find whole lines.
+# Width for a file or a pipe, so that `grep` and `less -S` find whole lines.
 _ANY_WIDTH = 400
 
 
 class _Terminal(Console):
-    """A terminal, which may be closed before all is said.
+    """A terminal, which may be closed before everything is printed.
 
-    What is to be written to files after that is written all the same.
+    Files that are written after that are still written.
     """
 
     def print(self, *objects: Any, **options: Any) -> None:
-        """Prints, or drops what a terminal that has gone cannot take."""
+        """Prints, unless the terminal has gone."""
         try:
             super().print(*objects, **options)
         except OSError:
@@ -52,7 +52,7 @@ def make_console(*, stderr: bool = False, markup: bool = True) -> Console:
     has NO_COLOR.
 
     Args:
-        stderr: Whether to write there.
+        stderr: Whether to write to stderr instead of stdout.
         markup: Whether `[bold]` and the like mean something in what is printed.
     """
     console = _Terminal(highlight=False, markup=markup, stderr=stderr)
@@ -62,11 +62,11 @@ def make_console(*, stderr: bool = False, markup: bool = True) -> Console:
 
 
 def describe_page(url: str, parts: Sequence[str] = ()) -> list[str]:
-    """Returns where a page is to be seen and, to one who works over ssh, how.
+    """Returns where a person opens a page, and how over ssh.
 
     Args:
-        url: Of the page.
-        parts: Addresses of what the page shows besides, each at a port of its own.
+        url: Address of the page.
+        parts: Further addresses that the page needs, each with its own port.
     """
     lines = [f"Open {url} to see it."]
     if connection := os.environ.get("SSH_CONNECTION"):
@@ -84,7 +84,7 @@ def describe_page(url: str, parts: Sequence[str] = ()) -> list[str]:
 # Rich stops the clock of a bar that was full once. Each part of the work fills it.
 _ALMOST_FULL = 1.0 - 1e-6
 
-# Where there is no terminal: as often, and not before.
+# Without a terminal a line is written this often, and none before.
 _LINE_EVERY_S = 10.0
 
 
@@ -96,7 +96,7 @@ def progress_bar() -> Iterator[Callable[[str, float], None]]:
     of it begins, and one every ten seconds.
 
     Yields:
-        What is to be called with what is done and its share, in [0, 1].
+        A function to call with the current work and the share that is done, in [0, 1].
     """
     console = Console(stderr=True)
     if not console.is_terminal:

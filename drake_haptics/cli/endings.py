@@ -1,4 +1,4 @@
-"""How a command ends: its exit codes, failures as messages, and requests to stop."""
+"""Ends a command well: exit codes, failures as messages, and requests to stop."""
 
 from __future__ import annotations
 
@@ -24,13 +24,15 @@ class ExitCode(IntEnum):
     """The same for all commands.
 
     Attributes:
-        DONE: it is done. `run`, `device` and `decompose --show` end so at Ctrl-C too.
-        UNUSABLE: what was given cannot be used, or the system refuses a file or a port.
-        WRONG_CALL: there is no such command, option or value.
-        NO: it is done, and the answer is no: a run became unstable or ended with its
-            device at fault, two logs differ, no setting holds the budget.
-        DEFECT: a defect of the program.
-        INTERRUPTED: ended by Ctrl-C before it was done: 128 + SIGINT, as of shells.
+        DONE: The command is done. `run`, `device` and `decompose --show` end this way
+            at Ctrl-C too.
+        UNUSABLE: What was given cannot be used, or the system refuses a file or a port.
+        WRONG_CALL: There is no such command, option or value.
+        NO: The command is done, and the answer is no: a run became unstable or ended
+            with its device at fault, two logs differ, no setting holds the budget.
+        DEFECT: The program has a defect.
+        INTERRUPTED: Ctrl-C ended the command before it was done: 128 + SIGINT, as in
+            shells.
     """
 
     DONE = 0
@@ -50,7 +52,7 @@ _REMEDIES = {
 }
 
 
-# Drake says so of every second page; which of them has the camera is told on the pages.
+# Drake logs this for each additional page; the pages tell which one has the camera.
 _TWO_CAMERAS = "More than one meshcat client is attempting to broadcast its camera pose"
 
 
@@ -101,7 +103,7 @@ def failures_in_words(debug: bool) -> Iterator[None]:
 
 
 def _describe(error: BaseException) -> click.ClickException:
-    """Returns the failure that an exception is to the person at the keyboard."""
+    """Returns an exception as the failure that the person at the keyboard sees."""
     if isinstance(error, KeyboardInterrupt):
         # Work that is kept says how to go on.
         return _Interrupted(str(error) or "Stopped.")
@@ -155,10 +157,10 @@ def naming(option: str) -> Iterator[None]:
     """Puts the option that gave it before what the library says of an argument.
 
     Args:
-        option: As it is given, or several.
+        option: The option as the user gives it, or several.
 
     Raises:
-        UserError: There was one, whose words name no option.
+        UserError: The library raised one, whose words name no option.
     """
     try:
         yield

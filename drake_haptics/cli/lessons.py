@@ -17,12 +17,12 @@ import click
 
 @dataclass(frozen=True)
 class Lesson:
-    """What stands below the options.
+    """The part of `--help` below the options.
 
     Attributes:
-        examples: What is to be seen, and the words of a command line that shows it.
-        exits: What the exit code tells, in a sentence.
-        further: What to try next.
+        examples: Purpose of each example, and its command line.
+        exits: Meaning of the exit codes, in a sentence.
+        further: Suggestions what to try next.
     """
 
     examples: Sequence[tuple[str, str]]
@@ -67,8 +67,8 @@ class LazyGroup(click.Group):
     """Imports a command on demand, so that a light one never imports Drake.
 
     Args:
-        commands_by_heading: All of them, in the order of --help.
-        lesson: What --help teaches.
+        commands_by_heading: All commands, in the order of --help.
+        lesson: The lesson at the end of --help.
     """
 
     def __init__(

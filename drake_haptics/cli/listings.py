@@ -1,4 +1,4 @@
-"""`drake-haptics scenes` and `drake-haptics devices`."""
+"""`drake-haptics scenes` and `drake-haptics devices`: list what is included."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from drake_haptics.scene.loading import load_scene
 
 @click.command(cls=TaughtCommand, lesson=lessons.SCENES)
 def scenes() -> None:
-    """List the scenes that come along."""
+    """List the scenes that are included."""
     table = Table(box=None, header_style="bold", pad_edge=False)
     table.add_column("scene", no_wrap=True)
     table.add_column("what happens")
@@ -40,7 +40,7 @@ _WIDTH = 80
 @click.command(cls=TaughtCommand, lesson=lessons.DEVICES)
 @json_option
 def devices(json_file: str | None) -> None:
-    """List the devices whose limits come along.
+    """List the devices whose limits are included.
 
     Forces, torques and stiffnesses are the largest that the device is rated for. A
     device with a twin can be simulated; the others are used with `run --device`.

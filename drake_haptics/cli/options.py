@@ -57,7 +57,7 @@ def unit_option(what: str) -> Callable[[_Function], _Function]:
     """Adds --unit.
 
     Args:
-        what: Is in that unit, for --help.
+        what: Names the quantity in that unit, for --help.
     """
     return click.option(
         "--unit",
@@ -89,7 +89,7 @@ def meshes_option(what: str) -> Callable[[_Function], _Function]:
     """Adds --meshes FOLDER, of real meshes by their names.
 
     Args:
-        what: Is done with them, for --help.
+        what: Says what is done with the meshes, for --help.
     """
     return click.option(
         "--meshes",
@@ -117,7 +117,7 @@ def require_folder(
     """Returns the file of an option, so that no result is computed for nowhere.
 
     Raises:
-        UserError: As `require_writable`.
+        UserError: The file cannot be written, see `require_writable`.
     """
     if file is not None and str(file) != "-":
         require_writable(Path(file), option.opts[0])
@@ -128,8 +128,8 @@ def require_writable(path: Path, option: str) -> None:
     """Checks that a file can be written.
 
     Args:
-        path: Of the file.
-        option: That names it.
+        path: Path of the file.
+        option: The option that names it.
 
     Raises:
         UserError: There is no such folder, or nothing can be written there.
@@ -172,7 +172,7 @@ def write_json(data: dict[str, Any], file: str) -> None:
         return
     try:
         Path(file).write_text(text + "\n", encoding="utf-8")
-    except OSError as error:  # Of a full disk, which names no file.
+    except OSError as error:  # a full disk names no file
         raise OSError(error.errno, error.strerror, file) from error
 
 
@@ -199,11 +199,11 @@ def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
 
     Args:
         scene: A shipped scene's name, or a file.
-        settings: Of `set_option`.
+        settings: Values of the option --set.
 
     Raises:
         SceneError: There is no such scene, or it cannot be used.
-        UserError: As `set_values`.
+        UserError: A setting is not possible, see `set_values`.
     """
     from drake_haptics.scene.library import find_scene
     from drake_haptics.scene.loading import load_scene

@@ -181,7 +181,7 @@ def run(
 
 
 def _is_same(scene: str | None, file: Path) -> bool:
-    """Returns whether a scene is a file of one's own, and this one."""
+    """Returns whether a scene is the user's own file, and this one."""
     return (
         scene is not None
         and file.exists()

@@ -57,7 +57,7 @@ def describe_skin(speed_m_per_s: float) -> str:
     """Returns above which speed a step skips the skin of contact.
 
     Args:
-        speed_m_per_s: Of `drake_haptics.loop.builder.HapticDiagram`.
+        speed_m_per_s: Speed at which a step crosses the skin, m/s, see `HapticDiagram`.
     """
     return (
         f"Above {speed_m_per_s:g} m/s the tool crosses contact.tolerance_m in one step:"

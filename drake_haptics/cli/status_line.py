@@ -1,4 +1,4 @@
-"""What `drake-haptics run` and `device` show while they run, and at the end."""
+"""Status lines and summaries of `drake-haptics run` and `drake-haptics device`."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def describe_gate(
     """Returns whether a device shows force, and if not, why and what to do.
 
     Args:
-        reading: Its newest; None before the first.
-        remedy: What to do about a fault.
+        reading: The newest reading; None before the first.
+        remedy: Tells the person what to do about a fault.
     """
     if reading is None:
         return "[dim]silent[/]"
@@ -55,8 +55,8 @@ def describe_held(backend: DeviceBackend | None, reading: DeviceReading | None) 
     """Returns as `describe_gate`, or that the force of a device has not set in yet.
 
     Args:
-        backend: What is held.
-        reading: Its newest.
+        backend: The device that is held.
+        reading: Its newest reading.
     """
     waits = isinstance(backend, TakenDevice) and backend.waits
     if waits and reading is not None and reading.gate == GateState.IDLE:
@@ -78,7 +78,7 @@ def describe_lateness(late_s: Sequence[float]) -> str:
 
 
 def describe_link(link: LinkStatus) -> str:
-    """Returns what was lost on the way, and how late the backend's own thread is."""
+    """Returns how much was lost on the way, and how late the backend's thread is."""
     words = f"{link.lost} lost"
     if link.rejected:
         words += f", {link.rejected} refused"
@@ -116,8 +116,8 @@ class StatusLine(LiveLine):
 
     Args:
         console: Where to write.
-        haptic: What runs.
-        pace: What paces the run, if it is paced.
+        haptic: The diagram that runs.
+        pace: Paces the run, if it is paced.
         clock: Reads the time, s.
     """
 
@@ -140,7 +140,7 @@ class StatusLine(LiveLine):
         self._haptic = haptic
 
     def end_tick(self, context: Context) -> None:
-        """Writes the line anew, if it is time.
+        """Writes the line again, if it is time.
 
         Args:
             context: The diagram's, after a tick.
@@ -152,7 +152,7 @@ class StatusLine(LiveLine):
         """Returns the line."""
         assert self._context is not None
         time_s = self._context.get_time()
-        # A scene that is begun anew has gone nowhere yet.
+        # A scene that begins again has gone nowhere yet.
         run_s, self._before_s = max(0.0, time_s - self._before_s), time_s
         backend = self._haptic.backend
         force, depth, contacts = self._describe_touch(self._context)
@@ -198,7 +198,7 @@ class StatusLine(LiveLine):
         return [f"[yellow]leaves out {', '.join(stages)}[/]"] if stages else []
 
     def _describe_touch(self, context: Context) -> tuple[str, str, str]:
-        """Returns what is felt, how deep the tool is, and by how many contacts."""
+        """Returns the felt wrench, the depth of the tool, and the count of contacts."""
         loop = self._haptic.loop
         found = loop.found_contacts
         contacts = found.Eval(found.get_system().GetMyContextFromRoot(context))
@@ -324,7 +324,7 @@ class DriverStatusLine(LiveLine):
 
     Args:
         console: Where to write.
-        driver: What runs.
+        driver: The driver that runs.
         clock: Reads the time, s.
     """
 

@@ -46,7 +46,7 @@ class Segments:
         """Begins with no tick.
 
         Args:
-            haptic: Of the cockpit's scene, with the backend that is held.
+            haptic: Diagram of the cockpit's scene, with the backend that is held.
             cockpit: Says what is to be otherwise.
             holding: Who holds the handle.
             meshcat: Where to draw what is drawn.
@@ -152,7 +152,7 @@ class Segments:
         """
         old, holding = self._haptic, self._holding
         backend = holding.backend
-        # What says itself where it is begins there anew.
+        # A device that says itself where it is begins there again.
         is_anew = change.restarts and backend is not None and backend.is_placed
         # A hand on a device may press: a tool put into its handle would kick.
         is_kept = change.handle == holding.name and not is_anew
@@ -226,13 +226,13 @@ class CockpitRun:
 
         Args:
             scene: What is to run.
-            meshcat: In the page.
+            meshcat: The Meshcat that the page shows.
             listener: The page's port, of `open_page_port`.
-            name: Of the scene.
+            name: Name of the scene.
             device: Address of what is held, as `open_device`; None for the simulated
                 one.
             locked: Why nothing but the picture may be changed; empty if it may.
-            views: Of `PICTURE_VIEWS`, what is shown at first.
+            views: The members of `PICTURE_VIEWS` that are shown at first.
 
         Raises:
             DeviceError, SceneError, TickLogError, OSError: As `open_device`.
@@ -291,10 +291,10 @@ class CockpitRun:
         """Runs a scene, and what becomes of it on the page.
 
         Args:
-            haptic: Of the scene, with `backend`.
+            haptic: Diagram of the scene, with `backend`.
             duration_s: Simulated time, s; until Ctrl-C where None.
             pace: Waits for each tick.
-            statistics: Of all that runs.
+            statistics: Statistics of the whole run.
             energy: Whether to book energy: of a run that is locked.
             on_begin: Called with each diagram before it runs.
             on_tick: Called after every tick with the diagram's context.

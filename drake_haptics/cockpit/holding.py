@@ -230,8 +230,8 @@ class Holding:
 
         Args:
             scene: Says where its device stands.
-            meshcat: Has a page.
-            address: As `open_device`; None for the simulated one.
+            meshcat: The Meshcat that the page shows.
+            address: Address for `open_device`; None for the simulated one.
             has_hand: Whether there is a simulated one.
 
         Raises:

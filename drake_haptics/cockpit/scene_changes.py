@@ -58,7 +58,7 @@ class SceneChanges:
     """What people have made of a scene, and how a scene file says so.
 
     Attributes:
-        scene: As it is now. Replaced, never changed.
+        scene: The scene as it is now. It is replaced, never changed.
     """
 
     def __init__(self, scene: Scene):
@@ -168,7 +168,8 @@ class SceneChanges:
         """Does what a page asks for.
 
         Args:
-            request: As `read_page_request` returns it, of `SCENE_VERBS`.
+            request: A request that `read_page_request` returned, with one of
+                `SCENE_VERBS`.
 
         Raises:
             ChangeError: It cannot be.

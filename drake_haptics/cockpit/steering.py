@@ -72,7 +72,7 @@ class PagePicture:
         """Does what a page asks for, if that is a matter of the picture.
 
         Args:
-            request: As `read_page_request` returns it.
+            request: A request that `read_page_request` returned.
 
         Returns:
             Whether it was.
@@ -109,7 +109,7 @@ class Change:
 
     Attributes:
         handle: Who is to hold the handle from now on.
-        restarts: Whether the scene begins anew.
+        restarts: Whether the scene begins again.
     """
 
     handle: str
@@ -316,7 +316,7 @@ class Steering:
         Args:
             end_s: When, if it is not to end at once.
             handle: Who is to hold the handle, if somebody else is.
-            restarts: Whether the scene is to begin anew.
+            restarts: Whether the scene is to begin again.
         """
         if self._change is not None:
             handle = handle or self._change.handle

@@ -29,8 +29,8 @@ def write_csv(
     missing here: the first column is the tick's number.
 
     Args:
-        reader: Of the log; afterwards it knows what is missing.
-        stream: To write to, of text.
+        reader: Reads the log; afterwards it knows what is missing.
+        stream: Text stream to write to.
         progress: Called with what is done and its share, in [0, 1].
     """
     writer = csv.writer(stream, lineterminator="\n")

@@ -57,9 +57,9 @@ class QuantityDiff:
     """How a quantity differs between two runs.
 
     Attributes:
-        name: Of the quantity, and of its part.
-        unit: Of the differences; empty for counts.
-        differing: At how many ticks a bit of it differs.
+        name: Name of the quantity and of its part.
+        unit: Unit of the differences; empty for counts.
+        differing: Number of ticks at which a bit of it differs.
         first_tick: The first of them; None where there is none.
         largest: Largest norm of the difference; NaN where one run was not finite.
         largest_tick: Where that is.
@@ -239,7 +239,7 @@ def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> 
     Args:
         a: One run.
         b: Another one; drawn at the ticks that both have.
-        names: Of the runs.
+        names: Names of the runs.
         path: PNG, SVG or PDF by its ending.
 
     Raises:
@@ -277,7 +277,7 @@ def make_title(a: TickLog, b: TickLog, names: tuple[str, str]) -> str:
     Args:
         a: One run.
         b: Another one.
-        names: Of the runs.
+        names: Names of the runs.
     """
     changes = find_changes(a.header.scene, b.header.scene)
     words = "; ".join(changes) if changes else "the same scene"

@@ -36,10 +36,10 @@ _MAX_JSON_BYTES = 1 << 24
 
 @dataclass(frozen=True)
 class TickLogHeader:
-    """What was recorded.
+    """The header of a log: what was recorded.
 
     Attributes:
-        program_version: Of drake_haptics.
+        program_version: Version of drake_haptics.
         period_s: The tick, s.
         scene: The scene file, YAML, with mesh paths that hold from any folder.
         mesh_sha256: SHA-256 (hex) of each mesh file of the scene by its path.
@@ -66,8 +66,8 @@ def read_header(stream: BinaryIO, name: str) -> TickLogHeader:
     """Reads the head of a log; the stream is then at the first block.
 
     Args:
-        stream: At its start.
-        name: Of the file, for messages.
+        stream: The file, at its start.
+        name: Name of the file, for messages.
 
     Raises:
         TickLogError: It is no log, of another version, or damaged.
@@ -271,14 +271,13 @@ _MAX_PAYLOAD_BYTES = MAX_BLOCK_TICKS * _ROW_BYTES + 4096
 
 @dataclass(frozen=True)
 class BlockHeader:
-    """What comes before a block's payload.
+    """The header before a block's payload.
 
     Attributes:
-        first_tick: Number of its first tick. Of the end mark: how many ticks there
-            were.
-        ticks: How many it has; none in the mark that ends a complete log.
-        payload_bytes: How long the packed ticks are.
-        payload_crc: Their CRC-32.
+        first_tick: Number of its first tick; in the end mark, the number of all ticks.
+        ticks: Number of ticks in it; 0 in the mark that ends a complete log.
+        payload_bytes: Length of the packed ticks.
+        payload_crc: CRC-32 of the packed ticks.
     """
 
     first_tick: int
@@ -291,7 +290,7 @@ def pack_block(first_tick: int, reals: np.ndarray, counts: np.ndarray) -> bytes:
     """Returns a block, or the end mark if there are no ticks.
 
     Args:
-        first_tick: As in `BlockHeader`.
+        first_tick: Number of the first tick, as in `BlockHeader`.
         reals: (n, 43) doubles.
         counts: (n, 7) uint32.
     """

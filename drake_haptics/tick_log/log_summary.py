@@ -1,4 +1,4 @@
-"""What a log holds, in figures."""
+"""A summary of what a log holds, in figures."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class LogSummary:
     """A log in figures.
 
     Attributes:
-        header: What was recorded.
+        header: Header of the log.
         bytes: Size of the file.
-        ticks: Those that are sound.
+        ticks: Number of sound ticks.
         end_s: Simulated time of the last of them, s.
         gaps: A sentence for each gap.
         damaged_blocks: Places in the file that could not be read.

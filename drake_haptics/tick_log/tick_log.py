@@ -54,7 +54,7 @@ def scan_blocks(stream: BinaryIO) -> Iterator[TickRows | Damage | EndMark]:
     damage. It never reads more at once than the largest block takes.
 
     Args:
-        stream: Of the file, after its head; can seek.
+        stream: The file, after its head; can seek.
     """
     size = os.fstat(stream.fileno()).st_size
     position, next_tick = stream.tell(), 0
@@ -110,8 +110,8 @@ class Gap:
     """Ticks that a log should have and has not.
 
     Attributes:
-        first_tick: The first that is missing.
-        ticks: How many are; None where that cannot be told.
+        first_tick: Number of the first missing tick.
+        ticks: Number of missing ticks; None where it is unknown.
     """
 
     first_tick: int

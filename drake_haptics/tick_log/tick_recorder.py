@@ -117,10 +117,10 @@ class TickRecorder:
         Args:
             time_s: Time of the simulation, s.
             signals: (38,) the quantities from `X_WH` to `V_WTool`, as `REALS` has them.
-            counts: Those of `COUNTS`, in [0, 2³²).
+            counts: The quantities of `COUNTS`, in [0, 2³²).
             query_s: How long the contact query took, s.
-            distance_m: Of the nearest contact, m; infinite where there is none.
-            device_time_s: Of the device's own clock, s; NaN where it is simulated.
+            distance_m: Distance of the nearest contact, m; infinite without one.
+            device_time_s: Time of the device's clock, s; NaN where it is simulated.
         """
         tick = self._ticks
         self._ticks = tick + 1

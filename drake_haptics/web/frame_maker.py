@@ -23,7 +23,7 @@ def turn_into_view(v_W: Sequence[float], R_WC: Sequence[float]) -> list[float]:
     """Returns a vector (3,) of the world as right, up and near in the picture.
 
     Args:
-        v_W: In the world.
+        v_W: The vector, expressed in the world.
         R_WC: (9,) axes of the camera, row by row.
     """
     x, y, z = (sum(R_WC[3 * i + k] * v_W[i] for i in range(3)) for k in range(3))
@@ -87,7 +87,7 @@ class Trace:
         """Adds a tick.
 
         Args:
-            time_s: Simulated time, s; where it goes back, the scene began anew.
+            time_s: Simulated time, s; where it goes back, the scene began again.
             force_N: Norm of the force, N.
             torque_Nm: Norm of the torque, N·m.
         """
@@ -182,7 +182,7 @@ class FrameMaker:
         self._ticks += len(packet.ticks)
         packets = self._packets
         if packets and time_s < packets[-1][1]:
-            packets.clear()  # The scene began anew.
+            packets.clear()  # The scene began again.
         packets.append((packet.clock_s, time_s, self._ticks))
         while packets[-1][0] - packets[0][0] > _RATE_SPAN_S and len(packets) > 2:
             packets.popleft()

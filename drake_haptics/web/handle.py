@@ -77,7 +77,7 @@ def keep_near(X_WG: np.ndarray, p_WCenter: np.ndarray, radius_m: float) -> np.nd
 
 
 class PagePilot:
-    """Where a page wants the handle.
+    """Follows where a page wants the handle.
 
     Attributes:
         X_WG: (7,) the goal [qw qx qy qz x y z], m.
@@ -87,8 +87,8 @@ class PagePilot:
         """Starts at a pose.
 
         Args:
-            X_WStart: Also where it goes home to.
-            radius_m: How far from there the goal may go, m.
+            X_WStart: Pose where it starts, and goes home to.
+            radius_m: Largest distance of the goal from there, m.
         """
         self._X_WStart = pose_to_vector(X_WStart)
         self._radius_m = radius_m

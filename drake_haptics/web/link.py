@@ -64,12 +64,12 @@ class PageLink:
         """Starts the process; waits for nobody.
 
         Args:
-            meshcat_url: Address of the Meshcat in the page.
-            listener: Of `open_page_port`, if it was to be had before; it is closed
-                with the link.
+            meshcat_url: Address of the Meshcat that the page shows.
+            listener: The result of `open_page_port`, if the port was opened before;
+                it is closed with the link.
 
         Raises:
-            UserError: No port can be had.
+            UserError: No port is available.
         """
         self._listener = listener or open_page_port()
         self._url = f"http://localhost:{self._listener.getsockname()[1]}/"
@@ -110,7 +110,7 @@ class PageLink:
         """Sends a message that must not get lost; now or with a later call.
 
         Args:
-            message: Of one name; a newer one takes the place of an older one.
+            message: Has one name; a newer one of that name replaces it.
         """
         [name] = message
         self._lasting[name] = json.dumps(message).encode()

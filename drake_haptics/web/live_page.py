@@ -63,8 +63,8 @@ def look_from_the_front(p_WQ: np.ndarray, distance_m: float) -> RigidTransform:
     """Returns the pose X_WC of a camera that looks along y, z upwards.
 
     Args:
-        p_WQ: (3,) what it looks at, m.
-        distance_m: From how far, m.
+        p_WQ: (3,) the point that it looks at, m.
+        distance_m: Distance of the camera from that point, m.
     """
     R_WC = RotationMatrix(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]]))
     return RigidTransform(R_WC, p_WQ - np.array([0.0, distance_m, 0.0]))
@@ -77,13 +77,13 @@ _LOOK_PERIOD_S = 1 / 20
 
 @dataclass(frozen=True)
 class Outlook:
-    """What the page is told besides the ticks, 30 times a second.
+    """The state that the page is told besides the ticks, 30 times a second.
 
     Attributes:
         gate: Index into `messages.GATES`.
         p_WH: (3,) where the handle is, m.
         fault: Index into `messages.FAULTS`.
-        silent_s: For how long the device's driver has said nothing new, s.
+        silent_s: Time for which the device's driver has said nothing new, s.
         shed: How many stages of work are left out.
         skipped: Ticks lost to stalls since the run began.
     """
@@ -103,7 +103,7 @@ class LivePage:
     used from the thread that made the Meshcat.
 
     Attributes:
-        camera: Of the page.
+        camera: Camera of the page.
         meshcat_url: Address of what the page shows.
     """
 
@@ -122,7 +122,7 @@ class LivePage:
                 not given.
 
         Raises:
-            UserError: No port can be had.
+            UserError: No port is available.
         """
         self.camera = PageCamera(meshcat, X_WC)
         # The Meshcat then tells where the camera of this page is.
@@ -145,7 +145,7 @@ class LivePage:
         """Tells pages something, also those that come later.
 
         Args:
-            name: Of the message; a newer one takes the place of an older one.
+            name: Name of the message; a newer one of that name replaces it.
             body: Ready for JSON.
         """
         self._link.tell({name: body})

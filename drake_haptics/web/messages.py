@@ -45,8 +45,8 @@ class Tick:
         query_s: Clock time of its contact query, s.
         contacts: Before clustering.
         clusters: After it.
-        distance_m: Of the nearest contact, m, negative if it penetrates; infinite if
-            there is none.
+        distance_m: Distance of the nearest contact, m, negative if it penetrates;
+            infinite without a contact.
         tau_W: (3,) torque on the handle, N·m.
         f_W: (3,) force on the handle, N.
         late_s: How late it began, s.
@@ -68,9 +68,9 @@ class Telemetry:
     """A packet.
 
     Attributes:
-        gate: Of `GATES`.
-        fault: Of `FAULTS`.
-        silent_s: For how long the device's driver has said nothing new, s.
+        gate: State of the gate, one of `GATES`.
+        fault: Fault of the device, one of `FAULTS`.
+        silent_s: Time for which the device's driver has said nothing new, s.
         shed: How many stages of work were left out.
         skipped: Ticks lost to stalls since the run began.
         clock_s: The loop's clock, s.
@@ -132,7 +132,7 @@ class TickBuffer:
         Args:
             gate: Index into `GATES`.
             fault: Index into `FAULTS`.
-            silent_s: For how long the device's driver has said nothing new, s.
+            silent_s: Time for which the device's driver has said nothing new, s.
             shed: How many stages of work are left out.
             skipped: Ticks lost to stalls since the run began.
             clock_s: The loop's clock, s.
@@ -250,7 +250,7 @@ def read_page_request(text: str | bytes) -> dict[str, Any] | None:
     "move", "by": [0.1, 0, 0]}. Whether there is such a key or name is not known here.
 
     Args:
-        text: As it came; bytes are never right.
+        text: The message as it came; bytes are never right.
     """
     if isinstance(text, bytes):
         return None

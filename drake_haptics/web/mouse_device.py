@@ -1,4 +1,4 @@
-"""The mouse as a haptic device, in a program of one's own."""
+"""The mouse as a haptic device, in your own program."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class MouseDevice(PageHandle):
 
         Raises:
             ValueError: A pose is not finite, or the radius or a limit out of range.
-            UserError: The port cannot be had.
+            UserError: The port is not available.
         """
         super().__init__(X_WB=X_WB, X_BH=X_BH, workspace_radius_m=workspace_radius_m)
         for name, value in [

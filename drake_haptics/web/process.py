@@ -52,7 +52,7 @@ class PageProcess:
         Args:
             listener: Listens on the page's port.
             link: The way to the loop, of datagrams.
-            origin: Of the Meshcat in the page.
+            origin: Origin of the Meshcat in the page.
         """
         self._link = link
         self._server = PageServer(listener, origin, self._forward)
@@ -129,7 +129,7 @@ class PageProcess:
 
 
 def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """Reports a defect; that strangers take all connections is none, and passes."""
+    """Reports unexpected errors; a flood of connections is ignored."""
     if not isinstance(context.get("exception"), OSError):
         loop.default_exception_handler(context)
 

@@ -30,7 +30,7 @@ def read_page_file(path: str) -> tuple[bytes, str] | None:
     """Returns a file and its media type; None where there is no such file.
 
     Args:
-        path: Of the address, like "/" or "/main.js". Only names of files in the
+        path: Path of the address, like "/" or "/main.js". Only names of files in the
             package's folder are found, whatever stands in it.
     """
     name = "index.html" if path == "/" else path.removeprefix("/")
@@ -109,7 +109,7 @@ class PageServer:
         """Tells every page something, and those that come later, too.
 
         Args:
-            name: Of the message; a newer one of the same name takes its place.
+            name: Name of the message; a newer one of the same name replaces it.
             message: JSON text.
         """
         self._lasting[name] = message

@@ -1,4 +1,4 @@
-"""Where the tasks of a study are computed if nothing else is asked for."""
+"""The processes of this machine that compute the tasks of a study by default."""
 
 from __future__ import annotations
 

@@ -147,14 +147,14 @@ class StudyStore:
     is closed. One program at a time may have it open.
 
     Args:
-        path: Of the file; made if it is not there.
-        function: What its results are of.
+        path: Path of the file, which is created if it does not exist.
+        function: The function whose results it keeps.
 
     Attributes:
-        path: Of the file.
+        path: Path of the file.
 
     Raises:
-        ValueError: The file is none of a study, or is in use by another program.
+        ValueError: The file does not belong to a study, or another program uses it.
         OSError: The file cannot be opened.
     """
 

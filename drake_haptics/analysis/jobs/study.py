@@ -35,7 +35,7 @@ class TaskFailure:
         index: Its place among the tasks.
         task: The task.
         reason: Type and message of the exception.
-        traceback: That of the process that computed it, for people.
+        traceback: Traceback in the process that computed it, for people.
     """
 
     index: int
@@ -79,7 +79,7 @@ _state = threading.local()
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one task: a result, or why there is none.
+    """The outcome of one task: a result, or the reason for a failure.
 
     It holds only strings, so that it always comes back from a worker: exceptions of
     users often do not pickle.
@@ -87,7 +87,7 @@ class Outcome:
     Attributes:
         result: JSON by `to_exact_json`; None if the task failed.
         reason: Type and message of the exception; empty if it did not fail.
-        traceback: That of the worker; empty if it did not fail.
+        traceback: Traceback in the worker; empty if it did not fail.
     """
 
     result: str | None
