@@ -48,7 +48,7 @@ def plot_axis_design(
     """Draws K over B: the device's limits when let go, passivity, and the choice.
 
     Args:
-        axes: Where.
+        axes: The axes to draw on.
         design: The design for one kind of motion.
         period_s: T, s.
         delay_s: t_d, s.
@@ -104,7 +104,7 @@ class CouplingDesign:
         coupling: The gains, as a scene has them.
         period_s: T, s.
         delay_s: t_d on top of the hold's half period, s.
-        margin: What the design asked for: so many times the gains are stable.
+        margin: Factor up to which the gains are stable, as the design asked.
         translation: Design in N/m and N·s/m.
         rotation: Design in N·m/rad and N·m·s/rad; None for a device without torque.
     """
@@ -210,7 +210,7 @@ def suggest_coupling(
         hand: A grip of `HAND_GRIPS` in which the coupling must also be passive: then
             B is lower. Where not given, the design only says which grips make it so.
         delay_s: t_d on top of the hold's half period, s.
-        margin: How many times the gains must be stable, above 1.
+        margin: Factor up to which the gains must be stable, above 1.
 
     Raises:
         SceneError: There is no such preset.

@@ -59,7 +59,7 @@ def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
     """Opens a loop at the handle.
 
     Args:
-        loop: Of a scene with a simulated device.
+        loop: The loop of a scene with a simulated device.
 
     Raises:
         ValueError: The arm is singular there.

@@ -67,7 +67,7 @@ def build_aimed(
     their springs load the tool with the same wrench.
 
     Args:
-        held: What `hold_scene` returned.
+        held: The result of `hold_scene`.
         coupling: Gains; the scene's own if not given.
 
     Returns:
@@ -228,7 +228,7 @@ def analyse_held_scene(held: HeldScene, coupling: Coupling | None = None) -> Hel
     """Linearizes the loop of a held scene where its tool is pressed as it was held.
 
     Args:
-        held: What `hold_scene` returned.
+        held: The result of `hold_scene`.
         coupling: Gains; the scene's own if not given.
 
     Raises:

@@ -36,7 +36,7 @@ def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
 
     Args:
         linear: The map from `linearize_sampled` or `monodromy`.
-        axes: Where to draw; new ones if not given.
+        axes: The axes to draw on. Defaults to new ones.
 
     Returns:
         The axes.

@@ -168,7 +168,7 @@ class Mode:
     """One eigenvalue, or a conjugate pair, of a linear map over a period.
 
     Attributes:
-        kind: What it means.
+        kind: Meaning of the mode.
         eigenvalue: λ, that with the positive imaginary part.
         period_s: T of the map, s.
         participation: (name of the state, share) of the states that take part, largest

@@ -170,7 +170,7 @@ class Passivity:
             all m axes alike, D = b I. Meaningless where axes of translation and of
             rotation are mixed: see `calc_usage`.
         worst_damping: The largest of `required_damping`: b must be larger.
-        worst_frequency_Hz: Where; 0 where it is the limit at standstill.
+        worst_frequency_Hz: Frequency of that; 0 where it is the limit at standstill.
     """
 
     period_s: float
@@ -213,7 +213,7 @@ class Passivity:
         """Draws the required damping over frequency.
 
         Args:
-            axes: Where; new ones if not given.
+            axes: The axes to draw on. Defaults to new ones.
             available: What there is, N·s/m, by name: "device", "device and hand".
         """
         if axes is None:

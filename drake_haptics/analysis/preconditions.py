@@ -97,7 +97,7 @@ def find_period(timings: Sequence[Timing], period_s: float | None) -> float:
     """Returns the one period T of a system, s.
 
     Args:
-        timings: What `find_timings` found.
+        timings: The timings that `find_timings` found.
         period_s: The period, s, needed for a system without periodic updates.
 
     Raises:
@@ -267,7 +267,7 @@ def explain_drake_errors(doing: str) -> Iterator[None]:
     `RuntimeError` whose text is not known here: it is the user's own.
 
     Args:
-        doing: What failed, for the message, as "linearizing the diagram".
+        doing: Name of the failed work, for the message, as "linearizing the diagram".
 
     Raises:
         ValueError: Drake refused; names what to change, then quotes Drake.

@@ -74,7 +74,7 @@ class SampledMap:
         Args:
             system: Any system; its AutoDiffXd twin is made when it is first asked for.
             context: Its root context; only a clone is used.
-            timings: What `find_timings` found.
+            timings: The timings that `find_timings` found.
             input_port: A vector port of the system, which has a value.
             output_port: A vector port of the system.
 

@@ -24,7 +24,7 @@ class StabilityLimit:
             to `lowest` is stable.
         lowest: The range that was searched.
         highest: Its upper end.
-        evaluations: How many values were tried.
+        evaluations: Number of values that were tried.
         is_crossing: Whether growth passes 1 there; False where it cannot be told
             beyond, or there is no limit.
     """
@@ -70,7 +70,7 @@ def find_stability_limit(
     Args:
         growth: How much motions grow per period at a value, as `calc_growth` says;
             NaN where it cannot be told, which counts as unstable.
-        start: Where to begin, in the range.
+        start: First value to try, in the range.
         lowest: Above 0.
         highest: Above `lowest`.
         relative_tolerance: Relative tolerance of the limit.
@@ -148,7 +148,7 @@ def measure_growth(
         eigenvectors: The mode's right and left one, (n,) each, over [x_c; all discrete
             groups], of any length.
         period_s: T, s.
-        periods: How many to simulate at most.
+        periods: Largest number of periods to simulate.
 
     Raises:
         ValueError: The disturbance is gone, or has left the linear part of the motion,

@@ -27,9 +27,9 @@ def write_stability_page(stability: SceneStability, name: str, path: Path) -> No
     """Writes the page as one HTML file, and its picture beside it as PNG.
 
     Args:
-        stability: What `analyse_scene` returned.
-        name: Of the scene.
-        path: Of the HTML file; the picture has the suffix `.png` instead.
+        stability: The result of `analyse_scene`.
+        name: Name of the scene.
+        path: Path of the HTML file; the picture has the suffix `.png` instead.
 
     Raises:
         ValueError: The path has the picture's suffix.

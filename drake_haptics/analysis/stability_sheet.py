@@ -43,12 +43,12 @@ def draw_sheet(
 
     Args:
         title: Stands above all panels.
-        linearization: Of one tick.
-        limits: Of the coupling's stiffness.
+        linearization: Linear map of one tick.
+        limits: Limits of the coupling's stiffness.
         frequencies_Hz: (n,), rising, Hz.
         damping_usage: (n,), how much of the damping passivity needs at each.
         map: Growth over stiffness and damping; without it its panel is left out.
-        bounds: What theory says of the device in its hand, for the map.
+        bounds: Theoretical bounds of the device in its hand, for the map.
         gains: K, N/m, and B, N·s/m, of the scene, for the map.
     """
     from matplotlib.figure import Figure

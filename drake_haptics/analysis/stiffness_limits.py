@@ -41,7 +41,7 @@ class StiffnessLimits:
     All in N/m for translation and N·m/rad for rotation.
 
     Attributes:
-        kind: Of which stiffness.
+        kind: Kind of the stiffness.
         against: What the tool touches: the contact in which it is held, which gives
             way; or a wall that holds it still, the worst that a device can feel
             (`HeldScene.against_rigid_wall`).
@@ -99,9 +99,9 @@ def find_stiffness_limits(
 
     Args:
         held: The scene, with the gains that stay.
-        kind: Which stiffness is raised.
-        against: What the tool touches.
-        progress: Called with the share done, in [0, 1].
+        kind: Kind of the stiffness that is raised.
+        against: Name of the body that the tool touches.
+        progress: Called with the share that is done, in [0, 1].
 
     Raises:
         ValueError: The scene's coupling has no such stiffness.

@@ -35,7 +35,7 @@ class DelayBounds:
     """The largest stiffness over the delay t_d, of which a stall is one.
 
     Attributes:
-        wall: What was asked for.
+        wall: The wall that was given.
         delays_s: t_d on top of the hold's half period, s, (n,).
         exact: The largest stable K by eigenvalues, N/m, (n,).
         law: The law of Gil et al., (b + B + b_h)/(T/2 + t_d), (n,).

@@ -94,7 +94,7 @@ def plot_z_width(
         spectral_radius: (nB, nK), as a `ZWidth` has it.
         passive_damping: (nB, nK), likewise.
         not_evaluated: Row and column of each point without a result.
-        axes: Where; new ones if not given.
+        axes: The axes to draw on. Defaults to new ones.
         bounds: Draws the lines of theory for this damping, period and delay.
         gains: K and B to mark.
     """

@@ -29,7 +29,7 @@ class LiveLine:
     the output is not a terminal nothing is written.
 
     Args:
-        console: Where to write.
+        console: Console to write to.
         make_line: Called with the time since the last line, s; returns the next, of
             parts between " · ", the most important first: the last ones are left out
             where a terminal is narrow.

@@ -117,12 +117,12 @@ class Session:
     """What came of a run.
 
     Attributes:
-        haptic: What ran last.
-        scene: As it is at the end, with what the page has changed.
+        haptic: The diagram that ran last.
+        scene: The scene at the end, with the changes of the page.
         figures: As `RunStatistics.to_dict` has them, `skin_speed_m_per_s` as of a
             `HapticDiagram`, and of a device under `device` those of
             `DeviceWatch.to_dict`.
-        parts: Of a tick, if they were to be explained.
+        parts: Parts of a tick, if an explanation was asked for.
         error: Why the run was stopped, if it was.
     """
 
@@ -139,9 +139,9 @@ class PageOptions:
 
     Attributes:
         listener: Its port.
-        name: Of the scene.
+        name: Name of the scene.
         locked: Why nothing may be changed on it; empty if it may.
-        views: Of `PICTURE_VIEWS`, what it shows at first.
+        views: The members of `PICTURE_VIEWS` that it shows at first.
     """
 
     listener: socket.socket
@@ -170,17 +170,17 @@ def run_session(
     terminal that takes nothing must not keep a loop waiting.
 
     Args:
-        console: Where bars and the status line go.
-        scene: What to run.
+        console: Console for bars and the status line.
+        scene: The scene to run.
         device: Address of what is held; None for the scene's simulated one.
-        meshcat: Where to draw, if there is to be a picture.
-        page: To show and steer the run, at the pace of the clock; None for none.
+        meshcat: Meshcat to draw in; None for no picture.
+        page: Page that shows and steers the run, in real time; None for none.
         prepare: Called with what was built before it runs, and the page's address.
         duration_s: Simulated time, s; until Ctrl-C where None.
         energy: Whether to book energy, where the device is simulated.
         explained: Whether to explain the parts of a tick.
         log: File for every tick, if wanted.
-        check_interrupt: Of a `lasting_interrupt`; called after every tick.
+        check_interrupt: Function of a `lasting_interrupt`; called after every tick.
     """
     timer = CallbackTimer() if explained else None
     with ExitStack() as stack:

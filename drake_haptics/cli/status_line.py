@@ -115,7 +115,7 @@ class StatusLine(LiveLine):
     """What a run does, in one line.
 
     Args:
-        console: Where to write.
+        console: Console to write to.
         haptic: The diagram that runs.
         pace: Paces the run, if it is paced.
         clock: Reads the time, s.
@@ -323,7 +323,7 @@ class DriverStatusLine(LiveLine):
     """The state of a driver in one line.
 
     Args:
-        console: Where to write.
+        console: Console to write to.
         driver: The driver that runs.
         clock: Reads the time, s.
     """

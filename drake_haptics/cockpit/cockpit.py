@@ -59,8 +59,8 @@ def make_greeting(
         changes: The scene, as it is and as its file has it.
         name: Name of the scene.
         meshcat_url: Address of what the page shows.
-        handles: Who can hold the handle, and what people read of them.
-        site: Where the scene's device is, with its limits.
+        handles: Names of who can hold the handle, with their labels.
+        site: Place of the scene's device, with its limits.
         locked: Why nothing may be changed; empty if it may.
     """
     scene, file = changes.scene, changes.file
@@ -120,7 +120,7 @@ class Cockpit:
     """Shows a run on its page, and lets the page steer it.
 
     Attributes:
-        steering: What becomes of the run.
+        steering: Decides how the run goes on.
     """
 
     def __init__(
@@ -137,10 +137,10 @@ class Cockpit:
         """Begins without a diagram.
 
         Args:
-            page: To be closed by the caller.
+            page: The page, which the caller closes.
             changes: The scene.
-            holding: Who holds the handle.
-            picture: What is shown.
+            holding: Says who holds the handle.
+            picture: The picture on the page.
             advice: Judges the coupling of the scene.
             name: Name of the scene.
             locked: Why nothing but the picture may be changed; empty if it may.
@@ -174,7 +174,7 @@ class Cockpit:
         """Begins a segment, of a diagram of the scene as it is now.
 
         Args:
-            haptic: What runs.
+            haptic: The diagram that runs.
             statistics: Statistics of the run.
             pace: Paces the run.
             is_anew: Whether the tool begins where the handle is.

@@ -48,8 +48,8 @@ class Segments:
         Args:
             haptic: Diagram of the cockpit's scene, with the backend that is held.
             cockpit: Says what is to be otherwise.
-            holding: Who holds the handle.
-            meshcat: Where to draw what is drawn.
+            holding: Says who holds the handle.
+            meshcat: Meshcat to draw in.
         """
         self._haptic = haptic
         self._cockpit = cockpit
@@ -147,7 +147,7 @@ class Segments:
         """Returns what runs next, and from where.
 
         Args:
-            change: What the segment ended for.
+            change: The change for which the segment ended.
             last: Where it ended; None where it failed, and restarts.
         """
         old, holding = self._haptic, self._holding
@@ -186,7 +186,7 @@ class Segments:
         """Returns the diagram of the scene as it is now, held as it is now.
 
         Args:
-            old: What ran.
+            old: The diagram that ran.
             X_WH: Where the handle goes on; None where the scene begins.
         """
         with warnings.catch_warnings():
@@ -225,7 +225,7 @@ class CockpitRun:
         """Opens page and device; nobody need look at the page.
 
         Args:
-            scene: What is to run.
+            scene: The scene to run.
             meshcat: The Meshcat that the page shows.
             listener: The page's port, of `open_page_port`.
             name: Name of the scene.
@@ -303,7 +303,7 @@ class CockpitRun:
             What ran last.
 
         Raises:
-            RunError: As `simulation.run`.
+            RunError: The run failed, see `simulation.run`.
         """
         segments = Segments(haptic, self._cockpit, self._holding, self._meshcat)
         try:

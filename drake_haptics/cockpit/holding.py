@@ -45,7 +45,7 @@ def take_device(device: DeviceBackend, scene: Scene) -> TakenDevice:
         scene: Says limits and rate.
 
     Raises:
-        SceneError: As `find_device_site`.
+        SceneError: The device has no place, see `find_device_site`.
     """
     site = find_device_site(scene)
     return TakenDevice(
@@ -67,7 +67,7 @@ class TakenDevice(DeviceBackend):
     goes, it goes over from what was shown last.
 
     Attributes:
-        device: What is taken.
+        device: The device that is taken.
         waits: Whether its force has not set in yet.
     """
 
@@ -219,8 +219,8 @@ class Holding:
 
     Attributes:
         name: `HAND`, `MOUSE`, `SLIDERS` or `DEVICE`.
-        backend: What is held; None in the scene's own simulated hand.
-        site: Where the scene has its device.
+        backend: The device that is held; None in the scene's own simulated hand.
+        site: Place of the scene's device.
     """
 
     def __init__(

@@ -42,7 +42,7 @@ class PagePicture:
 
         Args:
             meshcat: Whose camera it is.
-            views: What is shown at first.
+            views: Names of the views that are shown at first.
         """
         self._meshcat = meshcat
         self.views = {view: view in views for view in PICTURE_VIEWS}
@@ -108,7 +108,7 @@ class Change:
     """What a segment of a run ended for.
 
     Attributes:
-        handle: Who is to hold the handle from now on.
+        handle: Name of who holds the handle from now on.
         restarts: Whether the scene begins again.
     """
 
@@ -140,8 +140,8 @@ class Steering:
 
         Args:
             changes: The scene.
-            holding: Who holds the handle.
-            picture: What is shown.
+            holding: Says who holds the handle.
+            picture: The picture on the page.
             locked: Why nothing but the picture may be changed; empty if it may.
         """
         self.changes = changes
@@ -228,7 +228,7 @@ class Steering:
         """Does what pages have asked for.
 
         Args:
-            asked: What `LivePage.act` returned.
+            asked: The requests that `LivePage.act` returned.
             root: Context of the diagram; its parameters may be changed.
             X_WC: Pose of the page's camera.
             now_s: The time, s.
@@ -315,7 +315,7 @@ class Steering:
 
         Args:
             end_s: When, if it is not to end at once.
-            handle: Who is to hold the handle, if somebody else is.
+            handle: Name of who is to hold the handle, if that changes.
             restarts: Whether the scene is to begin again.
         """
         if self._change is not None:

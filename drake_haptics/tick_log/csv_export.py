@@ -31,7 +31,7 @@ def write_csv(
     Args:
         reader: Reads the log; afterwards it knows what is missing.
         stream: Text stream to write to.
-        progress: Called with what is done and its share, in [0, 1].
+        progress: Called with the current work and its share that is done, in [0, 1].
     """
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(["tick", *iterate_column_names()])

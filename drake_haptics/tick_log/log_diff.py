@@ -62,7 +62,7 @@ class QuantityDiff:
         differing: Number of ticks at which a bit of it differs.
         first_tick: The first of them; None where there is none.
         largest: Largest norm of the difference; NaN where one run was not finite.
-        largest_tick: Where that is.
+        largest_tick: Tick of the largest difference.
         rms: Root of the mean squared norm over all ticks compared.
     """
 
@@ -80,12 +80,12 @@ class LogDiff:
     """How two runs differ.
 
     Attributes:
-        ticks: How many were compared: those that both logs have.
-        only_a: How many ticks only the first log has.
-        only_b: How many only the second has.
+        ticks: Number of compared ticks: those that both logs have.
+        only_a: Number of ticks that only the first log has.
+        only_b: Number of ticks that only the second log has.
         same_scene: Whether the same scene was recorded.
         same_meshes: Whether it was on the same meshes.
-        settings: What differs between the scenes, key and both values each.
+        settings: Differences of the scenes, each with its key and both values.
         quantities: All that was compared: not the clocks, which differ in every run,
             nor what a device tells besides its handle, which a replay has not.
     """

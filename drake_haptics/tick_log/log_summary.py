@@ -71,7 +71,7 @@ def summarize_log(
 
     Args:
         path: The file.
-        progress: Called with what is done and its share, in [0, 1].
+        progress: Called with the current work and its share that is done, in [0, 1].
 
     Raises:
         TickLogError: It is no log, of another version, or its head is damaged.

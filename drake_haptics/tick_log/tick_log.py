@@ -29,7 +29,7 @@ class Damage:
     """Bytes of a log that are no block, or not the one that follows.
 
     Attributes:
-        offset_bytes: Where they start in the file.
+        offset_bytes: Offset of the first of them in the file.
     """
 
     offset_bytes: int
@@ -40,7 +40,7 @@ class EndMark:
     """The end of a complete log.
 
     Attributes:
-        ticks: How many there were.
+        ticks: Number of ticks of the whole log.
     """
 
     ticks: int
@@ -130,9 +130,9 @@ class TickLog:
     """A recorded run.
 
     Attributes:
-        header: What was recorded.
+        header: Header of the log.
         rows: Every tick that is sound, in order.
-        gaps: What is missing, in order.
+        gaps: Gaps of the log, in order.
         damaged_blocks: Places in the file that could not be read.
     """
 
@@ -159,8 +159,8 @@ class TickLogReader:
     """Reads a log block by block, so that a long one need not fit into memory.
 
     Attributes:
-        header: What was recorded.
-        gaps: What is missing of what has been read so far.
+        header: Header of the log.
+        gaps: Gaps of what has been read so far.
         damaged_blocks: Places that could not be read so far.
     """
 
@@ -190,7 +190,7 @@ class TickLogReader:
         After the last one, `gaps` and `damaged_blocks` tell what is missing.
 
         Args:
-            progress: Called with what is done and its share, in [0, 1].
+            progress: Called with the current work and its share done, in [0, 1].
         """
         self.gaps, self.damaged_blocks = [], 0
         next_tick, next_share = 0, 0.0
@@ -226,7 +226,7 @@ def read_tick_log(
 
     Args:
         path: The file. It may be truncated or damaged, or still be written.
-        progress: Called with what is done and its share, in [0, 1].
+        progress: Called with the current work and its share that is done, in [0, 1].
 
     Raises:
         TickLogError: It is no log, of another version, or its head is damaged.

@@ -73,7 +73,7 @@ class TickRecorder:
 
         Args:
             path: The file.
-            header: What is recorded.
+            header: Header of the log.
 
         Raises:
             OSError: The system refuses.
@@ -118,7 +118,7 @@ class TickRecorder:
             time_s: Time of the simulation, s.
             signals: (38,) the quantities from `X_WH` to `V_WTool`, as `REALS` has them.
             counts: The quantities of `COUNTS`, in [0, 2³²).
-            query_s: How long the contact query took, s.
+            query_s: Duration of the contact query, s.
             distance_m: Distance of the nearest contact, m; infinite without one.
             device_time_s: Time of the device's clock, s; NaN where it is simulated.
         """

@@ -122,7 +122,7 @@ class PageHandle(DeviceBackend):
         Args:
             X_WB: Pose of the device's base in the world of the page.
             X_BH: Pose of the handle where it starts, and goes home to.
-            workspace_radius_m: How far from there it goes, m.
+            workspace_radius_m: Largest distance of the handle from there, m.
 
         Raises:
             ValueError: A pose is not finite, or the radius out of range.

@@ -32,7 +32,7 @@ class PageCamera:
         """Starts at a pose.
 
         Args:
-            meshcat: What the page shows.
+            meshcat: The Meshcat that the page shows.
             X_WC: Before the page tells.
         """
         self._meshcat = meshcat
@@ -84,7 +84,7 @@ class Outlook:
         p_WH: (3,) where the handle is, m.
         fault: Index into `messages.FAULTS`.
         silent_s: Time for which the device's driver has said nothing new, s.
-        shed: How many stages of work are left out.
+        shed: Number of stages of work that are left out.
         skipped: Ticks lost to stalls since the run began.
     """
 
@@ -116,8 +116,8 @@ class LivePage:
         """Starts the page's process; waits for nobody.
 
         Args:
-            meshcat: What the page shows.
-            X_WC: Where the page's camera is before it tells.
+            meshcat: The Meshcat that the page shows.
+            X_WC: Pose of the page's camera before it tells.
             listener: The page's port, of `open_page_port`; the first free one where
                 not given.
 

@@ -49,7 +49,7 @@ class Tick:
             infinite without a contact.
         tau_W: (3,) torque on the handle, N·m.
         f_W: (3,) force on the handle, N.
-        late_s: How late it began, s.
+        late_s: Delay of its beginning, s.
     """
 
     time_s: float
@@ -71,7 +71,7 @@ class Telemetry:
         gate: State of the gate, one of `GATES`.
         fault: Fault of the device, one of `FAULTS`.
         silent_s: Time for which the device's driver has said nothing new, s.
-        shed: How many stages of work were left out.
+        shed: Number of stages of work that were left out.
         skipped: Ticks lost to stalls since the run began.
         clock_s: The loop's clock, s.
         R_WC: (9,) the camera's axes x right, y down, z away, row by row.
@@ -109,7 +109,7 @@ class TickBuffer:
         Args:
             time_s: Simulated time, s.
             latest: (12,) as `RunStatistics.latest`.
-            late_s: How late the tick began, s.
+            late_s: Delay of the tick's beginning, s.
         """
         if self._end < _LARGEST_PACKET:
             _TICK.pack_into(self._bytes, self._end, time_s, *latest, late_s)
@@ -133,7 +133,7 @@ class TickBuffer:
             gate: Index into `GATES`.
             fault: Index into `FAULTS`.
             silent_s: Time for which the device's driver has said nothing new, s.
-            shed: How many stages of work are left out.
+            shed: Number of stages of work that are left out.
             skipped: Ticks lost to stalls since the run began.
             clock_s: The loop's clock, s.
             camera: (12,) R_WC row by row and p_WC, m.

@@ -46,10 +46,10 @@ class MouseDevice(PageHandle):
         """Starts to serve the page; waits for nobody to look at it.
 
         Args:
-            meshcat: What the page shows.
+            meshcat: The Meshcat that the page shows.
             X_WB: Pose of the device's base in the world of the Meshcat.
             X_BH: Pose of the handle where it starts.
-            workspace_radius_m: How far from there it goes, m.
+            workspace_radius_m: Largest distance of the handle from there, m.
             max_force_N: Force of a full bar, N.
             max_torque_Nm: Torque of a full bar, N·m.
             port: TCP port of the page; as `open_page_port`.

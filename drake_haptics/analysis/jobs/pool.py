@@ -62,7 +62,7 @@ def local_processes(
     process.
 
     Args:
-        function: What they will be asked to call.
+        function: The function that they will call.
         most_useful: More processes than this are not started.
 
     Raises:

@@ -102,7 +102,7 @@ class StudyChunk:
     in lists and strings that they are given as arguments.
 
     Args:
-        function: What to call for each task.
+        function: The function to call for each task.
         tasks: JSON of each by `to_exact_json`. Every executor so gives the function
             the same new object, and never one that another task has changed.
     """
@@ -171,7 +171,7 @@ def run_study(
         function: Of one task. Without an executor it must pickle: of the top level of
             a module, a functools.partial of such, or a callable dataclass. A store
             needs the same, and that what is bound to it is data.
-        tasks: What to call it with.
+        tasks: The tasks to call it with.
         executor: Any concurrent.futures.Executor, for instance
             `distributed.Client(...).get_executor()` of a Dask cluster. It stays open.
             None opens a process for each core that this process may use, and closes
@@ -189,7 +189,7 @@ def run_study(
 
     Raises:
         StudyError: Tasks raised, or workers died. It has the results of the others.
-        KeyboardInterrupt: At Ctrl-C; tells how many are done.
+        KeyboardInterrupt: A person pressed Ctrl-C; tells how many are done.
         ValueError: An argument cannot be used, or the store is of another study.
         RuntimeError: The program lacks its ``if __name__ == "__main__":``.
         OSError: The store cannot be written.
@@ -218,10 +218,10 @@ class _Study:
     """What is done of a study. Tasks are known by their exact JSON.
 
     Args:
-        function: Of one task.
+        function: Function of one task.
         keys: The tasks.
-        store: What to begin from and where to keep results, or None.
-        progress: As `run_study` has it.
+        store: Store of the results so far and of new ones, or None.
+        progress: Called as in `run_study`.
     """
 
     def __init__(
