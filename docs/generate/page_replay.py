@@ -15,7 +15,7 @@ from websockets.asyncio.server import ServerConnection, broadcast, serve
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from drake_haptics.web.port import open_page_port
+from drake_haptics.web.link import open_page_port
 from drake_haptics.web.server import PageServer
 
 _MESHCAT = Path(pydrake.__path__[0]) / "share" / "drake" / "geometry"

@@ -27,7 +27,7 @@ from drake_haptics.scene.library import find_scene, list_scenes
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.tick_log import tick_recorder
-from drake_haptics.tick_log.tick_block import pack_block
+from drake_haptics.tick_log.log_format import pack_block
 from drake_haptics.tick_log.tick_log import read_tick_log
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 

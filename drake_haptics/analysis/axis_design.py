@@ -81,11 +81,11 @@ class AxisDesign:
     Attributes:
         stiffness: K, N/m.
         damping: B, N·s/m.
-        stiffness_limit: What holds K down, in words.
-        damping_limit: What holds B down.
+        stiffness_limit: The bound that limits K, in words.
+        damping_limit: The bound that limits B, in words.
         required_damping: b that makes it passive, N·s/m.
-        device: What it is for.
-        margins: In each grip, the weakest first.
+        device: The device that it is designed for.
+        margins: Margins in each grip, the weakest first.
     """
 
     stiffness: float
@@ -118,11 +118,11 @@ def design_axis(
     then too, since `margin` times B is still below the peak of the boundary.
 
     Args:
-        device: On its own.
+        device: The device without a hand.
         grips: Every way in which it may be held, by name.
         period_s: T, s.
         delay_s: t_d on top of the hold, s.
-        margin: How many times the gains must be stable, above 1.
+        margin: Factor up to which the gains must be stable, above 1.
         passive_in: The grip in which the coupling must be passive too, if any.
 
     Raises:

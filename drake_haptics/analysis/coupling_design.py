@@ -1,8 +1,8 @@
-"""Gains of a virtual coupling for a device, a rate and a delay."""
+"""Designs the gains of a virtual coupling for a device, a rate and a delay."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,11 +13,16 @@ from drake_haptics.analysis.axis_design import (
     AxisDevice,
     AxisHand,
     design_axis,
+    make_wall,
 )
-from drake_haptics.analysis.coupling_plot import plot_axis_design
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
+from drake_haptics.analysis.sampled_wall import calc_largest_stiffness
 from drake_haptics.bounds.coupling import HeldHandle
 from drake_haptics.bounds.held_handle import calc_held_handle
+from drake_haptics.bounds.sampled_spring import (
+    calc_passive_stiffness,
+    calc_stable_stiffness,
+)
 from drake_haptics.common.one_line import one_line
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
 from drake_haptics.scene.schema import Coupling
@@ -28,6 +33,69 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+_POINTS = 40
+# The picture reaches this many times the suggested stiffness at most.
+_HEADROOM = 12.0
+
+
+def plot_axis_design(
+    axes: Axes,
+    design: AxisDesign,
+    period_s: float,
+    delay_s: float,
+    units: tuple[str, str],
+) -> None:
+    """Draws K over B: the device's limits when let go, passivity, and the choice.
+
+    Args:
+        axes: The axes to draw on.
+        design: The design for one kind of motion.
+        period_s: T, s.
+        delay_s: t_d, s.
+        units: Units of K and of B.
+    """
+    device = design.device
+    B = np.linspace(0.0, 3.0 * design.damping, _POINTS)
+    free = make_wall(device, AxisHand(), period_s, delay_s)
+    stable = [calc_largest_stiffness(replace(free, wall_damping=b)) for b in B]
+    axes.fill_between(B, stable, color="C0", alpha=0.15)
+    axes.plot(B, stable, color="C0", label="stable, let go (exact)")
+    law = [calc_stable_stiffness(device.damping, b, period_s, delay_s) for b in B]
+    axes.plot(B, law, "--", color="C0", lw=1.0, label="law of Gil et al.")
+    passive = [
+        (m, calc_passive_stiffness(m.held_damping, 0.0, period_s, delay_s))
+        for m in design.margins
+    ]
+    top = min(1.1 * max(stable), _HEADROOM * design.stiffness)
+    # Those that would be out of sight stay out of the legend.
+    visible = [
+        (margins, K)
+        for margins, K in passive
+        if margins.held_damping > 0.02 * B[-1]
+        and B[-1] / margins.held_damping + top / K > 1.0
+    ]
+    for i, (margins, K) in enumerate(visible, start=1):
+        axes.plot(
+            [0.0, margins.held_damping],
+            [K, 0.0],
+            ":",
+            color=f"C{i + (i > 2)}",
+            label=f"passive below, grip '{margins.grip}'",
+        )
+    if device.rated_stiffness is not None:
+        axes.axhline(device.rated_stiffness, color="0.7", lw=0.8, label="rated")
+    if device.rated_damping is not None:
+        axes.axvline(device.rated_damping, color="0.7", lw=0.8)
+    axes.plot(design.damping, design.stiffness, "o", color="C3", label="suggested")
+    axes.set_xlim(0.0, B[-1])
+    axes.set_ylim(0.0, top)
+    axes.set_xlabel(f"damping, {units[1]}")
+    axes.set_ylabel(f"stiffness, {units[0]}")
+    axes.legend(
+        fontsize="small", ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.15)
+    )
+
+
 @dataclass(frozen=True)
 class CouplingDesign:
     """A coupling and how far from its limits it is.
@@ -36,9 +104,9 @@ class CouplingDesign:
         coupling: The gains, as a scene has them.
         period_s: T, s.
         delay_s: t_d on top of the hold's half period, s.
-        margin: What the design asked for: so many times the gains are stable.
-        translation: Of N/m and N·s/m.
-        rotation: Of N·m/rad and N·m·s/rad; None for a device that shows no torque.
+        margin: Factor up to which the gains are stable, as the design asked.
+        translation: Design in N/m and N·s/m.
+        rotation: Design in N·m/rad and N·m·s/rad; None for a device without torque.
     """
 
     coupling: Coupling
@@ -138,11 +206,11 @@ def suggest_coupling(
         device: Name of a preset, or the preset: its arm at its default angles. Or
             what is known of a handle without a hand, as `calc_held_handle` tells of
             any plant at its default angles; it has no ratings.
-        rate_hz: Of the haptic loop, Hz.
+        rate_hz: Rate of the haptic loop, Hz.
         hand: A grip of `HAND_GRIPS` in which the coupling must also be passive: then
             B is lower. Where not given, the design only says which grips make it so.
         delay_s: t_d on top of the hold's half period, s.
-        margin: How many times the gains must be stable, above 1.
+        margin: Factor up to which the gains must be stable, above 1.
 
     Raises:
         SceneError: There is no such preset.

@@ -1,4 +1,4 @@
-"""How much later a loop's force may come before the loop is unstable."""
+"""The delay margin: how late a loop's force may come before the loop is unstable."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def calc_delay_margin(loop: HeldLoop) -> float:
     where 50 periods are not enough, 0 where the loop is unstable as it is.
 
     Args:
-        loop: At its equilibrium.
+        loop: The loop at its equilibrium.
     """
 
     def excess(delay: float) -> float:
@@ -50,8 +50,8 @@ def make_delayed_map(loop: HeldLoop, delay: float) -> np.ndarray:
     sampled and are not shown yet, the newest first.
 
     Args:
-        loop: At its equilibrium.
-        delay: In periods, any number from 0 on.
+        loop: The loop at its equilibrium.
+        delay: Delay in periods, any number from 0 on.
 
     Raises:
         ValueError: The delay is negative.

@@ -1,4 +1,4 @@
-"""The systems inside a Diagram, their names and timings."""
+"""The systems inside a Diagram: names, timings, state, and their twin in AutoDiffXd."""
 
 from __future__ import annotations
 
@@ -7,7 +7,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from pydrake.autodiffutils import AutoDiffXd
-from pydrake.systems.framework import Context, Diagram, Diagram_, System
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import QuaternionFloatingJoint
+from pydrake.systems.framework import (
+    Context,
+    Context_,
+    Diagram,
+    Diagram_,
+    System,
+    System_,
+)
+
+from drake_haptics.common.one_line import one_line
 
 _TIMING = re.compile(r"\(([\d.e+-]+),([\d.e+-]+)\)")
 _DIAGRAMS = (Diagram, Diagram_[AutoDiffXd])
@@ -74,3 +85,111 @@ def find_timings(root: System, context: Context) -> list[Timing]:
                 for offset, period in _TIMING.findall(str(error))
             ]
     return sorted(found)
+
+
+@dataclass(frozen=True)
+class StateLayout:
+    """Names and constraints of a state.
+
+    Attributes:
+        names: (n,). A `MultibodyPlant` names its own coordinates, as "plant/tool_x",
+            and so does a system with a method `list_state_names()`; others are
+            "path/xc[0]" for continuous ones and "path/xd[0]" for discrete ones
+            ("path/xd1[0]" for the first of the second group).
+        quaternions: Positions in the state of the four numbers of each unit
+            quaternion of a `MultibodyPlant`.
+    """
+
+    names: tuple[str, ...]
+    quaternions: tuple[tuple[int, ...], ...]
+
+    __repr__ = one_line
+
+
+def find_state_layout(root: System) -> StateLayout:
+    """Returns the layout of a system's state."""
+    context = root.CreateDefaultContext()
+    names: list[str] = []
+    quaternions: list[tuple[int, ...]] = []
+    # Drake's diagrams put all continuous states first, each in the systems' order.
+    for kind in ("xc", "xd"):
+        for leaf in walk_leaves(root):
+            sizes = _list_sizes(kind, leaf.GetMyContextFromRoot(context))
+            prefix = "" if leaf is root else f"{calc_path(root, leaf)}/"
+            own = _list_own_names(leaf)
+            for i, size in enumerate(sizes):
+                if own and size == len(own):
+                    if isinstance(leaf, MultibodyPlant):
+                        quaternions += _shift_quaternions(leaf, len(names))
+                    names += [prefix + name for name in own]
+                else:
+                    names += [f"{prefix}{kind}{i or ''}[{j}]" for j in range(size)]
+    return StateLayout(tuple(names), tuple(quaternions))
+
+
+def _list_sizes(kind: str, context: Context) -> list[int]:
+    """Returns the sizes of a leaf's groups of continuous or discrete states."""
+    if kind == "xc":
+        return [context.num_continuous_states()]
+    groups = range(context.num_discrete_state_groups())
+    return [context.get_discrete_state(i).size() for i in groups]
+
+
+def _list_own_names(leaf: System) -> list[str]:
+    """Returns the names that a system has for its state, a plant's short if unique."""
+    if hasattr(leaf, "list_state_names"):
+        return leaf.list_state_names()
+    if not isinstance(leaf, MultibodyPlant):
+        return []
+    names = list(leaf.GetStateNames(add_model_instance_prefix=False))
+    if len(set(names)) == len(names):
+        return names
+    return list(leaf.GetStateNames(add_model_instance_prefix=True))
+
+
+def _shift_quaternions(plant: MultibodyPlant, start: int) -> list[tuple[int, ...]]:
+    """Returns where a plant's quaternions are, if its state begins at start."""
+    joints = [plant.get_joint(index) for index in plant.GetJointIndices()]
+    starts = [
+        start + joint.position_start()
+        for joint in joints
+        if isinstance(joint, QuaternionFloatingJoint)
+    ]
+    return [tuple(range(first, first + 4)) for first in sorted(starts)]
+
+
+class AutoDiffTwin:
+    """A system converted to AutoDiffXd once, following contexts of the original.
+
+    Attributes:
+        system: The twin.
+        context: Its root context.
+    """
+
+    system: System_[AutoDiffXd]
+    context: Context_[AutoDiffXd]
+
+    def __init__(self, original: System):
+        """Converts a system.
+
+        Raises:
+            RuntimeError: A system inside has no AutoDiffXd twin.
+        """
+        self._original = original
+        self.system = original.ToScalarType[AutoDiffXd]()
+        self.context = self.system.CreateDefaultContext()
+
+    def follow(self, context: Context) -> None:
+        """Takes time, state, parameters and fixed inputs from an original's context.
+
+        Systems with a method `prepare_conversion(context)` first write into the
+        parameters of their part of it what they remember elsewhere.
+
+        Args:
+            context: A root context of the original that may be changed so.
+        """
+        for part in walk_systems(self._original):
+            if hasattr(part, "prepare_conversion"):
+                part.prepare_conversion(part.GetMyMutableContextFromRoot(context))
+        self.context.SetTimeStateAndParametersFrom(context)
+        self.system.FixInputPortsFrom(self._original, context, self.context)

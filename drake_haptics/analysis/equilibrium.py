@@ -10,20 +10,24 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, System
 
 from drake_haptics.analysis.derivative_check import calc_sizes
-from drake_haptics.analysis.diagram_systems import Timing, find_timings
-from drake_haptics.analysis.drake_errors import explain_drake_errors
-from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
-from drake_haptics.analysis.sampled_map import (
-    SampledMap,
-    set_state,
+from drake_haptics.analysis.diagram_systems import (
+    StateLayout,
+    Timing,
+    find_state_layout,
+    find_timings,
 )
-from drake_haptics.analysis.sampled_preconditions import (
+from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
+from drake_haptics.analysis.preconditions import (
     check_abstract_state,
     check_conversion,
     check_positive,
     check_system_and_context,
+    explain_drake_errors,
 )
-from drake_haptics.analysis.state_layout import StateLayout, find_state_layout
+from drake_haptics.analysis.sampled_map import (
+    SampledMap,
+    set_state,
+)
 
 # Singular values below this part of the largest are directions that nothing holds:
 # quaternion lengths, memories of friction. A step has no part in them.

@@ -1,4 +1,4 @@
-"""What a device feels of a virtual scene: its impedance at the handle."""
+"""The impedance of a virtual scene that the device feels at its handle."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def calc_felt_impedance(loop: HeldLoop) -> FeltImpedance:
     """Opens a loop at the handle.
 
     Args:
-        loop: Of a scene with a simulated device.
+        loop: The loop of a scene with a simulated device.
 
     Raises:
         ValueError: The arm is singular there.

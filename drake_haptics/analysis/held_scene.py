@@ -1,4 +1,4 @@
-"""A scene whose hand stops on its way and holds still, to be analysed there."""
+"""A scene whose hand stops on its way and holds still, to be analyzed there."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pydrake.systems.framework import Context
 
 from drake_haptics.analysis.equilibrium import find_equilibrium
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
-from drake_haptics.analysis.sampled_preconditions import check_conversion
+from drake_haptics.analysis.preconditions import check_conversion
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
@@ -42,7 +42,7 @@ class HeldScene:
     Attributes:
         scene: Its path ends there.
         time_s: When the hand stops, s.
-        context: Of a diagram of the scene, at rest.
+        context: Root context of the scene's diagram, at rest.
         X_WT: Pose of the tool at rest.
         F_Tool_W: What the coupling does to the tool there (6,), [N·m; N], at its origin
             in the world.
@@ -99,15 +99,15 @@ def hold_scene(
 
     The way there is simulated as in a run, so that the tool touches from where it
     came. Where the scene's own coupling does not settle, softer ones are tried for
-    the way; `drake_haptics.analysis.aimed_hand.build_aimed` gives it its own again.
+    the way; `drake_haptics.analysis.held_loop.build_aimed` gives it its own again.
 
     Args:
-        scene: What to hold.
+        scene: The scene to hold.
         time_s: When the hand stops, s, on a periodic path of its first lap. If not
             given, at the firmest contact at which the tool comes to rest: on a ridge
             between two facets it may rock from one to the other for ever.
-        settle_s: How long the tool is given to come to rest, s.
-        progress: Called with what is done and its share in [0, 1].
+        settle_s: Time for the tool to come to rest, s.
+        progress: Called with the current work and its share that is done, in [0, 1].
 
     Raises:
         ValueError: The time is not on the path, the tool does not come to rest, or a

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drake_haptics.analysis.modes import Mode, ModeKind, find_modes
-from drake_haptics.analysis.period_map import PeriodMap
+from drake_haptics.analysis.modes import Mode, ModeKind, PeriodMap, find_modes
 from drake_haptics.common.colors import STABLE, UNSTABLE
 
 if TYPE_CHECKING:
@@ -36,8 +35,8 @@ def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
     frequency cross them. Both are labeled: ζ, and Hz.
 
     Args:
-        linear: From `linearize_sampled` or `monodromy`.
-        axes: Where to draw; new ones if not given.
+        linear: The map from `linearize_sampled` or `monodromy`.
+        axes: The axes to draw on. Defaults to new ones.
 
     Returns:
         The axes.

@@ -1,20 +1,139 @@
-"""The eigenvalues of a sampled system in words: how fast, how damped, what moves."""
+"""A linear map over one period and its modes: how fast, how damped, what moves."""
 
 from __future__ import annotations
 
 import enum
 import math
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 from scipy.linalg import block_diag, eig
 
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
-from drake_haptics.analysis.motion_words import list_parts, shorten_path
-from drake_haptics.analysis.period_map import PeriodMap
 from drake_haptics.common.one_line import one_line
 from drake_haptics.common.type_checks import require_kinds
+
+
+@dataclass(frozen=True)
+class PeriodMap:
+    """x⁺ = A x about an equilibrium, x = [x_c; all discrete groups].
+
+    The state is that just before a sampling instant.
+
+    Attributes:
+        A: (n, n).
+        period_s: s.
+        state_names: (n,), as "plant/tool_x" or "controller/xd[0]".
+        state: (n,) the equilibrium.
+        quaternions: Positions in the state of the four numbers of each unit
+            quaternion, whose length is no motion.
+        equilibrium_residual: Largest change of a state over the period, relative to
+            its size or 1, whichever is larger.
+    """
+
+    A: np.ndarray
+    period_s: float
+    state_names: tuple[str, ...]
+    state: np.ndarray
+    quaternions: tuple[tuple[int, ...], ...]
+    equilibrium_residual: float
+
+    __repr__ = one_line
+
+    @on_one_blas_thread
+    def eigenvalues(self) -> np.ndarray:
+        """Returns the eigenvalues of A (n,), complex, largest magnitude first."""
+        values = np.linalg.eigvals(self.A).astype(complex)
+        return values[np.argsort(-np.abs(values), kind="stable")]
+
+    def spectral_radius(self) -> float:
+        """Returns the largest magnitude of an eigenvalue: stable below 1."""
+        return float(np.abs(self.eigenvalues()).max())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns the fields and the eigenvalues ([re, im] each), ready for JSON."""
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {
+            name: value.tolist() if isinstance(value, np.ndarray) else value
+            for name, value in values.items()
+        } | {"eigenvalues": [[z.real, z.imag] for z in self.eigenvalues()]}
+
+
+def check_return(
+    x: np.ndarray,
+    change: np.ndarray,
+    names: tuple[str, ...],
+    tolerance: float,
+) -> float:
+    """Returns the largest relative change of a state over a period.
+
+    Args:
+        x: (n,) state.
+        change: (n,) what one period adds to it.
+        names: (n,).
+        tolerance: Its bound, relative to the state's size or 1.
+
+    Raises:
+        ValueError: A state changes by more; names the one that changes most.
+    """
+    relative = np.abs(change) / np.maximum(np.abs(x), 1.0)
+    worst = int(np.argmax(np.where(np.isfinite(relative), relative, np.inf)))
+    if not relative[worst] <= tolerance:
+        raise ValueError(
+            f"not an equilibrium: {names[worst]} changes by {change[worst]:.3g} in one"
+            f" period, more than {tolerance:g} of its size or 1: use the context that"
+            " find_equilibrium returns"
+        )
+    return float(relative[worst])
+
+
+# Parts of the paths of states which each haptic loop has, and which tell nothing.
+_KNOWN_PARTS = re.compile(r"(?<![^/])(device/simulated_arm/arm|device|step|sample)/")
+# The state of one joint, angle or rate, and one of the tool, pose or velocity.
+_JOINT = re.compile(r"device/simulated_arm/arm/(\w+)_[qw]")
+_TOOL = re.compile(r"haptic_tool/step/([qvw]?)([wxyz])")
+_TOOL_TURNING = "tool turning"
+
+
+def list_parts(states: Iterable[str]) -> list[str]:
+    """Returns what moves where states change, each part once.
+
+    Those that each haptic loop has are named in words: "elbow joint" for
+    "device/simulated_arm/arm/elbow_joint_w", its rate, and "..._q", its angle;
+    "tool along x" for "haptic_tool/step/x" and "vx", "tool about x" for "wx", axes of
+    the world. The elements of the tool's quaternion belong to no axis, "tool turning",
+    and are not named beside a rate, which has one.
+
+    Args:
+        states: Names of states, those that take the largest part first.
+    """
+    parts = list(dict.fromkeys(map(_name_part, states)))
+    if any(part.startswith("tool about") for part in parts):
+        return [part for part in parts if part != _TOOL_TURNING]
+    return parts
+
+
+def _name_part(state: str) -> str:
+    if joint := _JOINT.fullmatch(state):
+        return joint[1].replace("_", " ")
+    if tool := _TOOL.fullmatch(state):
+        kind, axis = tool.groups()
+        if kind == "q":
+            return _TOOL_TURNING
+        return f"tool {'about' if kind == 'w' else 'along'} {axis}"
+    return shorten_path(state)
+
+
+def shorten_path(name: str) -> str:
+    """Returns the name of a state without the parts of its path that tell nothing.
+
+    "haptic_tool/step/qw" becomes "haptic_tool/qw".
+    """
+    return _KNOWN_PARTS.sub("", name)
+
 
 # An eigenvalue this near to 1 moves too slowly to be told from one that stays; the
 # two of a free mass, which are exactly 1, are found to the root of round-off.
@@ -49,7 +168,7 @@ class Mode:
     """One eigenvalue, or a conjugate pair, of a linear map over a period.
 
     Attributes:
-        kind: What it means.
+        kind: Meaning of the mode.
         eigenvalue: λ, that with the positive imaginary part.
         period_s: T of the map, s.
         participation: (name of the state, share) of the states that take part, largest
@@ -148,7 +267,7 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
     """Returns the modes of a linear map over a period.
 
     Args:
-        linear: From `linearize_sampled` or `monodromy`.
+        linear: The map from `linearize_sampled` or `monodromy`.
 
     Returns:
         Motions first, the fastest growing or slowest dying before the others; then

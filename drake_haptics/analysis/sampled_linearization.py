@@ -27,19 +27,18 @@ from drake_haptics.analysis.derivative_check import (
     find_wrong_rows,
     move_beside,
 )
-from drake_haptics.analysis.diagram_systems import find_timings
-from drake_haptics.analysis.drake_errors import explain_drake_errors
+from drake_haptics.analysis.diagram_systems import find_state_layout, find_timings
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
-from drake_haptics.analysis.period_map import PeriodMap, check_return
-from drake_haptics.analysis.sampled_map import SampledMap, SampledValues
-from drake_haptics.analysis.sampled_preconditions import (
+from drake_haptics.analysis.modes import PeriodMap, check_return
+from drake_haptics.analysis.preconditions import (
     check_abstract_state,
     check_conversion,
     check_events,
     check_system_and_context,
+    explain_drake_errors,
     find_period,
 )
-from drake_haptics.analysis.state_layout import find_state_layout
+from drake_haptics.analysis.sampled_map import SampledMap, SampledValues
 from drake_haptics.common.one_line import one_line
 
 _Port = TypeVar("_Port", InputPort, OutputPort)

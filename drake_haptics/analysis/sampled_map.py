@@ -15,8 +15,12 @@ from pydrake.systems.framework import (
     System,
 )
 
-from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
-from drake_haptics.analysis.diagram_systems import Timing, calc_path, walk_leaves
+from drake_haptics.analysis.diagram_systems import (
+    AutoDiffTwin,
+    Timing,
+    calc_path,
+    walk_leaves,
+)
 from drake_haptics.common.one_line import one_line
 
 
@@ -70,7 +74,7 @@ class SampledMap:
         Args:
             system: Any system; its AutoDiffXd twin is made when it is first asked for.
             context: Its root context; only a clone is used.
-            timings: What `find_timings` found.
+            timings: The timings that `find_timings` found.
             input_port: A vector port of the system, which has a value.
             output_port: A vector port of the system.
 

@@ -173,7 +173,7 @@ def calc_gain_margin(wall: SampledWall) -> float:
     both are zero.
 
     Args:
-        wall: At its own gains; the margin is above 1 if it is stable.
+        wall: The wall at its own gains; the margin is above 1 if it is stable.
     """
     K, B, T = wall.stiffness, wall.wall_damping, wall.period_s
     if K == B == 0.0:

@@ -30,8 +30,7 @@ from drake_haptics.analysis.stiffness_limits import (
     find_stiffness_limits,
     none_unless_finite,
 )
-from drake_haptics.analysis.z_width_map import ZWidth, z_width
-from drake_haptics.analysis.z_width_plot import HeldBounds
+from drake_haptics.analysis.z_width_map import HeldBounds, ZWidth, z_width
 from drake_haptics.bounds.coupling import HeldHandle
 from drake_haptics.bounds.held_handle import calc_scene_handle, check_scene_coupling
 from drake_haptics.common.one_line import one_line
@@ -56,10 +55,10 @@ class SceneStability:
         scene: The scene, its hand stopped.
         time_s: When the hand stopped on its path, s.
         handle: Inertia and damping of device and hand where they are.
-        num_contacts: That push, nearer than the tolerance, at rest.
-        contact_force_N: On the tool, at rest, N.
-        growth: Of the fastest growing motion in a tick; stable below 1.
-        linearization: Of one tick.
+        num_contacts: Number of contacts that push, nearer than the tolerance, at rest.
+        contact_force_N: Contact force on the tool, at rest, N.
+        growth: Growth of the fastest growing motion in a tick; stable below 1.
+        linearization: Linear map of one tick.
         modes: All motions, fastest growing first.
         delay_margin_s: Further delay at which the loop becomes unstable, s.
         limits: Of the coupling's stiffness in translation and in rotation, in this
@@ -161,13 +160,13 @@ def analyse_scene(
     """Analyses the stability of a scene where its tool is held in contact.
 
     Args:
-        scene: With a simulated device and hand.
+        scene: A scene with a simulated device and hand.
         time_s: When the hand stops on its path, s; at the firmest contact if not
             given.
         map_size: Stiffnesses and dampings of the map, each, at least 2; 0 for no map.
         executor: Computes the map, see `run_study`.
         store: Keeps the map's results, see `run_study`.
-        progress: Called with what is done and its share, in [0, 1].
+        progress: Called with the current work and its share that is done, in [0, 1].
 
     Raises:
         ValueError: The tool does not come to rest, or there is no equilibrium, or

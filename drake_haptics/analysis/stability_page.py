@@ -27,9 +27,9 @@ def write_stability_page(stability: SceneStability, name: str, path: Path) -> No
     """Writes the page as one HTML file, and its picture beside it as PNG.
 
     Args:
-        stability: What `analyse_scene` returned.
-        name: Of the scene.
-        path: Of the HTML file; the picture has the suffix `.png` instead.
+        stability: The result of `analyse_scene`.
+        name: Name of the scene.
+        path: Path of the HTML file; the picture has the suffix `.png` instead.
 
     Raises:
         ValueError: The path has the picture's suffix.
@@ -97,7 +97,7 @@ def _describe_room(limits: tuple[StiffnessLimits, ...]) -> str:
 
 
 def describe_situation(stability: SceneStability) -> str:
-    """Says what was analysed."""
+    """Says what was analyzed."""
     scene, handle = stability.scene, stability.handle
     grip = scene.hand.grip
     held = "without a hand" if grip == "none" else f"in a {grip} grip"

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drake_haptics.analysis.mode_plot import plot_poles
-from drake_haptics.analysis.period_map import PeriodMap
+from drake_haptics.analysis.modes import PeriodMap
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
-from drake_haptics.analysis.z_width_map import ZWidth
-from drake_haptics.analysis.z_width_plot import HeldBounds
+from drake_haptics.analysis.z_width_map import HeldBounds, ZWidth
 from drake_haptics.common.colors import (
     EIGENVALUE,
     FORMULA,
@@ -44,12 +43,12 @@ def draw_sheet(
 
     Args:
         title: Stands above all panels.
-        linearization: Of one tick.
-        limits: Of the coupling's stiffness.
+        linearization: Linear map of one tick.
+        limits: Limits of the coupling's stiffness.
         frequencies_Hz: (n,), rising, Hz.
         damping_usage: (n,), how much of the damping passivity needs at each.
         map: Growth over stiffness and damping; without it its panel is left out.
-        bounds: What theory says of the device in its hand, for the map.
+        bounds: Theoretical bounds of the device in its hand, for the map.
         gains: K, N/m, and B, N·s/m, of the scene, for the map.
     """
     from matplotlib.figure import Figure

@@ -1,4 +1,4 @@
-"""How stiff a scene's coupling may be: by eigenvalues, by simulation, by formula."""
+"""The largest stable stiffness of a scene's coupling, calculated in four ways."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from typing import Any, Literal
 
 from scipy.optimize import brentq
 
-from drake_haptics.analysis.aimed_hand import build_aimed
-from drake_haptics.analysis.held_loop import HeldLoop, analyse_held_scene
+from drake_haptics.analysis.held_loop import HeldLoop, analyse_held_scene, build_aimed
 from drake_haptics.analysis.held_scene import HeldScene
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.modes import describe_motion, find_modes
@@ -42,7 +41,7 @@ class StiffnessLimits:
     All in N/m for translation and N·m/rad for rotation.
 
     Attributes:
-        kind: Of which stiffness.
+        kind: Kind of the stiffness.
         against: What the tool touches: the contact in which it is held, which gives
             way; or a wall that holds it still, the worst that a device can feel
             (`HeldScene.against_rigid_wall`).
@@ -100,9 +99,9 @@ def find_stiffness_limits(
 
     Args:
         held: The scene, with the gains that stay.
-        kind: Which stiffness is raised.
-        against: What the tool touches.
-        progress: Called with the share done, in [0, 1].
+        kind: Kind of the stiffness that is raised.
+        against: Name of the body that the tool touches.
+        progress: Called with the share that is done, in [0, 1].
 
     Raises:
         ValueError: The scene's coupling has no such stiffness.

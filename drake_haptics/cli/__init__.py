@@ -13,9 +13,8 @@ from typing import Any
 
 import click
 
-from drake_haptics.cli.failures import failures_in_words
-from drake_haptics.cli.lazy_group import LazyGroup
-from drake_haptics.cli.lesson import Lesson
+from drake_haptics.cli.endings import failures_in_words
+from drake_haptics.cli.lessons import LazyGroup, Lesson
 
 _COMMANDS = {
     "Feel": {
@@ -33,13 +32,16 @@ _COMMANDS = {
         ),
     },
     "What there is": {
-        "scenes": ("drake_haptics.cli.scenes", "List the scenes that come along."),
-        "devices": ("drake_haptics.cli.devices", "List the devices that come along."),
+        "scenes": ("drake_haptics.cli.listings", "List the scenes that are included."),
+        "devices": (
+            "drake_haptics.cli.listings",
+            "List the devices that are included.",
+        ),
     },
     "Your meshes": {
-        "check": ("drake_haptics.cli.check", "Report what a mesh file is and lacks."),
+        "check": ("drake_haptics.cli.meshes", "Report what a mesh file is and lacks."),
         "decompose": (
-            "drake_haptics.cli.decompose",
+            "drake_haptics.cli.meshes",
             "Cut the surface of a mesh into convex pieces.",
         ),
     },

@@ -9,32 +9,36 @@ from pathlib import Path
 from typing import Any
 
 import click
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
 
-from drake_haptics.analysis.jobs.error import StudyError
+from drake_haptics.analysis.jobs.study import StudyError
 from drake_haptics.cli import lessons
-from drake_haptics.cli.accuracy_output import print_choice, print_study
-from drake_haptics.cli.complete import complete_knob, complete_scene
-from drake_haptics.cli.console import make_console
-from drake_haptics.cli.exit_codes import ExitCode
-from drake_haptics.cli.failures import naming
-from drake_haptics.cli.finite_range import FiniteRange
-from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import (
+from drake_haptics.cli.completion import complete_knob, complete_scene
+from drake_haptics.cli.console import make_console, progress_bar
+from drake_haptics.cli.endings import ExitCode, naming
+from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.options import (
+    FiniteRange,
     json_option,
+    load_set_scene,
     require_folder,
     require_writable,
-    write_json,
-)
-from drake_haptics.cli.progress_bar import progress_bar
-from drake_haptics.cli.scene_options import (
-    load_set_scene,
     set_option,
     write_call,
+    write_json,
 )
 from drake_haptics.common.errors import UserError
 from drake_haptics.evaluation.accuracy.add_peers import add_peers
 from drake_haptics.evaluation.accuracy.budget import RUNS, BudgetChoice, choose_setting
-from drake_haptics.evaluation.accuracy.budget_words import describe_file, to_budget_data
+from drake_haptics.evaluation.accuracy.budget_words import (
+    describe_file,
+    describe_help,
+    describe_outcome,
+    describe_sacrifices,
+    to_budget_data,
+)
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
 from drake_haptics.evaluation.accuracy.fresh_run import measure_p99
 from drake_haptics.evaluation.accuracy.knobs import list_settings
@@ -43,11 +47,82 @@ from drake_haptics.evaluation.accuracy.page import write_accuracy_page
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.accuracy.study import run_accuracy_study
 from drake_haptics.evaluation.accuracy.study_json import to_json_data
-from drake_haptics.evaluation.accuracy.words import name_setting
-from drake_haptics.report.page import check_page_path
+from drake_haptics.evaluation.accuracy.table import (
+    MODEL_MARK,
+    SCENE_MARK,
+    get_columns,
+    group_rows,
+    make_cells,
+    make_label,
+)
+from drake_haptics.evaluation.accuracy.words import (
+    describe_knees,
+    describe_machine,
+    describe_missing,
+    describe_models,
+    describe_peers,
+    describe_reference,
+    describe_verdict,
+    make_front,
+    name_setting,
+)
+from drake_haptics.report.paths import check_page_path
 from drake_haptics.scene.scene_file import write_scene
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError
+
+
+def print_study(console: Console, study: AccuracyStudy) -> None:
+    """Prints the verdict, the price list, its knees, and notes on them."""
+    for sentence in describe_verdict(study):
+        console.print(sentence, style="bold")
+    console.print(describe_reference(study), style="dim")
+    console.print()
+    console.print(_make_table(study))
+    console.print()
+    for sentence in describe_knees(study, make_front(study)):
+        console.print(f"Knee: {sentence}")
+    for sentence in describe_peers(study):
+        console.print(f"Beside it: {sentence}")
+    for column in get_columns(study):
+        console.print(f"{column.head}, {column.unit}: {column.meaning}", style="dim")
+    console.print(f"{SCENE_MARK} the scene as it is", style="dim")
+    if models := describe_models(study):
+        console.print(
+            f"{MODEL_MARK} differences of model, not errors: {'; '.join(models)}",
+            style="dim",
+        )
+    for sentence in describe_missing(study):
+        console.print(f"not measured: {sentence}", style="dim")
+    console.print(describe_machine(study), style="dim")
+
+
+def print_choice(
+    console: Console, choice: BudgetChoice, scene: Scene, name: str
+) -> None:
+    """Prints the outcome for a budget, and what is given up for it."""
+    console.print(describe_outcome(choice, name), style="bold")
+    if not choice.holds:
+        for sentence in describe_help(choice):
+            console.print(sentence)
+        return
+    for sentence in describe_sacrifices(choice, scene):
+        console.print(f"given up: {sentence}")
+
+
+def _make_table(study: AccuracyStudy) -> Table:
+    columns = get_columns(study)
+    table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
+    # In a narrow terminal labels take two lines, and figures stay whole.
+    table.add_column("setting")
+    for column in columns:
+        table.add_column(f"{column.head}\n{column.unit}", justify="right", no_wrap=True)
+    for knob, rows in group_rows(study):
+        table.add_row(Text(knob, style="bold"))
+        for row in rows:
+            table.add_row(Text(make_label(row)), *make_cells(row, columns))
+    return table
+
 
 _FILE: dict[str, Any] = {
     "type": click.Path(dir_okay=False, path_type=Path),
@@ -169,7 +244,7 @@ def accuracy(
 
 @contextmanager
 def _errors_in_a_line() -> Iterator[None]:
-    """Turns what may go wrong while it is measured into messages."""
+    """Turns expected failures of the measurement into messages."""
     try:
         yield
     except (ValueError, RunError, StudyError) as error:
@@ -177,7 +252,7 @@ def _errors_in_a_line() -> Iterator[None]:
 
 
 def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None:
-    """Returns the setting that --only names; None for those of all knobs."""
+    """Returns the setting that --only names; None for the settings of all knobs."""
     if not words:
         return None
     with naming("--only"):
@@ -187,7 +262,7 @@ def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None
 
 
 def _require_measured(study: AccuracyStudy, settings: list[Setting]) -> None:
-    """Raises UserError where the one setting that was asked for cannot be had."""
+    """Raises UserError where the one requested setting could not be measured."""
     for row in study.rows:
         if row.setting in settings and row.why_not:
             raise UserError(f"--only: {name_setting(row)}: {row.why_not}")
@@ -208,7 +283,7 @@ def _show_study(study: AccuracyStudy, page: Path | None, json_file: str | None) 
 def _show_choice(
     choice: BudgetChoice, scene: Scene, name: str, file: Path, json_file: str | None
 ) -> None:
-    """Prints what came of a budget, and writes the scene that holds it."""
+    """Prints the outcome for a budget, and writes the scene that holds it."""
     if choice.holds:
         write_scene(choice.scene, file, describe_file(choice, scene, name))
     if json_file is not None:

@@ -8,10 +8,9 @@ import click
 from rich.table import Table as RichTable
 
 from drake_haptics.cli import lessons
-from drake_haptics.cli.console import make_console
-from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import json_option, meshes_option, write_json
-from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.cli.console import make_console, progress_bar
+from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.options import json_option, meshes_option, write_json
 from drake_haptics.evaluation.benchmark.benchmark import (
     PARTS,
     QUICK,

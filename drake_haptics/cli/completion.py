@@ -1,16 +1,101 @@
-"""`drake-haptics completion`."""
+"""Completion by the Tab key, and the command `drake-haptics completion` for it."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 
 import click
-from click.shell_completion import get_completion_class
+from click.shell_completion import CompletionItem, get_completion_class
 
 from drake_haptics.cli import lessons
-from drake_haptics.cli.lesson import TaughtCommand
+from drake_haptics.cli.lessons import TaughtCommand
 from drake_haptics.common.errors import UserError
+from drake_haptics.geometry.mesh.units import METRES_PER_UNIT
+
+_ADDRESSES = {
+    "udp://127.0.0.1:7400": "a driver, as `drake-haptics device` is one",
+    "mouse:": "the mouse, on the page",
+    "meshcat:": "sliders and gamepad, on the page",
+    "haply://127.0.0.1": "Haply's service",
+    "lcm:": "a driver on LCM",
+    "replay:": "the handle of a log",
+}
+
+
+def complete_scene(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes names of shipped scenes, else files."""
+    from drake_haptics.scene.library import list_scenes
+
+    return _complete(list_scenes(), incomplete) or [
+        CompletionItem(incomplete, type="file")
+    ]
+
+
+def complete_file(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes files."""
+    return [CompletionItem(incomplete, type="file")]
+
+
+def complete_address(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes kinds of devices."""
+    return [
+        CompletionItem(address, help=what)
+        for address, what in _ADDRESSES.items()
+        if address.startswith(incomplete)
+    ]
+
+
+def complete_unit(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes length units."""
+    return _complete(METRES_PER_UNIT, incomplete)
+
+
+def complete_setting(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes KEY=VALUE of a scene: keys, and the values of some of them."""
+    from drake_haptics.scene.settings import list_setting_keys
+
+    return _complete_value(list_setting_keys(), incomplete)
+
+
+def complete_knob(
+    _: click.Context, __: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Completes KEY=VALUE where one key is that of all objects."""
+    from drake_haptics.scene.keys import list_keys
+    from drake_haptics.scene.schema import EnvironmentObject, Scene
+
+    each = list_keys(EnvironmentObject, "environment.")
+    return _complete_value([*list_keys(Scene), *each], incomplete)
+
+
+def _complete_value(keys: Iterable[str], incomplete: str) -> list[CompletionItem]:
+    """Completes a key, and devices after `device.preset=`."""
+    if "=" not in incomplete:
+        return _complete([f"{key}=" for key in keys], incomplete)
+    if not incomplete.startswith("device.preset="):
+        return []
+    from drake_haptics.scene.device_preset import list_device_presets
+
+    return _complete(
+        [f"device.preset={name}" for name in list_device_presets()], incomplete
+    )
+
+
+def _complete(words: Iterable[str], incomplete: str) -> list[CompletionItem]:
+    return [CompletionItem(word) for word in words if word.startswith(incomplete)]
+
 
 _PROGRAM = "drake-haptics"
 _FISH = "~/.config/fish/completions/drake-haptics.fish"

@@ -1,23 +1,29 @@
-"""Where commands print."""
+"""Prints for a person or a pipe: text, the address of a page, a progress bar."""
 
 from __future__ import annotations
 
+import os
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
+from urllib.parse import urlsplit
 
 from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-# Of a file or a pipe, so that `grep` and `less -S` find whole lines.
+# Width for a file or a pipe, so that `grep` and `less -S` find whole lines.
 _ANY_WIDTH = 400
 
 
 class _Terminal(Console):
-    """A terminal, which may be closed before all is said.
+    """A terminal, which may be closed before everything is printed.
 
-    What is to be written to files after that is written all the same.
+    Files that are written after that are still written.
     """
 
     def print(self, *objects: Any, **options: Any) -> None:
-        """Prints, or drops what a terminal that has gone cannot take."""
+        """Prints, unless the terminal has gone."""
         try:
             super().print(*objects, **options)
         except OSError:
@@ -46,10 +52,79 @@ def make_console(*, stderr: bool = False, markup: bool = True) -> Console:
     has NO_COLOR.
 
     Args:
-        stderr: Whether to write there.
+        stderr: Whether to write to stderr instead of stdout.
         markup: Whether `[bold]` and the like mean something in what is printed.
     """
     console = _Terminal(highlight=False, markup=markup, stderr=stderr)
     if console.is_terminal:
         return console
     return _Pipe(highlight=False, markup=markup, stderr=stderr, width=_ANY_WIDTH)
+
+
+def describe_page(url: str, parts: Sequence[str] = ()) -> list[str]:
+    """Returns where a person opens a page, and how over ssh.
+
+    Args:
+        url: Address of the page.
+        parts: Further addresses that the page needs, each with its own port.
+    """
+    lines = [f"Open {url} to see it."]
+    if connection := os.environ.get("SSH_CONNECTION"):
+        # Client's address and port, then the server's.
+        host = connection.split()[2:3] or ["THIS_COMPUTER"]
+        ports = dict.fromkeys(urlsplit(address).port for address in (url, *parts))
+        forwards = " ".join(f"-L {port}:localhost:{port}" for port in ports)
+        lines.append(
+            "Over ssh, run this on your own computer and open it there:"
+            f" ssh -N {forwards} {host[0]}"
+        )
+    return lines
+
+
+# Rich stops the clock of a bar that was full once. Each part of the work fills it.
+_ALMOST_FULL = 1.0 - 1e-6
+
+# Without a terminal a line is written this often, and none before.
+_LINE_EVERY_S = 10.0
+
+
+@contextmanager
+def progress_bar() -> Iterator[Callable[[str, float], None]]:
+    """Shows a bar on stderr while the context lasts, or lines if that is no terminal.
+
+    Work of a few seconds writes no line. What takes longer writes one when another part
+    of it begins, and one every ten seconds.
+
+    Yields:
+        A function to call with the current work and the share that is done, in [0, 1].
+    """
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield _Lines(console)
+        return
+    columns = (BarColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("", total=1.0)
+
+        def show(what: str, share: float) -> None:
+            bar.update(task, description=what, completed=min(share, _ALMOST_FULL))
+            bar.refresh()
+
+        yield show
+
+
+class _Lines:
+    """Writes a line now and then."""
+
+    def __init__(self, console: Console):
+        self._console = console
+        self._begun_s = self._written_s = time.monotonic()
+        self._what = ""
+
+    def __call__(self, what: str, share: float) -> None:
+        now_s = time.monotonic()
+        is_another = what != self._what and now_s - self._begun_s >= _LINE_EVERY_S
+        self._what = what
+        if is_another or now_s - self._written_s >= _LINE_EVERY_S:
+            self._written_s = now_s
+            self._console.print(f"{what}: {share:.0%}", soft_wrap=True, markup=False)

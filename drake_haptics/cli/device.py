@@ -5,22 +5,23 @@ from __future__ import annotations
 import click
 
 from drake_haptics.cli import lessons
-from drake_haptics.cli.change_log import ChangeLog
-from drake_haptics.cli.complete import complete_scene
+from drake_haptics.cli.completion import complete_scene
 from drake_haptics.cli.console import make_console
-from drake_haptics.cli.device_words import describe_gate
-from drake_haptics.cli.driver_status import (
-    DRIVER_REMEDY,
-    DriverStatusLine,
-    make_driver_summary,
-)
-from drake_haptics.cli.finite_range import FiniteRange
-from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import json_option, write_json
-from drake_haptics.cli.scene_options import (
+from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.live_line import ChangeLog
+from drake_haptics.cli.options import (
+    FiniteRange,
+    json_option,
     load_set_scene,
     set_option,
     write_call,
+    write_json,
+)
+from drake_haptics.cli.status_line import (
+    DRIVER_REMEDY,
+    DriverStatusLine,
+    describe_gate,
+    make_driver_summary,
 )
 from drake_haptics.common.real_time import stop_on_signals
 from drake_haptics.loop.drivers import make_simulated_driver

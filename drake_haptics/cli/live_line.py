@@ -1,4 +1,4 @@
-"""A line at the foot of the terminal that is written anew a few times per second."""
+"""Shows what a loop does: in a line of the terminal, or as a log of changes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rich.text import Text
 
 _PERIOD_S = 0.2
 _BETWEEN = " · "
-# A terminal that takes nothing for so long is left as it is.
+# A terminal or reader that takes nothing for this long is not waited for.
 _END_S = 0.5
 
 
@@ -29,7 +29,7 @@ class LiveLine:
     the output is not a terminal nothing is written.
 
     Args:
-        console: Where to write.
+        console: Console to write to.
         make_line: Called with the time since the last line, s; returns the next, of
             parts between " · ", the most important first: the last ones are left out
             where a terminal is narrow.
@@ -74,7 +74,7 @@ class LiveLine:
             self._thread.join(_END_S)
 
     def update(self) -> None:
-        """Makes the line anew, if it is time; a call costs well under 1 µs else."""
+        """Makes a new line, if it is time; otherwise a call costs well under 1 µs."""
         now_s = self._clock()
         if not self._shown or now_s < self._last_s + _PERIOD_S:
             return
@@ -84,8 +84,8 @@ class LiveLine:
         self._last_s = now_s
 
     def _write(self) -> None:
-        """Is the thread."""
-        # A terminal that has gone is no matter for the loop.
+        """Writes lines until the end; runs in the thread."""
+        # The loop goes on without a terminal that has gone.
         with suppress(OSError):
             self._live.start()
             for line in iter(self._lines.get, None):
@@ -103,3 +103,64 @@ def _make_text(line: str, width: int) -> Text:
     text = Text(_BETWEEN).join(parts)
     text.no_wrap, text.overflow = True, "ellipsis"
     return text
+
+
+class ChangeLog:
+    """Writes a line to a file or a journal whenever something has changed.
+
+    Only a thread of its own writes: the loop never waits for a reader.
+
+    Args:
+        console: Output; nothing is written if it is a terminal.
+        describe: Called at each tick; returns the words to note when they change.
+        clock: Reads the time, s.
+    """
+
+    def __init__(
+        self,
+        console: Console,
+        describe: Callable[[], str],
+        clock: Callable[[], float] = time.monotonic,
+    ):
+        self._console = console
+        self._describe = describe
+        self._clock = clock
+        self._start_s = clock()
+        self._last = ""
+        # Lines on their way; None is the end.
+        self._lines: SimpleQueue[str | None] = SimpleQueue()
+        self._thread = threading.Thread(
+            target=self._write, name="change_log", daemon=True
+        )
+
+    def __enter__(self) -> ChangeLog:
+        """Starts to write."""
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Writes what is left."""
+        self._lines.put(None)
+        self._thread.join(_END_S)
+
+    def update(self) -> None:
+        """Notes what has changed since the last call, if anything has."""
+        if self._console.is_terminal:
+            return
+        words = self._describe()
+        if words != self._last:
+            self._last = words
+            self._lines.put(f"{self._clock() - self._start_s:8.1f} s  {words}")
+
+    def _write(self) -> None:
+        """Writes lines until the end; runs in the thread."""
+        # The loop goes on without its reader; rich would end the program.
+        with suppress(OSError, SystemExit):
+            for line in iter(self._lines.get, None):
+                self._console.print(line)
+                self._console.file.flush()

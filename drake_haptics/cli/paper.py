@@ -10,15 +10,14 @@ from rich.measure import Measurement
 from rich.table import Table as RichTable
 
 from drake_haptics.cli import lessons
-from drake_haptics.cli.console import make_console
-from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import (
+from drake_haptics.cli.console import make_console, progress_bar
+from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.options import (
     json_option,
     meshes_option,
     require_folder,
     write_json,
 )
-from drake_haptics.cli.progress_bar import progress_bar
 from drake_haptics.evaluation.paper.evaluation import (
     PARTS,
     QUICK,

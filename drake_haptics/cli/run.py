@@ -8,11 +8,14 @@ from pathlib import Path
 import click
 
 from drake_haptics.cli import lessons
-from drake_haptics.cli.complete import complete_address, complete_file, complete_scene
-from drake_haptics.cli.finite_range import FiniteRange
-from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import require_folder, unit_option
-from drake_haptics.cli.scene_options import set_option
+from drake_haptics.cli.completion import complete_address, complete_file, complete_scene
+from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.options import (
+    FiniteRange,
+    require_folder,
+    set_option,
+    unit_option,
+)
 from drake_haptics.common.errors import UserError
 from drake_haptics.geometry.mesh.units import metres_per_unit
 
@@ -178,7 +181,7 @@ def run(
 
 
 def _is_same(scene: str | None, file: Path) -> bool:
-    """Returns whether a scene is a file of one's own, and this one."""
+    """Returns whether a scene is the user's own file, and this one."""
     return (
         scene is not None
         and file.exists()

@@ -1,4 +1,4 @@
-"""A scene from its name to the figures of its run."""
+"""Runs a scene, from its name to the figures of its run."""
 
 from __future__ import annotations
 
@@ -10,31 +10,60 @@ from pathlib import Path
 import click
 from pydrake.geometry import Meshcat
 from rich.console import Console
+from rich.table import Table
 
 from drake_haptics.authoring.scene_from_meshes import make_scene_for_meshes
 from drake_haptics.authoring.speedup import find_tick_relief
-from drake_haptics.cli.console import make_console
-from drake_haptics.cli.device_words import describe_fault
-from drake_haptics.cli.exit_codes import ExitCode
-from drake_haptics.cli.failures import naming
-from drake_haptics.cli.lasting_interrupt import lasting_interrupt
-from drake_haptics.cli.mesh_options import write_json
-from drake_haptics.cli.page_words import describe_page
-from drake_haptics.cli.parts_table import describe_skin, make_parts_table
-from drake_haptics.cli.run_session import PageOptions, run_session
-from drake_haptics.cli.scene_options import (
+from drake_haptics.cli.console import describe_page, make_console
+from drake_haptics.cli.endings import ExitCode, lasting_interrupt, naming
+from drake_haptics.cli.options import (
     load_set_scene,
     name_scale_options,
     set_values,
+    write_json,
 )
-from drake_haptics.cli.status_line import make_summary
+from drake_haptics.cli.run_session import PageOptions, run_session
+from drake_haptics.cli.status_line import describe_fault, make_summary
 from drake_haptics.common.errors import SceneError, UserError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.scene_file import write_scene
 from drake_haptics.scene.schema import Scene
-from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
-from drake_haptics.visualization.meshcat import open_meshcat, set_stage, write_recording
-from drake_haptics.web.port import open_page_port
+from drake_haptics.simulation.explain import Part
+from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
+from drake_haptics.visualization.meshcat import open_meshcat, set_stage
+from drake_haptics.visualization.recording import write_recording
+from drake_haptics.web.link import open_page_port
+
+
+def make_parts_table(parts: Sequence[Part]) -> Table:
+    """Returns a table of the parts of a tick and their sum."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    table.add_column("part", no_wrap=True)
+    table.add_column("why it is there")
+    table.add_column("µs", justify="right", no_wrap=True)
+    table.add_column("share", justify="right", no_wrap=True)
+
+    def add_row(name: str, why: str, us: float, share: float) -> None:
+        table.add_row(name, why, f"{us:.1f}", f"{100 * share:.1f} %")
+
+    for part in parts:
+        add_row(part.name, part.why, part.mean_us, part.share)
+    total_us = sum(part.mean_us for part in parts)
+    add_row("[bold]whole tick[/]", "", total_us, sum(part.share for part in parts))
+    return table
+
+
+def describe_skin(speed_m_per_s: float) -> str:
+    """Returns above which speed a step skips the skin of contact.
+
+    Args:
+        speed_m_per_s: Speed at which a step crosses the skin, m/s, see `HapticDiagram`.
+    """
+    return (
+        f"Above {speed_m_per_s:g} m/s the tool crosses contact.tolerance_m in one step:"
+        " it is met as deep as the step has taken it."
+    )
+
 
 _MESH_OPTIONS = {
     "tool.mesh": "--tool",

@@ -1,8 +1,11 @@
-"""A run from the opening of its device to the last tick."""
+"""Builds a scene and runs it, from opening its device to the last tick."""
 
 from __future__ import annotations
 
+import os
+import select
 import socket
+import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager, nullcontext, suppress
@@ -13,32 +16,100 @@ from typing import Any
 from pydrake.geometry import Meshcat
 from pydrake.systems.framework import Context
 from rich.console import Console
+from rich.progress import Progress, TaskID
 
-from drake_haptics.cli.build_scene import build_scene
-from drake_haptics.cli.change_log import ChangeLog
-from drake_haptics.cli.device_words import describe_held
-from drake_haptics.cli.enter_key import is_enter_pressed
-from drake_haptics.cli.failures import warn
-from drake_haptics.cli.status_line import StatusLine
+from drake_haptics.authoring.plausibility import question_scene
+from drake_haptics.cli.endings import warn
+from drake_haptics.cli.live_line import ChangeLog
+from drake_haptics.cli.options import name_scale_options
+from drake_haptics.cli.status_line import StatusLine, describe_held
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.cockpit.taken_device import (
+from drake_haptics.cockpit.holding import (
     ForceOnRequest,
     TakenDevice,
     take_device,
 )
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import DeviceBackend, DeviceError
-from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.open_device import NoPageError, open_device
-from drake_haptics.loop.outputs import make_log_header
+from drake_haptics.loop.tick_log import make_log_header
 from drake_haptics.scene.schema import Scene
-from drake_haptics.scene.validation import calc_skin_speed
+from drake_haptics.scene.skin import calc_skin_speed
+from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.simulation.callback_timer import CallbackTimer
 from drake_haptics.simulation.device_monitor import DeviceWatch
-from drake_haptics.simulation.profiling import CallbackTimer, Part, explain_tick
+from drake_haptics.simulation.explain import Part, explain_tick
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
+from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
 from drake_haptics.tick_log.tick_recorder import TickRecorder
+
+# Of what a person may have typed at once.
+_BUFFER_BYTES = 4096
+
+
+def is_enter_pressed() -> bool:
+    """Returns whether a line has been typed since the last call.
+
+    Where the input is no terminal nobody types.
+    """
+    if sys.stdin is None or not sys.stdin.isatty():
+        return False
+    keys = sys.stdin.fileno()
+    pressed = False
+    while select.select([keys], [], [], 0.0)[0]:
+        # Not by sys.stdin, which would keep further lines to itself.
+        if not os.read(keys, _BUFFER_BYTES):
+            break  # the terminal has gone
+        pressed = True
+    return pressed
+
+
+def build_scene(
+    console: Console,
+    scene: Scene,
+    meshcat: Meshcat | None,
+    device: DeviceBackend | None = None,
+    recorder: TickRecorder | None = None,
+) -> HapticDiagram:
+    """Builds the diagram, with a bar while meshes are cut into pieces.
+
+    What the scene may do wrong is then written to stderr, a line each.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", SceneWarning)
+        haptic = _build(console, scene, meshcat, device, recorder)
+    # Only now, when the bar is gone.
+    for warning in caught:
+        warn(str(warning.message))
+    for question in question_scene(haptic):
+        warn(name_scale_options(question))
+    return haptic
+
+
+def _build(
+    console: Console,
+    scene: Scene,
+    meshcat: Meshcat | None,
+    device: DeviceBackend | None,
+    recorder: TickRecorder | None,
+) -> HapticDiagram:
+    """Builds the diagram behind the bar."""
+    quiet = not console.is_terminal
+    with Progress(console=console, transient=True, disable=quiet) as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def report(name: str, share: float) -> None:
+            if name not in tasks:
+                tasks[name] = bars.add_task(
+                    f"Cutting {name} into convex pieces", total=1
+                )
+            bars.update(tasks[name], completed=share)
+
+        return BuildHapticDiagram(
+            scene, device=device, recorder=recorder, meshcat=meshcat, progress=report
+        )
 
 
 @dataclass(frozen=True)
@@ -46,12 +117,12 @@ class Session:
     """What came of a run.
 
     Attributes:
-        haptic: What ran last.
-        scene: As it is at the end, with what the page has changed.
+        haptic: The diagram that ran last.
+        scene: The scene at the end, with the changes of the page.
         figures: As `RunStatistics.to_dict` has them, `skin_speed_m_per_s` as of a
             `HapticDiagram`, and of a device under `device` those of
             `DeviceWatch.to_dict`.
-        parts: Of a tick, if they were to be explained.
+        parts: Parts of a tick, if an explanation was asked for.
         error: Why the run was stopped, if it was.
     """
 
@@ -68,9 +139,9 @@ class PageOptions:
 
     Attributes:
         listener: Its port.
-        name: Of the scene.
+        name: Name of the scene.
         locked: Why nothing may be changed on it; empty if it may.
-        views: Of `PICTURE_VIEWS`, what it shows at first.
+        views: The members of `PICTURE_VIEWS` that it shows at first.
     """
 
     listener: socket.socket
@@ -99,17 +170,17 @@ def run_session(
     terminal that takes nothing must not keep a loop waiting.
 
     Args:
-        console: Where bars and the status line go.
-        scene: What to run.
+        console: Console for bars and the status line.
+        scene: The scene to run.
         device: Address of what is held; None for the scene's simulated one.
-        meshcat: Where to draw, if there is to be a picture.
-        page: To show and steer the run, at the pace of the clock; None for none.
+        meshcat: Meshcat to draw in; None for no picture.
+        page: Page that shows and steers the run, in real time; None for none.
         prepare: Called with what was built before it runs, and the page's address.
         duration_s: Simulated time, s; until Ctrl-C where None.
         energy: Whether to book energy, where the device is simulated.
         explained: Whether to explain the parts of a tick.
         log: File for every tick, if wanted.
-        check_interrupt: Of a `lasting_interrupt`; called after every tick.
+        check_interrupt: Function of a `lasting_interrupt`; called after every tick.
     """
     timer = CallbackTimer() if explained else None
     with ExitStack() as stack:

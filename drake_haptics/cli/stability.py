@@ -18,18 +18,18 @@ from drake_haptics.analysis.stability_page import (
 )
 from drake_haptics.analysis.stiffness_limits import format_limit
 from drake_haptics.cli import lessons
-from drake_haptics.cli.complete import complete_scene
-from drake_haptics.cli.console import make_console
-from drake_haptics.cli.finite_range import FiniteRange
-from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import (
+from drake_haptics.cli.completion import complete_scene
+from drake_haptics.cli.console import make_console, progress_bar
+from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.options import (
+    FiniteRange,
     json_option,
+    load_set_scene,
     require_folder,
     require_writable,
+    set_option,
     write_json,
 )
-from drake_haptics.cli.progress_bar import progress_bar
-from drake_haptics.cli.scene_options import load_set_scene, set_option
 from drake_haptics.common.errors import UserError
 from drake_haptics.report.page import check_page_path
 from drake_haptics.simulation.run import RunError

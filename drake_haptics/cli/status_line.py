@@ -1,9 +1,10 @@
-"""What `drake-haptics run` shows while it runs, and at the end."""
+"""Status lines and summaries of `drake-haptics run` and `drake-haptics device`."""
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,20 +12,97 @@ from pydrake.systems.framework import Context
 from rich.console import Console
 from rich.table import Table
 
-from drake_haptics.cli.device_words import (
-    describe_device,
-    describe_gate,
-    describe_held,
-    describe_lateness,
-    describe_link,
-)
 from drake_haptics.cli.live_line import LiveLine
+from drake_haptics.cockpit.holding import TakenDevice
 from drake_haptics.common.one_line import count
-from drake_haptics.common.real_time import TickClock
-from drake_haptics.device.backend import DeviceReading, GateState
+from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceReading,
+    GateState,
+    LinkStatus,
+)
+from drake_haptics.device.driver import DeviceDriver
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.simulation.device_monitor import SILENT_S, DriverSilence
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
+
+_STYLES = {
+    GateState.IDLE: "dim",
+    GateState.ACTIVE: "green",
+    GateState.FAULT: "bold red",
+}
+
+
+def describe_gate(
+    reading: DeviceReading | None, remedy: str = "Enter takes it up again"
+) -> str:
+    """Returns whether a device shows force, and if not, why and what to do.
+
+    Args:
+        reading: The newest reading; None before the first.
+        remedy: Tells the person what to do about a fault.
+    """
+    if reading is None:
+        return "[dim]silent[/]"
+    words = reading.gate.name
+    if reading.gate == GateState.FAULT:
+        words += f" ({describe_fault(reading.fault.name)}): {remedy}"
+    return f"[{_STYLES[reading.gate]}]{words}[/]"
+
+
+def describe_held(backend: DeviceBackend | None, reading: DeviceReading | None) -> str:
+    """Returns as `describe_gate`, or that the force of a device has not set in yet.
+
+    Args:
+        backend: The device that is held.
+        reading: Its newest reading.
+    """
+    waits = isinstance(backend, TakenDevice) and backend.waits
+    if waits and reading is not None and reading.gate == GateState.IDLE:
+        return (
+            "[yellow]WAITING: lead the handle to where the tool can follow;"
+            " Enter shows the force now[/]"
+        )
+    return describe_gate(reading)
+
+
+def describe_fault(name: str) -> str:
+    """Returns the name of a `Fault` as a word."""
+    return name.lower().replace("_", " ")
+
+
+def describe_lateness(late_s: Sequence[float]) -> str:
+    """Returns p50, p99 and p99.9, given in s, in ms."""
+    return "/".join(f"{1e3 * late:.2f}" for late in late_s) + " ms"
+
+
+def describe_link(link: LinkStatus) -> str:
+    """Returns how much was lost on the way, and how late the backend's thread is."""
+    words = f"{link.lost} lost"
+    if link.rejected:
+        words += f", {link.rejected} refused"
+    if link.lateness_s is not None:
+        words += f", servo {describe_lateness(link.lateness_s)}"
+    return words
+
+
+def describe_device(figures: Mapping[str, Any]) -> str:
+    """Returns `DeviceWatch.to_dict` in a line; of a link only if there is one."""
+    faults = [f"{n} {describe_fault(name)}" for name, n in figures["faults"].items()]
+    words = [
+        f"showed at most {figures['max_force_N']:.2f} N,"
+        f" {1e3 * figures['max_torque_Nm']:.0f} mN·m",
+        f"faults: {', '.join(faults) or 'none'}",
+    ]
+    if figures["received"]:
+        words.insert(
+            0,
+            f"{count(figures['received'], 'reading')}, {figures['lost']} lost,"
+            f" {figures['rejected']} refused",
+        )
+    return "; ".join(words)
+
 
 # Energies below are rounding: a nanojoule lifts a milligram by a tenth of a
 # millimeter.
@@ -37,9 +115,9 @@ class StatusLine(LiveLine):
     """What a run does, in one line.
 
     Args:
-        console: Where to write.
-        haptic: What runs.
-        pace: What paces the run, if it is paced.
+        console: Console to write to.
+        haptic: The diagram that runs.
+        pace: Paces the run, if it is paced.
         clock: Reads the time, s.
     """
 
@@ -62,7 +140,7 @@ class StatusLine(LiveLine):
         self._haptic = haptic
 
     def end_tick(self, context: Context) -> None:
-        """Writes the line anew, if it is time.
+        """Writes the line again, if it is time.
 
         Args:
             context: The diagram's, after a tick.
@@ -74,7 +152,7 @@ class StatusLine(LiveLine):
         """Returns the line."""
         assert self._context is not None
         time_s = self._context.get_time()
-        # A scene that is begun anew has gone nowhere yet.
+        # A scene that begins again has gone nowhere yet.
         run_s, self._before_s = max(0.0, time_s - self._before_s), time_s
         backend = self._haptic.backend
         force, depth, contacts = self._describe_touch(self._context)
@@ -120,7 +198,7 @@ class StatusLine(LiveLine):
         return [f"[yellow]leaves out {', '.join(stages)}[/]"] if stages else []
 
     def _describe_touch(self, context: Context) -> tuple[str, str, str]:
-        """Returns what is felt, how deep the tool is, and by how many contacts."""
+        """Returns the felt wrench, the depth of the tool, and the count of contacts."""
         loop = self._haptic.loop
         found = loop.found_contacts
         contacts = found.Eval(found.get_system().GetMyContextFromRoot(context))
@@ -235,3 +313,80 @@ def _describe_share(part_J: float, whole_J: float) -> str:
     if whole_J <= _ROUNDING_J:
         return "and the hand put in none"
     return f"{100.0 * part_J / whole_J:.2g} % of what the hand put in"
+
+
+# What ends a fault of a driver.
+DRIVER_REMEDY = "until the host disables it"
+
+
+class DriverStatusLine(LiveLine):
+    """The state of a driver in one line.
+
+    Args:
+        console: Console to write to.
+        driver: The driver that runs.
+        clock: Reads the time, s.
+    """
+
+    def __init__(
+        self,
+        console: Console,
+        driver: DeviceDriver,
+        clock: Callable[[], float] = time.perf_counter,
+    ):
+        super().__init__(console, self._make_driver_line, clock)
+        self._driver = driver
+        self._ticks = 0
+
+    def _make_driver_line(self, passed_s: float) -> str:
+        """Returns the line."""
+        driver, reading = self._driver, self._driver.reading
+        ticks = driver.pace.ticks
+        rate, self._ticks = (ticks - self._ticks) / passed_s, ticks
+        packets = driver.packets
+        taken = packets.pop("accepted", 0)
+        return " · ".join(
+            [
+                describe_gate(reading, DRIVER_REMEDY),
+                f"[bold]{math.hypot(*reading.F_BH[3:]):4.1f} N[/]"
+                f" {1e3 * math.hypot(*reading.F_BH[:3]):4.0f} mN·m",
+                f"{math.hypot(*reading.V_BH[3:]):.2f} m/s",
+                f"{rate:.0f} Hz",
+                "late p50/p99/p99.9"
+                f" {describe_lateness(driver.pace.calc_lateness(_LATEST))}",
+                f"{taken} commands, {sum(packets.values())} refused",
+            ]
+        )
+
+
+def make_driver_summary(figures: Mapping[str, Any]) -> Table:
+    """Returns a table of `DeviceDriver.to_dict`."""
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_column(style="dim")
+    table.add_column()
+    late = figures["lateness_us"]
+    table.add_row(
+        "ran", f"{figures['duration_s']:.2f} s, {count(figures['ticks'], 'tick')}"
+    )
+    table.add_row(
+        "late",
+        f"median {late['p50']:.0f} µs, p99 {late['p99']:.0f} µs,"
+        f" p99.9 {late['p99_9']:.0f} µs, {count(late['skipped'], 'tick')} skipped",
+    )
+    table.add_row("packets", _count_each(figures["packets"]))
+    table.add_row(
+        "largest",
+        f"force {figures['max_force_N']:.2f} of {figures['force_limit_N']:g} N,"
+        f" torque {1e3 * figures['max_torque_Nm']:.0f} of"
+        f" {1e3 * figures['torque_limit_Nm']:g} mN·m",
+    )
+    table.add_row("over limits", f"{count(figures['limit_violations'], 'tick')}")
+    table.add_row("faults", _count_each(figures["faults"]))
+    table.add_row("recovered", _count_each(figures["recoveries"]))
+    return table
+
+
+def _count_each(counts: Mapping[str, int]) -> str:
+    """Returns what there was and how often."""
+    words = [f"{n} {name.lower().replace('_', ' ')}" for name, n in counts.items()]
+    return ", ".join(words) or "none"

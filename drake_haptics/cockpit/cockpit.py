@@ -1,38 +1,126 @@
-"""The cockpit's end in the loop: shows each tick, and hears what the page asks for."""
+"""The page's side of the loop: greets it, shows each tick, hears what it asks for."""
 
 from __future__ import annotations
 
+import inspect
 import math
+import textwrap
 from time import monotonic
+from typing import Any
 
 from pydrake.systems.framework import Context
 
 from drake_haptics.authoring.plausibility import question_start
 from drake_haptics.authoring.speedup import find_key_that_helps
-from drake_haptics.cockpit.coupling_advice import CouplingAdvice
-from drake_haptics.cockpit.greeting import make_greeting
 from drake_haptics.cockpit.holding import Holding
-from drake_haptics.cockpit.page_picture import PagePicture
-from drake_haptics.cockpit.scene_changes import SceneChanges
-from drake_haptics.cockpit.steering import Steering
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.cockpit.scene_changes import (
+    CLUSTERING,
+    CLUSTERINGS,
+    EFFECTS,
+    CouplingAdvice,
+    SceneChanges,
+)
+from drake_haptics.cockpit.steering import PagePicture, Steering
+from drake_haptics.common.colors import make_legend
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import DeviceReading, GateState
 from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.loop.device_placement import DeviceSite
 from drake_haptics.simulation.device_monitor import DriverSilence
-from drake_haptics.simulation.live_values import LiveKey
+from drake_haptics.simulation.live_key import LiveKey
 from drake_haptics.simulation.statistics import RunStatistics
+from drake_haptics.systems.contact.load_shedding import SHED_STAGES
+from drake_haptics.systems.output.picture_views import PICTURE_VIEWS
+from drake_haptics.visualization.meshcat import CAMERAS
 from drake_haptics.web.live_page import LivePage, Outlook
-from drake_haptics.web.telemetry import ACTIVE, SIMULATED, WAITING
+from drake_haptics.web.messages import ACTIVE, SIMULATED, WAITING
 
-# Pages are told of changes no oftener: a slider that is dragged makes one per frame.
+_LONGEST_DESCRIPTION = 2000
+_CLUSTERING_HELP = (
+    "How few contacts are made of many: shared, which is continuous, or octree, the"
+    " paper's."
+)
+# Pages learn of changes no more often: dragging a slider makes one per frame.
 _TELL_PERIOD_S = 0.1
+
+
+def make_greeting(
+    changes: SceneChanges,
+    *,
+    name: str,
+    meshcat_url: str,
+    handles: dict[str, str],
+    site: DeviceSite,
+    locked: str,
+) -> dict[str, Any]:
+    """Returns the message `hello`, ready for JSON.
+
+    Args:
+        changes: The scene, as it is and as its file has it.
+        name: Name of the scene.
+        meshcat_url: Address of what the page shows.
+        handles: Names of who can hold the handle, with their labels.
+        site: Place of the scene's device, with its limits.
+        locked: Why nothing may be changed; empty if it may.
+    """
+    scene, file = changes.scene, changes.file
+    return {
+        "meshcat": meshcat_url,
+        "scene": name,
+        # What is longer than a datagram would never reach the page.
+        "description": textwrap.shorten(
+            scene.description, _LONGEST_DESCRIPTION, placeholder=" …"
+        ),
+        "period_s": 1.0 / scene.device.rate_hz,
+        "limits": {"force_N": site.max_force_N, "torque_Nm": site.max_torque_Nm},
+        "keys": [
+            {
+                "key": item.key,
+                "label": item.label,
+                "unit": item.unit,
+                "low": item.low,
+                "high": item.high,
+                "log": item.is_logarithmic,
+                "group": item.group,
+                "help": item.help,
+                "file": changes.read_file(item),
+            }
+            for item in changes.list_keys()
+        ],
+        "choices": [
+            {
+                "key": CLUSTERING,
+                "label": "Clustering",
+                "options": list(CLUSTERINGS),
+                "help": _CLUSTERING_HELP,
+                "file": file.contact.clustering,
+            }
+        ],
+        "effects": [
+            {
+                "name": effect,
+                "label": effect.capitalize(),
+                "help": (inspect.getdoc(schema) or "").partition("\n")[0],
+                "file": getattr(file.effects, effect) is not None,
+            }
+            for effect, schema in EFFECTS.items()
+        ],
+        "handles": [{"name": key, "label": label} for key, label in handles.items()],
+        "views": [
+            {"name": key, "label": label} for key, label in PICTURE_VIEWS.items()
+        ],
+        "cameras": list(CAMERAS),
+        "legend": make_legend(scene.effects.friction is not None),
+        "locked": locked,
+        "shed_stages": list(SHED_STAGES),
+    }
 
 
 class Cockpit:
     """Shows a run on its page, and lets the page steer it.
 
     Attributes:
-        steering: What becomes of the run.
+        steering: Decides how the run goes on.
     """
 
     def __init__(
@@ -49,12 +137,12 @@ class Cockpit:
         """Begins without a diagram.
 
         Args:
-            page: To be closed by the caller.
+            page: The page, which the caller closes.
             changes: The scene.
-            holding: Who holds the handle.
-            picture: What is shown.
-            advice: Of the scene.
-            name: Of the scene.
+            holding: Says who holds the handle.
+            picture: The picture on the page.
+            advice: Judges the coupling of the scene.
+            name: Name of the scene.
             locked: Why nothing but the picture may be changed; empty if it may.
         """
         self.steering = Steering(changes, holding, picture, locked)
@@ -86,9 +174,9 @@ class Cockpit:
         """Begins a segment, of a diagram of the scene as it is now.
 
         Args:
-            haptic: What runs.
-            statistics: Of the run.
-            pace: Of the run.
+            haptic: The diagram that runs.
+            statistics: Statistics of the run.
+            pace: Paces the run.
             is_anew: Whether the tool begins where the handle is.
         """
         if is_anew:

@@ -1,30 +1,205 @@
-"""A run with a page, from the opening of its device to its last tick."""
+"""Runs a scene with a page, from the opening of its device to its last tick.
+
+A run consists of segments: where one ends, the next diagram goes on.
+"""
 
 from __future__ import annotations
 
 import socket
+import warnings
 from collections.abc import Callable
 from contextlib import ExitStack, closing
 
 from pydrake.geometry import Meshcat
+from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context
 
 from drake_haptics.cockpit.cockpit import Cockpit
-from drake_haptics.cockpit.coupling_advice import CouplingAdvice
 from drake_haptics.cockpit.holding import Holding
-from drake_haptics.cockpit.page_picture import PagePicture
-from drake_haptics.cockpit.scene_changes import SceneChanges
-from drake_haptics.cockpit.segments import Segments
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.cockpit.scene_changes import CouplingAdvice, SceneChanges
+from drake_haptics.cockpit.steering import Change, PagePicture
+from drake_haptics.common.errors import UserError
+from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.device.backend import DeviceBackend
-from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.schema import Scene
-from drake_haptics.simulation.run import RunError
+from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.simulation.release_diagram import retire
+from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
-from drake_haptics.web.camera import look_from_the_front
-from drake_haptics.web.live_page import LivePage
+from drake_haptics.simulation.transfer_state import carry_on, find_handle
+from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
+from drake_haptics.web.live_page import LivePage, look_from_the_front
+
+
+class Segments:
+    """Runs a scene, and what becomes of it on the cockpit's page."""
+
+    def __init__(
+        self,
+        haptic: HapticDiagram,
+        cockpit: Cockpit,
+        holding: Holding,
+        meshcat: Meshcat,
+    ):
+        """Begins with no tick.
+
+        Args:
+            haptic: Diagram of the cockpit's scene, with the backend that is held.
+            cockpit: Says what is to be otherwise.
+            holding: Says who holds the handle.
+            meshcat: Meshcat to draw in.
+        """
+        self._haptic = haptic
+        self._cockpit = cockpit
+        self._steering = cockpit.steering
+        self._holding = holding
+        self._meshcat = meshcat
+        # Whether the tool begins where the handle is.
+        self._is_anew = True
+
+    def run(
+        self,
+        duration_s: float | None,
+        *,
+        pace: TickClock,
+        statistics: RunStatistics,
+        energy: bool,
+        on_begin: Callable[[HapticDiagram], None],
+        on_tick: Callable[[Context], None],
+    ) -> HapticDiagram:
+        """Runs until the time is over, or Ctrl-C; see `CockpitRun.run`."""
+        left_s, context = duration_s, None
+        # Less than a tick is left of what round-off makes of whole ticks.
+        while left_s is None or left_s > 0.5 * self._haptic.period_s:
+            try:
+                self._cockpit.begin(
+                    self._haptic, statistics, pace, is_anew=self._is_anew
+                )
+                on_begin(self._haptic)
+                change, last = self._run_one(
+                    left_s,
+                    context,
+                    pace=pace,
+                    statistics=statistics,
+                    energy=energy,
+                    on_tick=on_tick,
+                )
+                if change is None:
+                    break
+                old = self._haptic
+                self._haptic, context = self._change(change, last)
+                if self._haptic is not old:
+                    retire(old)
+            except KeyboardInterrupt:
+                break
+            # Building was no stall of the loop.
+            pace.pause()
+            if duration_s is not None:
+                left_s = duration_s - statistics.ticks * self._haptic.period_s
+        return self._haptic
+
+    def _run_one(
+        self,
+        left_s: float | None,
+        context: Context | None,
+        *,
+        pace: TickClock,
+        statistics: RunStatistics,
+        energy: bool,
+        on_tick: Callable[[Context], None],
+    ) -> tuple[Change | None, Context | None]:
+        """Runs a segment.
+
+        Returns:
+            What it ended for, None if the run is over; and where it ended, None where
+            it failed.
+        """
+        last: Context | None = None
+
+        def end_tick(root: Context) -> bool:
+            nonlocal last
+            on_tick(root)
+            if self._cockpit.end_tick(root):
+                last = root.Clone()
+            return last is not None
+
+        try:
+            run(
+                self._haptic,
+                left_s,
+                pace=pace,
+                energy=energy,
+                on_tick=end_tick,
+                context=context,
+                statistics=statistics,
+            )
+        except RunError as error:
+            if not self._steering.fall_back(str(error)):
+                raise
+            return Change(self._holding.name, restarts=True), None
+        return (None if last is None else self._steering.take_change()), last
+
+    def _change(
+        self, change: Change, last: Context | None
+    ) -> tuple[HapticDiagram, Context]:
+        """Returns what runs next, and from where.
+
+        Args:
+            change: The change for which the segment ended.
+            last: Where it ended; None where it failed, and restarts.
+        """
+        old, holding = self._haptic, self._holding
+        backend = holding.backend
+        # A device that says itself where it is begins there again.
+        is_anew = change.restarts and backend is not None and backend.is_placed
+        # A hand on a device may press: a tool put into its handle would kick.
+        is_kept = change.handle == holding.name and not is_anew
+        is_felt = is_kept and holding.is_felt
+        goes_on = last is not None and (is_felt or not change.restarts)
+        X_WH = find_handle(old, last) if goes_on else None
+        self._is_anew = not goes_on
+        try:
+            if change.handle != holding.name or is_anew:
+                holding.take(change.handle, X_WH)
+            new = self._build(old, X_WH)
+        except UserError as error:
+            if holding.backend is not backend:
+                raise
+            self._steering.refuse(str(error))
+            return old, last
+        if holding.taken is not None:
+            # Effects come and go at once: what is felt of them does not.
+            holding.taken.hand_over()
+        if goes_on:
+            context = carry_on(old, last, new)
+            if change.restarts:
+                context.SetTime(0.0)
+        else:
+            context = new.diagram.CreateDefaultContext()
+            new.diagram.ExecuteInitializationEvents(context)
+        self._steering.carry_values(new, context)
+        return new, context
+
+    def _build(self, old: HapticDiagram, X_WH: RigidTransform | None) -> HapticDiagram:
+        """Returns the diagram of the scene as it is now, held as it is now.
+
+        Args:
+            old: The diagram that ran.
+            X_WH: Where the handle goes on; None where the scene begins.
+        """
+        with warnings.catch_warnings():
+            # The page tells it.
+            warnings.simplefilter("ignore", SceneWarning)
+            return BuildHapticDiagram(
+                self._steering.changes.scene,
+                device=self._holding.backend,
+                meshcat=self._meshcat if old.visualizer is not None else None,
+                reuse=old,
+                X_WH=X_WH,
+            )
+
 
 # Until a page tells, the camera is this many radii in front of the workspace: at -y.
 _FIRST_DISTANCE = 4.0
@@ -50,14 +225,14 @@ class CockpitRun:
         """Opens page and device; nobody need look at the page.
 
         Args:
-            scene: What is to run.
-            meshcat: In the page.
+            scene: The scene to run.
+            meshcat: The Meshcat that the page shows.
             listener: The page's port, of `open_page_port`.
-            name: Of the scene.
+            name: Name of the scene.
             device: Address of what is held, as `open_device`; None for the simulated
                 one.
             locked: Why nothing but the picture may be changed; empty if it may.
-            views: Of `PICTURE_VIEWS`, what is shown at first.
+            views: The members of `PICTURE_VIEWS` that are shown at first.
 
         Raises:
             DeviceError, SceneError, TickLogError, OSError: As `open_device`.
@@ -116,10 +291,10 @@ class CockpitRun:
         """Runs a scene, and what becomes of it on the page.
 
         Args:
-            haptic: Of the scene, with `backend`.
+            haptic: Diagram of the scene, with `backend`.
             duration_s: Simulated time, s; until Ctrl-C where None.
             pace: Waits for each tick.
-            statistics: Of all that runs.
+            statistics: Statistics of the whole run.
             energy: Whether to book energy: of a run that is locked.
             on_begin: Called with each diagram before it runs.
             on_tick: Called after every tick with the diagram's context.
@@ -128,7 +303,7 @@ class CockpitRun:
             What ran last.
 
         Raises:
-            RunError: As `simulation.run`.
+            RunError: The run failed, see `simulation.run`.
         """
         segments = Segments(haptic, self._cockpit, self._holding, self._meshcat)
         try:

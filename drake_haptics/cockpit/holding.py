@@ -1,17 +1,212 @@
-"""Who holds the handle of a run, and how it changes hands."""
+"""Says who holds the handle of a run, and hands it over.
+
+A device shows its force only once that is gentle, and changes over gently.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 
-from drake_haptics.cockpit.taken_device import TakenDevice, take_device
-from drake_haptics.device.backend import DeviceBackend, DeviceError, GateState
+from drake_haptics.device.backend import (
+    DeviceBackend,
+    DeviceCommand,
+    DeviceError,
+    DeviceReading,
+    GateState,
+    LinkStatus,
+)
 from drake_haptics.device.meshcat_device import MeshcatDevice
 from drake_haptics.loop.device_placement import find_device_site, wait_for_reading
 from drake_haptics.loop.open_device import open_device
 from drake_haptics.scene.schema import Scene
 from drake_haptics.web.handle import PageHandle
+
+# Of the largest force and torque: what may set in without surprising a hand. The weight
+# of a tool is less, what presses a tool out of a wall more.
+_GENTLE = 0.25
+# For so long it must have been gentle: a tool that begins in a wall needs a moment
+# until it pushes.
+_GENTLE_S = 0.1
+# From none to all, s.
+_RISE_S = 0.2
+
+
+def take_device(device: DeviceBackend, scene: Scene) -> TakenDevice:
+    """Returns a device as a hand takes it, within the limits of a scene.
+
+    Args:
+        device: Open; closed with what is returned.
+        scene: Says limits and rate.
+
+    Raises:
+        SceneError: The device has no place, see `find_device_site`.
+    """
+    site = find_device_site(scene)
+    return TakenDevice(
+        device,
+        max_force_N=site.max_force_N,
+        max_torque_Nm=site.max_torque_Nm,
+        period_s=1.0 / scene.device.rate_hz,
+    )
+
+
+class TakenDevice(DeviceBackend):
+    """Shows no force of a device until that has been gentle for a moment.
+
+    Whoever takes a handle, or takes it up again after a fault, does not know what the
+    virtual tool meets: it may be behind a wall, or turned. Until the two have found
+    each other the tool is led to the handle, and the hand feels nothing.
+
+    Where what makes the force becomes another while it is shown, as an effect comes or
+    goes, it goes over from what was shown last.
+
+    Attributes:
+        device: The device that is taken.
+        waits: Whether its force has not set in yet.
+    """
+
+    def __init__(
+        self,
+        device: DeviceBackend,
+        *,
+        max_force_N: float,
+        max_torque_Nm: float,
+        period_s: float,
+    ):
+        """Begins without force.
+
+        Args:
+            device: Open; closed with this.
+            max_force_N: Largest force that it shows, N.
+            max_torque_Nm: Largest torque that it shows, N·m.
+            period_s: The tick, s: one `write` in each.
+        """
+        self.device = device
+        self.waits = True
+        self._gentle_force_N = _GENTLE * max_force_N
+        self._gentle_torque_Nm = _GENTLE * max_torque_Nm
+        self._most_ticks = math.ceil(_GENTLE_S / period_s)
+        self._gentle_ticks = 0
+        # Of the wrench that is asked for, how much is shown, and its rise in a tick.
+        self._share, self._rise = 0.0, period_s / _RISE_S
+        # What the rest is of, and what was shown last.
+        self._before_B = self._shown_B = np.zeros(6)
+
+    def __repr__(self) -> str:
+        return repr(self.device)
+
+    @property
+    def url(self) -> str | None:
+        """The device's."""
+        return self.device.url
+
+    @property
+    def is_placed(self) -> bool:
+        """The device's."""
+        return self.device.is_placed
+
+    @property
+    def shows_force(self) -> bool:
+        """The device's."""
+        return self.device.shows_force
+
+    def read(self) -> DeviceReading | None:
+        """Returns the newest reading; idle as long as it waits."""
+        reading = self.device.read()
+        if self.waits and reading is not None and reading.gate == GateState.ACTIVE:
+            return replace(reading, gate=GateState.IDLE)
+        return reading
+
+    def write(self, command: DeviceCommand) -> None:
+        """Asks for what is shown of a wrench from now on."""
+        if self._share < 1.0:
+            command = self._ease(command)
+        self._shown_B = command.F_BH
+        self.device.write(command)
+
+    def hand_over(self) -> None:
+        """Goes over to what is asked for next from what is shown, as it sets in."""
+        self._before_B, self._share = self._shown_B, 0.0
+
+    def resume(self) -> None:
+        """Takes it up again if it is at fault; else lets the force set in as it is."""
+        reading = self.read()
+        if reading is not None and reading.gate == GateState.FAULT:
+            self.recover()
+        else:
+            self.waits = False
+
+    def recover(self) -> None:
+        """Takes a device at fault up again, as one that is taken."""
+        self.waits = True
+        self._gentle_ticks, self._share = 0, 0.0
+        self._before_B = np.zeros(6)
+        self.device.recover()
+
+    def close(self) -> None:
+        """Closes the device."""
+        self.device.close()
+
+    def get_link_status(self) -> LinkStatus:
+        """Returns the device's."""
+        return self.device.get_link_status()
+
+    def _ease(self, command: DeviceCommand) -> DeviceCommand:
+        """Returns the part of a command that is shown."""
+        if self.waits:
+            is_gentle = self._is_gentle(command.F_BH)
+            self._gentle_ticks = self._gentle_ticks + 1 if is_gentle else 0
+            self.waits = self._gentle_ticks < self._most_ticks
+        if self.waits:
+            return DeviceCommand(np.zeros(6), command.X_BH, command.V_BH)
+        self._share = min(1.0, self._share + self._rise)
+        share = self._share
+        F_BH = (1.0 - share) * self._before_B + share * np.asarray(command.F_BH)
+        K_B, B_B = (
+            None if part is None else share * np.asarray(part)
+            for part in (command.K_B, command.B_B)
+        )
+        return DeviceCommand(F_BH, command.X_BH, command.V_BH, K_B, B_B)
+
+    def _is_gentle(self, F_BH: np.ndarray) -> bool:
+        """Whether a wrench [τ; f] may set in; one that is not finite may not."""
+        tau_x, tau_y, tau_z, f_x, f_y, f_z = np.asarray(F_BH).tolist()
+        torque_Nm, force_N = math.hypot(tau_x, tau_y, tau_z), math.hypot(f_x, f_y, f_z)
+        return force_N <= self._gentle_force_N and torque_Nm <= self._gentle_torque_Nm
+
+
+class ForceOnRequest:
+    """Lets the force of a taken device set in where somebody asks for it."""
+
+    def __init__(self, device: TakenDevice, wants_it_now: Callable[[], bool]):
+        """Looks at nothing yet.
+
+        Args:
+            device: May wait.
+            wants_it_now: Says, while it waits, whether to show the force as it is.
+        """
+        self._device = device
+        self._wants_it_now = wants_it_now
+        self._could_show = False
+
+    def end_tick(self, _context: object = None) -> None:
+        """Looks at the device; made to be called after every tick."""
+        reading = self._device.device.read()
+        gate = None if reading is None else reading.gate
+        if not self._device.waits or gate == GateState.FAULT:
+            self._could_show = False
+            return
+        # A wish from before was for something else: to leave a fault.
+        if self._wants_it_now() and self._could_show:
+            self._device.resume()
+        self._could_show = gate == GateState.ACTIVE
+
 
 HAND, MOUSE, SLIDERS, DEVICE = "hand", "mouse", "sliders", "device"
 _LABELS = {HAND: "Simulated hand", MOUSE: "Mouse", SLIDERS: "Sliders, gamepad"}
@@ -24,8 +219,8 @@ class Holding:
 
     Attributes:
         name: `HAND`, `MOUSE`, `SLIDERS` or `DEVICE`.
-        backend: What is held; None in the scene's own simulated hand.
-        site: Where the scene has its device.
+        backend: The device that is held; None in the scene's own simulated hand.
+        site: Place of the scene's device.
     """
 
     def __init__(
@@ -35,8 +230,8 @@ class Holding:
 
         Args:
             scene: Says where its device stands.
-            meshcat: Has a page.
-            address: As `open_device`; None for the simulated one.
+            meshcat: The Meshcat that the page shows.
+            address: Address for `open_device`; None for the simulated one.
             has_hand: Whether there is a simulated one.
 
         Raises:

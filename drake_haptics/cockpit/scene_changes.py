@@ -1,11 +1,25 @@
-"""A scene while people change it."""
+"""A scene while people change it, and what is wrong with its coupling."""
 
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from typing import Any
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.bounds.coupling import (
+    BrokenBound,
+    find_broken_bounds,
+    find_exceeded_ratings,
+)
+from drake_haptics.bounds.held_handle import (
+    calc_force_delay,
+    calc_loosely_held,
+    calc_scene_handle,
+    find_real_bounds,
+)
+from drake_haptics.common.errors import SceneError, UserError
+from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
+from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import (
     Braking,
     Effects,
@@ -16,7 +30,8 @@ from drake_haptics.scene.schema import (
     Scene,
     Shading,
 )
-from drake_haptics.simulation.live_values import LiveKey, effect_keys, live_keys
+from drake_haptics.scene.validation import SceneWarning
+from drake_haptics.simulation.live_key import LiveKey, effect_keys, live_keys
 
 SCENE_VERBS = ("set", "choose", "effect", "reset")
 CLUSTERING = "contact.clustering"
@@ -43,7 +58,7 @@ class SceneChanges:
     """What people have made of a scene, and how a scene file says so.
 
     Attributes:
-        scene: As it is now. Replaced, never changed.
+        scene: The scene as it is now. It is replaced, never changed.
     """
 
     def __init__(self, scene: Scene):
@@ -153,7 +168,8 @@ class SceneChanges:
         """Does what a page asks for.
 
         Args:
-            request: As `read_page_request` returns it, of `SCENE_VERBS`.
+            request: A request that `read_page_request` returned, with one of
+                `SCENE_VERBS`.
 
         Raises:
             ChangeError: It cannot be.
@@ -226,3 +242,57 @@ def _list_given(effect: Any) -> dict[str, Any]:
         for field in dataclasses.fields(effect)
         if getattr(effect, field.name) != getattr(default, field.name)
     }
+
+
+class CouplingAdvice:
+    """Finds what a run warns of, without building a new arm for each value."""
+
+    def __init__(self, scene: Scene):
+        """Makes the arms.
+
+        A scene whose hand cannot hold the handle, as the path is out of its reach, can
+        still run on a real device: that is a warning.
+
+        Args:
+            scene: Its device and hand hold for all that are checked.
+
+        Raises:
+            SceneError: There is no such preset, or its model is no arm.
+        """
+        self._period_s = 1.0 / scene.device.rate_hz
+        self._delay_s = calc_force_delay(scene)
+        self._preset = load_device_preset(scene.device.preset)
+        self._loosely_held = calc_loosely_held(scene, self._preset)
+        self._held = None
+        if not self._preset.has_model:
+            return
+        try:
+            device = make_simulated_device(scene, make_hand_path(scene.hand.path))
+        except SceneError as error:
+            words = f"the simulated hand cannot hold the handle: {error}"
+            warnings.warn(words, SceneWarning, stacklevel=2)
+        else:
+            self._held = calc_scene_handle(scene, device)
+
+    @property
+    def has_hand(self) -> bool:
+        """Whether the scene's device can be simulated, in its hand."""
+        return self._held is not None
+
+    def check(self, scene: Scene, *, is_real: bool) -> list[BrokenBound]:
+        """Returns each bound that a scene's coupling breaks.
+
+        Args:
+            scene: Its coupling is checked.
+            is_real: Whether a real device shows its force. It is checked as
+                `check_real_coupling` does, by its ratings and in the loosest grip; the
+                simulated one as `check_scene_coupling`, in the scene's. Where there is
+                no simulated hand, these are the ratings.
+        """
+        if is_real:
+            return find_real_bounds(scene, self._preset, self._loosely_held)
+        if self._held is None:
+            return find_exceeded_ratings(scene.coupling, self._preset)
+        return find_broken_bounds(
+            scene.coupling, self._held, self._period_s, self._delay_s
+        )

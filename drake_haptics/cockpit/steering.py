@@ -1,4 +1,4 @@
-"""Does what a page asks for: at once in a Context, or by the end of a segment."""
+"""Does what pages ask for: in the picture or a Context at once, or after a segment."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import Context
 
 from drake_haptics.cockpit.holding import DEVICE, HAND, Holding
-from drake_haptics.cockpit.page_picture import PagePicture
 from drake_haptics.cockpit.scene_changes import (
     SCENE_VERBS,
     ChangeError,
@@ -19,12 +19,84 @@ from drake_haptics.cockpit.scene_changes import (
 )
 from drake_haptics.common.errors import UserError
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.simulation.live_values import (
-    LiveGlide,
-    is_live_change,
-    put_live_values,
-)
-from drake_haptics.web.request import REFUSED
+from drake_haptics.simulation.live_ramp import LiveGlide
+from drake_haptics.simulation.live_scene import is_live_change, put_live_values
+from drake_haptics.systems.output.picture_views import PICTURE_VIEWS, check_view
+from drake_haptics.visualization.meshcat import aim_camera, find_framed_points
+from drake_haptics.web.messages import REFUSED
+
+# Of force and torque on the hand, in the picture's scene tree.
+_FELT = ("/haptics/force", "/haptics/torque")
+_UNFELT_OPACITY = 0.25
+
+
+class PagePicture:
+    """Keeps what is shown, whatever diagram is drawn.
+
+    Attributes:
+        views: Whether each of `PICTURE_VIEWS` is shown.
+    """
+
+    def __init__(self, meshcat: Meshcat, views: frozenset[str]):
+        """Begins without a diagram.
+
+        Args:
+            meshcat: Whose camera it is.
+            views: Names of the views that are shown at first.
+        """
+        self._meshcat = meshcat
+        self.views = {view: view in views for view in PICTURE_VIEWS}
+        self._is_felt = True
+
+    def begin(self, haptic: HapticDiagram) -> None:
+        """Shows of a diagram what was shown of the one before."""
+        self._visualizer = haptic.visualizer
+        # Of many objects it would be long for a tick.
+        self._p_WP = find_framed_points(haptic)
+        # What is drawn for the first time is not faded.
+        self._is_felt = True
+        if self._visualizer is not None:
+            for view, visible in self.views.items():
+                self._visualizer.Show(view, visible)
+
+    def mark_felt(self, is_felt: bool) -> None:
+        """Fades the arrows of a wrench that is asked for and not shown."""
+        if is_felt == self._is_felt:
+            return
+        self._is_felt = is_felt
+        opacity = 1.0 if is_felt else _UNFELT_OPACITY
+        for path in _FELT:
+            self._meshcat.SetProperty(path, "modulated_opacity", opacity)
+
+    def obey(self, request: dict[str, Any]) -> bool:
+        """Does what a page asks for, if that is a matter of the picture.
+
+        Args:
+            request: A request that `read_page_request` returned.
+
+        Returns:
+            Whether it was.
+
+        Raises:
+            ValueError: There is no such view or camera.
+        """
+        match request.get("do"):
+            case "view":
+                self._show(request["name"], request["on"])
+            case "camera":
+                within = request.get("within", 1.0)
+                aim_camera(self._meshcat, self._p_WP, request["to"], within)
+            case _:
+                return False
+        return True
+
+    def _show(self, view: str, visible: bool) -> None:
+        """Shows or hides a view."""
+        check_view(view)
+        self.views[view] = visible
+        if self._visualizer is not None:
+            self._visualizer.Show(view, visible)
+
 
 # A slider that needs another diagram builds it when it has rested for so long.
 _REST_S = 0.25
@@ -36,8 +108,8 @@ class Change:
     """What a segment of a run ended for.
 
     Attributes:
-        handle: Who is to hold the handle from now on.
-        restarts: Whether the scene begins anew.
+        handle: Name of who holds the handle from now on.
+        restarts: Whether the scene begins again.
     """
 
     handle: str
@@ -68,8 +140,8 @@ class Steering:
 
         Args:
             changes: The scene.
-            holding: Who holds the handle.
-            picture: What is shown.
+            holding: Says who holds the handle.
+            picture: The picture on the page.
             locked: Why nothing but the picture may be changed; empty if it may.
         """
         self.changes = changes
@@ -156,7 +228,7 @@ class Steering:
         """Does what pages have asked for.
 
         Args:
-            asked: What `LivePage.act` returned.
+            asked: The requests that `LivePage.act` returned.
             root: Context of the diagram; its parameters may be changed.
             X_WC: Pose of the page's camera.
             now_s: The time, s.
@@ -243,8 +315,8 @@ class Steering:
 
         Args:
             end_s: When, if it is not to end at once.
-            handle: Who is to hold the handle, if somebody else is.
-            restarts: Whether the scene is to begin anew.
+            handle: Name of who is to hold the handle, if that changes.
+            restarts: Whether the scene is to begin again.
         """
         if self._change is not None:
             handle = handle or self._change.handle

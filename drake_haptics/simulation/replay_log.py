@@ -22,8 +22,8 @@ from drake_haptics.scene.yaml_loading import check_keys
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.device.replayed_handle import ReplayedHandle
+from drake_haptics.tick_log.log_format import TickLogError
 from drake_haptics.tick_log.tick_log import TickLog, read_tick_log
-from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 _TICKS_PER_REPORT = 256

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import IO
 
 from drake_haptics.device.backend import Fault, GateState
+from drake_haptics.tick_log.log_format import TickRows, iterate_column_names
 from drake_haptics.tick_log.tick_log import TickLogReader
-from drake_haptics.tick_log.tick_rows import TickRows, iterate_column_names
 
 _GATES = {int(gate): gate.name.lower() for gate in GateState}
 _FAULTS = {int(fault): fault.name.lower() for fault in Fault}
@@ -29,9 +29,9 @@ def write_csv(
     missing here: the first column is the tick's number.
 
     Args:
-        reader: Of the log; afterwards it knows what is missing.
-        stream: To write to, of text.
-        progress: Called with what is done and its share, in [0, 1].
+        reader: Reads the log; afterwards it knows what is missing.
+        stream: Text stream to write to.
+        progress: Called with the current work and its share that is done, in [0, 1].
     """
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(["tick", *iterate_column_names()])

@@ -1,17 +1,17 @@
-"""Compares two runs, tick by tick."""
+"""Compares two runs tick by tick, as figures and as a picture."""
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import yaml
 
-from drake_haptics.tick_log.scene_difference import find_changes
-from drake_haptics.tick_log.tick_log import TickLog
-from drake_haptics.tick_log.tick_log_error import TickLogError
-from drake_haptics.tick_log.tick_rows import (
+from drake_haptics.tick_log.log_format import (
     CLOCK_QUANTITIES,
     COUNTS,
     DEVICE_QUANTITIES,
@@ -19,8 +19,37 @@ from drake_haptics.tick_log.tick_rows import (
     REALS,
     VELOCITY,
     WRENCH,
+    TickLogError,
     TickRows,
 )
+from drake_haptics.tick_log.tick_log import TickLog
+
+
+def find_changes(before: str, after: str) -> list[str]:
+    """Returns what differs between two scenes, like `hand.grip: light, firm`.
+
+    Args:
+        before: A scene, YAML.
+        after: Another one.
+    """
+    old, new = (dict(_flatten(yaml.safe_load(text), "")) for text in (before, after))
+    return [
+        f"{key}: {old.get(key, 'not there')}, {new.get(key, 'not there')}"
+        for key in dict.fromkeys([*old, *new])
+        if old.get(key) != new.get(key)
+    ]
+
+
+def _flatten(data: Any, where: str) -> Iterator[tuple[str, Any]]:
+    """Yields the key and value of each single setting."""
+    if isinstance(data, dict):
+        for key, item in data.items():
+            yield from _flatten(item, f"{where}.{key}" if where else key)
+    elif isinstance(data, list) and data and isinstance(data[0], dict):
+        for i, item in enumerate(data):
+            yield from _flatten(item, f"{where}[{i}]")
+    else:
+        yield where, data
 
 
 @dataclass(frozen=True)
@@ -28,12 +57,12 @@ class QuantityDiff:
     """How a quantity differs between two runs.
 
     Attributes:
-        name: Of the quantity, and of its part.
-        unit: Of the differences; empty for counts.
-        differing: At how many ticks a bit of it differs.
+        name: Name of the quantity and of its part.
+        unit: Unit of the differences; empty for counts.
+        differing: Number of ticks at which a bit of it differs.
         first_tick: The first of them; None where there is none.
         largest: Largest norm of the difference; NaN where one run was not finite.
-        largest_tick: Where that is.
+        largest_tick: Tick of the largest difference.
         rms: Root of the mean squared norm over all ticks compared.
     """
 
@@ -51,12 +80,12 @@ class LogDiff:
     """How two runs differ.
 
     Attributes:
-        ticks: How many were compared: those that both logs have.
-        only_a: How many ticks only the first log has.
-        only_b: How many only the second has.
+        ticks: Number of compared ticks: those that both logs have.
+        only_a: Number of ticks that only the first log has.
+        only_b: Number of ticks that only the second log has.
         same_scene: Whether the same scene was recorded.
         same_meshes: Whether it was on the same meshes.
-        settings: What differs between the scenes, key and both values each.
+        settings: Differences of the scenes, each with its key and both values.
         quantities: All that was compared: not the clocks, which differ in every run,
             nor what a device tells besides its handle, which a replay has not.
     """
@@ -195,3 +224,68 @@ def _describe(
         largest_tick=int(ticks[at]),
         rms=float(np.sqrt(np.mean(np.square(norm)))),
     )
+
+
+# More than these are no title.
+_MOST_CHANGES = 3
+# Letters in a line of it.
+_TITLE_WIDTH = 90
+_COLORS = ("#1f77b4", "#d62728")
+
+
+def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> None:
+    """Draws the force asked for, the deepest contact and how far the tools are apart.
+
+    Args:
+        a: One run.
+        b: Another one; drawn at the ticks that both have.
+        names: Names of the runs.
+        path: PNG, SVG or PDF by its ending.
+
+    Raises:
+        ValueError: Matplotlib knows no such ending.
+        OSError: The file cannot be written.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, 6.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    force, depth, apart = figure.subplots(3, 1, sharex=True)
+    pair = find_common_rows(a, b)
+    for rows, name, color in zip(pair, names, _COLORS, strict=True):
+        style = {"color": color, "label": name, "linewidth": 1.0}
+        force.plot(rows["time_s"], _norm(rows["F_display"][:, 3:]), **style)
+        depth.plot(rows["time_s"], 1e3 * np.maximum(0.0, -rows["distance_m"]), **style)
+    p_A, p_B = (rows["X_WTool"][:, 4:] for rows in pair)
+    apart.plot(pair[0]["time_s"], 1e3 * _norm(p_A - p_B), color="black", linewidth=1.0)
+    force.set_ylabel("force asked for / N")
+    depth.set_ylabel("penetration / mm")
+    apart.set_ylabel("between the tools / mm")
+    apart.set_xlabel("time / s")
+    force.set_title(make_title(a, b, names), fontsize=10)
+    force.legend(frameon=False)
+    for axes in (force, depth, apart):
+        axes.grid(alpha=0.3)
+        axes.margins(x=0.0)
+    figure.savefig(path, dpi=110)
+
+
+def make_title(a: TickLog, b: TickLog, names: tuple[str, str]) -> str:
+    """Returns what two runs are called, and by what their scenes differ.
+
+    Args:
+        a: One run.
+        b: Another one.
+        names: Names of the runs.
+    """
+    changes = find_changes(a.header.scene, b.header.scene)
+    words = "; ".join(changes) if changes else "the same scene"
+    if len(changes) > _MOST_CHANGES:
+        words = f"scenes that differ in {len(changes)} values"
+    return textwrap.fill(f"{names[0]} and {names[1]}: {words}", _TITLE_WIDTH)
+
+
+def _norm(vectors: np.ndarray) -> np.ndarray:
+    """Returns the norm of each row."""
+    return np.linalg.norm(vectors, axis=1)

@@ -1,4 +1,4 @@
-"""What a log holds, in figures."""
+"""A summary of what a log holds, in figures."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from drake_haptics.tick_log.mesh_digest import find_changed_meshes
+from drake_haptics.tick_log.log_format import TickLogHeader, find_changed_meshes
 from drake_haptics.tick_log.tick_log import TickLogReader
-from drake_haptics.tick_log.tick_log_header import TickLogHeader
 
 # Values of `status` as `DisplayForceHold` has them.
 _LIMITED = 1
@@ -23,9 +22,9 @@ class LogSummary:
     """A log in figures.
 
     Attributes:
-        header: What was recorded.
+        header: Header of the log.
         bytes: Size of the file.
-        ticks: Those that are sound.
+        ticks: Number of sound ticks.
         end_s: Simulated time of the last of them, s.
         gaps: A sentence for each gap.
         damaged_blocks: Places in the file that could not be read.
@@ -72,7 +71,7 @@ def summarize_log(
 
     Args:
         path: The file.
-        progress: Called with what is done and its share, in [0, 1].
+        progress: Called with the current work and its share that is done, in [0, 1].
 
     Raises:
         TickLogError: It is no log, of another version, or its head is damaged.

@@ -32,7 +32,7 @@ class ReplayDevice(DeviceBackend):
         """Opens a log.
 
         Args:
-            log: What `read_tick_log` returned.
+            log: The result of `read_tick_log`.
 
         Raises:
             DeviceError: The log has no first tick.

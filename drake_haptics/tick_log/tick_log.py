@@ -1,4 +1,4 @@
-"""A log that has been read, and what is missing in it."""
+"""Reads a log, whole or block by block, and says what is missing in it."""
 
 from __future__ import annotations
 
@@ -6,11 +6,100 @@ import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 from drake_haptics.common.one_line import count
-from drake_haptics.tick_log.log_scanner import Damage, EndMark, scan_blocks
-from drake_haptics.tick_log.tick_log_header import TickLogHeader, read_header
-from drake_haptics.tick_log.tick_rows import TickRows, join_rows
+from drake_haptics.tick_log.log_format import (
+    BLOCK_HEADER_BYTES,
+    BLOCK_MAGIC,
+    BlockHeader,
+    TickLogHeader,
+    TickRows,
+    join_rows,
+    parse_block_header,
+    read_header,
+    unpack_block,
+)
+
+_SEARCHED_BYTES = 1 << 20
+
+
+@dataclass(frozen=True)
+class Damage:
+    """Bytes of a log that are no block, or not the one that follows.
+
+    Attributes:
+        offset_bytes: Offset of the first of them in the file.
+    """
+
+    offset_bytes: int
+
+
+@dataclass(frozen=True)
+class EndMark:
+    """The end of a complete log.
+
+    Attributes:
+        ticks: Number of ticks of the whole log.
+    """
+
+    ticks: int
+
+
+def scan_blocks(stream: BinaryIO) -> Iterator[TickRows | Damage | EndMark]:
+    """Yields what a log holds, from where its stream is to its end.
+
+    Of a damaged block nothing is yielded but the damage; the search goes on at the next
+    one that is sound. Ticks rise from block to block: one that comes again counts as
+    damage. It never reads more at once than the largest block takes.
+
+    Args:
+        stream: The file, after its head; can seek.
+    """
+    size = os.fstat(stream.fileno()).st_size
+    position, next_tick = stream.tell(), 0
+    while position < size:
+        stream.seek(position)
+        header = parse_block_header(stream.read(BLOCK_HEADER_BYTES))
+        if header is not None and header.first_tick >= next_tick:
+            if header.ticks == 0:
+                yield EndMark(header.first_tick)
+                return
+            rows = _read_rows(stream, header)
+            if rows is not None:
+                yield rows
+                next_tick = header.first_tick + header.ticks
+                position += BLOCK_HEADER_BYTES + header.payload_bytes
+                continue
+        yield Damage(position)
+        position = _find_block_header(stream, position + 1, size)
+
+
+def _read_rows(stream: BinaryIO, header: BlockHeader) -> TickRows | None:
+    """Returns the ticks of a block whose payload comes next; None if damaged."""
+    payload = stream.read(header.payload_bytes)
+    if len(payload) < header.payload_bytes:
+        return None
+    return unpack_block(header, payload)
+
+
+def _find_block_header(stream: BinaryIO, start: int, size: int) -> int:
+    """Returns where the next sound header is, at `start` or later; `size` if none."""
+    stream.seek(start)
+    window = b""
+    while data := stream.read(_SEARCHED_BYTES):
+        window += data
+        found = window.find(BLOCK_MAGIC)
+        while found >= 0:
+            if parse_block_header(window[found : found + BLOCK_HEADER_BYTES]):
+                return start + found
+            found = window.find(BLOCK_MAGIC, found + 1)
+        # A header may begin in one window and end in the next.
+        kept = window[-(BLOCK_HEADER_BYTES - 1) :]
+        start += len(window) - len(kept)
+        window = kept
+    return size
+
 
 # Progress is told by steps of this size: a block takes less time than a report.
 _REPORTED_SHARE = 0.01
@@ -21,8 +110,8 @@ class Gap:
     """Ticks that a log should have and has not.
 
     Attributes:
-        first_tick: The first that is missing.
-        ticks: How many are; None where that cannot be told.
+        first_tick: Number of the first missing tick.
+        ticks: Number of missing ticks; None where it is unknown.
     """
 
     first_tick: int
@@ -41,9 +130,9 @@ class TickLog:
     """A recorded run.
 
     Attributes:
-        header: What was recorded.
+        header: Header of the log.
         rows: Every tick that is sound, in order.
-        gaps: What is missing, in order.
+        gaps: Gaps of the log, in order.
         damaged_blocks: Places in the file that could not be read.
     """
 
@@ -70,8 +159,8 @@ class TickLogReader:
     """Reads a log block by block, so that a long one need not fit into memory.
 
     Attributes:
-        header: What was recorded.
-        gaps: What is missing of what has been read so far.
+        header: Header of the log.
+        gaps: Gaps of what has been read so far.
         damaged_blocks: Places that could not be read so far.
     """
 
@@ -101,7 +190,7 @@ class TickLogReader:
         After the last one, `gaps` and `damaged_blocks` tell what is missing.
 
         Args:
-            progress: Called with what is done and its share, in [0, 1].
+            progress: Called with the current work and its share done, in [0, 1].
         """
         self.gaps, self.damaged_blocks = [], 0
         next_tick, next_share = 0, 0.0
@@ -137,7 +226,7 @@ def read_tick_log(
 
     Args:
         path: The file. It may be truncated or damaged, or still be written.
-        progress: Called with what is done and its share, in [0, 1].
+        progress: Called with the current work and its share that is done, in [0, 1].
 
     Raises:
         TickLogError: It is no log, of another version, or its head is damaged.

@@ -13,10 +13,16 @@ from typing import BinaryIO
 import numpy as np
 
 from drake_haptics.common.one_line import count
-from drake_haptics.tick_log.tick_block import MAX_BLOCK_TICKS, pack_block
-from drake_haptics.tick_log.tick_log_error import TickLogError
-from drake_haptics.tick_log.tick_log_header import TickLogHeader, pack_header
-from drake_haptics.tick_log.tick_rows import COUNTS, FIRST_SIGNAL, NUM_REALS
+from drake_haptics.tick_log.log_format import (
+    COUNTS,
+    FIRST_SIGNAL,
+    MAX_BLOCK_TICKS,
+    NUM_REALS,
+    TickLogError,
+    TickLogHeader,
+    pack_block,
+    pack_header,
+)
 
 # How often what has been recorded is handed to the system, s.
 _WRITE_PERIOD_S = 0.25
@@ -67,7 +73,7 @@ class TickRecorder:
 
         Args:
             path: The file.
-            header: What is recorded.
+            header: Header of the log.
 
         Raises:
             OSError: The system refuses.
@@ -111,10 +117,10 @@ class TickRecorder:
         Args:
             time_s: Time of the simulation, s.
             signals: (38,) the quantities from `X_WH` to `V_WTool`, as `REALS` has them.
-            counts: Those of `COUNTS`, in [0, 2³²).
-            query_s: How long the contact query took, s.
-            distance_m: Of the nearest contact, m; infinite where there is none.
-            device_time_s: Of the device's own clock, s; NaN where it is simulated.
+            counts: The quantities of `COUNTS`, in [0, 2³²).
+            query_s: Duration of the contact query, s.
+            distance_m: Distance of the nearest contact, m; infinite without one.
+            device_time_s: Time of the device's clock, s; NaN where it is simulated.
         """
         tick = self._ticks
         self._ticks = tick + 1

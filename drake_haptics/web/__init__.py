@@ -1,1 +1,1 @@
-"""The page of a loop in the browser: its server, process, link and telemetry."""
+"""The page of a loop in the browser: its server, process, link and messages."""

@@ -1,4 +1,8 @@
-"""Makes of what the loop noted what the page shows, 30 times a second."""
+"""Turns what the loop noted into what the page shows, 30 times a second.
+
+The page's process runs it, without NumPy. A camera's frame C is Drake's: x right, y
+down, z away from the viewer.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +11,107 @@ from collections import deque
 from collections.abc import Sequence
 from typing import Any
 
-from drake_haptics.web.camera_view import (
-    find_in_view,
-    measure_height,
-    turn_into_view,
-)
-from drake_haptics.web.telemetry import Telemetry, Tick
-from drake_haptics.web.trace import Trace
+from drake_haptics.web.messages import Telemetry, Tick
+
+# Meshcat's camera sees 75° from the lower to the upper edge.
+HEIGHT_PER_DEPTH = 2.0 * math.tan(math.radians(75.0) / 2.0)
+# Nearer to the camera, and behind it, the picture would stand still, m.
+LEAST_DEPTH_M = 0.01
+
+
+def turn_into_view(v_W: Sequence[float], R_WC: Sequence[float]) -> list[float]:
+    """Returns a vector (3,) of the world as right, up and near in the picture.
+
+    Args:
+        v_W: The vector, expressed in the world.
+        R_WC: (9,) axes of the camera, row by row.
+    """
+    x, y, z = (sum(R_WC[3 * i + k] * v_W[i] for i in range(3)) for k in range(3))
+    return [x, -y, -z]
+
+
+def measure_height(
+    p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
+) -> float | None:
+    """Returns what the picture is high at the depth of a point, m.
+
+    None for a point that is not before the camera, or nowhere.
+
+    Args:
+        p_WQ: (3,) the point, m.
+        R_WC: (9,) axes of the camera, row by row.
+        p_WC: (3,) where the camera is, m.
+    """
+    *_, near = _see(p_WQ, R_WC, p_WC)
+    return HEIGHT_PER_DEPTH * -near if LEAST_DEPTH_M <= -near < math.inf else None
+
+
+def find_in_view(
+    p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
+) -> list[float] | None:
+    """Returns where a point is seen: right and up of the middle, in heights.
+
+    None for a point that is not before the camera, or nowhere.
+
+    Args:
+        p_WQ: (3,) the point, m.
+        R_WC: (9,) axes of the camera, row by row.
+        p_WC: (3,) where the camera is, m.
+    """
+    height_m = measure_height(p_WQ, R_WC, p_WC)
+    if height_m is None:
+        return None
+    right, up, _ = _see(p_WQ, R_WC, p_WC)
+    return [right / height_m, up / height_m]
+
+
+def _see(
+    p_WQ: Sequence[float], R_WC: Sequence[float], p_WC: Sequence[float]
+) -> list[float]:
+    """Returns where a point is from the camera: right, up and near, m."""
+    return turn_into_view([q - c for q, c in zip(p_WQ, p_WC, strict=True)], R_WC)
+
+
+TRACE_STEP_S = 4e-3
+
+
+class Trace:
+    """Thins ticks: of each `TRACE_STEP_S` of simulated time the largest values."""
+
+    def __init__(self) -> None:
+        self._step = -math.inf
+        self._largest: tuple[float, float] | None = None
+        self._done: list[tuple[float, float]] = []
+
+    def add(self, time_s: float, force_N: float, torque_Nm: float) -> None:
+        """Adds a tick.
+
+        Args:
+            time_s: Simulated time, s; where it goes back, the scene began again.
+            force_N: Norm of the force, N.
+            torque_Nm: Norm of the torque, N·m.
+        """
+        step = math.floor(time_s / TRACE_STEP_S + 1e-6)
+        if step != self._step:
+            if self._largest is not None:
+                self._done.append(self._largest)
+            self._step, self._largest = step, (force_N, torque_Nm)
+            return
+        assert self._largest is not None
+        self._largest = (
+            max(self._largest[0], force_N),
+            max(self._largest[1], torque_Nm),
+        )
+
+    def take(self) -> dict[str, object]:
+        """Returns the steps that are complete since the last call, for a frame."""
+        done, self._done = self._done, []
+        return {
+            "dt_s": TRACE_STEP_S,
+            "force_N": [force_N for force_N, _ in done],
+            "torque_Nm": [torque_Nm for _, torque_Nm in done],
+        }
+
 
 # Times are those of so many latest ticks, rates those of so many seconds.
 _LATEST = 1000
@@ -84,7 +182,7 @@ class FrameMaker:
         self._ticks += len(packet.ticks)
         packets = self._packets
         if packets and time_s < packets[-1][1]:
-            packets.clear()  # The scene began anew.
+            packets.clear()  # The scene began again.
         packets.append((packet.clock_s, time_s, self._ticks))
         while packets[-1][0] - packets[0][0] > _RATE_SPAN_S and len(packets) > 2:
             packets.popleft()

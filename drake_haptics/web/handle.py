@@ -1,11 +1,16 @@
-"""A handle that goes where a page sends it."""
+"""A device whose handle goes where a page sends it.
+
+A camera's frame C is Drake's: x right, y down, z away from the viewer.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from time import monotonic
 from typing import Any
 
+import numpy as np
 from pydrake.math import RigidTransform
 
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
@@ -17,7 +22,90 @@ from drake_haptics.device.backend import (
     LinkStatus,
 )
 from drake_haptics.device.followed_handle import FollowedHandle
-from drake_haptics.web.pilot import PagePilot
+from drake_haptics.device.rotation_vector import multiply, normalize, to_quaternion
+from drake_haptics.web.frame_maker import HEIGHT_PER_DEPTH, LEAST_DEPTH_M
+
+
+def move_in_view(
+    X_WG: np.ndarray, by: Sequence[float], X_WC: RigidTransform
+) -> np.ndarray:
+    """Returns a pose moved as far as a pointer moved over it.
+
+    Args:
+        X_WG: (7,) pose [qw qx qy qz x y z], m.
+        by: (3,) right, up and away, in heights of the picture at the pose's depth.
+        X_WC: The camera's pose.
+    """
+    right, up, away = by
+    p_CG = X_WC.inverse() @ X_WG[4:]
+    height_m = HEIGHT_PER_DEPTH * max(float(p_CG[2]), LEAST_DEPTH_M)
+    step_W = X_WC.rotation() @ (height_m * np.array([right, -up, away]))
+    return np.concatenate([X_WG[:4], X_WG[4:] + step_W])
+
+
+def turn_in_view(
+    X_WG: np.ndarray, by: Sequence[float], X_WC: RigidTransform
+) -> np.ndarray:
+    """Returns a pose turned about its origin, as a ball under the pointer.
+
+    Args:
+        X_WG: (7,) pose [qw qx qy qz x y z], m.
+        by: (3,) in half turns: the side towards the viewer goes right and up, and all
+            rolls clockwise.
+        X_WC: The camera's pose.
+    """
+    right, up, roll = by
+    # About y, which is down, the near side (-z) goes left; about x it goes down.
+    turn_W = X_WC.rotation() @ (np.pi * np.array([-up, -right, roll]))
+    q_WG = multiply(to_quaternion(turn_W.tolist()), X_WG[:4].tolist())
+    return np.concatenate([normalize(q_WG), X_WG[4:]])
+
+
+def keep_near(X_WG: np.ndarray, p_WCenter: np.ndarray, radius_m: float) -> np.ndarray:
+    """Returns a pose with its origin in a ball, brought straight to its middle.
+
+    Args:
+        X_WG: (7,) pose [qw qx qy qz x y z], m.
+        p_WCenter: (3,) middle of the ball, m.
+        radius_m: Radius of the ball, m.
+    """
+    offset = X_WG[4:] - p_WCenter
+    distance = float(np.linalg.norm(offset))
+    if distance <= radius_m:
+        return X_WG
+    return np.concatenate([X_WG[:4], p_WCenter + radius_m / distance * offset])
+
+
+class PagePilot:
+    """Follows where a page wants the handle.
+
+    Attributes:
+        X_WG: (7,) the goal [qw qx qy qz x y z], m.
+    """
+
+    def __init__(self, X_WStart: RigidTransform, radius_m: float):
+        """Starts at a pose.
+
+        Args:
+            X_WStart: Pose where it starts, and goes home to.
+            radius_m: Largest distance of the goal from there, m.
+        """
+        self._X_WStart = pose_to_vector(X_WStart)
+        self._radius_m = radius_m
+        self.X_WG = self._X_WStart
+
+    def move(self, by: Sequence[float], X_WC: RigidTransform) -> None:
+        """Moves the goal by (right, up, away) as `move_in_view`, X_WC the camera's."""
+        moved = move_in_view(self.X_WG, by, X_WC)
+        self.X_WG = keep_near(moved, self._X_WStart[4:], self._radius_m)
+
+    def turn(self, by: Sequence[float], X_WC: RigidTransform) -> None:
+        """Turns the goal by (right, up, roll) as `turn_in_view`, X_WC the camera's."""
+        self.X_WG = turn_in_view(self.X_WG, by, X_WC)
+
+    def go_home(self) -> None:
+        """Brings the goal back to where it started."""
+        self.X_WG = self._X_WStart
 
 
 class PageHandle(DeviceBackend):
@@ -34,7 +122,7 @@ class PageHandle(DeviceBackend):
         Args:
             X_WB: Pose of the device's base in the world of the page.
             X_BH: Pose of the handle where it starts, and goes home to.
-            workspace_radius_m: How far from there it goes, m.
+            workspace_radius_m: Largest distance of the handle from there, m.
 
         Raises:
             ValueError: A pose is not finite, or the radius out of range.

@@ -1,7 +1,8 @@
-"""The loop's end of the way to the page: never waits for it."""
+"""Opens the page's port, starts its process, and talks with it without waiting."""
 
 from __future__ import annotations
 
+import itertools
 import json
 import logging
 import os
@@ -12,8 +13,35 @@ from time import monotonic
 from typing import Any
 from urllib.parse import urlsplit
 
-from drake_haptics.web.port import open_page_port
-from drake_haptics.web.telemetry import LARGEST_DATAGRAM
+from drake_haptics.common.errors import UserError
+from drake_haptics.web.messages import LARGEST_DATAGRAM
+
+_ADDRESS = "127.0.0.1"
+FIRST_PORT = 7100
+_MOST_PORTS = 100
+
+
+def open_page_port(port: int | None = None) -> socket.socket:
+    """Returns a socket that listens on a port of this machine, for it alone.
+
+    Args:
+        port: None takes the first free one from `FIRST_PORT` on.
+
+    Raises:
+        UserError: The port cannot be used.
+    """
+    for candidate in itertools.count(FIRST_PORT) if port is None else [port]:
+        try:
+            return socket.create_server((_ADDRESS, candidate))
+        except (OSError, OverflowError) as error:
+            if port is None and candidate < FIRST_PORT + _MOST_PORTS:
+                continue
+            raise UserError(
+                f"port {candidate} cannot be used for the page: {error}. Give another"
+                f" one, or none for the first free one from {FIRST_PORT}"
+            ) from error
+    raise AssertionError("counting does not end")
+
 
 _PROCESS = "drake_haptics.web.process"
 _SOCKET_BYTES = 1 << 18
@@ -36,12 +64,12 @@ class PageLink:
         """Starts the process; waits for nobody.
 
         Args:
-            meshcat_url: Address of the Meshcat in the page.
-            listener: Of `open_page_port`, if it was to be had before; it is closed
-                with the link.
+            meshcat_url: Address of the Meshcat that the page shows.
+            listener: The result of `open_page_port`, if the port was opened before;
+                it is closed with the link.
 
         Raises:
-            UserError: No port can be had.
+            UserError: No port is available.
         """
         self._listener = listener or open_page_port()
         self._url = f"http://localhost:{self._listener.getsockname()[1]}/"
@@ -82,7 +110,7 @@ class PageLink:
         """Sends a message that must not get lost; now or with a later call.
 
         Args:
-            message: Of one name; a newer one takes the place of an older one.
+            message: Has one name; a newer one of that name replaces it.
         """
         [name] = message
         self._lasting[name] = json.dumps(message).encode()

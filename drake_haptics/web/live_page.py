@@ -1,4 +1,4 @@
-"""The page of a loop that runs: told of each tick, and heard now and then."""
+"""The page of a running loop: it learns of each tick, and is heard now and then."""
 
 from __future__ import annotations
 
@@ -7,12 +7,68 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from pydrake.geometry import Meshcat
-from pydrake.math import RigidTransform
+from pydrake.math import RigidTransform, RotationMatrix
 
-from drake_haptics.web.camera import PageCamera
 from drake_haptics.web.link import PageLink
-from drake_haptics.web.telemetry import TickBuffer
+from drake_haptics.web.messages import TickBuffer
+
+# Nothing is drawn there; see `PageCamera.look`.
+_NUDGE = "/page_camera"
+# What a page tells may be any number; Drake looks at the rotation itself.
+_FARTHEST_M = 1e4
+
+
+class PageCamera:
+    """Follows the camera of the one page that drives.
+
+    Attributes:
+        X_WC: Pose of the camera: x right, y down, z away.
+        numbers: (12,) R_WC row by row and p_WC, m.
+    """
+
+    def __init__(self, meshcat: Meshcat, X_WC: RigidTransform):
+        """Starts at a pose.
+
+        Args:
+            meshcat: The Meshcat that the page shows.
+            X_WC: Before the page tells.
+        """
+        self._meshcat = meshcat
+        self._set(X_WC)
+
+    def look(self) -> None:
+        """Takes what the page has told since."""
+        X_WC = self._meshcat.GetTrackedCameraPose()
+        if X_WC is None or X_WC.IsExactlyEqualTo(self.X_WC):
+            return
+        if not np.abs(X_WC.translation()).max() <= _FARTHEST_M:
+            return
+        self._set(X_WC)
+        # A page tells the camera of the picture before: make it draw one more.
+        self._meshcat.SetTransform(_NUDGE, RigidTransform())
+
+    def close(self) -> None:
+        """Leaves nothing in the Meshcat."""
+        self._meshcat.Delete(_NUDGE)
+
+    def _set(self, X_WC: RigidTransform) -> None:
+        self.X_WC = X_WC
+        R_WC, p_WC = X_WC.rotation().matrix(), X_WC.translation()
+        self.numbers = (*R_WC.ravel().tolist(), *p_WC.tolist())
+
+
+def look_from_the_front(p_WQ: np.ndarray, distance_m: float) -> RigidTransform:
+    """Returns the pose X_WC of a camera that looks along y, z upwards.
+
+    Args:
+        p_WQ: (3,) the point that it looks at, m.
+        distance_m: Distance of the camera from that point, m.
+    """
+    R_WC = RotationMatrix(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]]))
+    return RigidTransform(R_WC, p_WQ - np.array([0.0, distance_m, 0.0]))
+
 
 _HEAR_PERIOD_S = 1 / 50
 _SHOW_PERIOD_S = 1 / 30
@@ -21,14 +77,14 @@ _LOOK_PERIOD_S = 1 / 20
 
 @dataclass(frozen=True)
 class Outlook:
-    """What the page is told besides the ticks, 30 times a second.
+    """The state that the page is told besides the ticks, 30 times a second.
 
     Attributes:
-        gate: Index into `telemetry.GATES`.
+        gate: Index into `messages.GATES`.
         p_WH: (3,) where the handle is, m.
-        fault: Index into `telemetry.FAULTS`.
-        silent_s: For how long the device's driver has said nothing new, s.
-        shed: How many stages of work are left out.
+        fault: Index into `messages.FAULTS`.
+        silent_s: Time for which the device's driver has said nothing new, s.
+        shed: Number of stages of work that are left out.
         skipped: Ticks lost to stalls since the run began.
     """
 
@@ -47,7 +103,7 @@ class LivePage:
     used from the thread that made the Meshcat.
 
     Attributes:
-        camera: Of the page.
+        camera: Camera of the page.
         meshcat_url: Address of what the page shows.
     """
 
@@ -60,13 +116,13 @@ class LivePage:
         """Starts the page's process; waits for nobody.
 
         Args:
-            meshcat: What the page shows.
-            X_WC: Where the page's camera is before it tells.
+            meshcat: The Meshcat that the page shows.
+            X_WC: Pose of the page's camera before it tells.
             listener: The page's port, of `open_page_port`; the first free one where
                 not given.
 
         Raises:
-            UserError: No port can be had.
+            UserError: No port is available.
         """
         self.camera = PageCamera(meshcat, X_WC)
         # The Meshcat then tells where the camera of this page is.
@@ -89,7 +145,7 @@ class LivePage:
         """Tells pages something, also those that come later.
 
         Args:
-            name: Of the message; a newer one takes the place of an older one.
+            name: Name of the message; a newer one of that name replaces it.
             body: Ready for JSON.
         """
         self._link.tell({name: body})

@@ -1,4 +1,4 @@
-"""The mouse as a haptic device, in a program of one's own."""
+"""The mouse as a haptic device, in your own program."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 
 from drake_haptics.device.backend import DeviceCommand, DeviceReading
-from drake_haptics.web.camera import look_from_the_front
 from drake_haptics.web.handle import PageHandle
-from drake_haptics.web.live_page import LivePage, Outlook
-from drake_haptics.web.port import open_page_port
-from drake_haptics.web.telemetry import NOT_KNOWN
+from drake_haptics.web.link import open_page_port
+from drake_haptics.web.live_page import LivePage, Outlook, look_from_the_front
+from drake_haptics.web.messages import NOT_KNOWN
 
 # Until a page tells, the camera is this many radii in front of the workspace: at -y.
 _FIRST_DISTANCE = 4.0
@@ -47,17 +46,17 @@ class MouseDevice(PageHandle):
         """Starts to serve the page; waits for nobody to look at it.
 
         Args:
-            meshcat: What the page shows.
+            meshcat: The Meshcat that the page shows.
             X_WB: Pose of the device's base in the world of the Meshcat.
             X_BH: Pose of the handle where it starts.
-            workspace_radius_m: How far from there it goes, m.
+            workspace_radius_m: Largest distance of the handle from there, m.
             max_force_N: Force of a full bar, N.
             max_torque_Nm: Torque of a full bar, N·m.
             port: TCP port of the page; as `open_page_port`.
 
         Raises:
             ValueError: A pose is not finite, or the radius or a limit out of range.
-            UserError: The port cannot be had.
+            UserError: The port is not available.
         """
         super().__init__(X_WB=X_WB, X_BH=X_BH, workspace_radius_m=workspace_radius_m)
         for name, value in [

@@ -15,10 +15,27 @@ from contextlib import suppress
 from time import monotonic
 from typing import Any
 
-from drake_haptics.web.changes_yaml import write_changes
 from drake_haptics.web.frame_maker import FrameMaker
+from drake_haptics.web.messages import KIND, LARGEST_DATAGRAM, read_telemetry
 from drake_haptics.web.server import PageServer
-from drake_haptics.web.telemetry import KIND, LARGEST_DATAGRAM, read_telemetry
+
+
+def write_changes(changes: dict[str, Any], indent: str = "") -> str:
+    """Returns YAML to put into the scene's file in the place of the same keys.
+
+    Args:
+        changes: Sections of a scene with keys and values, as `SceneChanges` has them.
+        indent: Before each line.
+    """
+    lines = []
+    for key, value in changes.items():
+        if isinstance(value, dict) and value:
+            lines.append(f"{indent}{key}:\n{write_changes(value, f'{indent}  ')}")
+        else:
+            # JSON is YAML.
+            lines.append(f"{indent}{key}: {json.dumps(value)}\n")
+    return "".join(lines)
+
 
 _CLOSE_S = 0.5
 # A loop that says nothing for so long stands still; pages are told as often.
@@ -35,7 +52,7 @@ class PageProcess:
         Args:
             listener: Listens on the page's port.
             link: The way to the loop, of datagrams.
-            origin: Of the Meshcat in the page.
+            origin: Origin of the Meshcat in the page.
         """
         self._link = link
         self._server = PageServer(listener, origin, self._forward)
@@ -112,7 +129,7 @@ class PageProcess:
 
 
 def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """Reports a defect; that strangers take all connections is none, and passes."""
+    """Reports unexpected errors; a flood of connections is ignored."""
     if not isinstance(context.get("exception"), OSError):
         loop.default_exception_handler(context)
 

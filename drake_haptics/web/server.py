@@ -1,4 +1,4 @@
-"""Serves the page on this machine, and talks with those who opened it."""
+"""Serves the files of the page on this machine, and talks with whoever opened it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import logging
 import socket
 from collections.abc import Awaitable, Callable
 from http import HTTPStatus
+from importlib.resources import files
 from typing import Any
 
 from websockets.asyncio.server import Server, ServerConnection, broadcast, serve
@@ -15,8 +16,30 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from drake_haptics.web.files import read_page_file
-from drake_haptics.web.request import REFUSED, TAKE, read_page_request
+from drake_haptics.web.messages import REFUSED, TAKE, read_page_request
+
+_TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".svg": "image/svg+xml",
+}
+
+
+def read_page_file(path: str) -> tuple[bytes, str] | None:
+    """Returns a file and its media type; None where there is no such file.
+
+    Args:
+        path: Path of the address, like "/" or "/main.js". Only names of files in the
+            package's folder are found, whatever stands in it.
+    """
+    name = "index.html" if path == "/" else path.removeprefix("/")
+    for file in files("drake_haptics.web").joinpath("page").iterdir():
+        media_type = _TYPES.get("." + file.name.rpartition(".")[2])
+        if file.name == name and media_type is not None:
+            return file.read_bytes(), media_type
+    return None
+
 
 # By any other name this machine is reached only through a stranger's name server.
 _OWN_NAMES = ("localhost", "127.0.0.1")
@@ -86,7 +109,7 @@ class PageServer:
         """Tells every page something, and those that come later, too.
 
         Args:
-            name: Of the message; a newer one of the same name takes its place.
+            name: Name of the message; a newer one of the same name replaces it.
             message: JSON text.
         """
         self._lasting[name] = message

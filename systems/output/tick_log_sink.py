@@ -16,8 +16,8 @@ from pydrake.systems.primitives import Multiplexer
 
 from drake_haptics._core import ClusterSet, ContactSet
 from drake_haptics.device.backend import DeviceReading
+from drake_haptics.tick_log.log_format import REALS, SIGNALS
 from drake_haptics.tick_log.tick_recorder import TickRecorder
-from drake_haptics.tick_log.tick_rows import REALS, SIGNALS
 
 
 class TickLogSink(Diagram):

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from drake_haptics.cli import check as command
 from drake_haptics.cli import main
-from drake_haptics.cli.exit_codes import ExitCode
+from drake_haptics.cli import meshes as command
+from drake_haptics.cli.endings import ExitCode
 from drake_haptics.common.errors import UserError
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "command-line.md"
@@ -77,7 +77,7 @@ def test_debug_behind_the_command_is_told_where_it_goes():
 def test_a_defect_is_ours_and_says_what_to_report(end_with):
     line = end_with(IndexError("list index\nout of range")).stderr
     assert "IndexError: list index out of range" in line
-    assert re.search(r"\(cli/check\.py:\d+\)", line)
+    assert re.search(r"\(cli/meshes\.py:\d+\)", line)
     assert "report it" in line and "`drake-haptics --debug`" in line
 
 

@@ -10,7 +10,7 @@ import pytest
 import trimesh
 from click.testing import CliRunner
 
-from drake_haptics.cli import main, mesh_options
+from drake_haptics.cli import main, options
 from drake_haptics.geometry.decomposition import approximate as coacd_backend
 from drake_haptics.geometry.decomposition import decompose as decomposition
 from drake_haptics.scene.library import list_scenes
@@ -209,7 +209,7 @@ def test_that_a_file_can_be_written_is_asked_without_a_trace(folder):
     (folder / "old.json").write_text("old")
     (folder / "link.json").symlink_to(folder / "linked.json")
     for name in ("old.json", "new.json", "link.json"):
-        mesh_options.require_writable(folder / name, "--json")
+        options.require_writable(folder / name, "--json")
     assert (folder / "old.json").read_text() == "old"
     assert not (folder / "new.json").exists()
     assert (folder / "link.json").is_symlink() and not (folder / "linked.json").exists()

@@ -11,7 +11,7 @@ import trimesh
 from click.testing import CliRunner
 
 from drake_haptics.cli import main
-from drake_haptics.cli.lazy_group import LazyGroup
+from drake_haptics.cli.lessons import LazyGroup
 from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.scene.library import list_scenes
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from held_samples import hold_with_grip, load_held
 
-from drake_haptics.analysis import aimed_hand
-from drake_haptics.analysis.aimed_hand import build_aimed
+from drake_haptics.analysis import held_loop
 from drake_haptics.analysis.equilibrium import find_equilibrium
+from drake_haptics.analysis.held_loop import build_aimed
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.scene.schema import Coupling
 from drake_haptics.scene.validation import SceneError
@@ -90,6 +90,6 @@ def test_an_arm_that_does_not_reach_is_an_error(monkeypatch):
     def refuse(*_):
         raise UnreachableError("the arm is too short")
 
-    monkeypatch.setattr(aimed_hand, "solve_arm_positions", refuse)
+    monkeypatch.setattr(held_loop, "solve_arm_positions", refuse)
     with pytest.raises(ValueError, match="to press as before: the arm is too short"):
         build_aimed(load_held("hammer_block"))

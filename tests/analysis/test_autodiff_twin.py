@@ -8,7 +8,7 @@ from remembering_system import Remembers_
 from wall_loop import make_mass
 
 from drake_haptics.analysis import find_equilibrium, linearize_sampled, monodromy
-from drake_haptics.analysis.autodiff_twin import AutoDiffTwin
+from drake_haptics.analysis.diagram_systems import AutoDiffTwin
 
 
 def make_nested():

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drake_haptics.analysis.delay_bounds import calc_delay_bounds
 from drake_haptics.analysis.exact_boundary import calc_exact_alpha
-from drake_haptics.analysis.passivity import calc_passivity
+from drake_haptics.analysis.passivity import calc_passivity, make_spring_damper
 from drake_haptics.analysis.sampled_wall import SampledWall
-from drake_haptics.analysis.transfer_function import make_spring_damper
+from drake_haptics.analysis.wall_bounds import calc_delay_bounds
 
 T = 1e-3
 WALL = SampledWall(

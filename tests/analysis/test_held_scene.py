@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drake_haptics.analysis.aimed_hand import build_aimed
-from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_loop import analyse_held_scene, build_aimed
 from drake_haptics.analysis.held_scene import (
     build_quietly,
     find_firmest_contact,

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from drake_haptics.analysis.diagram_systems import Timing
-from drake_haptics.analysis.hyperperiod import find_hyperperiod, snap_to_update
+from drake_haptics.analysis.multirate import find_hyperperiod, snap_to_update
 
 
 def make_timings(*periods):

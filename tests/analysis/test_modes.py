@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from wall_loop import make_loop
 
 from drake_haptics.analysis import Mode, ModeKind, find_modes, linearize_sampled
-from drake_haptics.analysis.period_map import PeriodMap
+from drake_haptics.analysis.modes import PeriodMap
 
 PERIOD = 2e-3
 

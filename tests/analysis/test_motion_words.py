@@ -3,8 +3,8 @@
 import pytest
 
 from drake_haptics import BuildHapticDiagram, find_scene, load_scene
-from drake_haptics.analysis.motion_words import list_parts
-from drake_haptics.analysis.state_layout import find_state_layout
+from drake_haptics.analysis.diagram_systems import find_state_layout
+from drake_haptics.analysis.modes import list_parts
 
 ARM = "device/simulated_arm/arm"
 

@@ -7,8 +7,7 @@ import pytest
 from pydrake.systems.primitives import LinearSystem
 from scipy.linalg import expm
 
-from drake_haptics.analysis.passivity import calc_passivity
-from drake_haptics.analysis.transfer_function import make_spring_damper
+from drake_haptics.analysis.passivity import calc_passivity, make_spring_damper
 from drake_haptics.bounds.sampled_spring import calc_passive_damping
 
 T = 1e-3

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from drake_haptics.analysis.period_map import PeriodMap, check_return
+from drake_haptics.analysis.modes import PeriodMap, check_return
 
 
 def test_the_state_that_changes_most_for_its_size_is_named():

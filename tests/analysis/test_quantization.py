@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from drake_haptics.analysis.quantization import calc_quantization_bounds
+from drake_haptics.analysis.wall_bounds import calc_quantization_bounds
 
 T, DAMPING, RESOLUTION = 1e-3, 0.5, 3e-5
 # Finer than enough, about enough, coarser than enough.

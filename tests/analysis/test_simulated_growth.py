@@ -6,7 +6,7 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.primitives import LinearSystem
 
 from drake_haptics.analysis.sampled_map import get_state
-from drake_haptics.analysis.simulated_growth import measure_growth
+from drake_haptics.analysis.stability_limit import measure_growth
 
 PERIOD_S = 1e-3
 

@@ -11,9 +11,12 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import LinearSystem
 from wall_loop import make_mass, make_wall
 
-from drake_haptics.analysis.diagram_systems import calc_path, walk_leaves
+from drake_haptics.analysis.diagram_systems import (
+    calc_path,
+    find_state_layout,
+    walk_leaves,
+)
 from drake_haptics.analysis.sampled_map import get_state, set_state
-from drake_haptics.analysis.state_layout import find_state_layout
 
 
 def make_plant(time_step, *names):

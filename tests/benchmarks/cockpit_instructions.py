@@ -30,7 +30,7 @@ from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.visualization.meshcat import open_meshcat
-from drake_haptics.web.port import open_page_port
+from drake_haptics.web.link import open_page_port
 
 _KINDS = ("without", "with")
 # The shipped hands are in contact then.

@@ -8,7 +8,7 @@ from fake_device import ScriptedDevice
 from other_arm import PRESET, write_preset
 
 from drake_haptics.bounds.held_handle import check_real_coupling
-from drake_haptics.cockpit.coupling_advice import CouplingAdvice
+from drake_haptics.cockpit.scene_changes import CouplingAdvice
 from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.device_preset import list_device_presets, load_device_preset

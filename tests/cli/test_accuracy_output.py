@@ -6,7 +6,7 @@ import pytest
 from accuracy_samples import make_peers, make_row, make_study
 from rich.console import Console
 
-from drake_haptics.cli.accuracy_output import print_study
+from drake_haptics.cli.accuracy import print_study
 
 LONG = make_row(
     "contact.[depth]",

@@ -4,7 +4,7 @@ import io
 
 from rich.console import Console
 
-from drake_haptics.cli.change_log import ChangeLog
+from drake_haptics.cli.live_line import ChangeLog
 
 
 def note(states, *, terminal):

@@ -4,7 +4,7 @@ import dataclasses
 
 from fake_device import make_reading
 
-from drake_haptics.cli.device_words import (
+from drake_haptics.cli.status_line import (
     describe_device,
     describe_gate,
     describe_lateness,

@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 from struct_host import FAULT, StructHost
 
-from drake_haptics.cli.driver_status import DriverStatusLine, make_driver_summary
+from drake_haptics.cli.status_line import DriverStatusLine, make_driver_summary
 from drake_haptics.device.driver import DeviceDriver
 
 

@@ -6,7 +6,7 @@ import pty
 
 import pytest
 
-from drake_haptics.cli.enter_key import is_enter_pressed
+from drake_haptics.cli.run_session import is_enter_pressed
 
 
 @pytest.fixture

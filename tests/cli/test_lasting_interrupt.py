@@ -9,7 +9,7 @@ from fake_device import ScriptedDevice, make_reading
 from rich.console import Console
 
 from drake_haptics.cli import run_session as module
-from drake_haptics.cli.lasting_interrupt import lasting_interrupt
+from drake_haptics.cli.endings import lasting_interrupt
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 

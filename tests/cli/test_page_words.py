@@ -1,6 +1,6 @@
 """What is said of a page: where it is, and how to get there over ssh."""
 
-from drake_haptics.cli.page_words import describe_page
+from drake_haptics.cli.console import describe_page
 
 
 def test_at_the_computer_it_is_one_line(monkeypatch):

@@ -5,8 +5,8 @@ import time
 
 from rich.console import Console
 
-from drake_haptics.cli import progress_bar as module
-from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.cli import console as module
+from drake_haptics.cli.console import progress_bar
 
 
 class WatchedProgress(module.Progress):

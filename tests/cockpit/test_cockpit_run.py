@@ -14,7 +14,7 @@ from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import RunError
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.visualization.meshcat import open_meshcat
-from drake_haptics.web.port import open_page_port
+from drake_haptics.web.link import open_page_port
 
 BOUND_S = 120.0
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)

@@ -19,7 +19,8 @@ from cockpit_rig import (
 from driver_process import device_command, running
 from fake_device import ScriptedDevice, make_reading
 
-from drake_haptics.cockpit import holding, segments
+from drake_haptics.cockpit import cockpit_run as segments
+from drake_haptics.cockpit import holding
 from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice

@@ -24,8 +24,7 @@ from drake_haptics.simulation.live_values import live_keys, write_live_values
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.output.haptic_picture import PICTURE_VIEWS
 from drake_haptics.visualization.meshcat import CAMERAS, open_meshcat
-from drake_haptics.web.request import read_page_request
-from drake_haptics.web.telemetry import LARGEST_DATAGRAM
+from drake_haptics.web.messages import LARGEST_DATAGRAM, read_page_request
 
 
 @pytest.fixture(scope="module")

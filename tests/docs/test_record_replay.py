@@ -9,7 +9,7 @@ import tick_log_costs
 from tick_log_samples import make_rows, pack_rows
 
 from drake_haptics.scene.library import list_scenes
-from drake_haptics.tick_log.tick_rows import COUNTS, REALS
+from drake_haptics.tick_log.log_format import COUNTS, REALS
 
 PAGE = tick_log_costs.PAGE.read_text("utf-8")
 

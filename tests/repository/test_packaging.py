@@ -195,7 +195,7 @@ def test_a_clone_whose_links_are_files_of_text_works(
         import drake_haptics
         from drake_haptics.common.files import resolve_package_url
         from drake_haptics.scene.device_preset import list_device_presets
-        from drake_haptics.web.files import read_page_file
+        from drake_haptics.web.server import read_page_file
         files = [*drake_haptics.list_scenes().values()]
         files += [*drake_haptics.list_meshes().values()]
         files += [*list_device_presets().values()]

@@ -13,7 +13,7 @@ from tick_log_samples import HEADER, make_rows
 
 import drake_haptics
 from drake_haptics import _core
-from drake_haptics.analysis.period_map import PeriodMap
+from drake_haptics.analysis.modes import PeriodMap
 from drake_haptics.device.backend import DeviceCommand
 from drake_haptics.tick_log.tick_log import TickLog
 

@@ -27,10 +27,14 @@ from drake_haptics.scene.settings import change_scene
 from drake_haptics.simulation.replay_log import load_log_scene, replay
 from drake_haptics.simulation.run import run
 from drake_haptics.tick_log.log_diff import compare_logs
+from drake_haptics.tick_log.log_format import (
+    CLOCK_QUANTITIES,
+    DEVICE_QUANTITIES,
+    SLICES,
+    TickLogError,
+)
 from drake_haptics.tick_log.tick_log import Gap, TickLog, read_tick_log
-from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_recorder import TickRecorder
-from drake_haptics.tick_log.tick_rows import CLOCK_QUANTITIES, DEVICE_QUANTITIES, SLICES
 
 # Down, 8 mm into the plate, and along it.
 SCRAPE = [

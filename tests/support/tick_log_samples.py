@@ -2,9 +2,14 @@
 
 import numpy as np
 
-from drake_haptics.tick_log.tick_block import pack_block
-from drake_haptics.tick_log.tick_log_header import TickLogHeader, pack_header
-from drake_haptics.tick_log.tick_rows import COUNTS, NUM_REALS, TickRows
+from drake_haptics.tick_log.log_format import (
+    COUNTS,
+    NUM_REALS,
+    TickLogHeader,
+    TickRows,
+    pack_block,
+    pack_header,
+)
 
 HEADER = TickLogHeader(
     program_version="1.2.3",

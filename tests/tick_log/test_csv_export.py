@@ -7,8 +7,8 @@ import numpy as np
 from tick_log_samples import make_part, make_rows, make_smooth_rows, write_log
 
 from drake_haptics.tick_log.csv_export import write_csv
+from drake_haptics.tick_log.log_format import REALS
 from drake_haptics.tick_log.tick_log import TickLogReader
-from drake_haptics.tick_log.tick_rows import REALS
 
 
 def export(path, progress=None):

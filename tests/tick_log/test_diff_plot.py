@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from tick_log_samples import HEADER, make_rows
 
-from drake_haptics.tick_log.diff_plot import make_title
+from drake_haptics.tick_log.log_diff import make_title
 from drake_haptics.tick_log.tick_log import TickLog
 
 

@@ -10,9 +10,8 @@ from pydrake.common.eigen_geometry import AngleAxis
 from tick_log_samples import HEADER, make_rows, make_smooth_rows
 
 from drake_haptics.tick_log.log_diff import compare_logs
+from drake_haptics.tick_log.log_format import TickLogError, TickRows
 from drake_haptics.tick_log.tick_log import TickLog
-from drake_haptics.tick_log.tick_log_error import TickLogError
-from drake_haptics.tick_log.tick_rows import TickRows
 
 
 def make_log(rows, **header):

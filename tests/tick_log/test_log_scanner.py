@@ -19,11 +19,13 @@ from tick_log_samples import (
     write_log,
 )
 
-from drake_haptics.tick_log.tick_block import BLOCK_MAGIC
+from drake_haptics.tick_log.log_format import (
+    BLOCK_MAGIC,
+    TickLogError,
+    join_rows,
+    pack_header,
+)
 from drake_haptics.tick_log.tick_log import Gap, read_tick_log
-from drake_haptics.tick_log.tick_log_error import TickLogError
-from drake_haptics.tick_log.tick_log_header import pack_header
-from drake_haptics.tick_log.tick_rows import join_rows
 
 fuzz_profile.load()
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from tick_log_samples import HEADER, make_part, make_rows, make_smooth_rows, write_log
 
+from drake_haptics.tick_log.log_format import find_changed_meshes
 from drake_haptics.tick_log.log_summary import summarize_log
-from drake_haptics.tick_log.mesh_digest import find_changed_meshes
 
 
 def test_the_figures_are_those_of_the_ticks(tmp_path):

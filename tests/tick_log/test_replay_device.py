@@ -13,9 +13,9 @@ from tick_log_samples import HEADER, make_rows, make_smooth_rows, write_log
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.loop.open_device import open_device
+from drake_haptics.tick_log.log_format import TickLogError
 from drake_haptics.tick_log.replay_device import ReplayDevice
 from drake_haptics.tick_log.tick_log import Gap, TickLog
-from drake_haptics.tick_log.tick_log_error import TickLogError
 
 X_WB = RigidTransform(RollPitchYaw(0.3, -0.8, 2.0), [0.4, -0.2, 0.1])
 

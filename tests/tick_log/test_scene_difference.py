@@ -1,6 +1,6 @@
 """What differs between two scenes, by key."""
 
-from drake_haptics.tick_log.scene_difference import find_changes
+from drake_haptics.tick_log.log_diff import find_changes
 
 BEFORE = """\
 tool: {mass_kg: 0.1}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tick_log_samples import assert_same_bits, make_rows, make_smooth_rows, pack_rows
 
-from drake_haptics.tick_log.tick_block import (
+from drake_haptics.tick_log.log_format import (
     BLOCK_HEADER_BYTES,
     MAX_BLOCK_TICKS,
     pack_block,

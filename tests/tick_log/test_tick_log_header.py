@@ -8,8 +8,7 @@ import zlib
 import pytest
 from tick_log_samples import HEADER
 
-from drake_haptics.tick_log.tick_log_error import TickLogError
-from drake_haptics.tick_log.tick_log_header import pack_header, read_header
+from drake_haptics.tick_log.log_format import TickLogError, pack_header, read_header
 
 
 def forge(text, *, version=1, magic=b"\x89DHLOG\r\n"):

@@ -11,10 +11,9 @@ import pytest
 from tick_log_samples import HEADER, assert_same_bits, make_rows
 
 from drake_haptics.tick_log import tick_recorder
+from drake_haptics.tick_log.log_format import TickLogError, TickRows
 from drake_haptics.tick_log.tick_log import Gap, TickLogReader, read_tick_log
-from drake_haptics.tick_log.tick_log_error import TickLogError
 from drake_haptics.tick_log.tick_recorder import TickRecorder
-from drake_haptics.tick_log.tick_rows import TickRows
 
 LONG_S = 180.0
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.cli.failures import failures_in_words
+from drake_haptics.cli.endings import failures_in_words
 from drake_haptics.common.errors import UserError
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import list_scenes

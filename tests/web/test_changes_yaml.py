@@ -3,7 +3,7 @@
 import pytest
 import yaml
 
-from drake_haptics.web.changes_yaml import write_changes
+from drake_haptics.web.process import write_changes
 
 
 @pytest.mark.parametrize(

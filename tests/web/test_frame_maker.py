@@ -8,7 +8,7 @@ import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 
 from drake_haptics.web.frame_maker import FrameMaker
-from drake_haptics.web.telemetry import NOT_KNOWN, Telemetry, Tick
+from drake_haptics.web.messages import NOT_KNOWN, Telemetry, Tick
 
 X_WC = RigidTransform(RollPitchYaw(-2.0, 0.2, 0.7), [0.3, -0.4, 0.5])
 

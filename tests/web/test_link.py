@@ -13,9 +13,8 @@ import pytest
 import websocket
 
 from drake_haptics.web import link as page_link
-from drake_haptics.web.link import PageLink
-from drake_haptics.web.port import open_page_port
-from drake_haptics.web.telemetry import TickBuffer
+from drake_haptics.web.link import PageLink, open_page_port
+from drake_haptics.web.messages import TickBuffer
 
 BOUND_S = 120.0
 MESHCAT = "http://localhost:6999"

@@ -5,8 +5,8 @@ import socket
 import pytest
 
 from drake_haptics.common.errors import UserError
-from drake_haptics.web import port as page_port
-from drake_haptics.web.port import FIRST_PORT, open_page_port
+from drake_haptics.web import link as page_port
+from drake_haptics.web.link import FIRST_PORT, open_page_port
 
 
 def test_the_first_free_one_is_taken(monkeypatch):

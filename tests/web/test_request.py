@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drake_haptics.web.request import read_page_request
+from drake_haptics.web.messages import read_page_request
 
 
 @pytest.mark.parametrize(

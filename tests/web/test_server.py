@@ -13,7 +13,7 @@ import pytest
 import websocket
 
 from drake_haptics.web import server as page_server
-from drake_haptics.web.port import open_page_port
+from drake_haptics.web.link import open_page_port
 from drake_haptics.web.server import PageServer
 
 MESHCAT = "http://localhost:6999"

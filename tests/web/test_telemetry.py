@@ -5,7 +5,7 @@ import math
 import pytest
 
 from drake_haptics.device.backend import Fault, GateState
-from drake_haptics.web.telemetry import (
+from drake_haptics.web.messages import (
     FAULTS,
     GATES,
     KIND,

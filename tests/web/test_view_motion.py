@@ -5,7 +5,7 @@ import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 from scipy.spatial.transform import Rotation
 
-from drake_haptics.web.view_motion import (
+from drake_haptics.web.handle import (
     keep_near,
     move_in_view,
     turn_in_view,

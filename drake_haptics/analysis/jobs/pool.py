@@ -1,4 +1,4 @@
-"""Where the tasks of a study are computed if nothing else is asked for."""
+"""The processes of this machine that compute the tasks of a study by default."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def local_processes(
     process.
 
     Args:
-        function: What they will be asked to call.
+        function: The function that they will call.
         most_useful: More processes than this are not started.
 
     Raises:

@@ -26,8 +26,8 @@ class StudyProgress:
     Where the output is not a terminal it writes nothing.
 
     Args:
-        what: Is computed.
-        console: Where to write; None is stderr.
+        what: Name of what is computed.
+        console: Console to write to. Defaults to stderr.
     """
 
     def __init__(self, what: str, console: Console | None = None):

@@ -1,17 +1,130 @@
-"""The file in which a study keeps what is done."""
+"""The file in which a study keeps its results, under the name of its function.
+
+The same name means the same results: it covers all that is bound to the function.
+"""
 
 from __future__ import annotations
 
 import fcntl
+import functools
 import hashlib
 import json
 import os
+import sys
+import types
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, fields, is_dataclass
+from enum import Enum
+from importlib.metadata import version
+from pathlib import Path, PurePath
 from types import TracebackType
 from typing import Any
 
-from drake_haptics.analysis.jobs.function import PACKAGE_VERSION, StudyFunction
+from drake_haptics.analysis.jobs.exact_json import to_exact_json
+
+PACKAGE_VERSION = version("drake_haptics")
+
+
+@dataclass(frozen=True)
+class StudyFunction:
+    """The identity of a function with what is bound to it.
+
+    Attributes:
+        name: Module and qualified name, for people.
+        digest: Hash of the name, of all that is bound to it and of this package's
+            version, hex. The source of the function is not in it.
+    """
+
+    name: str
+    digest: str
+
+    @staticmethod
+    def of(function: Callable[[Any], Any]) -> StudyFunction:
+        """Identifies a top-level function, a partial of one, or a callable dataclass.
+
+        Raises:
+            ValueError: It is another thing, or something that is no data is bound.
+        """
+        described = json.dumps([PACKAGE_VERSION, _describe(function, "function")])
+        digest = hashlib.sha256(described.encode()).hexdigest()[:16]
+        return StudyFunction(_name_whole(function), digest)
+
+    def make_key(self, task: str) -> str:
+        """Returns the hash of this function with a task (exact JSON), hex."""
+        return hashlib.sha256(f"{self.digest} {task}".encode()).hexdigest()[:32]
+
+
+def _name_whole(function: Any) -> str:
+    """Returns the name, with those of functions that are bound to it in brackets."""
+    if _has_name(function):
+        return _name(function)
+    if isinstance(function, functools.partial):
+        name = _name_whole(function.func)
+        bound = [*function.args, *function.keywords.values()]
+    else:
+        name = _name(type(function))
+        bound = [getattr(function, field.name) for field in fields(function)]
+    inner = [_name_whole(value) for value in bound if callable(value)]
+    return f"{name}({', '.join(inner)})" if inner else name
+
+
+def _has_name(value: Any) -> bool:
+    if isinstance(value, types.BuiltinFunctionType):
+        return value.__module__ is not None  # not a method of an object
+    return isinstance(value, (types.FunctionType, type))
+
+
+def _name(value: Any) -> str:
+    """Returns module and qualified name; a program is known by its file."""
+    module = value.__module__
+    if module == "__main__":
+        program = getattr(sys.modules["__main__"], "__file__", None)
+        module = Path(program).name if program else module
+    return f"{module}.{value.__qualname__}"
+
+
+def _describe(value: Any, where: str) -> Any:
+    """Returns JSON data that two values share only if they are the same."""
+    if isinstance(value, functools.partial):
+        return {
+            "partial": _describe(value.func, where),
+            "args": _describe(value.args, f"{where}.args"),
+            "keywords": _describe(value.keywords, f"{where}.keywords"),
+        }
+    if _has_name(value):
+        if "<" in value.__qualname__:  # <lambda>, <locals>
+            raise ValueError(
+                f"{where} is {value.__qualname__}: a store needs functions of the top"
+                " level of a module, whose name says what they are"
+            )
+        return {"name": _name(value)}
+    if is_dataclass(value):
+        of = {
+            field.name: _describe(
+                getattr(value, field.name), f"{where or 'function'}.{field.name}"
+            )
+            for field in fields(value)
+        }
+        return {"dataclass": _name(type(value)), "fields": of}
+    if isinstance(value, PurePath):
+        return {"path": str(value)}
+    if isinstance(value, Enum):
+        return {"enum": _name(type(value)), "member": value.name}
+    if isinstance(value, (list, tuple)):
+        return [_describe(v, f"{where}[{i}]") for i, v in enumerate(value)]
+    if isinstance(value, dict) and all(isinstance(key, str) for key in value):
+        return {
+            "dict": [[k, _describe(v, f"{where}[{k!r}]")] for k, v in value.items()]
+        }
+    try:
+        return {"value": to_exact_json(value)}
+    except ValueError as error:
+        raise ValueError(
+            f"a store cannot tell one {where} from another: {error}. Bind data, paths,"
+            " dataclasses and functions, and build the rest inside the function"
+        ) from error
+
 
 # Every line begins so; a file without it belongs to somebody else.
 _MARK = b'{"format":"drake_haptics study 1",'
@@ -34,14 +147,14 @@ class StudyStore:
     is closed. One program at a time may have it open.
 
     Args:
-        path: Of the file; made if it is not there.
-        function: What its results are of.
+        path: Path of the file, which is created if it does not exist.
+        function: The function whose results it keeps.
 
     Attributes:
-        path: Of the file.
+        path: Path of the file.
 
     Raises:
-        ValueError: The file is none of a study, or is in use by another program.
+        ValueError: The file does not belong to a study, or another program uses it.
         OSError: The file cannot be opened.
     """
 

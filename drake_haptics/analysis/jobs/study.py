@@ -3,30 +3,145 @@
 from __future__ import annotations
 
 import os
+import threading
 import traceback
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import AbstractContextManager, closing, nullcontext
+from dataclasses import dataclass
 from itertools import islice
 from queue import SimpleQueue
 from typing import Any
 
 from drake_haptics.analysis.jobs.blas_threads import one_blas_thread
-from drake_haptics.analysis.jobs.chunk import (
-    Outcome,
-    StudyChunk,
-    is_in_task,
-)
-from drake_haptics.analysis.jobs.error import StudyError, TaskFailure
 from drake_haptics.analysis.jobs.exact_json import from_exact_json, to_exact_json
-from drake_haptics.analysis.jobs.function import StudyFunction
 from drake_haptics.analysis.jobs.pool import (
     SerialExecutor,
     check_not_importing,
     explain_broken_pool,
     local_processes,
 )
-from drake_haptics.analysis.jobs.store import StudyStore
+from drake_haptics.analysis.jobs.store import StudyFunction, StudyStore
+
+# Failed tasks that a message tells of; all are in the error.
+_TOLD = 5
+
+
+@dataclass(frozen=True)
+class TaskFailure:
+    """A task that has no result.
+
+    Attributes:
+        index: Its place among the tasks.
+        task: The task.
+        reason: Type and message of the exception.
+        traceback: Traceback in the process that computed it, for people.
+    """
+
+    index: int
+    task: Any
+    reason: str
+    traceback: str
+
+    def __str__(self) -> str:
+        """Returns one line."""
+        return f"task {self.index}, {self.task!r}: {self.reason}"
+
+
+class StudyError(RuntimeError):
+    """Some tasks of a study have no result; the others have.
+
+    Attributes:
+        results: A result per task, in their order; None where there is none.
+        failures: The tasks whose function raised, in their order. Tasks that nobody
+            came to, because the executor broke, are not among them.
+    """
+
+    def __init__(
+        self, message: str, results: Sequence[Any], failures: Sequence[TaskFailure]
+    ):
+        super().__init__("\n".join([message, *_tell(failures)]))
+        self.results = list(results)
+        self.failures = tuple(failures)
+
+
+def _tell(failures: Sequence[TaskFailure]) -> list[str]:
+    lines = [f"  {failure}" for failure in failures[:_TOLD]]
+    if len(failures) > _TOLD:
+        lines.append(f"  and {len(failures) - _TOLD} more, see failures")
+    if failures:
+        lines.append(f"Where the first failed:\n{failures[0].traceback.rstrip()}")
+    return lines
+
+
+_state = threading.local()
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The outcome of one task: a result, or the reason for a failure.
+
+    It holds only strings, so that it always comes back from a worker: exceptions of
+    users often do not pickle.
+
+    Attributes:
+        result: JSON by `to_exact_json`; None if the task failed.
+        reason: Type and message of the exception; empty if it did not fail.
+        traceback: Traceback in the worker; empty if it did not fail.
+    """
+
+    result: str | None
+    reason: str = ""
+    traceback: str = ""
+
+
+class StudyChunk:
+    """A function and some tasks that travel to a worker together.
+
+    It is an object without a meaning to any executor: some look for their own futures
+    in lists and strings that they are given as arguments.
+
+    Args:
+        function: The function to call for each task.
+        tasks: JSON of each by `to_exact_json`. Every executor so gives the function
+            the same new object, and never one that another task has changed.
+    """
+
+    def __init__(self, function: Callable[[Any], Any], tasks: Sequence[str]):
+        self._function = function
+        self._tasks = tasks
+        # Dask's page shows it.
+        self.__name__ = getattr(function, "__name__", type(function).__name__)
+
+    def __call__(self) -> list[Outcome]:
+        """Computes the tasks in turn."""
+        nested = is_in_task()
+        _state.in_task = True
+        try:
+            with one_blas_thread():
+                return [self._compute(task) for task in self._tasks]
+        finally:
+            _state.in_task = nested
+
+    def _compute(self, task: str) -> Outcome:
+        try:
+            return Outcome(self._to_json(self._function(from_exact_json(task))))
+        # Drake leaves by SystemExit where a condition of its own fails.
+        except (Exception, SystemExit) as error:
+            reason = f"{type(error).__name__}: {error}"
+            return Outcome(None, reason, traceback.format_exc())
+
+    def _to_json(self, result: Any) -> str:
+        try:
+            return to_exact_json(result)
+        except ValueError as error:
+            raise ValueError(f"the result cannot be kept: {error}") from error
+
+
+def is_in_task() -> bool:
+    """Tells whether this thread is computing a task of a study."""
+    return getattr(_state, "in_task", False)
+
 
 # Chunks that an executor has at a time: enough for a cluster of as many cores, and
 # little memory however many tasks there are.
@@ -56,7 +171,7 @@ def run_study(
         function: Of one task. Without an executor it must pickle: of the top level of
             a module, a functools.partial of such, or a callable dataclass. A store
             needs the same, and that what is bound to it is data.
-        tasks: What to call it with.
+        tasks: The tasks to call it with.
         executor: Any concurrent.futures.Executor, for instance
             `distributed.Client(...).get_executor()` of a Dask cluster. It stays open.
             None opens a process for each core that this process may use, and closes
@@ -74,7 +189,7 @@ def run_study(
 
     Raises:
         StudyError: Tasks raised, or workers died. It has the results of the others.
-        KeyboardInterrupt: At Ctrl-C; tells how many are done.
+        KeyboardInterrupt: A person pressed Ctrl-C; tells how many are done.
         ValueError: An argument cannot be used, or the store is of another study.
         RuntimeError: The program lacks its ``if __name__ == "__main__":``.
         OSError: The store cannot be written.
@@ -103,10 +218,10 @@ class _Study:
     """What is done of a study. Tasks are known by their exact JSON.
 
     Args:
-        function: Of one task.
+        function: Function of one task.
         keys: The tasks.
-        store: What to begin from and where to keep results, or None.
-        progress: As `run_study` has it.
+        store: Store of the results so far and of new ones, or None.
+        progress: Called as in `run_study`.
     """
 
     def __init__(

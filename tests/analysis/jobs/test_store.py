@@ -117,9 +117,8 @@ def test_a_store_of_other_bound_values_is_refused(tmp_path):
 
 def test_a_store_of_another_version_is_refused(tmp_path, monkeypatch):
     store = tmp_path / "store"
-    for module in ("function", "store"):
-        name = f"drake_haptics.analysis.jobs.{module}.PACKAGE_VERSION"
-        monkeypatch.setattr(name, "0.0.1")
+    name = "drake_haptics.analysis.jobs.store.PACKAGE_VERSION"
+    monkeypatch.setattr(name, "0.0.1")
     run_study(square, [1], executor=SERIAL, store=store)
     monkeypatch.undo()
     with pytest.raises(ValueError, match=r"by version 0\.0\.1, and this is"):

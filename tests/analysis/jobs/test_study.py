@@ -29,10 +29,9 @@ from study_functions import (
 from threadpoolctl import threadpool_limits
 
 from drake_haptics.analysis.jobs import study
-from drake_haptics.analysis.jobs.error import StudyError
 from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.analysis.jobs.progress import StudyProgress
-from drake_haptics.analysis.jobs.study import run_study
+from drake_haptics.analysis.jobs.study import StudyError, run_study
 
 SERIAL = SerialExecutor()
 

@@ -10,10 +10,9 @@ from study_functions import (
     wait_and_tell_process,
 )
 
-from drake_haptics.analysis.jobs.error import StudyError
 from drake_haptics.analysis.jobs.exact_json import to_exact_json
 from drake_haptics.analysis.jobs.pool import SerialExecutor
-from drake_haptics.analysis.jobs.study import run_study
+from drake_haptics.analysis.jobs.study import StudyError, run_study
 
 distributed = pytest.importorskip(
     "distributed", reason="needs Dask: pip install 'drake_haptics[cluster]'"

@@ -27,7 +27,7 @@ from drake_haptics._core import (
     SceneTracker,
     differentiate_contacts,
 )
-from drake_haptics.analysis.state_layout import find_state_layout
+from drake_haptics.analysis.diagram_systems import find_state_layout
 from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram

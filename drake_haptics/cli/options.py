@@ -1,21 +1,43 @@
-"""What commands share: the unit of a mesh, files to write, JSON."""
+"""Options that several commands share: meshes, scenes, numbers, and files to write."""
 
 from __future__ import annotations
 
 import errno
 import json
+import math
 import os
-from collections.abc import Callable
+import re
+import shlex
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from drake_haptics.cli.complete import complete_unit
-from drake_haptics.common.errors import UserError
+from drake_haptics.cli.completion import complete_setting, complete_unit
+from drake_haptics.common.errors import SceneError, UserError
 from drake_haptics.geometry.mesh.decimation import decimate
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 from drake_haptics.geometry.mesh.units import METRES_PER_UNIT
+
+if TYPE_CHECKING:
+    from drake_haptics.scene.schema import Scene
+
+
+class FiniteRange(click.FloatRange):
+    """A number in a range, and neither `nan` nor `inf`."""
+
+    name = "number"  # in messages
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Returns the number."""
+        number: float = super().convert(value, param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{value} is no finite number.", param, ctx)
+        return number
+
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -35,7 +57,7 @@ def unit_option(what: str) -> Callable[[_Function], _Function]:
     """Adds --unit.
 
     Args:
-        what: Is in that unit, for --help.
+        what: Names the quantity in that unit, for --help.
     """
     return click.option(
         "--unit",
@@ -67,7 +89,7 @@ def meshes_option(what: str) -> Callable[[_Function], _Function]:
     """Adds --meshes FOLDER, of real meshes by their names.
 
     Args:
-        what: Is done with them, for --help.
+        what: Says what is done with the meshes, for --help.
     """
     return click.option(
         "--meshes",
@@ -95,7 +117,7 @@ def require_folder(
     """Returns the file of an option, so that no result is computed for nowhere.
 
     Raises:
-        UserError: As `require_writable`.
+        UserError: The file cannot be written, see `require_writable`.
     """
     if file is not None and str(file) != "-":
         require_writable(Path(file), option.opts[0])
@@ -106,8 +128,8 @@ def require_writable(path: Path, option: str) -> None:
     """Checks that a file can be written.
 
     Args:
-        path: Of the file.
-        option: That names it.
+        path: Path of the file.
+        option: The option that names it.
 
     Raises:
         UserError: There is no such folder, or nothing can be written there.
@@ -150,5 +172,67 @@ def write_json(data: dict[str, Any], file: str) -> None:
         return
     try:
         Path(file).write_text(text + "\n", encoding="utf-8")
-    except OSError as error:  # Of a full disk, which names no file.
+    except OSError as error:  # a full disk names no file
         raise OSError(error.errno, error.strerror, file) from error
+
+
+# A scale that the library asks for, as a key of a scene or an argument.
+_SCALE = re.compile(r"(tool|environment)(?:\[0\]\.|\.|_)scale(?:: |=)([\d.e-]+)")
+
+
+def set_option(function: _Function) -> _Function:
+    """Adds --set KEY=VALUE, as `settings`."""
+    return click.option(
+        "--set",
+        "settings",
+        multiple=True,
+        metavar="KEY=VALUE",
+        shell_complete=complete_setting,
+        help="Change a value of the scene, like contact.stiffness_N_per_m=4000 or"
+        " tool.mesh=my.obj, a path from this folder; may be given again. Without"
+        " VALUE: its default, and an effect is off.",
+    )(function)
+
+
+def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
+    """Returns a scene with what --set changes.
+
+    Args:
+        scene: A shipped scene's name, or a file.
+        settings: Values of the option --set.
+
+    Raises:
+        SceneError: There is no such scene, or it cannot be used.
+        UserError: A setting is not possible, see `set_values`.
+    """
+    from drake_haptics.scene.library import find_scene
+    from drake_haptics.scene.loading import load_scene
+
+    return set_values(load_scene(find_scene(scene)), settings)
+
+
+def set_values(scene: Scene, settings: Sequence[str]) -> Scene:
+    """Returns a scene with what --set changes; the same one where that is nothing.
+
+    Raises:
+        UserError: It is no key, or an impossible value.
+    """
+    from drake_haptics.scene.settings import change_scene
+
+    if not settings:
+        return scene
+    try:
+        return change_scene(scene, settings)
+    except SceneError as error:
+        raise UserError(f"--set {error}") from error
+
+
+def write_call(command: str, scene: str, settings: Sequence[str]) -> str:
+    """Returns the words that give another command the same scene, for a shell."""
+    pairs = [word for setting in settings for word in ("--set", setting)]
+    return shlex.join(["drake-haptics", command, scene, *pairs])
+
+
+def name_scale_options(words: str) -> str:
+    """Returns words of the library with the options of the scales that they ask for."""
+    return _SCALE.sub(r"\g<0> (with --tool and --environment: --\1-scale \2)", words)

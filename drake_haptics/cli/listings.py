@@ -1,4 +1,4 @@
-"""`drake-haptics devices`."""
+"""`drake-haptics scenes` and `drake-haptics devices`: list what is included."""
 
 from __future__ import annotations
 
@@ -9,13 +9,29 @@ from rich.table import Table
 
 from drake_haptics.cli import lessons
 from drake_haptics.cli.console import make_console
-from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import json_option, write_json
+from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.options import json_option, write_json
 from drake_haptics.scene.device_preset import (
     DevicePreset,
     list_device_presets,
     load_device_preset,
 )
+from drake_haptics.scene.library import list_scenes
+from drake_haptics.scene.loading import load_scene
+
+
+@click.command(cls=TaughtCommand, lesson=lessons.SCENES)
+def scenes() -> None:
+    """List the scenes that are included."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    table.add_column("scene", no_wrap=True)
+    table.add_column("what happens")
+    for name, path in list_scenes().items():
+        table.add_row(name, load_scene(path).description)
+    console = make_console()
+    console.print(table)
+    console.print("\nTo run one: drake-haptics run SCENE", style="dim")
+
 
 # What the table needs.
 _WIDTH = 80
@@ -24,7 +40,7 @@ _WIDTH = 80
 @click.command(cls=TaughtCommand, lesson=lessons.DEVICES)
 @json_option
 def devices(json_file: str | None) -> None:
-    """List the devices whose limits come along.
+    """List the devices whose limits are included.
 
     Forces, torques and stiffnesses are the largest that the device is rated for. A
     device with a twin can be simulated; the others are used with `run --device`.
@@ -35,7 +51,7 @@ def devices(json_file: str | None) -> None:
             {name: _to_dict(preset) for name, preset in presets.items()}, json_file
         )
     if json_file != "-":
-        _print(presets)
+        _print_devices(presets)
 
 
 def _to_dict(preset: DevicePreset) -> dict[str, object]:
@@ -45,7 +61,7 @@ def _to_dict(preset: DevicePreset) -> dict[str, object]:
     return figures | {"has_twin": preset.has_model}
 
 
-def _print(presets: dict[str, DevicePreset]) -> None:
+def _print_devices(presets: dict[str, DevicePreset]) -> None:
     table = Table(box=None, header_style="bold", pad_edge=False)
     table.add_column("device", no_wrap=True)
     for heading in ["N", "N·m", "N/m", "N·m/rad", "radius, m", "axes", "twin"]:

@@ -1,4 +1,4 @@
-"""`drake-haptics decompose MESH`."""
+"""`drake-haptics check MESH` and `drake-haptics decompose MESH`."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import signal
 import click
 
 from drake_haptics.cli import lessons
-from drake_haptics.cli.console import make_console
-from drake_haptics.cli.failures import naming
-from drake_haptics.cli.finite_range import FiniteRange
-from drake_haptics.cli.lesson import TaughtCommand
-from drake_haptics.cli.mesh_options import (
+from drake_haptics.cli.console import describe_page, make_console, progress_bar
+from drake_haptics.cli.endings import naming
+from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.options import (
+    FiniteRange,
     json_option,
     max_triangles_option,
     read_mesh,
@@ -20,17 +20,41 @@ from drake_haptics.cli.mesh_options import (
     unit_options,
     write_json,
 )
-from drake_haptics.cli.page_words import describe_page
-from drake_haptics.cli.progress_bar import progress_bar
-from drake_haptics.geometry.decomposition.approximate import check_error
 from drake_haptics.geometry.decomposition.decompose import (
     METHODS,
     Decomposition,
     Method,
 )
 from drake_haptics.geometry.decomposition.decompose import decompose as decompose_mesh
-from drake_haptics.geometry.mesh.mesh import Mesh
+from drake_haptics.geometry.decomposition.merge import check_error
+from drake_haptics.geometry.mesh.mesh import Mesh, MeshError
 from drake_haptics.geometry.mesh.report import Severity, length
+
+
+@click.command(cls=TaughtCommand, lesson=lessons.CHECK)
+@click.argument("mesh", type=click.Path())
+@unit_options
+@max_triangles_option
+@click.option(
+    "--strict", is_flag=True, help="Fail if the mesh has a defect, repairable or not."
+)
+@json_option
+def check(
+    mesh: str,
+    unit: str | None,
+    scale: float | None,
+    max_triangles: int | None,
+    strict: bool,
+    json_file: str | None,
+) -> None:
+    """Report what a mesh file is, what is wrong with it and what is done about it."""
+    report = read_mesh(mesh, unit, scale, max_triangles).report
+    if json_file is not None:
+        write_json(report.to_dict(), json_file)
+    if json_file != "-":
+        make_console().print(report)
+    if strict and report.unclean:
+        raise MeshError(report.refusal)
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.DECOMPOSE)

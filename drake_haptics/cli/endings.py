@@ -1,20 +1,47 @@
-"""Turns whatever ends a command into words and an exit code."""
+"""Ends a command well: exit codes, failures as messages, and requests to stop."""
 
 from __future__ import annotations
 
 import errno
 import logging
+import signal
+import time
 import traceback
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from enum import IntEnum
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 import click
 
-from drake_haptics.cli.exit_codes import ExitCode
 from drake_haptics.common.errors import UserError
+
+
+class ExitCode(IntEnum):
+    """The same for all commands.
+
+    Attributes:
+        DONE: The command is done. `run`, `device` and `decompose --show` end this way
+            at Ctrl-C too.
+        UNUSABLE: What was given cannot be used, or the system refuses a file or a port.
+        WRONG_CALL: There is no such command, option or value.
+        NO: The command is done, and the answer is no: a run became unstable or ended
+            with its device at fault, two logs differ, no setting holds the budget.
+        DEFECT: The program has a defect.
+        INTERRUPTED: Ctrl-C ended the command before it was done: 128 + SIGINT, as in
+            shells.
+    """
+
+    DONE = 0
+    UNUSABLE = 1
+    WRONG_CALL = 2
+    NO = 3
+    DEFECT = 70
+    INTERRUPTED = 130
+
 
 _REMEDIES = {
     errno.ENOSPC: "free some space, or write to another disk",
@@ -25,7 +52,7 @@ _REMEDIES = {
 }
 
 
-# Drake says so of every second page; which of them has the camera is told on the pages.
+# Drake logs this for each additional page; the pages tell which one has the camera.
 _TWO_CAMERAS = "More than one meshcat client is attempting to broadcast its camera pose"
 
 
@@ -76,7 +103,7 @@ def failures_in_words(debug: bool) -> Iterator[None]:
 
 
 def _describe(error: BaseException) -> click.ClickException:
-    """Returns the failure that an exception is to the person at the keyboard."""
+    """Returns an exception as the failure that the person at the keyboard sees."""
     if isinstance(error, KeyboardInterrupt):
         # Work that is kept says how to go on.
         return _Interrupted(str(error) or "Stopped.")
@@ -130,10 +157,10 @@ def naming(option: str) -> Iterator[None]:
     """Puts the option that gave it before what the library says of an argument.
 
     Args:
-        option: As it is given, or several.
+        option: The option as the user gives it, or several.
 
     Raises:
-        UserError: There was one, whose words name no option.
+        UserError: The library raised one, whose words name no option.
     """
     try:
         yield
@@ -186,3 +213,55 @@ def _log_in_lines() -> Iterator[None]:
 def warn(words: str) -> None:
     """Writes a warning to stderr, in one line."""
     click.secho(f"Warning: {' '.join(words.split())}", fg="yellow", err=True)
+
+
+# What ends a program from a keyboard, a script or a service, and with its terminal.
+_NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+# Of a person who presses Ctrl-C ten times: one request, whose report is not to be lost.
+_REPEATED_S = 2.0
+
+
+@contextmanager
+def lasting_interrupt(
+    clock: Callable[[], float] = time.monotonic,
+) -> Iterator[Callable[[], None]]:
+    """Makes Ctrl-C, SIGTERM and SIGHUP last until somebody ends for them.
+
+    A `KeyboardInterrupt` is raised wherever the interpreter is just then. Where that
+    is in Python code that C++ has called, or in a destructor, it may be dropped, and a
+    device would go on with force. More of them within two seconds are the same one;
+    later ones are raised again, for what hangs.
+
+    Signals that are ignored, as in a script's background or under `nohup`, still are.
+    Only the main thread may use it.
+
+    Args:
+        clock: Reads the time, s.
+
+    Yields:
+        What a loop calls now and then: raises `KeyboardInterrupt` if there was one.
+    """
+    asked_s: float | None = None
+
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        nonlocal asked_s
+        now_s = clock()
+        if asked_s is not None and now_s < asked_s + _REPEATED_S:
+            return
+        asked_s = now_s
+        raise KeyboardInterrupt
+
+    def check() -> None:
+        if asked_s is not None:
+            raise KeyboardInterrupt
+
+    before = {
+        number: signal.signal(number, interrupt)
+        for number in _NUMBERS
+        if signal.getsignal(number) is not signal.SIG_IGN
+    }
+    try:
+        yield check
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

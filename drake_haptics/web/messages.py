@@ -1,15 +1,19 @@
-"""What the loop notes of each tick, and how it crosses to the page's process.
+"""The messages between the loop and its page, in both directions.
 
-A packet is a head, and a row for each tick since the last packet: plain doubles, so
-that noting a tick is one call that allocates nothing and that no number can upset.
+The loop tells of its ticks in packets: a head, and a row for each tick since the last
+packet. They are plain doubles, so that noting a tick is one call that allocates nothing
+and that no number can upset. A page asks in JSON, and may ask for little: it is not to
+be trusted.
 """
 
 from __future__ import annotations
 
+import json
 import math
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 # First bytes of packets: numbers here, JSON text where it is a brace.
 KIND = b"#"
@@ -41,11 +45,11 @@ class Tick:
         query_s: Clock time of its contact query, s.
         contacts: Before clustering.
         clusters: After it.
-        distance_m: Of the nearest contact, m, negative if it penetrates; infinite if
-            there is none.
+        distance_m: Distance of the nearest contact, m, negative if it penetrates;
+            infinite without a contact.
         tau_W: (3,) torque on the handle, N·m.
         f_W: (3,) force on the handle, N.
-        late_s: How late it began, s.
+        late_s: Delay of its beginning, s.
     """
 
     time_s: float
@@ -64,10 +68,10 @@ class Telemetry:
     """A packet.
 
     Attributes:
-        gate: Of `GATES`.
-        fault: Of `FAULTS`.
-        silent_s: For how long the device's driver has said nothing new, s.
-        shed: How many stages of work were left out.
+        gate: State of the gate, one of `GATES`.
+        fault: Fault of the device, one of `FAULTS`.
+        silent_s: Time for which the device's driver has said nothing new, s.
+        shed: Number of stages of work that were left out.
         skipped: Ticks lost to stalls since the run began.
         clock_s: The loop's clock, s.
         R_WC: (9,) the camera's axes x right, y down, z away, row by row.
@@ -105,7 +109,7 @@ class TickBuffer:
         Args:
             time_s: Simulated time, s.
             latest: (12,) as `RunStatistics.latest`.
-            late_s: How late the tick began, s.
+            late_s: Delay of the tick's beginning, s.
         """
         if self._end < _LARGEST_PACKET:
             _TICK.pack_into(self._bytes, self._end, time_s, *latest, late_s)
@@ -128,8 +132,8 @@ class TickBuffer:
         Args:
             gate: Index into `GATES`.
             fault: Index into `FAULTS`.
-            silent_s: For how long the device's driver has said nothing new, s.
-            shed: How many stages of work are left out.
+            silent_s: Time for which the device's driver has said nothing new, s.
+            shed: Number of stages of work that are left out.
             skipped: Ticks lost to stalls since the run began.
             clock_s: The loop's clock, s.
             camera: (12,) R_WC row by row and p_WC, m.
@@ -179,3 +183,91 @@ def _read_tick(row: tuple[float, ...]) -> Tick:
         f_W=(f_x, f_y, f_z),
         late_s=late_s,
     )
+
+
+# A message moves by at most this, in heights of the view or in half turns.
+_LARGEST_STEP = 1.0
+_LARGEST_NUMBER = 1e300
+_LONGEST_NAME = 64
+
+TAKE = "take"
+"""Asks that its page be the one that drives; any page may."""
+
+REFUSED = "refused"
+"""The loop is told {REFUSED: 1} of a message that is not one of those allowed."""
+
+
+def _is_number(value: object) -> bool:
+    """Whether it is a number, not a truth value, and finite."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    # False for what is not a number, too.
+    return abs(value) <= _LARGEST_NUMBER
+
+
+def _is_step(value: object) -> bool:
+    return _is_number(value) and abs(value) <= _LARGEST_STEP  # type: ignore[arg-type]
+
+
+def _are_steps(value: object) -> bool:
+    return isinstance(value, list) and len(value) == 3 and all(map(_is_step, value))
+
+
+def _is_name(value: object) -> bool:
+    return isinstance(value, str) and len(value) <= _LONGEST_NAME
+
+
+def _is_switch(value: object) -> bool:
+    return isinstance(value, bool)
+
+
+# What goes with each verb. A name that ends in "?" may be left out.
+_VERBS: Mapping[str, Mapping[str, Callable[[object], bool]]] = {
+    # By (right, up, away), in heights of the view at the handle's depth.
+    "move": {"by": _are_steps},
+    # By (right, up, roll), in half turns: its front goes right and up, and it rolls
+    # clockwise.
+    "turn": {"by": _are_steps},
+    "home": {},
+    TAKE: {},
+    "set": {"key": _is_name, "to": _is_number},
+    "choose": {"key": _is_name, "to": _is_name},
+    "effect": {"name": _is_name, "on": _is_switch},
+    "handle": {"to": _is_name},
+    # Takes up a device at fault, or lets one that waits show its force.
+    "resume": {},
+    "view": {"name": _is_name, "on": _is_switch},
+    "camera": {"to": _is_name, "within?": _is_number},
+    "reset": {},
+    "restart": {},
+}
+
+
+def read_page_request(text: str | bytes) -> dict[str, Any] | None:
+    """Returns what a page asks for; None if it is not exactly one of those allowed.
+
+    A message is JSON text: {"do": verb} and what goes with the verb, like {"do":
+    "move", "by": [0.1, 0, 0]}. Whether there is such a key or name is not known here.
+
+    Args:
+        text: The message as it came; bytes are never right.
+    """
+    if isinstance(text, bytes):
+        return None
+    try:
+        asked = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(asked, dict) or not isinstance(asked.get("do"), str):
+        return None
+    parts = _VERBS.get(asked["do"])
+    if parts is None:
+        return None
+    checks = {name.rstrip("?"): check for name, check in parts.items()}
+    needed = {name for name in parts if not name.endswith("?")}
+    given = set(asked) - {"do"}
+    if not needed <= given <= set(checks):
+        return None
+    if not all(checks[name](asked[name]) for name in given):
+        return None
+    return asked
