@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from itertools import combinations, product
+from itertools import product
 
 import numpy as np
+
+from drake_haptics.evaluation.shapes.solids import divide_icosahedron
 
 RADIUS_M = 0.05
 SIZES = (8, 42, 162, 642, 2562)
@@ -85,46 +87,8 @@ def _directions(size: int) -> np.ndarray:
     """Even unit vectors: the corners of a cube, or of a divided icosahedron."""
     if size == 8:
         return np.array(list(product((-1.0, 1.0), repeat=3))) / np.sqrt(3)
-    golden = (1 + np.sqrt(5)) / 2
-    points = np.array(
-        [
-            np.roll((0.0, s, t), k)
-            for k in range(3)
-            for s in (-1, 1)
-            for t in (-golden, golden)
-        ]
-    )
-    points /= np.linalg.norm(points, axis=1, keepdims=True)
-    near = np.linalg.norm(points[:, None] - points[None], axis=2) < 1.1
-    triangles = [
-        (i, j, k)
-        for i, j, k in combinations(range(12), 3)
-        if near[i, j] and near[j, k] and near[k, i]
-    ]
-    while len(points) < size:
-        points, triangles = _divided(points, triangles)
-    if len(points) != size:
+    # Each division makes four triangles of one: n vertices become 4 n - 6.
+    divisions = {42: 1, 162: 2, 642: 3, 2562: 4}
+    if size not in divisions:
         raise ValueError(f"size must be one of {SIZES}, not {size}")
-    return points
-
-
-def _divided(
-    points: np.ndarray, triangles: list[tuple[int, int, int]]
-) -> tuple[np.ndarray, list[tuple[int, int, int]]]:
-    """Divides each triangle into four, with the new corners on the unit sphere."""
-    corners = list(points)
-    middles: dict[tuple[int, int], int] = {}
-
-    def middle(i: int, j: int) -> int:
-        key = (min(i, j), max(i, j))
-        if key not in middles:
-            middles[key] = len(corners)
-            corners.append((corners[i] + corners[j]) / 2)
-        return middles[key]
-
-    divided = []
-    for i, j, k in triangles:
-        ij, jk, ki = middle(i, j), middle(j, k), middle(k, i)
-        divided += [(i, ij, ki), (j, jk, ij), (k, ki, jk), (ij, jk, ki)]
-    grown = np.array(corners)
-    return grown / np.linalg.norm(grown, axis=1, keepdims=True), divided
+    return divide_icosahedron(divisions[size])[0]

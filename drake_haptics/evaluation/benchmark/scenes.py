@@ -11,11 +11,8 @@ from drake_haptics.common.errors import UserError
 from drake_haptics.evaluation.benchmark.scene_motion import make_touches
 from drake_haptics.evaluation.benchmark.scene_problem import SceneProblem
 from drake_haptics.evaluation.shapes import SHAPES, Surface
-from drake_haptics.evaluation.shapes.machine_room import (
-    make_machine_room,
-    make_wrench,
-    wrench_path,
-)
+from drake_haptics.evaluation.shapes.hand_tools import make_wrench
+from drake_haptics.evaluation.shapes.machine_room import make_machine_room, wrench_path
 from drake_haptics.evaluation.shapes.organ import make_organ
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh

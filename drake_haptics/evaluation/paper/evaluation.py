@@ -23,7 +23,7 @@ from drake_haptics.evaluation.paper.profile import Profile, measure_profile
 from drake_haptics.evaluation.paper.profile_figures import ProfileFigures, sum_up
 from drake_haptics.evaluation.paper.scenarios import scenario_makers
 from drake_haptics.evaluation.paper.table1 import ModelFigures, measure_table1
-from drake_haptics.evaluation.shapes.sphere import make_sphere
+from drake_haptics.evaluation.shapes.solids import make_sphere
 
 Part = Literal["table1", "figure11", "figure12", "analysis"]
 PARTS: tuple[Part, ...] = get_args(Part)

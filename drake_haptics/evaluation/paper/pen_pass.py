@@ -12,8 +12,7 @@ from drake_haptics._core import ConvexPair, ConvexPolytope
 from drake_haptics.evaluation.benchmark.pair_motion import rotation, unit
 from drake_haptics.evaluation.paper.pen_truth import ContactCurves, calc_sphere_contact
 from drake_haptics.evaluation.paper.smoothness import Smoothness, measure_smoothness
-from drake_haptics.evaluation.shapes.pen import make_pen
-from drake_haptics.evaluation.shapes.sphere import make_sphere
+from drake_haptics.evaluation.shapes.solids import make_pen, make_sphere
 from drake_haptics.evaluation.shapes.surface import Surface
 
 _Follow = Callable[[Surface, Surface, np.ndarray], ContactCurves]

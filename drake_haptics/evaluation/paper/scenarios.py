@@ -19,11 +19,8 @@ from drake_haptics.evaluation.paper.models import (
     load_model,
 )
 from drake_haptics.evaluation.paper.scenario import Scenario
-from drake_haptics.evaluation.shapes.machine_room import (
-    make_machine_room,
-    make_wrench,
-    wrench_path,
-)
+from drake_haptics.evaluation.shapes.hand_tools import make_wrench
+from drake_haptics.evaluation.shapes.machine_room import make_machine_room, wrench_path
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.scene.schema import Contact

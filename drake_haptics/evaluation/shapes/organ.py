@@ -7,9 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from drake_haptics.evaluation.shapes.opening import opening_loop
-from drake_haptics.evaluation.shapes.surface import Surface, SurfaceBuilder
-from drake_haptics.evaluation.shapes.sweep import Path, rounded_path
+from drake_haptics.evaluation.shapes.surface import (
+    SmoothPath,
+    Surface,
+    SurfaceBuilder,
+    opening_loop,
+    rounded_path,
+)
 
 # Corners of the axes, (x, y, z) in m, before all is bent a little.
 _COLON = (
@@ -105,7 +109,7 @@ def _bend(points: np.ndarray) -> np.ndarray:
 
 def _add_rings(
     builder: SurfaceBuilder,
-    path: Path,
+    path: SmoothPath,
     normal: np.ndarray,
     count: int,
     radius: Callable[[float, float, np.ndarray], np.ndarray],
@@ -126,7 +130,7 @@ def _add_rings(
 def _add_branch(
     builder: SurfaceBuilder,
     rim: list[int],
-    path: Path,
+    path: SmoothPath,
     normal: np.ndarray,
     radius: Callable[[float, float, np.ndarray], np.ndarray],
 ) -> None:
