@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from drake_haptics.evaluation.measuring.quiet_stderr import quiet_stderr
+from drake_haptics.evaluation.measuring.pieces import quiet_stderr
 
 
 def test_only_what_is_written_meanwhile_is_dropped(

@@ -21,7 +21,7 @@ from drake_haptics import SceneTracker
 from drake_haptics._core import penalty_force, share_stiffness, thin_contacts
 from drake_haptics.evaluation.benchmark.scene_problem import SceneProblem
 from drake_haptics.evaluation.benchmark.scenes import scene_makers
-from drake_haptics.evaluation.measuring.machine import describe_machine
+from drake_haptics.evaluation.measuring.timing import describe_machine
 
 PAGE = Path(__file__).parents[2] / "docs" / "under-load.md"
 BEGIN = "<!-- stages: written by tests/characterization/load_table.py -->\n"

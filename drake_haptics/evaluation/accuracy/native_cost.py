@@ -8,10 +8,9 @@ from typing import cast
 import numpy as np
 
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.evaluation.accuracy.figures import TickTimes
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.measuring.native_part import NativePart
-from drake_haptics.evaluation.measuring.timing import CallTimer, typical
+from drake_haptics.evaluation.measuring.timing import CallTimer, TickTimes, typical
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.systems.contact.contact_query import DepthSearch
 
@@ -85,8 +84,4 @@ def time_native(part: NativePart, motion: RecordedMotion) -> TickTimes:
             _, force_s = force.call((clusters, X_WTool[4:], motion.V_WTool[tick]))
             # A call without contacts is the least there is, but for the clock's ticks.
             passes[-1][tick] = query_s + carry_s + cluster_s + force_s
-    percentiles = np.percentile(
-        np.maximum(typical(np.array(passes)), 0.0), [50, 99, 99.9]
-    )
-    median, p99, p99_9 = (1e6 * percentiles).tolist()
-    return TickTimes(median, p99, p99_9)
+    return TickTimes.of(np.maximum(typical(np.array(passes)), 0.0))

@@ -32,7 +32,7 @@ from drake_haptics.evaluation.accuracy.study_rows import (
     make_task,
 )
 from drake_haptics.evaluation.accuracy.truth import find_truth
-from drake_haptics.evaluation.measuring.machine import describe_machine
+from drake_haptics.evaluation.measuring.timing import describe_machine
 from drake_haptics.evaluation.measuring.valgrind import require_valgrind
 from drake_haptics.scene.schema import Scene
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from drake_haptics.evaluation.accuracy.figures import Cost, Errors, Row, TickTimes
+from drake_haptics.evaluation.accuracy.figures import Cost, Errors, Row
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.accuracy.tick_cost import combine
+from drake_haptics.evaluation.measuring.timing import TickTimes
 
 Task = dict[str, Any]
 

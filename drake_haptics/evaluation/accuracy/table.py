@@ -11,9 +11,9 @@ from drake_haptics.evaluation.accuracy.figures import (
     AccuracyStudy,
     Errors,
     Row,
-    TickTimes,
 )
 from drake_haptics.evaluation.accuracy.model_changes import find_model_change
+from drake_haptics.evaluation.measuring.timing import TickTimes
 
 # Before a label: the scene's own setting; a difference of model.
 SCENE_MARK = "*"

@@ -8,7 +8,7 @@ import numpy as np
 
 from drake_haptics.common.tick_clock import TickClock
 from drake_haptics.evaluation.accuracy.built_scenes import build_once
-from drake_haptics.evaluation.accuracy.figures import TickTimes
+from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import run
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
@@ -23,8 +24,9 @@ from drake_haptics.evaluation.benchmark.scene_runs import (
     run_scene,
 )
 from drake_haptics.evaluation.benchmark.scenes import scene_makers
-from drake_haptics.evaluation.measuring.machine import describe_machine
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
+from drake_haptics.evaluation.measuring.plain_data import read_figures, replace_numbers
+from drake_haptics.evaluation.measuring.timing import describe_machine
 
 PARTS = ("pairs", "python", "scenes", "loop")
 # Called with what is done next and the share of the part that is done.
@@ -87,20 +89,15 @@ class BenchFigures:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns everything as plain data; None stands for NaN."""
-        plain: dict[str, Any] = _without_nan(asdict(self))
+        plain: dict[str, Any] = replace_numbers(
+            asdict(self), lambda number: None if math.isnan(number) else number
+        )
         return plain
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> BenchFigures:
-        """Returns what `to_dict` was called on."""
-        rest = {name: data[name] for name in ("machine", "libraries", "missing")}
-        return BenchFigures(
-            **rest,
-            pairs=[PairFigures.from_dict(d) for d in data["pairs"]],
-            python=[PythonFigures(**d) for d in data["python"]],
-            scenes=[SceneFigures.from_dict(d) for d in data["scenes"]],
-            loop=[LoopFigures.from_dict(d) for d in data["loop"]],
-        )
+        """Returns the figures that `to_dict` made data of."""
+        return read_figures(BenchFigures, data)
 
 
 def run_benchmarks(
@@ -203,11 +200,3 @@ def _scene_peer(figures: BenchFigures, problem: SceneProblem) -> dict[str, Scene
     except (ImportError, NativeBuildError) as error:
         figures.missing["coal"] = str(error)
         return {}
-
-
-def _without_nan(data: Any) -> Any:
-    if isinstance(data, dict):
-        return {key: _without_nan(value) for key, value in data.items()}
-    if isinstance(data, list):
-        return [_without_nan(value) for value in data]
-    return None if data != data else data  # NaN alone differs from itself

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -57,12 +56,6 @@ class PairFigures:
     exact_depth_share: float
     max_jump_deg: float
     failed_frames: int
-
-    @staticmethod
-    def from_dict(data: dict[str, Any]) -> PairFigures:
-        """Returns what `dataclasses.asdict` made plain data of."""
-        times = {name: Times.from_dict(data[name]) for name in ("apart", "in_depth")}
-        return PairFigures(**{**data, **times})
 
 
 def run_pair(

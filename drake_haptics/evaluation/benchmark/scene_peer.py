@@ -10,9 +10,17 @@ import coal
 import numpy as np
 
 from drake_haptics.evaluation.benchmark.scene_problem import SceneAnswers, SceneProblem
-from drake_haptics.evaluation.measuring.coal_native import load_coal_native
+from drake_haptics.evaluation.measuring.native_build import (
+    HANDLE,
+    INTEGER,
+    INTEGERS,
+    PIECE,
+    REAL,
+    REALS,
+    add_pieces,
+    load_coal_native,
+)
 from drake_haptics.evaluation.measuring.timing import clock_interval
-from drake_haptics.geometry.decomposition.decompose import Decomposition
 
 NAME = "coal, dynamic AABB tree"
 
@@ -31,9 +39,11 @@ class CoalScene:
         self._native = _native_scene()
         self._scene = self._native.coal_scene_new()
         weakref.finalize(self, self._native.coal_scene_delete, self._scene)
-        self._add(problem.tool, np.eye(4), of_tool=True)
+        add, scene = self._native.coal_scene_add, self._scene
+        # Pieces of the tool have the owner 1.
+        add_pieces(add, scene, 1, problem.tool, np.eye(4))
         for decomposition, X_WO in zip(problem.objects, problem.X_WO, strict=True):
-            self._add(decomposition, X_WO, of_tool=False)
+            add_pieces(add, scene, 0, decomposition, X_WO)
         self._native.coal_scene_setup(self._scene)
 
     def run(self, X_WTool: np.ndarray) -> SceneAnswers:
@@ -53,48 +63,12 @@ class CoalScene:
         )
         return SceneAnswers(contacts, nearest, seconds - clock_interval())
 
-    def _add(
-        self, decomposition: Decomposition, X_WO: np.ndarray, of_tool: bool
-    ) -> None:
-        for piece in decomposition.pieces:
-            vertices = np.ascontiguousarray(piece.vertices)
-            triangles = np.array(
-                [
-                    (loop[0], loop[k], loop[k + 1])
-                    for loop in piece.facets
-                    for k in range(1, len(loop) - 1)
-                ],
-                dtype=np.int32,
-            )
-            self._native.coal_scene_add(
-                self._scene,
-                of_tool,
-                vertices,
-                len(vertices),
-                triangles,
-                len(triangles),
-                np.ascontiguousarray(X_WO),
-            )
-
 
 @cache
 def _native_scene() -> ctypes.CDLL:
-    native = load_coal_native("coal_scene")
-    reals = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
-    integers = np.ctypeslib.ndpointer(dtype=np.int32, flags="C_CONTIGUOUS")
-    handle, integer = ctypes.c_void_p, ctypes.c_int
-    native.coal_scene_new.restype = handle
-    native.coal_scene_delete.argtypes = [handle]
-    native.coal_scene_add.argtypes = [
-        *(handle, integer),
-        *(reals, integer),
-        *(integers, integer),
-        reals,
-    ]
-    native.coal_scene_setup.argtypes = [handle]
-    native.coal_scene_run.argtypes = [
-        *(handle, ctypes.c_double, integer),
-        *(integer, reals),
-        *(integers, reals, reals),
-    ]
-    return native
+    return load_coal_native(
+        "coal_scene",
+        add=PIECE,
+        setup=[HANDLE],
+        run=[HANDLE, REAL, INTEGER, INTEGER, REALS, INTEGERS, REALS, REALS],
+    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -72,12 +72,6 @@ class SceneFigures:
     median_contacts: float
     max_contacts: int
     deepest_m: float
-
-    @staticmethod
-    def from_dict(data: dict[str, Any]) -> SceneFigures:
-        """Returns what `dataclasses.asdict` made plain data of."""
-        times = {name: Times.from_dict(data[name]) for name in ("near", "all_ticks")}
-        return SceneFigures(**{**data, **times})
 
 
 def run_scene(

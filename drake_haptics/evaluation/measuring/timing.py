@@ -1,11 +1,15 @@
-"""How times are taken and summed up."""
+"""Takes and sums up times, and describes the machine that they were taken on."""
 
 from __future__ import annotations
 
+import os
+import platform
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +21,7 @@ _TRIVIAL_CALLS = 2000
 
 @cache
 def clock_interval() -> float:
-    """Seconds between two readings of the compiled clock with nothing between them.
+    """Returns the seconds between two readings of the compiled clock in succession.
 
     Libraries that time themselves include it in each figure; it is taken off.
     """
@@ -51,13 +55,33 @@ class CallTimer:
 
 
 @dataclass(frozen=True)
+class TickTimes:
+    """How long ticks took.
+
+    Attributes:
+        median_us: Median, µs.
+        p99_us: 99 of 100 took less, µs.
+        p99_9_us: 999 of 1000 took less, µs.
+    """
+
+    median_us: float
+    p99_us: float
+    p99_9_us: float
+
+    @staticmethod
+    def of(seconds: np.ndarray) -> TickTimes:
+        """Sums up (n,) times of ticks, s; NaN where there are none."""
+        return TickTimes(*_calc_percentiles_us(seconds, [50, 99, 99.9]))
+
+
+@dataclass(frozen=True)
 class Times:
     """Times of many frames of one kind.
 
     Attributes:
-        frames: how many.
-        median_us: half of the frames took less, µs.
-        p99_us: one frame in a hundred took more, µs.
+        frames: Number of the frames.
+        median_us: Half of the frames took less, µs.
+        p99_us: One frame in a hundred took more, µs.
     """
 
     frames: int
@@ -65,25 +89,13 @@ class Times:
     p99_us: float
 
     @staticmethod
-    def from_dict(data: dict[str, Any]) -> Times:
-        """Returns what was written as plain data, where null stands for NaN."""
-        median, p99 = (
-            np.nan if data[name] is None else data[name]
-            for name in ("median_us", "p99_us")
-        )
-        return Times(data["frames"], median, p99)
-
-    @staticmethod
     def of(seconds: np.ndarray) -> Times:
         """Sums up (n,) times of frames, s; NaN where there are none."""
-        if len(seconds) == 0:
-            return Times(0, np.nan, np.nan)
-        median, p99 = 1e6 * np.percentile(seconds, [50, 99])
-        return Times(len(seconds), float(median), float(p99))
+        return Times(len(seconds), *_calc_percentiles_us(seconds, [50, 99]))
 
 
 def typical(seconds: np.ndarray) -> np.ndarray:
-    """What each frame costs when nothing disturbs it.
+    """Returns what each frame costs when nothing disturbs it.
 
     The mean of the middle half of its repeats: interruptions fall out, and the
     clock's ticks, which are a tenth of a fast query here, average out.
@@ -97,3 +109,39 @@ def typical(seconds: np.ndarray) -> np.ndarray:
     ordered = np.sort(seconds, axis=0)
     edge = (len(ordered) + 1) // 4
     return ordered[edge : len(ordered) - edge].mean(axis=0)
+
+
+def _calc_percentiles_us(seconds: np.ndarray, percents: list[float]) -> list[float]:
+    if len(seconds) == 0:
+        return [np.nan] * len(percents)
+    percentiles: list[float] = (1e6 * np.percentile(seconds, percents)).tolist()
+    return percentiles
+
+
+def describe_machine() -> dict[str, str | int]:
+    """Returns the processor, its cores, and the versions of what runs on it."""
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count() or 0,
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        "drake_haptics": version("drake_haptics"),
+    }
+
+
+def name_machine(machine: Mapping[str, str | int]) -> str:
+    """Returns what `describe_machine` returned in a few words."""
+    return (
+        f"{machine['processor']}, {machine['cores']} cores, {machine['system']},"
+        f" Python {machine['python']}"
+    )
+
+
+def _processor() -> str:
+    """Returns the processor's name where the system tells it."""
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        for line in info.read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or "unknown"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
-from drake_haptics.evaluation.measuring.machine import describe_machine
+from drake_haptics.evaluation.measuring.timing import describe_machine
 from drake_haptics.evaluation.paper.depth_cost import DepthCosts, measure_depth_costs
 from drake_haptics.evaluation.paper.force_scaling import (
     ForceScaling,
@@ -98,7 +98,7 @@ class PaperEvaluation:
     """All figures; empty or None where a part was not asked for.
 
     Attributes:
-        machine: See `drake_haptics.evaluation.measuring.machine.describe_machine`.
+        machine: See `drake_haptics.evaluation.measuring.timing.describe_machine`.
         table1: Rows of Table 1.
         figure11: Runs, those of the paper first.
         figure12: Passes of the pen over a coarse and a fine sphere.

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from drake_haptics.evaluation.accuracy.figures import TickTimes
+from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.evaluation.paper.fits import PowerFit, fit_power
 from drake_haptics.evaluation.paper.intervals import Interval, find_intervals
 from drake_haptics.evaluation.paper.profile import Profile
@@ -116,7 +116,7 @@ def sum_up(profile: Profile) -> ProfileFigures:
         disjoint=_times_of(profile, ~inside),
         penetrating=_times_of(profile, inside),
         all_ticks=times,
-        disturbed=_describe(profile.disturbed_s),
+        disturbed=TickTimes.of(profile.disturbed_s),
         in_time=float((profile.disturbed_s < PERIOD_S).mean()),
         most_contacts=int(profile.contacts.max()),
         most_clusters=int(profile.clusters.max()),
@@ -135,7 +135,7 @@ def _times_of(profile: Profile, which: np.ndarray) -> StateTimes | None:
     if not which.any():
         return None
     query, force, tick = (
-        _describe(seconds[which])
+        TickTimes.of(seconds[which])
         for seconds in (profile.query_s, profile.force_s, profile.tick_s)
     )
     return StateTimes(
@@ -145,10 +145,6 @@ def _times_of(profile: Profile, which: np.ndarray) -> StateTimes | None:
         tick=tick,
         contacts=float(np.median(profile.contacts[which])),
     )
-
-
-def _describe(seconds: np.ndarray) -> TickTimes:
-    return TickTimes(*(1e6 * np.percentile(seconds, [50, 99, 99.9])).tolist())
 
 
 def _find_overhead(profile: Profile) -> float | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from drake_haptics.evaluation.accuracy.figures import TickTimes
+from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.evaluation.paper.evaluation import Analysis, Run
 from drake_haptics.evaluation.paper.pen_pass import EXACT, PenPass
 from drake_haptics.evaluation.paper.profile_figures import ProfileFigures, StateTimes

@@ -21,7 +21,7 @@ from pydrake.systems.framework import Context, DiagramBuilder, OutputPort
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.evaluation.accuracy.peers.problem import PASSES
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
-from drake_haptics.evaluation.measuring.quiet_stderr import quiet_stderr
+from drake_haptics.evaluation.measuring.pieces import quiet_stderr
 from drake_haptics.evaluation.measuring.timing import typical
 
 AddGeometry = Callable[[MultibodyPlant, RigidBody, int, RigidTransform], None]

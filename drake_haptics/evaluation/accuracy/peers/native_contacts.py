@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import ctypes
 from typing import Any
 
 import numpy as np
 
 from drake_haptics.evaluation.accuracy.peers.our_law import FoundContacts
+from drake_haptics.evaluation.measuring.native_build import HANDLE, INTEGERS, REALS
 from drake_haptics.evaluation.measuring.timing import clock_interval, typical
 
-REALS = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
-INTEGERS = np.ctypeslib.ndpointer(dtype=np.int32, flags="C_CONTIGUOUS")
-# bench/native/found_contacts.h
+# Types of the arguments of an adapter's function that copies contacts.
+COPY = (HANDLE, INTEGERS, REALS)
+# The size of a contact in measuring/native/found_contacts.h.
 _CONTACT_SIZE = 11
-
-
-def declare_copy(copy: Any) -> None:
-    """Declares the arguments of an adapter's function that copies contacts."""
-    copy.argtypes = [ctypes.c_void_p, INTEGERS, REALS]
 
 
 def copy_contacts(

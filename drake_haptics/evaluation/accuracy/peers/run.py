@@ -8,11 +8,9 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
 
-import numpy as np
-
 from drake_haptics.analysis.held_scene import build_quietly
 from drake_haptics.common.errors import UserError
-from drake_haptics.evaluation.accuracy.figures import Errors, PeerRow, TickTimes
+from drake_haptics.evaluation.accuracy.figures import Errors, PeerRow
 from drake_haptics.evaluation.accuracy.knobs import make_reference
 from drake_haptics.evaluation.accuracy.open_loop import compare
 from drake_haptics.evaluation.accuracy.peers.problem import (
@@ -23,6 +21,7 @@ from drake_haptics.evaluation.accuracy.peers.problem import (
 )
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.accuracy.truth import Truth, find_truth, shift_wrench
+from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.scene.effects import Effects
 from drake_haptics.scene.schema import Scene
 
@@ -161,11 +160,10 @@ def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
     except (ImportError, UserError, RuntimeError, ValueError) as error:
         return _explain(library, method, str(error))
     remark = f", {answers.remark}" if answers.remark else ""
-    median, p99, p99_9 = (1e6 * np.percentile(answers.seconds, [50, 99, 99.9])).tolist()
     return PeerRow(
         library=library,
         method=method.words + remark,
-        native=TickTimes(median, p99, p99_9),
+        native=TickTimes.of(answers.seconds),
         errors=_find_errors(answers, problem, truth),
     )
 

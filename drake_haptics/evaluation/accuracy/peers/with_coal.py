@@ -9,10 +9,8 @@ import numpy as np
 
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.evaluation.accuracy.peers.native_contacts import (
-    INTEGERS,
-    REALS,
+    COPY,
     copy_contacts,
-    declare_copy,
 )
 from drake_haptics.evaluation.accuracy.peers.our_law import apply_law
 from drake_haptics.evaluation.accuracy.peers.problem import (
@@ -20,8 +18,15 @@ from drake_haptics.evaluation.accuracy.peers.problem import (
     PeerAnswers,
     PeerProblem,
 )
-from drake_haptics.evaluation.measuring.coal_native import load_coal_native
-from drake_haptics.geometry.decomposition.decompose import Decomposition
+from drake_haptics.evaluation.measuring.native_build import (
+    HANDLE,
+    INTEGER,
+    PIECE,
+    REAL,
+    REALS,
+    add_pieces,
+    load_coal_native,
+)
 
 _TOOL = -1
 
@@ -31,10 +36,10 @@ def answer(problem: PeerProblem) -> PeerAnswers:
     native = _load()
     scene = native.coal_contacts_new()
     try:
-        _add(native, scene, _TOOL, problem.tool, np.eye(4))
+        add_pieces(native.coal_contacts_add, scene, _TOOL, problem.tool, np.eye(4))
         for i, part in enumerate(problem.objects):
             X_WO = vector_to_pose(problem.part.X_WO[i]).GetAsMatrix4()
-            _add(native, scene, i, part, X_WO)
+            add_pieces(native.coal_contacts_add, scene, i, part, X_WO)
         poses = [vector_to_pose(X).GetAsMatrix4() for X in problem.motion.X_WTool]
         X_WTool, seconds = np.array(poses), np.empty((PASSES, len(poses)))
         for one_pass in seconds:
@@ -47,35 +52,11 @@ def answer(problem: PeerProblem) -> PeerAnswers:
     return apply_law(problem, found)
 
 
-def _add(
-    native: ctypes.CDLL, scene: int, owner: int, part: Decomposition, X_WO: np.ndarray
-) -> None:
-    for piece in part.pieces:
-        triangles = np.array(
-            [
-                (loop[0], loop[k], loop[k + 1])
-                for loop in piece.facets
-                for k in range(1, len(loop) - 1)
-            ],
-            dtype=np.int32,
-        )
-        vertices = np.ascontiguousarray(piece.vertices)
-        native.coal_contacts_add(
-            *(scene, owner, vertices, len(vertices)),
-            *(triangles, len(triangles), np.ascontiguousarray(X_WO)),
-        )
-
-
 @cache
 def _load() -> ctypes.CDLL:
-    native = load_coal_native("coal_contacts")
-    handle, integer, real = ctypes.c_void_p, ctypes.c_int, ctypes.c_double
-    native.coal_contacts_new.restype = handle
-    native.coal_contacts_delete.argtypes = [handle]
-    native.coal_contacts_add.argtypes = [
-        *(handle, integer, REALS, integer),
-        *(INTEGERS, integer, REALS),
-    ]
-    native.coal_contacts_run.argtypes = [handle, real, integer, REALS, REALS]
-    declare_copy(native.coal_contacts_copy)
-    return native
+    return load_coal_native(
+        "coal_contacts",
+        add=PIECE,
+        run=[HANDLE, REAL, INTEGER, REALS, REALS],
+        copy=COPY,
+    )

@@ -18,7 +18,7 @@ from pydrake.multibody.tree import RigidBody
 from drake_haptics.evaluation.accuracy.peers.drake_plant import make_plant
 from drake_haptics.evaluation.accuracy.peers.problem import PeerAnswers, PeerProblem
 from drake_haptics.evaluation.accuracy.peers.with_drake_point import to_drake_mesh
-from drake_haptics.evaluation.measuring.drake_pieces import register_pieces
+from drake_haptics.evaluation.measuring.pieces import register_pieces
 
 # Against a rigid object forces are proportional to the modulus: any will do at first.
 _MODULUS_PA = 1e6

@@ -23,7 +23,7 @@ from drake_haptics.evaluation.accuracy.peers.drake_plant import (
 )
 from drake_haptics.evaluation.accuracy.peers.our_law import FoundContacts, apply_law
 from drake_haptics.evaluation.accuracy.peers.problem import PeerAnswers, PeerProblem
-from drake_haptics.evaluation.measuring.drake_pieces import (
+from drake_haptics.evaluation.measuring.pieces import (
     make_surface,
     register_pieces,
 )

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import ctypes
-import tempfile
 from functools import cache
 
 import numpy as np
 
 from drake_haptics.evaluation.accuracy.peers.native_contacts import (
-    REALS,
+    COPY,
     copy_contacts,
-    declare_copy,
 )
 from drake_haptics.evaluation.accuracy.peers.our_law import apply_law
 from drake_haptics.evaluation.accuracy.peers.problem import (
@@ -19,8 +17,14 @@ from drake_haptics.evaluation.accuracy.peers.problem import (
     PeerAnswers,
     PeerProblem,
 )
-from drake_haptics.evaluation.measuring.mujoco_native import load_mujoco_native
-from drake_haptics.evaluation.measuring.mujoco_pieces import (
+from drake_haptics.evaluation.measuring.native_build import (
+    HANDLE,
+    INTEGER,
+    REALS,
+    load_mujoco_native,
+    open_mjcf,
+)
+from drake_haptics.evaluation.measuring.pieces import (
     listed,
     mesh_assets,
     mesh_geoms,
@@ -33,13 +37,7 @@ def answer(problem: PeerProblem) -> PeerAnswers:
     For one contact of each pair of pieces, as this package's law has it.
     """
     native = _load()
-    error = ctypes.create_string_buffer(1000)
-    with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
-        file.write(_make_mjcf(problem))
-        file.flush()
-        scene = native.mujoco_contacts_new(file.name.encode(), error, len(error))
-    if not scene:
-        raise RuntimeError(f"MuJoCo refused the scene: {error.value.decode()}")
+    scene = open_mjcf(native.mujoco_contacts_new, _make_mjcf(problem))
     try:
         X_WTool = np.ascontiguousarray(problem.motion.X_WTool)
         n, seconds = len(X_WTool), np.empty((PASSES, len(X_WTool)))
@@ -81,11 +79,6 @@ def _make_mjcf(problem: PeerProblem) -> str:
 
 @cache
 def _load() -> ctypes.CDLL:
-    native = load_mujoco_native("mujoco_contacts")
-    handle, text, integer = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int
-    native.mujoco_contacts_new.restype = handle
-    native.mujoco_contacts_new.argtypes = [text, text, integer]
-    native.mujoco_contacts_delete.argtypes = [handle]
-    native.mujoco_contacts_run.argtypes = [handle, integer, REALS, REALS]
-    declare_copy(native.mujoco_contacts_copy)
-    return native
+    return load_mujoco_native(
+        "mujoco_contacts", run=[HANDLE, INTEGER, REALS, REALS], copy=COPY
+    )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import astuple, dataclass
 
 import numpy as np
+
+from drake_haptics.evaluation.measuring.timing import TickTimes
 
 
 @dataclass(frozen=True)
@@ -27,18 +28,8 @@ class LoopTimes:
     @staticmethod
     def of(seconds: np.ndarray) -> LoopTimes:
         """Sums up (n,) times of ticks, s; NaN where there are none."""
-        if len(seconds) == 0:
-            return LoopTimes(0, np.nan, np.nan, np.nan)
-        median, p99, p99_9 = (1e6 * np.percentile(seconds, [50, 99, 99.9])).tolist()
-        return LoopTimes(len(seconds), median, p99, p99_9)
-
-    @staticmethod
-    def from_dict(data: dict[str, Any]) -> LoopTimes:
-        """Returns what was written as plain data, where null stands for NaN."""
-        names = ("median_us", "p99_us", "p99_9_us")
-        return LoopTimes(
-            data["ticks"], *(np.nan if data[n] is None else data[n] for n in names)
-        )
+        times = TickTimes.of(seconds)
+        return LoopTimes(len(seconds), *astuple(times))
 
 
 @dataclass(frozen=True)
@@ -68,12 +59,3 @@ class LoopFigures:
     force_N: float
     max_force_N: float
     apart_m: float
-
-    @staticmethod
-    def from_dict(data: dict[str, Any]) -> LoopFigures:
-        """Returns what `dataclasses.asdict` made plain data of."""
-        times = {
-            name: LoopTimes.from_dict(data[name])
-            for name in ("in_contact", "all_ticks")
-        }
-        return LoopFigures(**{**data, **times})

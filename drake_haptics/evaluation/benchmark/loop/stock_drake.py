@@ -27,11 +27,11 @@ from drake_haptics.evaluation.benchmark.loop.problem import (
     LoopProblem,
     moments_and_products,
 )
-from drake_haptics.evaluation.measuring.drake_pieces import (
+from drake_haptics.evaluation.measuring.pieces import (
     make_surface,
+    quiet_stderr,
     register_pieces,
 )
-from drake_haptics.evaluation.measuring.quiet_stderr import quiet_stderr
 
 # So heavy that the bushing does not move the handle within a tick: 1 µm/s at 1 kN.
 _HANDLE_KG = 1e6
