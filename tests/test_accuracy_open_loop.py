@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 
 from drake_haptics.evaluation.accuracy.knobs import make_reference
-from drake_haptics.evaluation.accuracy.open_loop import compare, measure_open_loop
 from drake_haptics.evaluation.accuracy.recorded_motion import record_motion
 from drake_haptics.evaluation.accuracy.setting import Setting
-from drake_haptics.evaluation.accuracy.truth import Truth, find_truth
+from drake_haptics.evaluation.accuracy.truth import (
+    Truth,
+    compare,
+    find_truth,
+    measure_open_loop,
+)
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.loading import load_scene
 

@@ -9,14 +9,16 @@ import pytest
 from accuracy_samples import make_peers, make_row, make_study
 from PIL import Image
 
-from drake_haptics.evaluation.accuracy.one_setting import parse_setting
 from drake_haptics.evaluation.accuracy.page import write_accuracy_page
-from drake_haptics.evaluation.accuracy.table import get_columns, group_rows, make_cells
-from drake_haptics.evaluation.accuracy.words import (
+from drake_haptics.evaluation.accuracy.report import (
     describe_knees,
     describe_verdict,
+    get_columns,
+    group_rows,
+    make_cells,
     make_front,
 )
+from drake_haptics.evaluation.accuracy.setting import parse_setting
 
 STUDY = make_study(peers=make_peers())
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from accuracy_samples import make_peers, make_row, make_study
 
-from drake_haptics.evaluation.accuracy.words import (
+from drake_haptics.evaluation.accuracy.report import (
     describe_knees,
     describe_machine,
     describe_missing,

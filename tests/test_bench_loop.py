@@ -13,10 +13,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_haptics.evaluation.benchmark.benchmark import BenchFigures, Effort
+from drake_haptics.evaluation.benchmark.benchmark import (
+    BenchFigures,
+    Effort,
+    make_tables,
+)
 from drake_haptics.evaluation.benchmark.loop import runs
-from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures, LoopTimes
-from drake_haptics.evaluation.benchmark.loop.names import MUJOCO, NATIVE, OURS, STOCK
+from drake_haptics.evaluation.benchmark.loop.figures import (
+    MUJOCO,
+    NATIVE,
+    OURS,
+    STOCK,
+    LoopFigures,
+    LoopTimes,
+    loop_tables,
+)
 from drake_haptics.evaluation.benchmark.loop.problem import (
     Loop,
     LoopCourse,
@@ -24,9 +35,7 @@ from drake_haptics.evaluation.benchmark.loop.problem import (
     make_problem,
 )
 from drake_haptics.evaluation.benchmark.loop.runs import make_loops, run_loops
-from drake_haptics.evaluation.benchmark.loop.table import loop_tables
 from drake_haptics.evaluation.benchmark.loop.this_package import NativeLoop, ThisLoop
-from drake_haptics.evaluation.benchmark.report import make_tables
 
 sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
 from write_docs import PAGE, figures_of

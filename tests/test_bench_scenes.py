@@ -8,14 +8,17 @@ from mesh_samples import box, l_prism, real_mesh
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import Mesh, SceneTracker, decompose
-from drake_haptics.evaluation.benchmark.scene_motion import make_touches
-from drake_haptics.evaluation.benchmark.scene_problem import SceneAnswers, SceneProblem
 from drake_haptics.evaluation.benchmark.scene_runs import (
     NAME,
     DrakeHapticsScene,
     run_scene,
 )
-from drake_haptics.evaluation.benchmark.scenes import scene_makers
+from drake_haptics.evaluation.benchmark.scenes import (
+    SceneAnswers,
+    SceneProblem,
+    make_touches,
+    scene_makers,
+)
 
 
 def pieces(V: np.ndarray, F: np.ndarray):

@@ -32,17 +32,25 @@ from drake_haptics.cli.scene_options import (
     write_call,
 )
 from drake_haptics.common.errors import UserError
-from drake_haptics.evaluation.accuracy.add_peers import add_peers
-from drake_haptics.evaluation.accuracy.budget import RUNS, BudgetChoice, choose_setting
-from drake_haptics.evaluation.accuracy.budget_words import describe_file, to_budget_data
+from drake_haptics.evaluation.accuracy.budget import (
+    RUNS,
+    BudgetChoice,
+    choose_setting,
+    describe_file,
+    to_budget_data,
+)
+from drake_haptics.evaluation.accuracy.costs import measure_p99
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
-from drake_haptics.evaluation.accuracy.fresh_run import measure_p99
 from drake_haptics.evaluation.accuracy.knobs import list_settings
-from drake_haptics.evaluation.accuracy.one_setting import apply_checked, parse_setting
 from drake_haptics.evaluation.accuracy.page import write_accuracy_page
-from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.evaluation.accuracy.peers.run import add_peers
+from drake_haptics.evaluation.accuracy.report import name_setting
+from drake_haptics.evaluation.accuracy.setting import (
+    Setting,
+    apply_checked,
+    parse_setting,
+)
 from drake_haptics.evaluation.accuracy.study import run_accuracy_study
-from drake_haptics.evaluation.accuracy.words import name_setting
 from drake_haptics.report.paths import check_page_path
 from drake_haptics.scene.scene_file import write_scene
 from drake_haptics.scene.schema import Scene

@@ -6,22 +6,16 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from drake_haptics.evaluation.accuracy.budget import BudgetChoice
-from drake_haptics.evaluation.accuracy.budget_words import (
+from drake_haptics.evaluation.accuracy.budget import (
+    BudgetChoice,
     describe_help,
     describe_outcome,
     describe_sacrifices,
 )
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
-from drake_haptics.evaluation.accuracy.table import (
+from drake_haptics.evaluation.accuracy.report import (
     MODEL_MARK,
     SCENE_MARK,
-    get_columns,
-    group_rows,
-    make_cells,
-    make_label,
-)
-from drake_haptics.evaluation.accuracy.words import (
     describe_knees,
     describe_machine,
     describe_missing,
@@ -29,7 +23,11 @@ from drake_haptics.evaluation.accuracy.words import (
     describe_peers,
     describe_reference,
     describe_verdict,
+    get_columns,
+    group_rows,
+    make_cells,
     make_front,
+    make_label,
 )
 from drake_haptics.scene.schema import Scene
 

@@ -13,8 +13,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from page_stamp import write_page
 
-from drake_haptics.evaluation.benchmark.benchmark import BenchFigures
-from drake_haptics.evaluation.benchmark.report import (
+from drake_haptics.evaluation.benchmark.benchmark import (
+    BenchFigures,
     machine_line,
     make_tables,
     missing_lines,

@@ -12,35 +12,33 @@ from pathlib import Path
 from string import Template
 
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, PeerRow, Row
-from drake_haptics.evaluation.accuracy.one_setting import format_setting
 from drake_haptics.evaluation.accuracy.pareto import (
     ERROR_FLOOR_N,
     get_force_error_N,
     get_native_us,
 )
 from drake_haptics.evaluation.accuracy.plot import draw_study
-from drake_haptics.evaluation.accuracy.table import (
+from drake_haptics.evaluation.accuracy.report import (
     COLUMNS,
     MODEL_MARK,
     SCENE_MARK,
     Column,
-    format_N,
-    format_times,
-    get_columns,
-    group_rows,
-    make_cells,
-    make_error_cells,
-    make_label,
-)
-from drake_haptics.evaluation.accuracy.words import (
     describe_knees,
     describe_machine,
     describe_missing,
     describe_models,
     describe_reference,
     describe_verdict,
+    format_N,
+    format_times,
+    get_columns,
+    group_rows,
+    make_cells,
+    make_error_cells,
     make_front,
+    make_label,
 )
+from drake_haptics.evaluation.accuracy.setting import format_setting
 from drake_haptics.report.paths import check_page_path
 
 _DPI = 110

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Row
-from drake_haptics.evaluation.accuracy.model_changes import is_comparable
+from drake_haptics.evaluation.accuracy.setting import is_comparable
 
 # Smaller errors are alike: nobody feels so little.
 ERROR_FLOOR_N = 1e-3

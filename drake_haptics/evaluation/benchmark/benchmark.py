@@ -1,4 +1,4 @@
-"""Runs the benchmarks and holds their figures."""
+"""Runs the benchmarks, holds their figures and makes their tables."""
 
 from __future__ import annotations
 
@@ -10,23 +10,33 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from drake_haptics.evaluation.benchmark.libraries import find_libraries
-from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures
+from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures, loop_tables
+from drake_haptics.evaluation.benchmark.pair_library import find_libraries
 from drake_haptics.evaluation.benchmark.pair_runs import PairFigures, run_pair
-from drake_haptics.evaluation.benchmark.pair_shapes import KINDS, SIZES, make_pair
-from drake_haptics.evaluation.benchmark.python_figures import PythonFigures
-from drake_haptics.evaluation.benchmark.scene_problem import SceneProblem
+from drake_haptics.evaluation.benchmark.pair_tables import (
+    error_table,
+    python_table,
+    ratio_table,
+    time_table,
+)
+from drake_haptics.evaluation.benchmark.pairs import KINDS, SIZES, make_pair
+from drake_haptics.evaluation.benchmark.python_pairs import (
+    PythonFigures,
+    run_python_pair,
+)
 from drake_haptics.evaluation.benchmark.scene_runs import (
     NAME,
     DrakeHapticsScene,
     SceneFigures,
     SceneQuery,
     run_scene,
+    scene_table,
 )
-from drake_haptics.evaluation.benchmark.scenes import scene_makers
+from drake_haptics.evaluation.benchmark.scenes import SceneProblem, scene_makers
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
 from drake_haptics.evaluation.measuring.plain_data import read_figures, replace_numbers
 from drake_haptics.evaluation.measuring.timing import describe_machine
+from drake_haptics.report.table import Table
 
 PARTS = ("pairs", "python", "scenes", "loop")
 # Called with what is done next and the share of the part that is done.
@@ -146,8 +156,6 @@ def _run_python(figures: BenchFigures, effort: Effort, progress: Progress) -> No
     if find_spec("coal") is None:
         figures.missing["coal"] = "No module named 'coal'"
         return
-    from drake_haptics.evaluation.benchmark.python_runs import run_python_pair
-
     pairs = [(kind, size) for kind in KINDS for size in effort.sizes]
     for done, (kind, size) in enumerate(pairs):
         progress(f"from Python: {kind}, {size} vertices", done / len(pairs))
@@ -200,3 +208,41 @@ def _scene_peer(figures: BenchFigures, problem: SceneProblem) -> dict[str, Scene
     except (ImportError, NativeBuildError) as error:
         figures.missing["coal"] = str(error)
         return {}
+
+
+def make_tables(figures: BenchFigures) -> list[Table]:
+    """Returns the tables of the parts that were run."""
+    tables = []
+    if figures.pairs:
+        tables += [
+            ratio_table(figures.pairs),
+            error_table(figures.pairs),
+            time_table(figures.pairs),
+        ]
+    if figures.python:
+        tables.append(python_table(figures.python))
+    if figures.scenes:
+        tables.append(scene_table(figures.scenes))
+    if figures.loop:
+        tables += loop_tables(figures.loop)
+    return tables
+
+
+def machine_line(figures: BenchFigures) -> str:
+    """Returns what the figures were taken on, and with which libraries."""
+    machine = figures.machine
+    versions = {
+        name.partition(",")[0]: version for name, version in figures.libraries.items()
+    }
+    versions.setdefault("drake_haptics", machine["drake_haptics"])
+    named = ", ".join(f"{name} {version}" for name, version in versions.items())
+    return (
+        f"{machine['processor']}, {machine['cores']} cores, {machine['system']}, "
+        f"Python {machine['python']}; {named}. One thread. Whatever else runs on the "
+        "machine disturbs the times: read ratios, not microseconds."
+    )
+
+
+def missing_lines(figures: BenchFigures) -> list[str]:
+    """Returns a line for each library that was not measured."""
+    return [f"not measured: {name} ({why})" for name, why in figures.missing.items()]

@@ -1,14 +1,16 @@
-"""What a collision library must do to be measured on a convex pair."""
+"""Defines what a library must do on a convex pair, and finds those installed."""
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.benchmark.pairs import PairShape
+from drake_haptics.evaluation.measuring.native_build import NativeBuildError
 
 
 @dataclass(frozen=True)
@@ -69,3 +71,27 @@ def normals_between(
     along = np.copysign(1.0, distance)[:, None] * (p_WCa - p_WCb)
     length = np.linalg.norm(along, axis=1, keepdims=True)
     return np.divide(along, length, out=np.full_like(along, np.nan), where=length > 0)
+
+
+_PACKAGE = "drake_haptics.evaluation.benchmark.libraries"
+_MODULES = ("drake_haptics", "coal", "mujoco", "fcl", "pybullet", "pydrake")
+
+
+def find_libraries() -> tuple[list[PairLibrary], dict[str, str]]:
+    """Returns the libraries that can be measured here, this package's depths first.
+
+    Adapters in C++ are compiled when they are first asked for, in some ten seconds.
+
+    Returns:
+        The libraries; and of each other one, by its name, why not.
+    """
+    found: list[PairLibrary] = []
+    missing: dict[str, str] = {}
+    for name in _MODULES:
+        try:
+            module = importlib.import_module(f"{_PACKAGE}.with_{name}")
+        except (ImportError, NativeBuildError) as error:
+            missing[name] = str(error)
+        else:
+            found += module.LIBRARIES
+    return found, missing

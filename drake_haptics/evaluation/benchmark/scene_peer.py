@@ -9,7 +9,7 @@ from functools import cache
 import coal
 import numpy as np
 
-from drake_haptics.evaluation.benchmark.scene_problem import SceneAnswers, SceneProblem
+from drake_haptics.evaluation.benchmark.scenes import SceneAnswers, SceneProblem
 from drake_haptics.evaluation.measuring.native_build import (
     HANDLE,
     INTEGER,

@@ -9,20 +9,22 @@ from typing import Any, Literal, get_args
 
 from drake_haptics.evaluation.measuring.timing import describe_machine
 from drake_haptics.evaluation.paper.depth_cost import DepthCosts, measure_depth_costs
-from drake_haptics.evaluation.paper.force_scaling import (
-    ForceScaling,
-    measure_force_scaling,
+from drake_haptics.evaluation.paper.pen_pass import PenPass, measure_pen_pass
+from drake_haptics.evaluation.paper.profile import (
+    Profile,
+    ProfileFigures,
+    measure_profile,
+    sum_up,
 )
-from drake_haptics.evaluation.paper.models import check_folder
-from drake_haptics.evaluation.paper.pair_scaling import (
+from drake_haptics.evaluation.paper.scaling import (
+    ForceScaling,
     PairScaling,
+    measure_force_scaling,
     measure_pair_scaling,
 )
-from drake_haptics.evaluation.paper.pen_pass import PenPass, measure_pen_pass
-from drake_haptics.evaluation.paper.profile import Profile, measure_profile
-from drake_haptics.evaluation.paper.profile_figures import ProfileFigures, sum_up
 from drake_haptics.evaluation.paper.scenarios import scenario_makers
 from drake_haptics.evaluation.paper.table1 import ModelFigures, measure_table1
+from drake_haptics.evaluation.shapes.models import check_folder
 from drake_haptics.evaluation.shapes.solids import make_sphere
 
 Part = Literal["table1", "figure11", "figure12", "analysis"]

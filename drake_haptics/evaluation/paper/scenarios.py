@@ -9,18 +9,16 @@ from pathlib import Path
 import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 
-from drake_haptics.evaluation.paper.exploration import Place, plan_exploration
-from drake_haptics.evaluation.paper.models import (
+from drake_haptics.evaluation.paper.exploration import Place, Scenario, plan_exploration
+from drake_haptics.evaluation.shapes.hand_tools import make_wrench
+from drake_haptics.evaluation.shapes.machine_room import make_machine_room, wrench_path
+from drake_haptics.evaluation.shapes.models import (
     MODELS,
     OWN,
-    as_mesh,
     cut_shape,
     find_sources,
     load_model,
 )
-from drake_haptics.evaluation.paper.scenario import Scenario
-from drake_haptics.evaluation.shapes.hand_tools import make_wrench
-from drake_haptics.evaluation.shapes.machine_room import make_machine_room, wrench_path
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.scene.schema import Contact
@@ -166,12 +164,12 @@ def _find_front(mesh: Mesh) -> Iterator[np.ndarray]:
 def _make_machine_room() -> Scenario:
     """The wrench's flat over the tubes of the panel, up, down and rocking."""
     room = make_machine_room()
-    pieces = {n: decompose(as_mesh(s, n)) for n, s in room.shapes.items()}
+    pieces = {n: decompose(s.to_mesh(n)) for n, s in room.shapes.items()}
     objects = tuple(
         ContactObject(o.name, pieces[o.shape].core, RigidTransform(o.X_WO))
         for o in room.objects
     )
-    wrench = decompose(as_mesh(make_wrench(), "wrench"))
+    wrench = decompose(make_wrench().to_mesh("wrench"))
     low, high = (RigidTransform(X) for X in wrench_path(2))
     places = []
     press = _press_again()

@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from drake_haptics.evaluation.paper.models import find_sources, load_model
 from drake_haptics.evaluation.paper.published import TABLE_1
+from drake_haptics.evaluation.shapes.models import find_sources, load_model
 from drake_haptics.geometry.decomposition.decompose import decompose
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.evaluation.paper.evaluation import Analysis, Run
 from drake_haptics.evaluation.paper.pen_pass import EXACT, PenPass
-from drake_haptics.evaluation.paper.profile_figures import ProfileFigures, StateTimes
+from drake_haptics.evaluation.paper.profile import ProfileFigures, StateTimes
 from drake_haptics.evaluation.paper.table1 import ModelFigures
 from drake_haptics.report.table import Table
 

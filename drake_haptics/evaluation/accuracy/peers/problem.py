@@ -1,16 +1,19 @@
-"""What a library is asked, and what it answers."""
+"""Defines what a library is asked and answers, and applies the scene's law of force."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
-from drake_haptics.evaluation.accuracy.native_cost import make_native_part
+from drake_haptics import _core
+from drake_haptics.evaluation.accuracy.costs import make_native_part
+from drake_haptics.evaluation.accuracy.native_part import NativePart
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.accuracy.truth import Truth
-from drake_haptics.evaluation.measuring.native_part import NativePart
+from drake_haptics.evaluation.measuring.native_build import HANDLE, INTEGERS, REALS
+from drake_haptics.evaluation.measuring.timing import clock_interval, typical
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Scene
@@ -91,4 +94,93 @@ def make_peer_problem(
         # Braking looks further; it is no contact.
         part=replace(part, search_m=part.tolerance_m),
         f_W=truth.F_Tcm_W[:, 3:],
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class FoundContacts:
+    """The contacts at each of k ticks, tick after tick, n in all.
+
+    Attributes:
+        start: (k + 1,) those of tick i are the rows start[i] to start[i + 1].
+        distance: (n,) signed distance, m.
+        nhat_BA_W: (n, 3) unit normal out of the object into the tool.
+        p_WCa: (n, 3) witness point on the tool, m.
+        p_WCb: (n, 3) witness point on the object, m.
+        object_index: (n,) which object.
+        seconds: (k,) what finding them took, s.
+    """
+
+    start: np.ndarray
+    distance: np.ndarray
+    nhat_BA_W: np.ndarray
+    p_WCa: np.ndarray
+    p_WCb: np.ndarray
+    object_index: np.ndarray
+    seconds: np.ndarray
+
+
+def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
+    """Returns what this package's clustering and penalty law make of contacts.
+
+    So that the query alone differs. A contact without a finite normal pushes nothing.
+    """
+    part, motion = problem.part, problem.motion
+    cluster, force = part.make_clustering(), part.make_force()
+    F_Tool_W = np.zeros((len(motion), 6))
+    distance = np.full(len(motion), np.inf)
+    valid = np.isfinite(found.nhat_BA_W).all(axis=1)
+    valid &= found.distance < part.tolerance_m
+    for k in range(len(motion)):
+        rows = np.arange(found.start[k], found.start[k + 1])
+        rows = rows[valid[rows]]
+        if len(rows) == 0:
+            continue
+        distance[k] = found.distance[rows].min()
+        rows = rows[np.argsort(found.object_index[rows], kind="stable")]
+        contacts = _core.contact_set(
+            found.distance[rows],
+            found.nhat_BA_W[rows],
+            found.p_WCa[rows],
+            found.p_WCb[rows],
+            found.object_index[rows].astype(np.int32),
+        )
+        wrench = force(
+            clusters=cluster(contacts),
+            p_WTo=motion.X_WTool[k, 4:],
+            V_WTool=motion.V_WTool[k],
+        )
+        F_Tool_W[k] = wrench.F_Tool_W
+    return PeerAnswers(F_Tool_W, distance, part.tolerance_m, found.seconds)
+
+
+# Types of the arguments of an adapter's function that copies contacts.
+COPY = (HANDLE, INTEGERS, REALS)
+# The size of a contact in measuring/native/found_contacts.h.
+_CONTACT_SIZE = 11
+
+
+def copy_contacts(
+    copy: Any, scene: int, count: int, seconds: np.ndarray
+) -> FoundContacts:
+    """Returns the contacts that an adapter holds after a run.
+
+    Args:
+        copy: Its function.
+        scene: Its object.
+        count: What its run returned.
+        seconds: (PASSES, k) what each tick took, the clock included, s.
+    """
+    start = np.empty(seconds.shape[1] + 1, dtype=np.int32)
+    rows = np.empty((count, _CONTACT_SIZE))
+    copy(scene, start, rows)
+    distance, normal, p_WCa, p_WCb, owner = np.split(rows, [1, 4, 7, 10], axis=1)
+    return FoundContacts(
+        start=start,
+        distance=distance[:, 0],
+        nhat_BA_W=normal,
+        p_WCa=p_WCa,
+        p_WCb=p_WCb,
+        object_index=owner[:, 0].astype(np.int32),
+        seconds=np.maximum(typical(seconds) - clock_interval(), 0.0),
     )

@@ -5,22 +5,29 @@ from __future__ import annotations
 import copy
 import importlib
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 
 from drake_haptics.analysis.held_scene import build_quietly
 from drake_haptics.common.errors import UserError
-from drake_haptics.evaluation.accuracy.figures import Errors, PeerRow
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, PeerRow
 from drake_haptics.evaluation.accuracy.knobs import make_reference
-from drake_haptics.evaluation.accuracy.open_loop import compare
 from drake_haptics.evaluation.accuracy.peers.problem import (
     Answer,
     PeerAnswers,
     PeerProblem,
     make_peer_problem,
 )
-from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
-from drake_haptics.evaluation.accuracy.truth import Truth, find_truth, shift_wrench
+from drake_haptics.evaluation.accuracy.recorded_motion import (
+    RecordedMotion,
+    record_motion,
+)
+from drake_haptics.evaluation.accuracy.truth import (
+    Truth,
+    compare,
+    find_truth,
+    shift_wrench,
+)
 from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.scene.effects import Effects
 from drake_haptics.scene.schema import Scene
@@ -75,36 +82,36 @@ METHODS = (
     PeerMethod(
         "Drake",
         "drake",
-        "with_drake_point",
+        "with_drake",
         "answer_by_distances",
         "signed distances of the same pieces, this package's law",
     ),
     PeerMethod(
         "Drake",
         "drake",
-        "with_drake_point",
+        "with_drake",
         "answer_on_pieces",
         "point contact of the same pieces, without a tolerance",
     ),
     PeerMethod(
         "Drake",
         "drake",
-        "with_drake_point",
+        "with_drake",
         "answer_on_meshes",
         "point contact of meshes as it takes them: convex hulls",
     ),
     PeerMethod(
         "Drake",
         "drake",
-        "with_drake_hydroelastic",
-        "answer_with_hull",
+        "with_drake",
+        "answer_with_soft_hull",
         "hydroelastic without a tolerance: tool's hull compliant, objects rigid",
     ),
     PeerMethod(
         "Drake",
         "drake",
-        "with_drake_hydroelastic",
-        "answer_with_pieces",
+        "with_drake",
+        "answer_with_soft_pieces",
         "hydroelastic without a tolerance: tool's pieces compliant, objects rigid",
         for_pieces=True,
     ),
@@ -185,3 +192,25 @@ def _find_errors(answers: PeerAnswers, problem: PeerProblem, truth: Truth) -> Er
 
 def _explain(library: str, method: PeerMethod, why_not: str) -> PeerRow:
     return PeerRow(library, method.words, None, None, why_not)
+
+
+def add_peers(
+    study: AccuracyStudy,
+    scene: Scene,
+    *,
+    progress: Callable[[str, float], None] | None = None,
+) -> AccuracyStudy:
+    """Returns a study with a row for each way of another library.
+
+    Args:
+        study: Of the scene.
+        scene: Whose motion is recorded again, which is the same again.
+        progress: Called with what is done now and the share of all, in [0, 1].
+
+    Raises:
+        RunError: The scene diverges.
+        KeyboardInterrupt: At Ctrl-C.
+    """
+    motion = record_motion(scene, study.ticks / scene.device.rate_hz)
+    truth = find_truth(study.reference.apply(scene), motion)
+    return replace(study, peers=run_peers(scene, motion, truth, progress=progress))

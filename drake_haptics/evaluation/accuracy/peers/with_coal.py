@@ -8,15 +8,13 @@ from functools import cache
 import numpy as np
 
 from drake_haptics.common.pose_vector import vector_to_pose
-from drake_haptics.evaluation.accuracy.peers.native_contacts import (
-    COPY,
-    copy_contacts,
-)
-from drake_haptics.evaluation.accuracy.peers.our_law import apply_law
 from drake_haptics.evaluation.accuracy.peers.problem import (
+    COPY,
     PASSES,
     PeerAnswers,
     PeerProblem,
+    apply_law,
+    copy_contacts,
 )
 from drake_haptics.evaluation.measuring.native_build import (
     HANDLE,

@@ -12,7 +12,7 @@ from importlib.metadata import version
 import numpy as np
 
 from drake_haptics.evaluation.benchmark.pair_library import PairAnswers, PairLibrary
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.benchmark.pairs import PairShape
 from drake_haptics.evaluation.measuring.timing import CallTimer
 
 # Far enough for every pose of the motion; Bullet gives no points beyond.

@@ -22,7 +22,7 @@ from pydrake.geometry import (
 from pydrake.math import RigidTransform
 
 from drake_haptics.evaluation.benchmark.pair_library import PairAnswers, PairLibrary
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.benchmark.pairs import PairShape
 from drake_haptics.evaluation.measuring.timing import CallTimer
 
 

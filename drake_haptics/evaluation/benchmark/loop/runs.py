@@ -6,13 +6,14 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures, LoopTimes
-from drake_haptics.evaluation.benchmark.loop.names import (
+from drake_haptics.evaluation.benchmark.loop.figures import (
     MUJOCO,
     NATIVE,
     OURS,
     PACED,
     STOCK,
+    LoopFigures,
+    LoopTimes,
 )
 from drake_haptics.evaluation.benchmark.loop.problem import (
     Loop,

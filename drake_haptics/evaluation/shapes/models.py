@@ -1,4 +1,4 @@
-"""Models like those of the paper: the package's own shapes, or real meshes."""
+"""Loads models like those of the paper: the package's own shapes, or real meshes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ MODELS = {
 
 
 def find_sources(model: str, meshes: Path | None) -> list[str]:
-    """Returns where a model can be had: `OWN`, or the name of a file, or both.
+    """Returns where a model comes from: `OWN`, or the name of a file, or both.
 
     Args:
         model: A key of `MODELS`.
@@ -81,16 +81,11 @@ def load_model(model: str, source: str, meshes: Path | None) -> Mesh:
     entry = MODELS[model]
     if source == OWN:
         assert entry.make is not None
-        return as_mesh(entry.make(), model)
+        return entry.make().to_mesh(model)
     assert meshes is not None
     return load_mesh(meshes / source, scale=entry.scale)
 
 
-def as_mesh(surface: Surface, name: str) -> Mesh:
-    """Returns a surface that code made as a mesh."""
-    return Mesh.from_arrays(surface.vertices, surface.triangles, name=name)
-
-
 def cut_shape(name: str) -> Decomposition:
     """Returns the convex pieces of one of `drake_haptics.evaluation.shapes`."""
-    return decompose(as_mesh(SHAPES[name](), name))
+    return decompose(SHAPES[name]().to_mesh(name))

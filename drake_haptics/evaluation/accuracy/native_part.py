@@ -1,4 +1,8 @@
-"""The part of a tick that runs inside the core: query, clusters, wrench."""
+"""Runs the part of a tick that is inside the core, and counts its instructions.
+
+`python -m drake_haptics.evaluation.accuracy.native_part FILE` is the program that is
+counted: it moves the tool as FILE says.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,11 @@ from typing import Any, Literal
 import numpy as np
 
 from drake_haptics import _core
+from drake_haptics.evaluation.measuring.valgrind import (
+    count_with_data,
+    counted,
+    read_data,
+)
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 
 _REST = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
@@ -120,3 +129,45 @@ class ContactSearch:
         if self._every is None:
             return found
         return self._carrier.advance(found, self._found_at, X_WTool)
+
+
+# Where nothing touches the tool, m.
+_FAR_M = 1e3
+
+
+def count_native(part: NativePart, X_WTool: np.ndarray, V_WTool: np.ndarray) -> float:
+    """Returns how many instructions query, clusters and wrench take in a tick.
+
+    What the same calls take far from everything is taken off: Python, the binding and
+    the start of the program. The first tick, which finds the first contacts, is in it.
+
+    Args:
+        part: What the core is asked.
+        X_WTool: (n, 7) poses of the tool.
+        V_WTool: (n, 6) its velocities.
+
+    Returns:
+        The mean over all ticks.
+
+    Raises:
+        subprocess.CalledProcessError: The program failed.
+        RuntimeError: valgrind counted nothing.
+    """
+    far = X_WTool + _FAR_M * np.eye(7)[4]
+    near, base = (count_with_data(__name__, (part, X, V_WTool)) for X in (X_WTool, far))
+    return (near - base) / len(X_WTool)
+
+
+def main() -> None:
+    """Moves the tool as a file says, counted."""
+    part, X_WTool, V_WTool = read_data()
+    search, cluster = part.make_search(), part.make_clustering()
+    force = part.make_force()
+    with counted():
+        for X, V in zip(X_WTool, V_WTool, strict=True):
+            found, _ = search.look(X)
+            force(cluster(search.carry(found, X)), X[4:], V)
+
+
+if __name__ == "__main__":
+    main()
