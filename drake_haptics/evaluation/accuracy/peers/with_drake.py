@@ -279,7 +279,7 @@ _RESOLUTION_M = 2e-3
 _AddTool = Callable[[MultibodyPlant, RigidBody, ProximityProperties], None]
 
 
-def answer_with_soft_hull(problem: PeerProblem) -> PeerAnswers:
+def answer_with_hull(problem: PeerProblem) -> PeerAnswers:
     """Has the tool as a compliant `Mesh`, which Drake fills as its convex hull."""
 
     def add(plant: MultibodyPlant, body: RigidBody, soft: ProximityProperties) -> None:
@@ -289,7 +289,7 @@ def answer_with_soft_hull(problem: PeerProblem) -> PeerAnswers:
     return _answer(problem, add)
 
 
-def answer_with_soft_pieces(problem: PeerProblem) -> PeerAnswers:
+def answer_with_pieces(problem: PeerProblem) -> PeerAnswers:
     """Has the tool's pieces compliant, each by itself."""
 
     def add(plant: MultibodyPlant, body: RigidBody, soft: ProximityProperties) -> None:
