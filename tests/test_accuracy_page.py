@@ -16,7 +16,6 @@ from drake_haptics.evaluation.accuracy.report import (
     get_columns,
     group_rows,
     make_cells,
-    make_front,
 )
 from drake_haptics.evaluation.accuracy.setting import parse_setting
 
@@ -37,7 +36,7 @@ def test_sentences_come_before_the_picture_and_it_before_the_table(page):
     words = html.unescape(page)
     order = [
         *describe_verdict(STUDY),
-        *describe_knees(STUDY, make_front(STUDY)),
+        *describe_knees(STUDY),
         "data:image/png;base64,iVBOR",
         "Price list",
         "Differences of model",

@@ -26,7 +26,6 @@ from drake_haptics.evaluation.accuracy.report import (
     get_columns,
     group_rows,
     make_cells,
-    make_front,
     make_label,
 )
 from drake_haptics.scene.schema import Scene
@@ -40,7 +39,7 @@ def print_study(console: Console, study: AccuracyStudy) -> None:
     console.print()
     console.print(_make_table(study))
     console.print()
-    for sentence in describe_knees(study, make_front(study)):
+    for sentence in describe_knees(study):
         console.print(f"Knee: {sentence}")
     for sentence in describe_peers(study):
         console.print(f"Beside it: {sentence}")

@@ -45,7 +45,6 @@ from drake_haptics.evaluation.accuracy.report import (
     group_rows,
     make_cells,
     make_error_cells,
-    make_front,
 )
 from drake_haptics.evaluation.accuracy.setting import Setting, find_model_change
 from drake_haptics.evaluation.accuracy.study import (
@@ -92,7 +91,7 @@ def make_prices(study: AccuracyStudy) -> str:
     parts = [
         " ".join([*describe_verdict(study), describe_reference(study)]) + "\n",
         _to_markdown(["knob", "setting", *heads], rows),
-        _make_list("Knee: ", describe_knees(study, make_front(study))),
+        _make_list("Knee: ", describe_knees(study)),
         _make_list("Beside it: ", describe_peers(study)),
         _make_list("Not measured: ", describe_missing(study)),
         describe_machine(study) + "\n",

@@ -1,4 +1,4 @@
-"""What a setting does to the loop: energy from nothing, and how stiff it may be."""
+"""Measures what a setting does to the loop: energy created, and stable stiffness."""
 
 from __future__ import annotations
 

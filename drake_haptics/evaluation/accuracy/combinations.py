@@ -1,4 +1,4 @@
-"""Combinations of settings, from the scene as it is to the fastest."""
+"""Combines settings step by step, from the scene as it is to the fastest."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""What a setting costs and how wrong it is: the rows of the price list."""
+"""Holds the price list: the cost and the error of each setting of a scene."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -47,7 +48,8 @@ class Errors:
             exact one, m.
         normal_jump_deg: Largest turn of the force's direction from one tick to the
             next, beyond the reference's own, degrees.
-        energy_created_J: What the loop made of nothing while it ran, J.
+        energy_created_J: What the loop made of nothing while it ran, J; NaN where no
+            loop was run.
         stable_stiffness_N_per_m: Largest stable stiffness of the coupling against
             this contact, N/m; None where it is not known, infinite where there is no
             limit.
@@ -60,7 +62,7 @@ class Errors:
     torque_max_Nm: float
     depth_max_m: float
     normal_jump_deg: float
-    energy_created_J: float
+    energy_created_J: float = math.nan
     stable_stiffness_N_per_m: float | None = None
     stiffness_why_not: str = ""
 

@@ -1,4 +1,4 @@
-"""Writes what accuracy costs as one page that any browser shows."""
+"""Writes the study of a scene as one page that any browser shows."""
 
 from __future__ import annotations
 
@@ -35,7 +35,6 @@ from drake_haptics.evaluation.accuracy.report import (
     group_rows,
     make_cells,
     make_error_cells,
-    make_front,
     make_label,
 )
 from drake_haptics.evaluation.accuracy.setting import format_setting
@@ -72,7 +71,7 @@ def write_accuracy_page(study: AccuracyStudy, path: Path, command: str) -> None:
         name=html.escape(study.scene),
         description=html.escape(study.description),
         verdict=html.escape(" ".join(describe_verdict(study))),
-        knees=_make_list("", describe_knees(study, make_front(study))),
+        knees=_make_list("", describe_knees(study)),
         picture=base64.b64encode(picture.getvalue()).decode(),
         scene_mark=SCENE_MARK,
         model_mark=MODEL_MARK,

@@ -1,4 +1,4 @@
-"""Which settings are worth their time: the front of a study, and its knees."""
+"""Finds the settings that are worth their time: the front of a study, and its knees."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Draws what accuracy costs: error over time, the front, its knees, and peers."""
+"""Draws a study: errors over times, the front and its knees, and other libraries."""
 
 from __future__ import annotations
 

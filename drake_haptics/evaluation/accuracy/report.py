@@ -14,13 +14,12 @@ from drake_haptics.evaluation.accuracy.figures import (
 )
 from drake_haptics.evaluation.accuracy.pareto import (
     ERROR_FLOOR_N,
-    Front,
     find_front,
     get_force_error_N,
     get_native_us,
 )
 from drake_haptics.evaluation.accuracy.setting import find_model_change
-from drake_haptics.evaluation.measuring.timing import TickTimes
+from drake_haptics.evaluation.measuring.timing import TickTimes, name_machine
 
 # Before a label: the scene's own setting; a difference of model.
 SCENE_MARK = "*"
@@ -203,8 +202,10 @@ def describe_verdict(study: AccuracyStudy) -> list[str]:
     return sentences
 
 
-def describe_knees(study: AccuracyStudy, front: Front) -> list[str]:
+def describe_knees(study: AccuracyStudy) -> list[str]:
     """Says of each knee what it costs beside the scene, and what lies beyond it."""
+    # Over time inside the core, which noise disturbs least.
+    front = find_front(study, get_native_us)
     scene = find_scene_row(study)
     sentences = []
     stops = [front.rows[0], *front.knees, front.rows[-1]] if front.rows else []
@@ -276,8 +277,7 @@ def describe_machine(study: AccuracyStudy) -> str:
     """Says what it was measured on, and how far to trust the times."""
     machine = study.machine
     return (
-        f"{machine['processor']}, {machine['cores']} cores, {machine['system']},"
-        f" Python {machine['python']}, drake_haptics {machine['drake_haptics']}."
+        f"{name_machine(machine)}, drake_haptics {machine['drake_haptics']}."
         " Whatever else runs on the machine disturbs the times: read ratios, not"
         " microseconds."
     )
@@ -318,8 +318,3 @@ def _price_of_tenth(cheap: Row, dear: Row) -> str:
     """Returns what a tenfold smaller error costs between two rows, µs."""
     decades = math.log10(get_force_error_N(cheap) / get_force_error_N(dear))
     return format_us((get_native_us(dear) - get_native_us(cheap)) / decades)
-
-
-def make_front(study: AccuracyStudy) -> Front:
-    """Returns the front over time inside the core, which noise disturbs least."""
-    return find_front(study, get_native_us)

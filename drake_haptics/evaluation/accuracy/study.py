@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from subprocess import SubprocessError
 from typing import Any
 
@@ -100,8 +100,8 @@ class Measurement:
         stiffness = StableStiffness(None, NOT_SOUGHT)
         if self.place is not None:
             stiffness = find_stable_stiffness(scene, self.place)
-        errors = Errors(
-            **asdict(measure_open_loop(scene, self.motion, self.truth)),
+        errors = replace(
+            measure_open_loop(scene, self.motion, self.truth),
             energy_created_J=measure_created_energy(scene, self.duration_s),
             stable_stiffness_N_per_m=stiffness.stiffness_N_per_m,
             stiffness_why_not=stiffness.why_not,

@@ -9,6 +9,7 @@ import numpy as np
 from drake_haptics._core import ConvexPair, ConvexPolytope
 from drake_haptics.analysis.held_scene import build_quietly
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.evaluation.accuracy.figures import Errors
 from drake_haptics.evaluation.accuracy.recorded_motion import (
     RecordedMotion,
     replay_tool,
@@ -157,31 +158,12 @@ def shift_wrench(
 _FIRM_SHARE = 0.1
 
 
-@dataclass(frozen=True)
-class OpenLoopErrors:
-    """Errors on the recorded motion, each as `figures.Errors` says.
+def measure_open_loop(scene: Scene, motion: RecordedMotion, truth: Truth) -> Errors:
+    """Replays a motion in a scene and compares its answers with the truth.
 
-    Attributes:
-        force_rms_N: N.
-        force_max_N: N.
-        torque_rms_Nm: N·m, at the tool's center of mass.
-        torque_max_Nm: N·m.
-        depth_max_m: m.
-        normal_jump_deg: Degrees.
+    Returns:
+        The errors; energy and stiffness, which are the closed loop's, are NaN and None.
     """
-
-    force_rms_N: float
-    force_max_N: float
-    torque_rms_Nm: float
-    torque_max_Nm: float
-    depth_max_m: float
-    normal_jump_deg: float
-
-
-def measure_open_loop(
-    scene: Scene, motion: RecordedMotion, truth: Truth
-) -> OpenLoopErrors:
-    """Replays a motion in a scene and compares its answers with the truth."""
     replay = replay_tool(scene, motion)
     F_Tcm_W = shift_wrench(replay.F_Tool_W, motion.X_WTool, truth.p_TTcm)
     return compare(F_Tcm_W, replay.distance, scene.contact.tolerance_m, truth)
@@ -189,7 +171,7 @@ def measure_open_loop(
 
 def compare(
     F_Tcm_W: np.ndarray, distance: np.ndarray, tolerance_m: float, truth: Truth
-) -> OpenLoopErrors:
+) -> Errors:
     """Compares the answers of anything with the truth.
 
     Args:
@@ -206,7 +188,7 @@ def compare(
     firm_N = _FIRM_SHARE * float(np.linalg.norm(truth.F_Tcm_W[:, 3:], axis=1).max())
     turn = _calc_turns(F_Tcm_W[:, 3:], firm_N)
     expected = _calc_turns(truth.F_Tcm_W[:, 3:], firm_N)
-    return OpenLoopErrors(
+    return Errors(
         force_rms_N=float(rms[1]),
         force_max_N=float(largest[1]),
         torque_rms_Nm=float(rms[0]),

@@ -25,7 +25,9 @@ from drake_haptics.evaluation.benchmark.python_pairs import (
     run_python_pair,
 )
 from drake_haptics.evaluation.benchmark.scene_runs import (
+    COAL,
     NAME,
+    CoalScene,
     DrakeHapticsScene,
     SceneFigures,
     SceneQuery,
@@ -35,7 +37,7 @@ from drake_haptics.evaluation.benchmark.scene_runs import (
 from drake_haptics.evaluation.benchmark.scenes import SceneProblem, scene_makers
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
 from drake_haptics.evaluation.measuring.plain_data import read_figures, replace_numbers
-from drake_haptics.evaluation.measuring.timing import describe_machine
+from drake_haptics.evaluation.measuring.timing import describe_machine, name_machine
 from drake_haptics.report.table import Table
 
 PARTS = ("pairs", "python", "scenes", "loop")
@@ -202,9 +204,7 @@ def _run_loop(figures: BenchFigures, effort: Effort, progress: Progress) -> None
 
 def _scene_peer(figures: BenchFigures, problem: SceneProblem) -> dict[str, SceneQuery]:
     try:
-        from drake_haptics.evaluation.benchmark import scene_peer
-
-        return {scene_peer.NAME: scene_peer.CoalScene(problem)}
+        return {COAL: CoalScene(problem)}
     except (ImportError, NativeBuildError) as error:
         figures.missing["coal"] = str(error)
         return {}
@@ -237,8 +237,7 @@ def machine_line(figures: BenchFigures) -> str:
     versions.setdefault("drake_haptics", machine["drake_haptics"])
     named = ", ".join(f"{name} {version}" for name, version in versions.items())
     return (
-        f"{machine['processor']}, {machine['cores']} cores, {machine['system']}, "
-        f"Python {machine['python']}; {named}. One thread. Whatever else runs on the "
+        f"{name_machine(machine)}; {named}. One thread. Whatever else runs on the "
         "machine disturbs the times: read ratios, not microseconds."
     )
 

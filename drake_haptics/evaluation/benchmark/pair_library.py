@@ -57,6 +57,19 @@ class PairLibrary:
     make_query: Callable[[PairShape], PairQuery]
 
 
+def ask_each(
+    X_WA: np.ndarray, ask: Callable[[np.ndarray], tuple[float, np.ndarray, float]]
+) -> PairAnswers:
+    """Returns the answers of a library that is asked for one pose after the other.
+
+    Args:
+        X_WA: (n, 4, 4) poses of A.
+        ask: Returns distance, normal and time of an answer, see `PairAnswers`.
+    """
+    distance, normal, seconds = zip(*map(ask, X_WA), strict=True)
+    return PairAnswers(np.array(distance), np.array(normal), np.array(seconds))
+
+
 def normals_between(
     p_WCa: np.ndarray, p_WCb: np.ndarray, distance: np.ndarray
 ) -> np.ndarray:

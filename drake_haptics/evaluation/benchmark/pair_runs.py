@@ -13,7 +13,7 @@ from drake_haptics.evaluation.benchmark.pair_library import (
     PairQuery,
 )
 from drake_haptics.evaluation.benchmark.pairs import PairShape, Press, make_presses
-from drake_haptics.evaluation.measuring.timing import Times, typical
+from drake_haptics.evaluation.measuring.timing import Times, take_turns, typical
 
 
 @dataclass(frozen=True)
@@ -145,11 +145,9 @@ def _run_press(
     """Typical times (n,) and answers of each query."""
     seconds: list[list[np.ndarray]] = [[] for _ in queries]
     answers: dict[int, PairAnswers] = {}
-    for repeat in range(repeats):
-        for turn in range(len(queries)):
-            i = (turn + repeat) % len(queries)
-            answers[i] = queries[i].run(press.X_WA)
-            seconds[i].append(answers[i].seconds)
+    for i in take_turns(range(len(queries)), repeats):
+        answers[i] = queries[i].run(press.X_WA)
+        seconds[i].append(answers[i].seconds)
     times = [typical(np.array(repeated)) for repeated in seconds]
     return times, [answers[i] for i in range(len(queries))]
 

@@ -97,7 +97,6 @@ def _directions(size: int) -> np.ndarray:
 
 RATE_HZ = 1000.0
 MAX_SPEED_M_S = 0.2
-MAX_TURN_RAD_S = 2.0
 DEPTH_SHARE = 0.2
 
 

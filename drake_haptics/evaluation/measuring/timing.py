@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import platform
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from drake_haptics import _core
+
+Name = TypeVar("Name")
 
 _TRIVIAL_CALLS = 2000
 
@@ -116,6 +120,27 @@ def _calc_percentiles_us(seconds: np.ndarray, percents: list[float]) -> list[flo
         return [np.nan] * len(percents)
     percentiles: list[float] = (1e6 * np.percentile(seconds, percents)).tolist()
     return percentiles
+
+
+def take_turns(names: Sequence[Name], repeats: int) -> Iterator[Name]:
+    """Yields each name `repeats` times, in turns that each begin at another name.
+
+    What disturbs the machine for a while then disturbs all alike.
+    """
+    for repeat in range(repeats):
+        for turn in range(len(names)):
+            yield names[(turn + repeat) % len(names)]
+
+
+@contextmanager
+def steady_memory() -> Iterator[None]:
+    """Keeps earlier garbage from being collected while its block is timed."""
+    gc.collect()
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
 
 
 def describe_machine() -> dict[str, str | int]:

@@ -13,6 +13,7 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
 
+from drake_haptics.evaluation.measuring.timing import name_machine
 from drake_haptics.evaluation.paper.evaluation import PaperEvaluation, Part, Run
 from drake_haptics.evaluation.paper.pen_pass import PenPass
 from drake_haptics.evaluation.paper.plots import (
@@ -131,10 +132,9 @@ def make_sections(evaluation: PaperEvaluation) -> list[Section]:
 
 def describe_machine_line(evaluation: PaperEvaluation) -> str:
     """Says what the figures were taken on, and how far they go."""
-    machine = evaluation.machine
+    version = evaluation.machine["drake_haptics"]
     return (
-        f"{machine['processor']}, {machine['cores']} cores, {machine['system']}, Python"
-        f" {machine['python']}, drake_haptics {machine['drake_haptics']}; one thread."
+        f"{name_machine(evaluation.machine)}, drake_haptics {version}; one thread."
         f" The paper: {MACHINE}; all times compare processors two decades apart."
         + (_CUT_SHORT if evaluation.is_cut_short else "")
     )

@@ -1,4 +1,4 @@
-"""The scenarios of Figure 11, and those with the largest models of Table 1."""
+"""Makes the scenarios of Figure 11, and those with the largest models of Table 1."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Table 1: how many convex pieces models like the paper's are cut into."""
+"""Cuts models like the paper's into convex pieces, as its Table 1 does."""
 
 from __future__ import annotations
 

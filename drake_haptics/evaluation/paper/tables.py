@@ -1,4 +1,4 @@
-"""The tables of the evaluation."""
+"""Makes the tables of the evaluation."""
 
 from __future__ import annotations
 

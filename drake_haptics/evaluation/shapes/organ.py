@@ -1,4 +1,4 @@
-"""An organ: a folded, branching tube, after the digestive system of the paper."""
+"""Makes an organ: a folded, branching tube, after the paper's digestive system."""
 
 from __future__ import annotations
 

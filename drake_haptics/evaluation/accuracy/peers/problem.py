@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -12,8 +12,6 @@ from drake_haptics.evaluation.accuracy.costs import make_native_part
 from drake_haptics.evaluation.accuracy.native_part import NativePart
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.accuracy.truth import Truth
-from drake_haptics.evaluation.measuring.native_build import HANDLE, INTEGERS, REALS
-from drake_haptics.evaluation.measuring.timing import clock_interval, typical
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Scene
@@ -119,6 +117,21 @@ class FoundContacts:
     object_index: np.ndarray
     seconds: np.ndarray
 
+    @staticmethod
+    def of(start: np.ndarray, rows: np.ndarray, seconds: np.ndarray) -> FoundContacts:
+        """Returns contacts whose numbers are in rows.
+
+        Args:
+            start: The same as the attribute.
+            rows: (n, 11) distance, normal, both witness points, and the object.
+            seconds: The same as the attribute.
+        """
+        distance, normal, p_WCa, p_WCb, owner = np.split(rows, [1, 4, 7, 10], axis=1)
+        index = owner[:, 0].astype(np.int32)
+        return FoundContacts(
+            start, distance[:, 0], normal, p_WCa, p_WCb, index, seconds
+        )
+
 
 def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
     """Returns what this package's clustering and penalty law make of contacts.
@@ -152,35 +165,3 @@ def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
         )
         F_Tool_W[k] = wrench.F_Tool_W
     return PeerAnswers(F_Tool_W, distance, part.tolerance_m, found.seconds)
-
-
-# Types of the arguments of an adapter's function that copies contacts.
-COPY = (HANDLE, INTEGERS, REALS)
-# The size of a contact in measuring/native/found_contacts.h.
-_CONTACT_SIZE = 11
-
-
-def copy_contacts(
-    copy: Any, scene: int, count: int, seconds: np.ndarray
-) -> FoundContacts:
-    """Returns the contacts that an adapter holds after a run.
-
-    Args:
-        copy: Its function.
-        scene: Its object.
-        count: What its run returned.
-        seconds: (PASSES, k) what each tick took, the clock included, s.
-    """
-    start = np.empty(seconds.shape[1] + 1, dtype=np.int32)
-    rows = np.empty((count, _CONTACT_SIZE))
-    copy(scene, start, rows)
-    distance, normal, p_WCa, p_WCb, owner = np.split(rows, [1, 4, 7, 10], axis=1)
-    return FoundContacts(
-        start=start,
-        distance=distance[:, 0],
-        nhat_BA_W=normal,
-        p_WCa=p_WCa,
-        p_WCb=p_WCb,
-        object_index=owner[:, 0].astype(np.int32),
-        seconds=np.maximum(typical(seconds) - clock_interval(), 0.0),
-    )

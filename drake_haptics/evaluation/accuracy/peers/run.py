@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import importlib
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 
 from drake_haptics.analysis.held_scene import build_quietly
@@ -64,58 +64,27 @@ class PeerMethod:
         return answer
 
 
+_SAME_LAW = "of the same pieces, this package's law"
+# fmt: off
 METHODS = (
-    PeerMethod(
-        "coal",
-        "coal",
-        "with_coal",
-        "answer",
-        "signed distances of the same pieces, this package's law",
-    ),
-    PeerMethod(
-        "MuJoCo",
-        "mujoco",
-        "with_mujoco",
-        "answer",
-        "mj_collision of the same pieces, this package's law",
-    ),
-    PeerMethod(
-        "Drake",
-        "drake",
-        "with_drake",
-        "answer_by_distances",
-        "signed distances of the same pieces, this package's law",
-    ),
-    PeerMethod(
-        "Drake",
-        "drake",
-        "with_drake",
-        "answer_on_pieces",
-        "point contact of the same pieces, without a tolerance",
-    ),
-    PeerMethod(
-        "Drake",
-        "drake",
-        "with_drake",
-        "answer_on_meshes",
-        "point contact of meshes as it takes them: convex hulls",
-    ),
-    PeerMethod(
-        "Drake",
-        "drake",
-        "with_drake",
-        "answer_with_hull",
-        "hydroelastic without a tolerance: tool's hull compliant, objects rigid",
-    ),
-    PeerMethod(
-        "Drake",
-        "drake",
-        "with_drake",
-        "answer_with_pieces",
-        "hydroelastic without a tolerance: tool's pieces compliant, objects rigid",
-        for_pieces=True,
-    ),
+    PeerMethod("coal", "coal", "with_native", "answer_with_coal",
+               f"signed distances {_SAME_LAW}"),
+    PeerMethod("MuJoCo", "mujoco", "with_native", "answer_with_mujoco",
+               f"mj_collision {_SAME_LAW}"),
+    PeerMethod("Drake", "drake", "with_drake", "answer_by_distances",
+               f"signed distances {_SAME_LAW}"),
+    PeerMethod("Drake", "drake", "with_drake", "answer_on_pieces",
+               "point contact of the same pieces, without a tolerance"),
+    PeerMethod("Drake", "drake", "with_drake", "answer_on_meshes",
+               "point contact of meshes as it takes them: convex hulls"),
+    PeerMethod("Drake", "drake", "with_drake", "answer_with_hull",
+               "hydroelastic without a tolerance: tool's hull compliant, objects"
+               " rigid"),
+    PeerMethod("Drake", "drake", "with_drake", "answer_with_pieces",
+               "hydroelastic without a tolerance: tool's pieces compliant, objects"
+               " rigid", for_pieces=True),
 )
+# fmt: on
 
 
 def run_peers(
@@ -186,8 +155,7 @@ def _leave_out_effects(scene: Scene) -> Scene:
 
 def _find_errors(answers: PeerAnswers, problem: PeerProblem, truth: Truth) -> Errors:
     F_Tcm_W = shift_wrench(answers.F_Tool_W, problem.motion.X_WTool, truth.p_TTcm)
-    errors = compare(F_Tcm_W, answers.distance, answers.tolerance_m, truth)
-    return Errors(**asdict(errors), energy_created_J=float("nan"))
+    return compare(F_Tcm_W, answers.distance, answers.tolerance_m, truth)
 
 
 def _explain(library: str, method: PeerMethod, why_not: str) -> PeerRow:

@@ -174,16 +174,7 @@ def answer_by_distances(problem: PeerProblem) -> PeerAnswers:
         read,
     )
     columns = np.array(rows).reshape(-1, 11)
-    distance, normal, p_WCa, p_WCb, owner = np.split(columns, [1, 4, 7, 10], axis=1)
-    found = FoundContacts(
-        start=np.array(start),
-        distance=distance[:, 0],
-        nhat_BA_W=normal,
-        p_WCa=p_WCa,
-        p_WCb=p_WCb,
-        object_index=owner[:, 0].astype(np.int32),
-        seconds=seconds,
-    )
+    found = FoundContacts.of(np.array(start), columns, seconds)
     return apply_law(problem, found)
 
 

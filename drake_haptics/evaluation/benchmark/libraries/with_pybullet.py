@@ -11,7 +11,11 @@ from importlib.metadata import version
 
 import numpy as np
 
-from drake_haptics.evaluation.benchmark.pair_library import PairAnswers, PairLibrary
+from drake_haptics.evaluation.benchmark.pair_library import (
+    PairAnswers,
+    PairLibrary,
+    ask_each,
+)
 from drake_haptics.evaluation.benchmark.pairs import PairShape
 from drake_haptics.evaluation.measuring.timing import CallTimer
 
@@ -60,15 +64,13 @@ class BulletQuery:
 
     def run(self, X_WA: np.ndarray) -> PairAnswers:
         """See `PairQuery.run`."""
-        distance, normal, seconds = [], [], []
-        for X in X_WA:
-            self._place(self._A, X[:3, 3].tolist(), X[:3, :3])
-            points, time_s = self._timer.call((self._A, self._B))
-            deepest = min(points, key=lambda point: point[_DISTANCE])
-            distance.append(deepest[_DISTANCE])
-            normal.append(deepest[_NORMAL_ON_B])
-            seconds.append(time_s)
-        return PairAnswers(np.array(distance), np.array(normal), np.array(seconds))
+        return ask_each(X_WA, self._ask)
+
+    def _ask(self, X_WA: np.ndarray) -> tuple[float, np.ndarray, float]:
+        self._place(self._A, X_WA[:3, 3].tolist(), X_WA[:3, :3])
+        points, time_s = self._timer.call((self._A, self._B))
+        deepest = min(points, key=lambda point: point[_DISTANCE])
+        return deepest[_DISTANCE], deepest[_NORMAL_ON_B], time_s
 
     def _closest_points(self, body_A: int, body_B: int) -> list[tuple]:
         points: list[tuple] = pybullet.getClosestPoints(

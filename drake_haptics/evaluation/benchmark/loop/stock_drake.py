@@ -1,8 +1,7 @@
-"""What Drake itself offers: a bushing, and point contact on the same pieces."""
+"""Runs the loop that Drake itself offers: a bushing, and point contact on pieces."""
 
 from __future__ import annotations
 
-import gc
 import time
 from collections.abc import Callable
 
@@ -32,6 +31,7 @@ from drake_haptics.evaluation.measuring.pieces import (
     quiet_stderr,
     register_pieces,
 )
+from drake_haptics.evaluation.measuring.timing import steady_memory
 
 # So heavy that the bushing does not move the handle within a tick: 1 µm/s at 1 kN.
 _HANDLE_KG = 1e6
@@ -132,16 +132,12 @@ class StockLoop:
             begin = clock()
             return EventStatus.Succeeded()
 
-        gc.collect()
-        gc.freeze()
-        try:
+        with steady_memory():
             simulator.Initialize()
             note(context)
             simulator.set_monitor(between)
             begin = clock()
             simulator.AdvanceTo((n - 0.5) * motion.period_s)
-        finally:
-            gc.unfreeze()
         return seconds
 
     def _add_bodies(self) -> None:

@@ -1,4 +1,4 @@
-"""The same in MuJoCo: a free tool, welded to a mocap body that is the handle."""
+"""Runs the loop in MuJoCo: a free tool, welded to a mocap body that is the handle."""
 
 from __future__ import annotations
 
