@@ -28,6 +28,7 @@ PROMISE = 1.1
 RUNS = 5
 # Something else may disturb one in so many runs.
 _SPARED = 5
+_EACH_OBJECT = "environment."
 
 
 @dataclass(frozen=True)
@@ -197,9 +198,6 @@ def _try_out(
             return Trial(combination, (math.inf,), tuple(scenes))
         scenes.append(measure_p99(scene))
     return Trial(combination, tuple(own), tuple(scenes))
-
-
-_EACH_OBJECT = "environment."
 
 
 def describe_outcome(choice: BudgetChoice, name: str) -> str:

@@ -34,6 +34,13 @@ from drake_haptics.systems.contact.contact_query import DepthSearch
 # A diagram that Python systems are part of is never freed: that it is kept here costs
 # nothing, and another one for the next measurement of the scene would.
 _BUILT: dict[str, HapticDiagram] = {}
+# As often each tick is timed; but no pass begins later than this, s.
+_PASSES = 3
+_LONGEST_S = 1.0
+# Where nothing touches the tool, m.
+_FAR_M = 1e3
+# A lap that is longer is cut.
+_LONGEST_LAP_S = 5.0
 
 
 def build_once(scene: Scene) -> HapticDiagram:
@@ -74,13 +81,6 @@ def combine(repeats: Sequence[TickTimes]) -> TickTimes:
     table = np.array([[r.median_us, r.p99_us, r.p99_9_us] for r in repeats])
     median, p99, p99_9 = np.median(table, axis=0).tolist()
     return TickTimes(median, p99, p99_9)
-
-
-# As often each tick is timed; but no pass begins later than this, s.
-_PASSES = 3
-_LONGEST_S = 1.0
-# Where nothing touches the tool, m.
-_FAR_M = 1e3
 
 
 def make_native_part(haptic: HapticDiagram) -> NativePart:
@@ -147,10 +147,6 @@ def time_native(part: NativePart, motion: RecordedMotion) -> TickTimes:
             # A call without contacts is the least there is, but for the clock's ticks.
             passes[-1][tick] = query_s + carry_s + cluster_s + force_s
     return TickTimes.of(np.maximum(typical(np.array(passes)), 0.0))
-
-
-# A lap that is longer is cut.
-_LONGEST_LAP_S = 5.0
 
 
 def measure_p99(scene: Scene) -> float:

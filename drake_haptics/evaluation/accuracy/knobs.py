@@ -18,18 +18,6 @@ from drake_haptics.geometry.parsing.model_file import (
 from drake_haptics.scene.schema import EnvironmentObject, Scene, Tool
 
 Number = TypeVar("Number", int, float)
-
-
-def _with_own(values: Iterable[Number], own: Number | None) -> list[Number]:
-    """Returns numbers and the scene's own, if it has one, the smallest first."""
-    return sorted(set(values).union([] if own is None else [own]))
-
-
-def _format_length(length_m: float) -> str:
-    """Returns a length in mm, in few digits."""
-    return f"{1e3 * length_m:.3g} mm"
-
-
 # Lengths are chosen in relation to the tolerance, or to this where a scene has none.
 _LENGTH_M = 1e-3
 _TOLERANCES = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0)
@@ -41,6 +29,24 @@ _RATES_HZ = (250.0, 500.0, 1000.0, 2000.0)
 _BUDGET_WORDS = {1.0: "1 µs: all left out that may be"}
 # What a material says of an effect.
 _OF_MATERIAL = {"shading": "shading", "friction": "friction_coefficient"}
+# Shares of a mesh's triangles; fewer than this many are no shape any more.
+_TRIANGLES = (2, 4, 8)
+_LEAST_TRIANGLES = 20
+_MERGED_M = (1e-4, 3e-4, 1e-3)
+_CHORDS_M = (2.5e-5, 4e-4, 1.6e-3)
+# The scene as it is.
+AS_IT_IS = Setting("scene", "as it is")
+_EFFECTS = ("shading", "friction", "braking", "gravity", "passivity")
+
+
+def _with_own(values: Iterable[Number], own: Number | None) -> list[Number]:
+    """Returns numbers and the scene's own, if it has one, the smallest first."""
+    return sorted(set(values).union([] if own is None else [own]))
+
+
+def _format_length(length_m: float) -> str:
+    """Returns a length in mm, in few digits."""
+    return f"{1e3 * length_m:.3g} mm"
 
 
 def list_depths(scene: Scene) -> list[Setting]:
@@ -134,13 +140,6 @@ def _find_length(scene: Scene) -> float:
     return scene.contact.tolerance_m or _LENGTH_M
 
 
-# Shares of a mesh's triangles; fewer than this many are no shape any more.
-_TRIANGLES = (2, 4, 8)
-_LEAST_TRIANGLES = 20
-_MERGED_M = (1e-4, 3e-4, 1e-3)
-_CHORDS_M = (2.5e-5, 4e-4, 1.6e-3)
-
-
 def list_decompositions(scene: Scene, where: str) -> list[Setting]:
     """Returns ways to cut a mesh, those that are installed.
 
@@ -226,11 +225,6 @@ def _is_round(part: Tool | EnvironmentObject) -> bool:
     """Whether a part has shapes that a finer polytope follows better."""
     fine, coarse = (_count_triangles(part, _CHORDS_M[i]) for i in (0, -1))
     return fine > coarse
-
-
-# The scene as it is.
-AS_IT_IS = Setting("scene", "as it is")
-_EFFECTS = ("shading", "friction", "braking", "gravity", "passivity")
 
 
 @dataclass(frozen=True)

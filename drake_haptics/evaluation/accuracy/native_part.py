@@ -22,6 +22,8 @@ from drake_haptics.evaluation.measuring.valgrind import (
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 
 _REST = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+# Where nothing touches the tool, m.
+_FAR_M = 1e3
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,10 +131,6 @@ class ContactSearch:
         if self._every is None:
             return found
         return self._carrier.advance(found, self._found_at, X_WTool)
-
-
-# Where nothing touches the tool, m.
-_FAR_M = 1e3
 
 
 def count_native(part: NativePart, X_WTool: np.ndarray, V_WTool: np.ndarray) -> float:

@@ -26,6 +26,10 @@ SCENE_MARK = "*"
 MODEL_MARK = "†"
 # Smaller figures are round-off.
 _LEAST_SHOWN = {"N": 5e-4, "µm": 5e-4, "°": 0.05, "mJ": 5e-4}
+# Times must differ by this share to be worth a sentence: two runs do by half of it.
+_NOISE = 0.1
+# A ratio this near to a simple one is told as that.
+_ROUND = 0.05
 
 
 @dataclass(frozen=True)
@@ -151,12 +155,6 @@ def _format_stiffness(stiffness_N_per_m: float | None) -> str:
     if math.isinf(stiffness_N_per_m):
         return "any"
     return f"{float(f'{stiffness_N_per_m:.3g}'):.0f}"
-
-
-# Times must differ by this share to be worth a sentence: two runs do by half of it.
-_NOISE = 0.1
-# A ratio this near to a simple one is told as that.
-_ROUND = 0.05
 
 
 def find_scene_row(study: AccuracyStudy) -> Row | None:

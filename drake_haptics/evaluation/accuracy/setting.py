@@ -19,6 +19,20 @@ from drake_haptics.scene.yaml_loading import check_keys
 
 # A key that begins so is set in every object of the environment.
 _EACH_OBJECT = "environment."
+# Beginning of a key: what differs.
+_MODELS = {
+    "effects.": "what is felt besides contact",
+    "contact.clustering": "how contacts that are near count together",
+    "contact.cluster_size_m": "how far contacts count as one",
+    "contact.depth": "whether depth is the way back or the shortest way out",
+    "contact.tolerance_m": "how far from a surface it begins to push",
+    "device.rate_hz": "how often the loop ticks, and so what a second of it costs",
+}
+_EFFECTS = "effects."
+# What a device does and how long a tick may take: the loop, and not its contacts.
+_LOOP = "device."
+# Stands for no change at all.
+_NO_CHANGE = "scene"
 
 
 @dataclass(frozen=True)
@@ -87,20 +101,6 @@ def _find_part(owner: type, name: str) -> Any:
     raise TypeError(f"{name} cannot be given as a whole; give its keys one by one")
 
 
-# Beginning of a key: what differs.
-_MODELS = {
-    "effects.": "what is felt besides contact",
-    "contact.clustering": "how contacts that are near count together",
-    "contact.cluster_size_m": "how far contacts count as one",
-    "contact.depth": "whether depth is the way back or the shortest way out",
-    "contact.tolerance_m": "how far from a surface it begins to push",
-    "device.rate_hz": "how often the loop ticks, and so what a second of it costs",
-}
-_EFFECTS = "effects."
-# What a device does and how long a tick may take: the loop, and not its contacts.
-_LOOP = "device."
-
-
 def find_model_change(setting: Setting) -> str:
     """Returns what a setting changes of the model, empty if nothing.
 
@@ -130,10 +130,6 @@ def is_comparable(setting: Setting) -> bool:
 def is_effect(setting: Setting) -> bool:
     """Whether a setting takes away or changes an effect that a scene names."""
     return any(key.startswith(_EFFECTS) for key in setting.changes)
-
-
-# Stands for no change at all.
-_NO_CHANGE = "scene"
 
 
 def parse_setting(words: Sequence[str], known: Iterable[Setting] = ()) -> Setting:

@@ -55,6 +55,16 @@ from drake_haptics.scene.schema import Scene
 # Under valgrind a tick takes fifty times as long; no more are needed, as counts do not
 # scatter.
 _COUNTED_TICKS = 500
+Task = dict[str, Any]
+Progress = Callable[[str, float], None]
+# Runs of each setting, in turns.
+_REPEATS = 3
+# Longest motion of a quick study, simulated.
+_QUICK_S = 1.0
+# Shares of all work that are done when something begins.
+_TRUTH, _PRESS = 0.01, 0.03
+# Those of stages, from where to where.
+_ERRORS, _COUNTS, _TIMES = (0.05, 0.3), (0.3, 0.35), (0.35, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,9 +134,6 @@ class Measurement:
         haptic = build_once(scene)
         motion = self.motion.sample(haptic.period_s)
         return asdict(time_native(make_native_part(haptic), motion))
-
-
-Task = dict[str, Any]
 
 
 def make_task(what: str, setting: Setting, **more: Any) -> Task:
@@ -214,18 +221,6 @@ def _make_errors(results: Sequence[Mapping[str, Any]]) -> Errors | None:
 def _read_pieces(results: Sequence[Mapping[str, Any]]) -> tuple[int, int]:
     tool, objects = results[0].get("pieces", (0, 0))
     return tool, objects
-
-
-Progress = Callable[[str, float], None]
-
-# Runs of each setting, in turns.
-_REPEATS = 3
-# Longest motion of a quick study, simulated.
-_QUICK_S = 1.0
-# Shares of all work that are done when something begins.
-_TRUTH, _PRESS = 0.01, 0.03
-# Those of stages, from where to where.
-_ERRORS, _COUNTS, _TIMES = (0.05, 0.3), (0.3, 0.35), (0.35, 1.0)
 
 
 @dataclass(frozen=True)

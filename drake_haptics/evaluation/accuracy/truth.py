@@ -17,6 +17,9 @@ from drake_haptics.evaluation.accuracy.recorded_motion import (
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Scene
 
+# A force below this share of the reference's largest has no direction to speak of.
+_FIRM_SHARE = 0.1
+
 
 def calc_exact_distance(haptic: HapticDiagram, X_WTool: np.ndarray) -> np.ndarray:
     """Returns the signed distance of the deepest pair of convex pieces at each pose.
@@ -152,10 +155,6 @@ def shift_wrench(
     p_TP_W = p_TP + 2.0 * (w * turned + np.cross(xyz, turned))
     force = F_Tool_W[:, 3:]
     return np.hstack([F_Tool_W[:, :3] - np.cross(p_TP_W, force), force])
-
-
-# A force below this share of the reference's largest has no direction to speak of.
-_FIRM_SHARE = 0.1
 
 
 def measure_open_loop(scene: Scene, motion: RecordedMotion, truth: Truth) -> Errors:

@@ -43,6 +43,7 @@ from drake_haptics.report.table import Table
 PARTS = ("pairs", "python", "scenes", "loop")
 # Called with what is done next and the share of the part that is done.
 Progress = Callable[[str, float], None]
+_LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room")
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,6 @@ QUICK = Effort(
     large_scenes=False,
     loop_s=1.2,
 )
-_LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room")
 
 
 @dataclass(frozen=True)

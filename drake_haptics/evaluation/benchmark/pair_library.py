@@ -12,6 +12,9 @@ import numpy as np
 from drake_haptics.evaluation.benchmark.pairs import PairShape
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
 
+_PACKAGE = "drake_haptics.evaluation.benchmark.libraries"
+_MODULES = ("drake_haptics", "coal", "mujoco", "fcl", "pybullet", "pydrake")
+
 
 @dataclass(frozen=True)
 class PairAnswers:
@@ -84,10 +87,6 @@ def normals_between(
     along = np.copysign(1.0, distance)[:, None] * (p_WCa - p_WCb)
     length = np.linalg.norm(along, axis=1, keepdims=True)
     return np.divide(along, length, out=np.full_like(along, np.nan), where=length > 0)
-
-
-_PACKAGE = "drake_haptics.evaluation.benchmark.libraries"
-_MODULES = ("drake_haptics", "coal", "mujoco", "fcl", "pybullet", "pydrake")
 
 
 def find_libraries() -> tuple[list[PairLibrary], dict[str, str]]:

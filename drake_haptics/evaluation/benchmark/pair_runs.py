@@ -15,6 +15,14 @@ from drake_haptics.evaluation.benchmark.pair_library import (
 from drake_haptics.evaluation.benchmark.pairs import PairShape, Press, make_presses
 from drake_haptics.evaluation.measuring.timing import Times, take_turns, typical
 
+# Relative errors are of frames whose distance is at least this, m.
+_JUDGED_M = 1e-6
+# A depth is the global one within this share, which round-off stays below.
+_EXACT = 1e-9
+# A frame is wrong beyond this relative error: no tolerance explains it.
+_WRONG = 1e-3
+_STEADY_RAD = np.radians(1.0)
+
 
 @dataclass(frozen=True)
 class PairTruth:
@@ -61,15 +69,6 @@ def support_gaps(
     offset = np.einsum("fi,fi->f", X_WA[:, :3, 3], nhat_BA_W)
     nearest_A = (n_A @ pair.A_vertices.T).min(axis=1) + offset
     return nearest_A - (nhat_BA_W @ pair.B_vertices.T).max(axis=1)
-
-
-# Relative errors are of frames whose distance is at least this, m.
-_JUDGED_M = 1e-6
-# A depth is the global one within this share, which round-off stays below.
-_EXACT = 1e-9
-# A frame is wrong beyond this relative error: no tolerance explains it.
-_WRONG = 1e-3
-_STEADY_RAD = np.radians(1.0)
 
 
 @dataclass(frozen=True)

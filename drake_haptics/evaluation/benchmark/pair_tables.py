@@ -20,6 +20,7 @@ COLUMNS: dict[str, Column] = {
     "in depth median": lambda f: f.in_depth.median_us,
     "in depth p99": lambda f: f.in_depth.p99_us,
 }
+_SMALL, _LARGE = 42, 2562
 
 
 def ratios_to_fastest(
@@ -74,9 +75,6 @@ def growth(
     return geometric_mean(
         [of.get((k, large), np.nan) / of.get((k, small), np.nan) for k in kinds]
     )
-
-
-_SMALL, _LARGE = 42, 2562
 
 
 def ratio_table(figures: Sequence[PairFigures]) -> Table:

@@ -14,6 +14,9 @@ from drake_haptics.evaluation.shapes.solids import divide_icosahedron
 RADIUS_M = 0.05
 SIZES = (8, 42, 162, 642, 2562)
 KINDS = ("ball", "ellipsoid", "slab", "pen-sphere")
+RATE_HZ = 1000.0
+MAX_SPEED_M_S = 0.2
+DEPTH_SHARE = 0.2
 
 
 @dataclass(frozen=True)
@@ -93,11 +96,6 @@ def _directions(size: int) -> np.ndarray:
     if size not in divisions:
         raise ValueError(f"size must be one of {SIZES}, not {size}")
     return divide_icosahedron(divisions[size])[0]
-
-
-RATE_HZ = 1000.0
-MAX_SPEED_M_S = 0.2
-DEPTH_SHARE = 0.2
 
 
 @dataclass(frozen=True)

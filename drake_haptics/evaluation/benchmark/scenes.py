@@ -21,6 +21,13 @@ from drake_haptics.evaluation.shapes.models import (
 )
 from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
 
+_AWAY_M = 0.010
+_DEEP_M = 0.0005
+_SLIDE_M = 0.010
+_SWAY_RAD = 0.1
+_SECONDS = 1.0
+_SEARCH_STEP_M = 0.002
+
 
 @dataclass(frozen=True)
 class SceneProblem:
@@ -67,14 +74,6 @@ class SceneAnswers:
     num_contacts: np.ndarray
     nearest_m: np.ndarray
     seconds: np.ndarray
-
-
-_AWAY_M = 0.010
-_DEEP_M = 0.0005
-_SLIDE_M = 0.010
-_SWAY_RAD = 0.1
-_SECONDS = 1.0
-_SEARCH_STEP_M = 0.002
 
 
 def make_touches(
@@ -175,7 +174,7 @@ def scene_makers(
         ("spoon on organ", "Spoon", "Digestive System"),
         ("spoon on armadillo", "Spoon", "Armadillo"),
     ]
-    makers = {
+    makers: dict[str, Callable[[], SceneProblem]] = {
         name: partial(_touch_model, name, tool, target, meshes, motions)
         for name, tool, target in pairs
         if find_sources(target, meshes)

@@ -19,6 +19,8 @@ from drake_haptics.geometry.decomposition.decompose import Decomposition
 # Penetration at which the contact's damping is what was asked for: Hunt and Crossley's
 # grows with it, m.
 _TYPICAL_DEPTH_M = 5e-4
+# MuJoCo takes no flat mesh: a flat piece gets this thickness, on its inner side, m.
+THICKNESS_M = 2e-5
 
 
 def register_pieces(
@@ -72,10 +74,6 @@ def quiet_stderr() -> Iterator[None]:
         os.dup2(kept, 2)
         os.close(kept)
         os.close(nowhere)
-
-
-# MuJoCo takes no flat mesh: a flat piece gets this thickness, on its inner side, m.
-THICKNESS_M = 2e-5
 
 
 def mesh_assets(name: str, decomposition: Decomposition) -> str:

@@ -52,7 +52,7 @@ def _read(kind: Any, data: Any) -> Any:
         if data is None and type(None) in kinds:
             return None
         return _read(kinds[0], data)
-    if is_dataclass(kind):
+    if isinstance(kind, type) and is_dataclass(kind):
         hints = get_type_hints(kind)
         return kind(**{name: _read(hints[name], item) for name, item in data.items()})
     if get_origin(kind) is list or kinds[1:] == (...,):

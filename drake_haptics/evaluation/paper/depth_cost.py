@@ -27,6 +27,9 @@ from drake_haptics.evaluation.measuring.valgrind import (
 from drake_haptics.evaluation.paper.fits import PowerFit, fit_power
 
 _PASSES = 3
+TRIANGLES = (42, 100, 250, 500, 1_000, 2_500, 5_000, 10_000)
+_GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
+_REPEATS = 5
 
 
 def count_depths(
@@ -80,11 +83,6 @@ def main() -> None:
 
 if __name__ == "__main__":
     main()
-
-
-TRIANGLES = (42, 100, 250, 500, 1_000, 2_500, 5_000, 10_000)
-_GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
-_REPEATS = 5
 
 
 @dataclass(frozen=True)

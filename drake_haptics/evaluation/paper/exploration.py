@@ -27,6 +27,9 @@ _SPEED_M_S = 0.10
 _TURN_RAD_S = 1.0
 _SHORTEST_S = 0.06
 _SEARCH_STEP_M = 0.002
+PERIOD_S = 1e-3
+# Of the device of the paper.
+_MAX_FORCE_N, _MAX_TORQUE_NM = 8.5, 0.515
 
 
 @dataclass(frozen=True)
@@ -93,11 +96,6 @@ def _press(search: SceneTracker, place: Place, reach_m: float) -> RigidTransform
             return RigidTransform(R_WTool, start_W + aim_m * place.toward_W)
         along_m += _SEARCH_STEP_M / 2
     raise ValueError(f"the tool passes by from {start_W} along {place.toward_W}")
-
-
-PERIOD_S = 1e-3
-# Of the device of the paper.
-_MAX_FORCE_N, _MAX_TORQUE_NM = 8.5, 0.515
 
 
 @dataclass(frozen=True)

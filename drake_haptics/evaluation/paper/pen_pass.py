@@ -15,6 +15,16 @@ from drake_haptics.evaluation.benchmark.python_pairs import CoalQuery
 from drake_haptics.evaluation.shapes.solids import make_pen, make_sphere
 from drake_haptics.evaluation.shapes.surface import Surface
 
+RADIUS_M = 0.040
+OURS = "drake_haptics"
+EXACT = "exact depth"
+_SECONDS = 3.0
+_RATE_HZ = 1000.0
+_ARC_RAD = 2.0
+_TILT_RAD = 0.6
+# Off by 1.5 mm and 2.5 mm deep in turn.
+_MIDDLE_M, _SWING_M = -0.0005, 0.0020
+
 
 @dataclass(frozen=True)
 class ContactCurves:
@@ -143,16 +153,6 @@ def _degrees(angle_rad: float) -> float:
 
 
 _Follow = Callable[[Surface, Surface, np.ndarray], ContactCurves]
-
-RADIUS_M = 0.040
-OURS = "drake_haptics"
-EXACT = "exact depth"
-_SECONDS = 3.0
-_RATE_HZ = 1000.0
-_ARC_RAD = 2.0
-_TILT_RAD = 0.6
-# Off by 1.5 mm and 2.5 mm deep in turn.
-_MIDDLE_M, _SWING_M = -0.0005, 0.0020
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,15 @@ _PERIOD_US = 1000.0
 _PENETRATING_COLOUR = "#fdecea"
 # Narrower intervals have no room for their letter, as a share of the run.
 _NARROWEST_LETTER = 0.012
+_PEN_INCH = (12.0, 6.8)
+_THIN, _THICK = 0.8, 2.8
+_AXIS_COLOURS = {"x": "#1f5fa8", "y": "#d9822b", "z": "#2f8f5b"}
+_ANALYSIS_INCH = (12.0, 3.8)
+_OURS, _PAPER = "#1f5fa8", "#b03030"
+_METHOD = {
+    "octree": ("paper's clusters", "#1f5fa8"),
+    "shared": ("shared stiffness", "#d9822b"),
+}
 
 
 def draw_profile(profile: Profile, figures: ProfileFigures) -> Figure:
@@ -103,11 +112,6 @@ def _write_letters(
         )
 
 
-_PEN_INCH = (12.0, 6.8)
-_THIN, _THICK = 0.8, 2.8
-_AXIS_COLOURS = {"x": "#1f5fa8", "y": "#d9822b", "z": "#2f8f5b"}
-
-
 def draw_pen_pass(passed: PenPass) -> Figure:
     """Draws on a figure of its own: a row for each library, a column for each value."""
     from matplotlib.figure import Figure
@@ -164,14 +168,6 @@ def _draw_curve(
             label=label,
         )
         label = None
-
-
-_ANALYSIS_INCH = (12.0, 3.8)
-_OURS, _PAPER = "#1f5fa8", "#b03030"
-_METHOD = {
-    "octree": ("paper's clusters", "#1f5fa8"),
-    "shared": ("shared stiffness", "#d9822b"),
-}
 
 
 def draw_analysis(analysis: Analysis) -> Figure:

@@ -17,6 +17,13 @@ from drake_haptics.simulation.callback_timer import CallbackTimer
 from drake_haptics.simulation.run import run
 
 _WARM_UP_TICKS = 20
+# What is shorter flickers at the edge of contact.
+_SHORTEST_INTERVAL = 40
+# Fewer ticks of a kind have no median to speak of.
+_LEAST_TICKS = 20
+# A power through fewer points, or through nearly equal ones, is none.
+_LEAST_NUMBERS = 3
+_LEAST_SPAN = 4.0
 
 
 @dataclass(frozen=True)
@@ -209,15 +216,6 @@ def find_intervals(penetrating: np.ndarray, shortest: int = 1) -> list[Interval]
         Interval(start, stop, kind ^ bool(k % 2))
         for k, (start, stop) in enumerate(pairwise(edges))
     ]
-
-
-# What is shorter flickers at the edge of contact.
-_SHORTEST_INTERVAL = 40
-# Fewer ticks of a kind have no median to speak of.
-_LEAST_TICKS = 20
-# A power through fewer points, or through nearly equal ones, is none.
-_LEAST_NUMBERS = 3
-_LEAST_SPAN = 4.0
 
 
 @dataclass(frozen=True)

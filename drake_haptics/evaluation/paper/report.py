@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _CUT_SHORT = " Only the beginnings of Figure 11's paths were run (--quick)."
+_DPI = 110
 
 
 @dataclass(frozen=True)
@@ -189,9 +190,6 @@ def _draw_pass(passed: PenPass) -> Picture:
         f" {passed.triangles:,} triangles",
         lambda: draw_pen_pass(passed),
     )
-
-
-_DPI = 110
 
 
 def write_paper_page(evaluation: PaperEvaluation, path: Path) -> list[Path]:

@@ -23,6 +23,11 @@ _DEEP_M = 5e-4
 _SPACING_M = 0.005
 _ACROSS = 8
 _SLIDE_REPEATS = 7
+_TEETH_ACROSS = (1, 2, 4, 6, 8, 12, 16)
+_WIDTH_M = 0.04
+_CLUSTER_M = 8e-3
+# With fewer contacts a call takes most of the time.
+FEWEST_FITTED = 16
 
 
 @dataclass(frozen=True)
@@ -117,13 +122,6 @@ def plan_slide(ticks: int) -> np.ndarray:
     X_WT[:, 0, 3], X_WT[:, 1, 3] = 0.01 * np.cos(angle), 0.01 * np.sin(angle)
     X_WT[:, 2, 3] = -_DEEP_M
     return X_WT
-
-
-_TEETH_ACROSS = (1, 2, 4, 6, 8, 12, 16)
-_WIDTH_M = 0.04
-_CLUSTER_M = 8e-3
-# With fewer contacts a call takes most of the time.
-FEWEST_FITTED = 16
 
 
 @dataclass(frozen=True)

@@ -30,21 +30,6 @@ MEANING: dict[Verdict, str] = {
     "differs": "differ from it, or are worse",
     "not measured": "were not measured",
 }
-
-
-@dataclass(frozen=True)
-class Statement:
-    """A sentence and what it comes to.
-
-    Attributes:
-        verdict: One of `MEANING`.
-        text: The sentence, with figures.
-    """
-
-    verdict: Verdict
-    text: str
-
-
 # Powers that are "roughly proportional"; with a smaller one contacts cost less.
 _PROPORTIONAL = (0.7, 1.3)
 # A rate is better from this many times the paper's on: a newer processor alone makes
@@ -59,6 +44,19 @@ _LINEAR_R_SQUARED = 0.95
 _NEAR = 0.02
 # Steps that differ by less are the same.
 _SAME = 1.02
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A sentence and what it comes to.
+
+    Attributes:
+        verdict: One of `MEANING`.
+        text: The sentence, with figures.
+    """
+
+    verdict: Verdict
+    text: str
 
 
 def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:

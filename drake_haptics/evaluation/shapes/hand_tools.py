@@ -59,6 +59,32 @@ _HANDLE = (
 _TINE_SECTIONS = 9
 _CLAW_BEND_RADIUS_M = 0.032
 _CLAW_BEND_RAD = 1.0
+HALF_THICKNESS_M = 0.006
+_WRENCH_CHAMFER_M = 0.002
+# Along the wrench, in m: x, half width.
+_WRENCH_HANDLE = (
+    (-0.2080, 0.0070),
+    (-0.2060, 0.0120),
+    (-0.2000, 0.0150),
+    (-0.1900, 0.0160),
+    (-0.1700, 0.0140),
+    (-0.1200, 0.0120),
+    (-0.0400, 0.0115),
+    (0.0600, 0.0120),
+    (0.1100, 0.0140),
+    (0.1350, 0.0190),
+    (0.1500, 0.0260),
+)
+# Along each jaw, in m: x, half the opening, half width.
+_JAW = (
+    (0.1560, 0.0080, 0.0300),
+    (0.1630, 0.0140, 0.0335),
+    (0.1720, 0.0165, 0.0355),
+    (0.1830, 0.0165, 0.0360),
+    (0.1950, 0.0165, 0.0340),
+    (0.2060, 0.0165, 0.0295),
+    (0.2120, 0.0170, 0.0240),
+)
 
 
 def make_hammer() -> Surface:
@@ -139,34 +165,6 @@ def _tine_section(side: int, s: float) -> np.ndarray:
     center = _CLAW_BEND_RADIUS_M * np.array([1 - np.cos(bend), 0, np.sin(bend)])
     center[2] += height
     return center + np.outer(across, outward) + np.outer(lateral, [0, 1, 0])
-
-
-HALF_THICKNESS_M = 0.006
-_WRENCH_CHAMFER_M = 0.002
-# Along the wrench, in m: x, half width.
-_WRENCH_HANDLE = (
-    (-0.2080, 0.0070),
-    (-0.2060, 0.0120),
-    (-0.2000, 0.0150),
-    (-0.1900, 0.0160),
-    (-0.1700, 0.0140),
-    (-0.1200, 0.0120),
-    (-0.0400, 0.0115),
-    (0.0600, 0.0120),
-    (0.1100, 0.0140),
-    (0.1350, 0.0190),
-    (0.1500, 0.0260),
-)
-# Along each jaw, in m: x, half the opening, half width.
-_JAW = (
-    (0.1560, 0.0080, 0.0300),
-    (0.1630, 0.0140, 0.0335),
-    (0.1720, 0.0165, 0.0355),
-    (0.1830, 0.0165, 0.0360),
-    (0.1950, 0.0165, 0.0340),
-    (0.2060, 0.0165, 0.0295),
-    (0.2120, 0.0170, 0.0240),
-)
 
 
 def make_wrench() -> Surface:

@@ -31,6 +31,21 @@ from drake_haptics.evaluation.shapes.room_parts import (
 from drake_haptics.evaluation.shapes.solids import make_slab
 from drake_haptics.evaluation.shapes.surface import Surface, rounded_path, sweep_tube
 
+_LENGTH_M, _WIDTH_M, _HEIGHT_M = 10.0, 7.0, 3.2
+# Radii of the pipes on the rack along the back wall, m.
+_RACK_RADII_M = (0.084, 0.057, 0.057, 0.044, 0.030, 0.030, 0.024, 0.024)
+# Radii of the risers along the left wall, m.
+_RISER_RADII_M = (0.057, 0.044, 0.044, 0.030, 0.030, 0.024)
+_LONGEST_SPOOL_M = 1.7
+_CLAMPED_FROM_M = 0.7
+NUM_TUBES = 15
+_SPACING_M = 0.0235
+_TUBE_RADII_M = (0.008, 0.006, 0.007)
+# The fronts of tubes and struts are in one plane, which faces -y.
+_FRONT_Y_M = 3.3
+_PANEL_X_M = 2.0
+_TUBE_Z_M = (0.9, 1.6)
+
 
 @dataclass(frozen=True)
 class PlacedShape:
@@ -115,13 +130,6 @@ def pose(
     X[:3, 1] = np.cross(X[:3, 2], X[:3, 0])
     X[:3, 3] = origin
     return X
-
-
-_LENGTH_M, _WIDTH_M, _HEIGHT_M = 10.0, 7.0, 3.2
-# Radii of the pipes on the rack along the back wall, m.
-_RACK_RADII_M = (0.084, 0.057, 0.057, 0.044, 0.030, 0.030, 0.024, 0.024)
-# Radii of the risers along the left wall, m.
-_RISER_RADII_M = (0.057, 0.044, 0.044, 0.030, 0.030, 0.024)
 
 
 def make_machine_room() -> MachineRoom:
@@ -219,10 +227,6 @@ def _add_railings(room: RoomBuilder) -> None:
     for k in range(4):
         side = pose((5.4 + 1.15 * k, 1.0, 0.5), (1, 0, 0), (0, 0, 1))
         room.place(make_ladder, [1.1, 0.5, 3, 0.02], side)
-
-
-_LONGEST_SPOOL_M = 1.7
-_CLAMPED_FROM_M = 0.7
 
 
 def add_pipe_run(
@@ -326,15 +330,6 @@ def _add_valve(
 def _normal_to(u: np.ndarray) -> np.ndarray:
     """A unit vector normal to u, which is along an axis."""
     return np.roll(np.abs(u), 1)
-
-
-NUM_TUBES = 15
-_SPACING_M = 0.0235
-_TUBE_RADII_M = (0.008, 0.006, 0.007)
-# The fronts of tubes and struts are in one plane, which faces -y.
-_FRONT_Y_M = 3.3
-_PANEL_X_M = 2.0
-_TUBE_Z_M = (0.9, 1.6)
 
 
 def make_tube(radius: float, bottom: float, top: float, reach: float) -> Surface:

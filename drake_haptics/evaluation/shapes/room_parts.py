@@ -26,6 +26,7 @@ _SECTORS = 26
 BEND = 3.0
 # A handwheel: vertices around its rim and around the rim's section, and spokes.
 _RIM, _RIM_SECTION, _SPOKES = 32, 8, 4
+_RAIL_SECTORS = 8
 
 
 def flange_length(radius: float) -> float:
@@ -175,9 +176,6 @@ def _add_rim(
         if is_open:
             loops.append(opening_loop([near, far], [inner, inner + 1]))
     return loops
-
-
-_RAIL_SECTORS = 8
 
 
 def make_cabinet(width: float, depth: float, height: float) -> Surface:

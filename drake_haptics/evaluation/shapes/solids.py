@@ -12,6 +12,52 @@ from drake_haptics.evaluation.shapes.surface import (
     revolve,
 )
 
+_CUP_SECTORS = 16
+# Outer wall, (radius, height) in m from the table to the rim. Rows 1-3 and 5-7 bound
+# the two openings where the handle leaves.
+_OUTER = (
+    (0.0265, 0.0000),
+    (0.0300, 0.0030),
+    (0.0325, 0.0140),
+    (0.0335, 0.0210),
+    (0.0345, 0.0280),
+    (0.0366, 0.0440),
+    (0.0375, 0.0510),
+    (0.0384, 0.0580),
+    (0.0400, 0.0700),
+)
+_LOWER_OPENING = (2, 4)
+_UPPER_OPENING = (5, 7)
+_RIM = (0.0385, 0.0718)
+_INNER = ((0.0370, 0.0700), (0.0292, 0.0120), (0.0220, 0.0060))
+_FLOOR_M = 0.005
+_HANDLE_SECTIONS = 8
+# Stations along the spoon, in m:
+# x, half width, depth of the hollow, height of the edge, thickness.
+_STATIONS = (
+    (0.0010, 0.0045, 0.0004, 0.0002, 0.0016),
+    (0.0050, 0.0092, 0.0030, 0.0003, 0.0018),
+    (0.0110, 0.0122, 0.0056, 0.0005, 0.0019),
+    (0.0180, 0.0132, 0.0070, 0.0007, 0.0020),
+    (0.0250, 0.0122, 0.0064, 0.0010, 0.0020),
+    (0.0310, 0.0094, 0.0042, 0.0016, 0.0021),
+    (0.0360, 0.0058, 0.0018, 0.0026, 0.0023),
+    (0.0410, 0.0034, 0.0004, 0.0045, 0.0026),
+    (0.0480, 0.0027, 0.0000, 0.0082, 0.0027),
+    (0.0620, 0.0027, 0.0000, 0.0145, 0.0026),
+    (0.0850, 0.0031, 0.0000, 0.0215, 0.0025),
+    (0.1080, 0.0038, 0.0000, 0.0258, 0.0024),
+    (0.1220, 0.0043, 0.0000, 0.0270, 0.0023),
+    (0.1290, 0.0030, 0.0000, 0.0272, 0.0021),
+)
+# Across the spoon, as a fraction of the half width. The edge is blunt: a top and a
+# bottom vertex at each side.
+_ACROSS = np.array([-1.0, -0.62, -0.21, 0.21, 0.62, 1.0])
+_RING_RADIUS_M = 0.034
+_TUBE_RADIUS_M = 0.012
+_AROUND_RING = 50
+_AROUND_TUBE = 20
+
 
 def make_block() -> Surface:
     """Returns a block with chamfered edges that stands at the origin.
@@ -49,28 +95,6 @@ def chamfered_outline(
         (-a, b - cut), (-a, -b + cut), (-a + cut, -b), (a - cut, -b),
     ]  # fmt: skip
     return np.array([(*corner, z) for corner in corners])
-
-
-_CUP_SECTORS = 16
-# Outer wall, (radius, height) in m from the table to the rim. Rows 1-3 and 5-7 bound
-# the two openings where the handle leaves.
-_OUTER = (
-    (0.0265, 0.0000),
-    (0.0300, 0.0030),
-    (0.0325, 0.0140),
-    (0.0335, 0.0210),
-    (0.0345, 0.0280),
-    (0.0366, 0.0440),
-    (0.0375, 0.0510),
-    (0.0384, 0.0580),
-    (0.0400, 0.0700),
-)
-_LOWER_OPENING = (2, 4)
-_UPPER_OPENING = (5, 7)
-_RIM = (0.0385, 0.0718)
-_INNER = ((0.0370, 0.0700), (0.0292, 0.0120), (0.0220, 0.0060))
-_FLOOR_M = 0.005
-_HANDLE_SECTIONS = 8
 
 
 def make_cup() -> Surface:
@@ -226,29 +250,6 @@ def _divide(
     return divided
 
 
-# Stations along the spoon, in m:
-# x, half width, depth of the hollow, height of the edge, thickness.
-_STATIONS = (
-    (0.0010, 0.0045, 0.0004, 0.0002, 0.0016),
-    (0.0050, 0.0092, 0.0030, 0.0003, 0.0018),
-    (0.0110, 0.0122, 0.0056, 0.0005, 0.0019),
-    (0.0180, 0.0132, 0.0070, 0.0007, 0.0020),
-    (0.0250, 0.0122, 0.0064, 0.0010, 0.0020),
-    (0.0310, 0.0094, 0.0042, 0.0016, 0.0021),
-    (0.0360, 0.0058, 0.0018, 0.0026, 0.0023),
-    (0.0410, 0.0034, 0.0004, 0.0045, 0.0026),
-    (0.0480, 0.0027, 0.0000, 0.0082, 0.0027),
-    (0.0620, 0.0027, 0.0000, 0.0145, 0.0026),
-    (0.0850, 0.0031, 0.0000, 0.0215, 0.0025),
-    (0.1080, 0.0038, 0.0000, 0.0258, 0.0024),
-    (0.1220, 0.0043, 0.0000, 0.0270, 0.0023),
-    (0.1290, 0.0030, 0.0000, 0.0272, 0.0021),
-)
-# Across the spoon, as a fraction of the half width. The edge is blunt: a top and a
-# bottom vertex at each side.
-_ACROSS = np.array([-1.0, -0.62, -0.21, 0.21, 0.62, 1.0])
-
-
 def make_spoon() -> Surface:
     """Returns a spoon along +x, bowl opening to +z, tip at the origin.
 
@@ -273,12 +274,6 @@ def _make_crescent(
             np.concatenate([bottom, top[::-1]]),
         ]
     )
-
-
-_RING_RADIUS_M = 0.034
-_TUBE_RADIUS_M = 0.012
-_AROUND_RING = 50
-_AROUND_TUBE = 20
 
 
 def make_torus() -> Surface:

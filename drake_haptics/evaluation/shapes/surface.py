@@ -16,6 +16,8 @@ from drake_haptics.geometry.mesh.mesh import Mesh
 _DECIMALS = 9
 # A quad whose corners are closer to a plane than this needs no choice of diagonal.
 _FLAT_M = 1e-7
+# Two bends may follow each other at once.
+_NO_LENGTH_M = 1e-9
 
 
 @dataclass(frozen=True)
@@ -184,10 +186,6 @@ def opening_loop(rings: Sequence[Sequence[int]], columns: Sequence[int]) -> list
         *(rings[-1][c] for c in columns[:0:-1]),
         *(ring[first] for ring in rings[:0:-1]),
     ]
-
-
-# Two bends may follow each other at once.
-_NO_LENGTH_M = 1e-9
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,8 @@ from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.scene.effects import Effects
 from drake_haptics.scene.schema import Scene
 
+_SAME_LAW = "of the same pieces, this package's law"
+
 
 @dataclass(frozen=True)
 class PeerMethod:
@@ -64,7 +66,6 @@ class PeerMethod:
         return answer
 
 
-_SAME_LAW = "of the same pieces, this package's law"
 # fmt: off
 METHODS = (
     PeerMethod("coal", "coal", "with_native", "answer_with_coal",

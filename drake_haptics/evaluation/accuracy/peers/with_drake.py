@@ -52,6 +52,11 @@ AddGeometry = Callable[[MultibodyPlant, RigidBody, int, RigidTransform], None]
 
 # Of a tool whose motion is given; they change nothing.
 _MASS_KG, _RADIUS_M = 0.1, 0.1
+# Against a rigid object forces are proportional to the modulus: any will do at first.
+_MODULUS_PA = 1e6
+# Pieces and meshes are exact; this is for round shapes alone, m.
+_RESOLUTION_M = 2e-3
+_AddTool = Callable[[MultibodyPlant, RigidBody, ProximityProperties], None]
 
 
 @dataclass(frozen=True)
@@ -260,14 +265,6 @@ def _to_row(
     normal = pair.nhat_BA_W if is_A else -pair.nhat_BA_W
     which = max(points)
     return np.array([pair.distance, *normal, *points[-1], *points[which], which])
-
-
-# Against a rigid object forces are proportional to the modulus: any will do at first.
-_MODULUS_PA = 1e6
-# Pieces and meshes are exact; this is for round shapes alone, m.
-_RESOLUTION_M = 2e-3
-
-_AddTool = Callable[[MultibodyPlant, RigidBody, ProximityProperties], None]
 
 
 def answer_with_hull(problem: PeerProblem) -> PeerAnswers:

@@ -24,6 +24,11 @@ _STARTS = {
     "coal, boxes": coal.GJKInitialGuess.BoundingVolumeGuess,
     "coal, warm": coal.GJKInitialGuess.CachedGuess,
 }
+_NATIVE = load_coal_native(
+    "coal_pair",
+    new=[REALS, INTEGER, REALS, INTEGER, INTEGER],
+    run=[HANDLE, INTEGER, REALS, REALS, REALS, REALS],
+)
 
 
 class CoalQuery:
@@ -47,12 +52,6 @@ class CoalQuery:
         _NATIVE.coal_pair_run(self._pair, n, X_WA, distance, normal, seconds)
         return PairAnswers(distance, normal, seconds - clock_interval())
 
-
-_NATIVE = load_coal_native(
-    "coal_pair",
-    new=[REALS, INTEGER, REALS, INTEGER, INTEGER],
-    run=[HANDLE, INTEGER, REALS, REALS, REALS, REALS],
-)
 
 LIBRARIES = [
     PairLibrary(name, version("coal"), False, partial(CoalQuery, start=start))

@@ -35,6 +35,9 @@ _XML = """
   </worldbody>
 </mujoco>
 """
+_NATIVE = load_mujoco_native(
+    "mujoco_pair", run=[HANDLE, INTEGER, REALS, REALS, REALS, REALS]
+)
 
 
 class MujocoQuery:
@@ -54,9 +57,5 @@ class MujocoQuery:
         normals = normals_between(fromto[:, :3], fromto[:, 3:], distance)
         return PairAnswers(distance, normals, seconds - clock_interval())
 
-
-_NATIVE = load_mujoco_native(
-    "mujoco_pair", run=[HANDLE, INTEGER, REALS, REALS, REALS, REALS]
-)
 
 LIBRARIES = [PairLibrary("MuJoCo", mujoco.__version__, False, MujocoQuery)]

@@ -19,6 +19,17 @@ STOCK = {
     "Drake, bushing, SAP": "similar",
 }
 MUJOCO = "MuJoCo, mj_step"
+# What each of them does in a tick.
+_COMPUTES = (
+    "drake_haptics: every pair within the tolerance with its exact depth, stiffness "
+    "shared among contacts, an implicit step of tool, contact and coupling; its native "
+    "part is the same in the core alone, without device, Drake and Python. Drake: "
+    "penetrating pairs, an implicit contact, and a bushing taken at the beginning of "
+    "the step, for which its rotational damping had to be less. MuJoCo: penetrating "
+    "pairs, soft constraints with the same stiffness and damping where the whole mass "
+    "of the tool moves; timed in C. In Drake's and MuJoCo's the handle is moved "
+    "between two ticks, which is not timed."
+)
 
 
 @dataclass(frozen=True)
@@ -71,19 +82,6 @@ class LoopFigures:
     force_N: float
     max_force_N: float
     apart_m: float
-
-
-# What each of them does in a tick.
-_COMPUTES = (
-    "drake_haptics: every pair within the tolerance with its exact depth, stiffness "
-    "shared among contacts, an implicit step of tool, contact and coupling; its native "
-    "part is the same in the core alone, without device, Drake and Python. Drake: "
-    "penetrating pairs, an implicit contact, and a bushing taken at the beginning of "
-    "the step, for which its rotational damping had to be less. MuJoCo: penetrating "
-    "pairs, soft constraints with the same stiffness and damping where the whole mass "
-    "of the tool moves; timed in C. In Drake's and MuJoCo's the handle is moved "
-    "between two ticks, which is not timed."
-)
 
 
 def loop_tables(figures: Sequence[LoopFigures]) -> list[Table]:
