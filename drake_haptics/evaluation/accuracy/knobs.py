@@ -49,6 +49,27 @@ def _format_length(length_m: float) -> str:
     return f"{1e3 * length_m:.3g} mm"
 
 
+def _list_numbers(
+    key: str,
+    values: Iterable[Number],
+    own: Number | None,
+    name: Callable[[Number], str],
+    off: str | None = None,
+) -> list[Setting]:
+    """Returns a setting for each number and the scene's own, the largest first.
+
+    Args:
+        key: What they set.
+        values: The numbers.
+        own: The scene's own, if it has one.
+        name: Returns the label of a number.
+        off: The label of the setting without any number, which comes first.
+    """
+    without = [] if off is None else [Setting(key, off, {key: None})]
+    numbers = reversed(_with_own(values, own))
+    return without + [Setting(key, name(n), {key: n}) for n in numbers]
+
+
 def list_depths(scene: Scene) -> list[Setting]:
     """Returns both kinds of depth."""
     key = "contact.depth"
@@ -60,16 +81,15 @@ def list_depths(scene: Scene) -> list[Setting]:
 
 def list_walk_steps(scene: Scene) -> list[Setting]:
     """Returns bounds of the walk to a depth, down to a single step."""
-    key = "contact.max_walk_steps"
-    steps = _with_own(_WALK_STEPS, scene.contact.max_walk_steps)
-    return [Setting(key, f"{n} step{'s'[: n > 1]}", {key: n}) for n in reversed(steps)]
+    key, own = "contact.max_walk_steps", scene.contact.max_walk_steps
+    return _list_numbers(key, _WALK_STEPS, own, lambda n: f"{n} step{'s'[: n > 1]}")
 
 
 def list_tolerances(scene: Scene) -> list[Setting]:
     """Returns shares and multiples of the tolerance."""
-    key, own_m = "contact.tolerance_m", scene.contact.tolerance_m
-    lengths = _with_own([share * _find_length(scene) for share in _TOLERANCES], own_m)
-    return [Setting(key, _format_length(m), {key: m}) for m in reversed(lengths)]
+    lengths = [share * _find_length(scene) for share in _TOLERANCES]
+    own_m = scene.contact.tolerance_m
+    return _list_numbers("contact.tolerance_m", lengths, own_m, _format_length)
 
 
 def list_clusterings(scene: Scene) -> list[Setting]:
@@ -102,22 +122,15 @@ def list_effect(scene: Scene, name: str) -> list[Setting]:
 
 def list_query_rates(scene: Scene) -> list[Setting]:
     """Returns how often contacts are looked for."""
-    key, rate_hz = "contact.query_rate_hz", scene.device.rate_hz
-    rates = _with_own(
-        [rate_hz / every for every in _QUERY_EVERY],
-        scene.contact.query_rate_hz,
-    )
-    return [
-        Setting(key, "every tick", {key: None}),
-        *(Setting(key, f"{hz:g} Hz", {key: hz}) for hz in reversed(rates)),
-    ]
+    rates = [scene.device.rate_hz / every for every in _QUERY_EVERY]
+    key, own_hz = "contact.query_rate_hz", scene.contact.query_rate_hz
+    return _list_numbers(key, rates, own_hz, "{:g} Hz".format, "every tick")
 
 
 def list_rates(scene: Scene) -> list[Setting]:
     """Returns how often the loop ticks."""
-    key = "device.rate_hz"
-    rates = _with_own(_RATES_HZ, scene.device.rate_hz)
-    return [Setting(key, f"{hz:g} Hz", {key: hz}) for hz in reversed(rates)]
+    own_hz = scene.device.rate_hz
+    return _list_numbers("device.rate_hz", _RATES_HZ, own_hz, "{:g} Hz".format)
 
 
 def list_budgets(scene: Scene) -> list[Setting]:
@@ -125,15 +138,13 @@ def list_budgets(scene: Scene) -> list[Setting]:
 
     What lies between depends on the machine and the moment, and so can have no figures.
     """
-    key, own_us = "device.tick_budget_us", scene.device.tick_budget_us
-    budgets = reversed(_with_own(_BUDGET_WORDS, own_us))
-    return [
-        Setting(key, "nothing left out", {key: None}),
-        *(
-            Setting(key, _BUDGET_WORDS.get(us, f"{us:g} µs"), {key: us})
-            for us in budgets
-        ),
-    ]
+    return _list_numbers(
+        "device.tick_budget_us",
+        _BUDGET_WORDS,
+        scene.device.tick_budget_us,
+        lambda us: _BUDGET_WORDS.get(us, f"{us:g} µs"),
+        "nothing left out",
+    )
 
 
 def _find_length(scene: Scene) -> float:
@@ -165,17 +176,10 @@ def list_triangle_counts(scene: Scene, where: str) -> list[Setting]:
     """Returns decimations, of meshes that have triangles to spare."""
     key = f"{where}.max_triangles"
     largest = max(_count_triangles(part) for part in _find_parts(scene, where))
-    counts = _with_own(
-        [largest // n for n in _TRIANGLES if largest // n >= _LEAST_TRIANGLES],
-        _find_own(scene, where, "max_triangles"),
-    )
-    return [
-        Setting(key, f"all of {largest} triangles", {key: None}),
-        *(
-            Setting(key, f"{count} triangles", {key: count})
-            for count in reversed(counts)
-        ),
-    ]
+    counts = [largest // n for n in _TRIANGLES if largest // n >= _LEAST_TRIANGLES]
+    own = _find_own(scene, where, "max_triangles")
+    off = f"all of {largest} triangles"
+    return _list_numbers(key, counts, own, "{} triangles".format, off)
 
 
 def list_chord_errors(scene: Scene, where: str) -> list[Setting]:
@@ -188,14 +192,9 @@ def list_chord_errors(scene: Scene, where: str) -> list[Setting]:
     if not any(_is_round(part) for part in parts):
         return []
     default_m = None if own_m is None else DEFAULT_CHORD_ERROR_M
-    return [
-        Setting(
-            key,
-            _format_length(m),
-            {key: default_m if m == DEFAULT_CHORD_ERROR_M else m},
-        )
-        for m in _with_own([*_CHORDS_M, DEFAULT_CHORD_ERROR_M], own_m)
-    ]
+    lengths_m = _with_own([*_CHORDS_M, DEFAULT_CHORD_ERROR_M], own_m)
+    values = {m: default_m if m == DEFAULT_CHORD_ERROR_M else m for m in lengths_m}
+    return [Setting(key, _format_length(m), {key: v}) for m, v in values.items()]
 
 
 def _find_parts(scene: Scene, where: str) -> Sequence[Tool | EnvironmentObject]:

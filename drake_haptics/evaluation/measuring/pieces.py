@@ -1,7 +1,8 @@
-"""Gives convex pieces to other simulators: to Drake's plants and as MJCF to MuJoCo."""
+"""Gives convex pieces to other simulators, Drake and MuJoCo, and keeps them quiet."""
 
 from __future__ import annotations
 
+import ctypes
 import os
 import sys
 from collections.abc import Iterator
@@ -61,18 +62,28 @@ def make_surface(
 
 
 @contextmanager
-def quiet_stderr() -> Iterator[None]:
-    """Drops what is written to the process's standard error meanwhile."""
+def quiet_streams(*streams: int) -> Iterator[None]:
+    """Drops what is written to these streams of the process meanwhile.
+
+    So a library does not write on the terminal, where a progress bar is.
+
+    Args:
+        streams: 1 for standard output, 2 for standard error.
+    """
     sys.stderr.flush()
-    kept = os.dup(2)
+    kept = [os.dup(stream) for stream in streams]
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(nowhere, 2)
+        for stream in streams:
+            os.dup2(nowhere, stream)
         yield
     finally:
         sys.stderr.flush()
-        os.dup2(kept, 2)
-        os.close(kept)
+        # What C still holds back goes nowhere too.
+        ctypes.CDLL(None).fflush(None)
+        for stream, own in zip(streams, kept, strict=True):
+            os.dup2(own, stream)
+            os.close(own)
         os.close(nowhere)
 
 

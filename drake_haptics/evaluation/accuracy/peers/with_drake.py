@@ -42,7 +42,7 @@ from drake_haptics.evaluation.accuracy.peers.problem import (
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.measuring.pieces import (
     make_surface,
-    quiet_stderr,
+    quiet_streams,
     register_pieces,
 )
 from drake_haptics.evaluation.measuring.timing import typical
@@ -122,7 +122,7 @@ def make_plant(
             index or -1 for the tool, and where the geometry is in the body's frame.
     """
     # Qhull tells of flat pieces.
-    with quiet_stderr():
+    with quiet_streams(2):
         return _build(contact_model, X_WO, add)
 
 

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
-import ctypes
-import os
 import weakref
-from collections.abc import Iterator
 from importlib.metadata import version
 
 import numpy as np
@@ -17,6 +13,7 @@ from drake_haptics.evaluation.benchmark.pair_library import (
     ask_each,
 )
 from drake_haptics.evaluation.benchmark.pairs import PairShape
+from drake_haptics.evaluation.measuring.pieces import quiet_streams
 from drake_haptics.evaluation.measuring.timing import CallTimer
 
 # Far enough for every pose of the motion; Bullet gives no points beyond.
@@ -24,24 +21,8 @@ _REACH_M = 1.0
 _DISTANCE, _NORMAL_ON_B = 8, 7
 
 
-@contextlib.contextmanager
-def _without_banner() -> Iterator[None]:
-    """Keeps what pybullet's C code prints on import off the terminal."""
-    kept = [os.dup(stream) for stream in (1, 2)]
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    for stream in (1, 2):
-        os.dup2(nowhere, stream)
-    try:
-        yield
-    finally:
-        ctypes.CDLL(None).fflush(None)  # what C still holds back goes nowhere too
-        for stream, own in zip((1, 2), kept, strict=True):
-            os.dup2(own, stream)
-            os.close(own)
-        os.close(nowhere)
-
-
-with _without_banner():
+# What its C code prints on import stays off the terminal.
+with quiet_streams(1, 2):
     import pybullet
 
 

@@ -28,7 +28,7 @@ from drake_haptics.evaluation.benchmark.loop.problem import (
 )
 from drake_haptics.evaluation.measuring.pieces import (
     make_surface,
-    quiet_stderr,
+    quiet_streams,
     register_pieces,
 )
 from drake_haptics.evaluation.measuring.timing import steady_memory
@@ -73,7 +73,7 @@ class StockLoop:
             discrete_contact_approximation=solver,
         )
         # Drake warns that TAMSI will go. Qhull tells of flat pieces.
-        with quiet_stderr():
+        with quiet_streams(2):
             self._plant, _ = AddMultibodyPlant(config, builder)
             self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
             self._add_bodies()
