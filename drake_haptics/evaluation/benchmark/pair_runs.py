@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -108,7 +108,6 @@ def run_pair(
     libraries: Sequence[PairLibrary],
     presses: int,
     repeats: int,
-    progress: Callable[[], None] = lambda: None,
 ) -> list[PairFigures]:
     """Returns the figures of each library on one pair.
 
@@ -120,7 +119,6 @@ def run_pair(
         libraries: what is measured.
         presses: how many presses, see `make_presses`.
         repeats: how often each press is run.
-        progress: called after each press.
     """
     queries = [library.make_query(pair) for library in libraries]
     seconds, answers, truths = [], [], []
@@ -129,7 +127,6 @@ def run_pair(
         truths.append(find_truth(pair, press.X_WA, last))
         seconds.append(times)
         answers.append(last)
-        progress()
     return [
         _figures(
             pair, library, [t[i] for t in seconds], [a[i] for a in answers], truths

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import groupby
@@ -157,7 +157,6 @@ def run_scene(
     problem: SceneProblem,
     queries: dict[str, SceneQuery],
     repeats: int,
-    progress: Callable[[], None] = lambda: None,
 ) -> list[SceneFigures]:
     """Returns the figures of each library in one scene.
 
@@ -168,7 +167,6 @@ def run_scene(
         problem: the scene.
         queries: library name -> the scene in it.
         repeats: how often each motion is run.
-        progress: called after each motion.
     """
     names = list(queries)
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}
@@ -182,7 +180,6 @@ def run_scene(
         for name in names:
             seconds[name].append(typical(np.array(repeated[name])))
             answers[name].append(last[name])
-        progress()
     contacts = {n: _joined(answers[n], "num_contacts") for n in names}
     near = np.all([contacts[n] > 0 for n in names], axis=0)
     return [

@@ -22,6 +22,8 @@ _TOLERANCE_M = 1e-3
 _DEEP_M = 5e-4
 _SPACING_M = 0.005
 _ACROSS = 8
+_WIDEST_M = 0.002
+_PLATE_M = 0.2
 _SLIDE_REPEATS = 7
 _TEETH_ACROSS = (1, 2, 4, 6, 8, 12, 16)
 _WIDTH_M = 0.04
@@ -76,40 +78,37 @@ def _time_slide(tracker: SceneTracker, motion: np.ndarray) -> list[float]:
     return [tracker.query(X_WT).query_seconds for X_WT in motion]
 
 
-def make_brush(teeth: int, spacing_m: float = _SPACING_M) -> Decomposition:
+def make_brush(
+    teeth: int, across: int = _ACROSS, spacing_m: float = _SPACING_M
+) -> Decomposition:
     """Returns a tool of separate pointed teeth, their points at z = 0.
 
+    A tooth is convex, has eight sides, and is 10 mm high. It is as wide as a third of
+    the spacing, and 2 mm at most.
+
     Args:
-        teeth: How many, row by row, eight in a row.
-        spacing_m: Of the teeth, m; they are a third of it wide.
+        teeth: Number of the teeth, which stand row by row about the origin.
+        across: Number of the teeth in a row.
+        spacing_m: Distance of two neighbors, m.
     """
     builder = SurfaceBuilder()
-    place_teeth(builder, grid_of(teeth, _ACROSS, spacing_m), spacing_m / 3)
-    surface = builder.build()
-    return decompose(surface.to_mesh())
-
-
-def grid_of(count: int, across: int, spacing_m: float) -> np.ndarray:
-    """Returns (count, 2) places row by row, about the origin, m."""
-    row, column = np.divmod(np.arange(count), across)
-    return (np.column_stack([column, row]) - (across - 1) / 2) * spacing_m
-
-
-def place_teeth(builder: SurfaceBuilder, places: np.ndarray, width_m: float) -> None:
-    """Adds a tooth at each place (n, 2): eight-sided, convex, 10 mm high, pointed."""
+    row, column = np.divmod(np.arange(teeth), across)
+    places = (np.column_stack([column, row]) - (across - 1) / 2) * spacing_m
+    radius_m = min(spacing_m / 3, _WIDEST_M) / 2
     for x, y in places:
         rings = [
-            builder.add_ring(np.add(circle(width_m / 2, z, 8), (x, y, 0.0)))
+            builder.add_ring(np.add(circle(radius_m, z, 8), (x, y, 0.0)))
             for z in (0.003, 0.010)
         ]
         builder.add_fan(rings[0], builder.add_vertex((x, y, 0.0)), at_start=True)
         builder.add_band(*rings)
         builder.add_fan(rings[1], builder.add_vertex((x, y, 0.0105)), at_start=False)
+    return decompose(builder.build().to_mesh())
 
 
-def make_plate(width_m: float = 0.2) -> Decomposition:
-    """Returns a plate with its top at z = 0, 20 mm thick."""
-    corners = np.array([(1, -1), (1, 1), (-1, 1), (-1, -1)]) * width_m / 2
+def make_plate() -> Decomposition:
+    """Returns a plate 200 mm wide and 20 mm thick, with its top at z = 0."""
+    corners = np.array([(1, -1), (1, 1), (-1, 1), (-1, -1)]) * _PLATE_M / 2
     levels = [np.column_stack([corners, np.full(4, z)]) for z in (-0.02, 0.0)]
     surface = loft((0.0, 0.0, -0.02), levels, (0.0, 0.0, 0.0))
     return decompose(surface.to_mesh())
@@ -171,12 +170,7 @@ def measure_force_scaling(repeats: int) -> tuple[ForceScaling, ...]:
 
 def _touch(across: int, plate: Decomposition) -> _core.ContactSet:
     """Returns the contacts of a square brush with that many teeth along a side."""
-    builder = SurfaceBuilder()
-    spacing_m = _WIDTH_M / across
-    places = grid_of(across**2, across, spacing_m)
-    place_teeth(builder, places, min(spacing_m / 3, 0.002))
-    surface = builder.build()
-    brush = decompose(surface.to_mesh())
+    brush = make_brush(across**2, across, _WIDTH_M / across)
     return SceneTracker(brush, [plate], _TOLERANCE_M).query(plan_slide(2)[0])
 
 
