@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -121,13 +121,13 @@ class PaperEvaluation:
         if self.analysis is not None:
             analysis = {
                 "depths": self.analysis.depths.to_dict(),
-                "pairs": self.analysis.pairs.to_dict(),
-                "forces": [forces.to_dict() for forces in self.analysis.forces],
+                "pairs": asdict(self.analysis.pairs),
+                "forces": [asdict(forces) for forces in self.analysis.forces],
             }
         return {
             "machine": self.machine,
             "is_cut_short": self.is_cut_short,
-            "table1": [row.to_dict() for row in self.table1],
+            "table1": [asdict(row) for row in self.table1],
             "figure11": [run.figures.to_dict() for run in self.figure11],
             "figure12": [passed.to_dict() for passed in self.figure12],
             "analysis": analysis,

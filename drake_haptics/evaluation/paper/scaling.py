@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -46,10 +45,6 @@ class PairScaling:
     median_us: tuple[float, ...]
     line: LineFit
 
-    def to_dict(self) -> dict[str, Any]:
-        """Returns the figures ready for JSON."""
-        return asdict(self)
-
 
 def measure_pair_scaling(ticks: int) -> PairScaling:
     """Slides brushes of 1 to 64 teeth over a plate, all teeth 0.5 mm deep.
@@ -64,18 +59,13 @@ def measure_pair_scaling(ticks: int) -> PairScaling:
     # In turns, so that what disturbs the computer disturbs all.
     seconds = np.array(
         [
-            [_time_slide(tracker, motion) for tracker in trackers]
+            [[tracker.query(X).query_seconds for X in motion] for tracker in trackers]
             for _ in range(_SLIDE_REPEATS)
         ]
     )
     median_us = (1e6 * np.median(typical(seconds), axis=1)).tolist()
     line = fit_line(np.array(NUM_TEETH), median_us)
     return PairScaling(NUM_TEETH, tuple(median_us), line)
-
-
-def _time_slide(tracker: SceneTracker, motion: np.ndarray) -> list[float]:
-    """Returns the time of each query, s."""
-    return [tracker.query(X_WT).query_seconds for X_WT in motion]
 
 
 def make_brush(
@@ -142,10 +132,6 @@ class ForceScaling:
     median_us: tuple[float, ...]
     force_growth: PowerFit
     time_growth: PowerFit
-
-    def to_dict(self) -> dict[str, Any]:
-        """Returns the figures ready for JSON."""
-        return asdict(self)
 
 
 def measure_force_scaling(repeats: int) -> tuple[ForceScaling, ...]:
