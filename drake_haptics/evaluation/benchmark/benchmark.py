@@ -51,12 +51,12 @@ class Effort:
     """How much is measured.
 
     Attributes:
-        sizes: of the bodies of convex pairs, vertices.
-        presses: of each pair.
-        motions: of each scene.
-        repeats: of each of these; at least 3, so that interruptions fall out.
-        large_scenes: whether scenes of 1000 pieces and more are run.
-        loop_s: of the loops' motion, s.
+        sizes: Sizes of the bodies of convex pairs, vertices.
+        presses: Presses of each pair.
+        motions: Motions in each scene.
+        repeats: Repeats of each of these; at least 3, so that interruptions fall out.
+        large_scenes: Whether scenes of 1000 pieces and more are run.
+        loop_s: Duration of the loops' motion, s.
     """
 
     sizes: tuple[int, ...] = SIZES
@@ -82,13 +82,13 @@ class BenchFigures:
     """All figures of a run.
 
     Attributes:
-        machine: see `describe_machine`.
-        libraries: name -> version of those that were measured on pairs or in loops.
-        missing: name -> why it was not measured.
-        pairs: figures of convex pairs, those of a pair together.
-        python: figures of single queries from Python.
-        scenes: figures of scenes, those of a scene together.
-        loop: figures of whole loops.
+        machine: See `describe_machine`.
+        libraries: Name -> version of those that were measured on pairs or in loops.
+        missing: Name -> why it was not measured.
+        pairs: Figures of convex pairs, those of a pair together.
+        python: Figures of single queries from Python.
+        scenes: Figures of scenes, those of a scene together.
+        loop: Figures of whole loops.
     """
 
     machine: dict[str, Any]
@@ -121,10 +121,10 @@ def run_benchmarks(
     """Measures this package and the libraries that are installed, in this thread.
 
     Args:
-        parts: of `PARTS`.
-        effort: how much.
-        meshes: a folder of real meshes for the scenes, see `scene_makers`.
-        progress: called before each step.
+        parts: Some of `PARTS`.
+        effort: How much is measured.
+        meshes: A folder of real meshes for the scenes, see `scene_makers`.
+        progress: Called before each step.
 
     Raises:
         UserError: The folder has none of the meshes.

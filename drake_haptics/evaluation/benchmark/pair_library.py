@@ -48,10 +48,10 @@ class PairLibrary:
     """A library in one of its modes.
 
     Attributes:
-        name: as tables show it.
-        version: of the library.
-        ours: whether it is this package.
-        make_query: builds the bodies of a pair in the library.
+        name: Name in tables.
+        version: Version of the library.
+        ours: Whether it is this package.
+        make_query: Builds the bodies of a pair in the library.
     """
 
     name: str

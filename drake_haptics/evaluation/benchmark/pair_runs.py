@@ -49,9 +49,9 @@ def find_truth(
     the others wrong.
 
     Args:
-        pair: the bodies.
+        pair: The bodies.
         X_WA: (n, 4, 4) poses of A; B is at the world's origin.
-        answers: one per library.
+        answers: One per library.
     """
     normals = np.stack([a.nhat_BA_W for a in answers])
     gaps = np.stack([support_gaps(pair, X_WA, n) for n in normals])
@@ -76,18 +76,18 @@ class PairFigures:
     """What one library cost on one pair, and how right it was.
 
     Attributes:
-        kind: of the pair.
-        size: vertices of each body.
-        library: its name.
-        ours: whether it is this package.
-        apart: times of the frames in which the bodies are apart.
-        in_depth: times of the others.
-        max_relative_error: of the distance, over the frames of at least 1 µm.
-        wrong_share: of the frames, that is wrong by more than 0.1 %.
-        exact_depth_share: of the frames in depth, that has the global depth.
-        max_jump_deg: largest turn of the normal in a frame in which the exact one
+        kind: Kind of the pair.
+        size: Vertices of each body.
+        library: Name of the library.
+        ours: Whether it is this package.
+        apart: Times of the frames in which the bodies are apart.
+        in_depth: Times of the others.
+        max_relative_error: Largest of the distance, over the frames of at least 1 µm.
+        wrong_share: Share of the frames that are wrong by more than 0.1 %.
+        exact_depth_share: Share of the frames in depth that have the global depth.
+        max_jump_deg: Largest turn of the normal in a frame in which the exact one
             turns by less than 1°.
-        failed_frames: frames without an answer.
+        failed_frames: Frames without an answer.
     """
 
     kind: str
@@ -115,10 +115,10 @@ def run_pair(
     The first frame of a press starts from nothing and is left out.
 
     Args:
-        pair: the bodies.
-        libraries: what is measured.
-        presses: how many presses, see `make_presses`.
-        repeats: how often each press is run.
+        pair: The bodies.
+        libraries: What is measured.
+        presses: How many presses, see `make_presses`.
+        repeats: How often each press is run.
     """
     queries = [library.make_query(pair) for library in libraries]
     seconds, answers, truths = [], [], []
@@ -138,7 +138,7 @@ def run_pair(
 def _run_press(
     press: Press, queries: Sequence[PairQuery], repeats: int
 ) -> tuple[list[np.ndarray], list[PairAnswers]]:
-    """Typical times (n,) and answers of each query."""
+    """Returns typical times (n,) and the answers of each query."""
     seconds: list[list[np.ndarray]] = [[] for _ in queries]
     answers: dict[int, PairAnswers] = {}
     for i in take_turns(range(len(queries)), repeats):
@@ -181,14 +181,14 @@ def _figures(
 
 
 def _jumps(normals: np.ndarray, exact: np.ndarray) -> np.ndarray:
-    """Turns (m,), rad, of the normals where the exact ones turn steadily."""
+    """Returns turns (m,), rad, of normals where the exact ones turn steadily."""
     steady = _turns(exact) < _STEADY_RAD
     turns = _turns(normals)[steady]
     return turns[np.isfinite(turns)]
 
 
 def _turns(normals: np.ndarray) -> np.ndarray:
-    """Angles (n - 1,) between successive (n, 3) unit vectors, rad."""
+    """Returns the angles (n - 1,) between successive (n, 3) unit vectors, rad."""
     before, after = normals[:-1], normals[1:]
     sine = np.linalg.norm(np.cross(before, after), axis=1)
     return np.arctan2(sine, (before * after).sum(axis=1))

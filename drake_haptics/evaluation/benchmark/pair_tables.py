@@ -32,8 +32,8 @@ def ratios_to_fastest(
     among those that are not this package. Pairs without any have no ratio.
 
     Args:
-        figures: of all libraries on all pairs, those of a pair together.
-        column: the figure.
+        figures: Figures of all libraries on all pairs, those of a pair together.
+        column: The figure.
     """
     ratios: dict[str, list[float]] = {}
     for _, group in groupby(figures, key=lambda f: (f.kind, f.size)):
@@ -57,11 +57,11 @@ def growth(
     """Returns by what factor a library's figure grows with the size of the bodies.
 
     Args:
-        figures: of all pairs.
-        library: its name.
-        column: the figure.
-        small: vertices of the smaller bodies.
-        large: vertices of the larger bodies.
+        figures: Figures of all pairs.
+        library: Name of the library.
+        column: The figure.
+        small: Vertices of the smaller bodies.
+        large: Vertices of the larger bodies.
 
     Returns:
         The geometric mean over the kinds; NaN where a size was not run.

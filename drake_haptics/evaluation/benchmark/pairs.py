@@ -24,8 +24,8 @@ class PairShape:
     """Two convex bodies of as many vertices each.
 
     Attributes:
-        kind: one of `KINDS`.
-        size: vertices of each body.
+        kind: One of `KINDS`.
+        size: Vertices of each body.
         A_vertices: (size, 3) vertices of the moving body, m.
         B_vertices: (size, 3) vertices of the resting body, m.
     """
@@ -51,11 +51,11 @@ def make_pair(kind: str, size: int) -> PairShape:
         kind: "ball", "ellipsoid" or "slab" for two bodies of that kind, the second
             one slightly smaller so that no two features match by symmetry;
             "pen-sphere" for a pen on a ball.
-        size: vertices of each body, one of `SIZES`.
+        size: Vertices of each body, one of `SIZES`.
 
     Raises:
-        KeyError: no such kind.
-        ValueError: no such size.
+        KeyError: No such kind.
+        ValueError: No such size.
     """
     A, B = {
         "ball": (_ball, _ball),
@@ -88,7 +88,7 @@ def _pen(unit: np.ndarray) -> np.ndarray:
 
 @cache
 def _directions(size: int) -> np.ndarray:
-    """Even unit vectors: the corners of a cube, or of a divided icosahedron."""
+    """Returns even unit vectors, to corners of a cube or a divided icosahedron."""
     if size == 8:
         return np.array(list(product((-1.0, 1.0), repeat=3))) / np.sqrt(3)
     # Each division makes four triangles of one: n vertices become 4 n - 6.
@@ -119,8 +119,8 @@ def make_presses(pair: PairShape, count: int) -> list[Press]:
     outside.
 
     Args:
-        pair: the bodies.
-        count: how many presses.
+        pair: The bodies.
+        count: How many presses.
     """
     rng = np.random.default_rng([pair.size, *pair.kind.encode()])
     return [_press(pair, rng) for _ in range(count)]
@@ -144,7 +144,7 @@ def _press(pair: PairShape, rng: np.random.Generator) -> Press:
 
 
 def _touching_offset(pair: PairShape, R_WA: np.ndarray, way_W: np.ndarray) -> float:
-    """How far along `way_W` A's center is where the bodies just touch, m."""
+    """Returns how far along `way_W` A's center is where the bodies just touch, m."""
     query = ConvexPair(ConvexPolytope(pair.A_vertices), ConvexPolytope(pair.B_vertices))
     X_WA = np.eye(4)
     X_WA[:3, :3] = R_WA

@@ -18,10 +18,10 @@ class PythonFigures:
     """What one query costs a Python program, from the pose to the distance.
 
     Attributes:
-        kind: of the pair.
-        size: vertices of each body.
-        ours_us: median, this package, tracked, µs.
-        coal_us: median of the faster of coal's starts, µs.
+        kind: Kind of the pair.
+        size: Vertices of each body.
+        ours_us: Median, this package, tracked, µs.
+        coal_us: Median of the faster of coal's starts, µs.
     """
 
     kind: str
@@ -42,9 +42,9 @@ def run_python_pair(pair: PairShape, presses: int, repeats: int) -> PythonFigure
     needs its own pose object, which is part of its query.
 
     Args:
-        pair: the bodies.
-        presses: how many presses, see `make_presses`.
-        repeats: how often each press is run.
+        pair: The bodies.
+        presses: How many presses, see `make_presses`.
+        repeats: How often each press is run.
     """
     bodies = pair.A_vertices, pair.B_vertices
     queries: dict[str, Callable[[np.ndarray], float]] = {
@@ -90,7 +90,7 @@ class CoalQuery:
     """A pair of hulls in coal's own binding, asked for one pose after the other.
 
     Attributes:
-        result: coal's result of the last query.
+        result: Coal's result of the last query.
     """
 
     def __init__(self, A_vertices: np.ndarray, B_vertices: np.ndarray, start: str):

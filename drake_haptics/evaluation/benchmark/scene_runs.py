@@ -127,17 +127,17 @@ class SceneFigures:
     """What one library cost in one scene.
 
     Attributes:
-        scene: its name.
-        library: its name.
-        triangles: of all meshes.
-        tool_pieces: convex pieces of the tool.
-        object_pieces: convex pieces of all objects.
-        objects: how many there are.
-        near: times of the ticks in which both libraries find a contact.
-        all_ticks: times of all ticks.
-        median_contacts: pairs of pieces within the tolerance, over the near ticks.
-        max_contacts: the same.
-        deepest_m: largest penetration depth, m.
+        scene: Name of the scene.
+        library: Name of the library.
+        triangles: Triangles of all meshes.
+        tool_pieces: Convex pieces of the tool.
+        object_pieces: Convex pieces of all objects.
+        objects: Number of the objects.
+        near: Times of the ticks in which both libraries find a contact.
+        all_ticks: Times of all ticks.
+        median_contacts: Pairs of pieces within the tolerance, over the near ticks.
+        max_contacts: Most pairs of pieces within the tolerance at a tick.
+        deepest_m: Largest penetration depth, m.
     """
 
     scene: str
@@ -164,9 +164,9 @@ def run_scene(
     The first tick of a motion starts from nothing and is left out.
 
     Args:
-        problem: the scene.
-        queries: library name -> the scene in it.
-        repeats: how often each motion is run.
+        problem: The scene.
+        queries: Library name -> the scene in it.
+        repeats: How often each motion is run.
     """
     names = list(queries)
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}

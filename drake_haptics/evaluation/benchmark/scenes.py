@@ -34,12 +34,12 @@ class SceneProblem:
     """What all libraries are asked in a scene.
 
     Attributes:
-        name: of the scene.
-        tool: in convex pieces.
-        objects: in convex pieces.
+        name: Name of the scene.
+        tool: The tool in convex pieces.
+        objects: The objects in convex pieces.
         X_WO: (k, 4, 4) poses of the objects, at rest.
         motions: (n, 4, 4) poses of the tool a millisecond apart, several times.
-        tolerance_m: contacts up to this distance are asked for.
+        tolerance_m: Contacts up to this distance are asked for.
     """
 
     name: str
@@ -86,10 +86,10 @@ def make_touches(
     0.1 m/s and 1 rad/s.
 
     Args:
-        tool: moves; touched with random places of its surface.
-        target: rests at the world's origin.
-        count: how many motions.
-        seed: of the random numbers.
+        tool: The body that moves; it touches with random places of its surface.
+        target: The body that rests at the world's origin.
+        count: How many motions.
+        seed: Seed of the random numbers.
 
     Returns:
         (n, 4, 4) poses of the tool each.
@@ -134,7 +134,7 @@ def _first_touch(
     way_W: np.ndarray,
     far_m: float,
 ) -> float:
-    """How far out along the way the tool still touches, m, coming in from afar."""
+    """Returns how far out along the way the tool touches first, m, from afar."""
     X_WTool = np.eye(4)
     X_WTool[:3, :3] = R_WTool
     along_m = far_m
@@ -157,8 +157,8 @@ def scene_makers(
     """Returns scene name -> a function that makes it.
 
     Args:
-        motions: how many motions each has.
-        meshes: a folder of real meshes (cup_500.obj, spoon_336.obj, torus_2000.obj,
+        motions: How many motions each has.
+        meshes: A folder of real meshes (cup_500.obj, spoon_336.obj, torus_2000.obj,
             hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply); those that it
             lacks are replaced by the package's own shapes, and the armadillo is left
             out without it.

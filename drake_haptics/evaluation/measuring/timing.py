@@ -43,8 +43,8 @@ class CallTimer:
         """Measures the trivial call.
 
         Args:
-            function: the bound function.
-            trivial: arguments with which it has next to nothing to do.
+            function: The bound function.
+            trivial: Arguments with which it has next to nothing to do.
         """
         self._function = function
         self._trivial_s = 0.0

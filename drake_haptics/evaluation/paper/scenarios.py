@@ -74,7 +74,7 @@ def scenario_makers(meshes: Path | None) -> dict[str, Callable[[], Scenario]]:
 
 
 def _soft_contact(tolerance_m: float, stiffness_N_per_m: float) -> Contact:
-    """The paper's clustering, and so soft that a few newtons penetrate: P as well."""
+    """Returns the paper's clustering; so soft that a few newtons penetrate."""
     return Contact(
         tolerance_m=tolerance_m,
         stiffness_N_per_m=stiffness_N_per_m,
@@ -85,7 +85,7 @@ def _soft_contact(tolerance_m: float, stiffness_N_per_m: float) -> Contact:
 
 
 def _make_cup_spoon(meshes: Path | None, name: str, figure: str) -> Scenario:
-    """Down into the cup, round its wall, and across its floor."""
+    """Goes down into the cup, round its wall, and across its floor."""
     if meshes is None:
         cup, spoon = cut_shape("cup"), cut_shape("spoon")
     else:
@@ -123,7 +123,7 @@ def _make_cup_spoon(meshes: Path | None, name: str, figure: str) -> Scenario:
 def _make_probe(
     model: str, source: str, meshes: Path | None, name: str, figure: str
 ) -> Scenario:
-    """A convex probe over the front of a model, in rows, upright and nearly flat."""
+    """Leads a convex probe over the front of a model, upright and nearly flat."""
     # Round and convex, 24 mm thick.
     probe, mesh = cut_shape("peg"), load_model(model, source, meshes)
     target = decompose(mesh)
@@ -162,7 +162,7 @@ def _find_front(mesh: Mesh) -> Iterator[np.ndarray]:
 
 
 def _make_machine_room() -> Scenario:
-    """The wrench's flat over the tubes of the panel, up, down and rocking."""
+    """Leads the wrench's flat over the tubes of the panel, up, down and rocking."""
     room = make_machine_room()
     pieces = {n: decompose(s.to_mesh(n)) for n, s in room.shapes.items()}
     objects = tuple(

@@ -147,7 +147,7 @@ def _add_claw(builder: SurfaceBuilder, root: list[int]) -> None:
 
 
 def _tine_section(side: int, s: float) -> np.ndarray:
-    """A half disc, (13, 3) m, at the fraction `s` of the way along a tine.
+    """Returns a half disc, (13, 3) m, at the fraction `s` of the way along a tine.
 
     The claw bends towards the handle (+x) about an axis along y. It thins from the
     head's diameter to a blade, and the gap between the tines widens.
@@ -192,7 +192,7 @@ def make_wrench() -> Surface:
 
 
 def _wrench_section(x: float, half_width: float) -> np.ndarray:
-    """A chamfered rectangle at x, (12, 3) m, from the middle of its lower side."""
+    """Returns a chamfered rectangle at x, (12, 3) m, from its lower side's middle."""
     right = _wrench_half(0.0, half_width)
     left = right[-2:0:-1] * [-1, 1]
     around = np.concatenate([right, left])
@@ -200,7 +200,7 @@ def _wrench_section(x: float, half_width: float) -> np.ndarray:
 
 
 def _jaw_section(side: int, x: float, inner: float, outer: float) -> np.ndarray:
-    """A jaw's section at x, (7, 3) m; `side` is 1 for +y and -1 for -y."""
+    """Returns a jaw's section at x, (7, 3) m; `side` is 1 for +y and -1 for -y."""
     around = _wrench_half(inner, outer)
     if side < 0:
         around = around[::-1] * [-1, 1]
@@ -208,7 +208,7 @@ def _jaw_section(side: int, x: float, inner: float, outer: float) -> np.ndarray:
 
 
 def _wrench_half(inner: float, outer: float) -> np.ndarray:
-    """The (y, z) of a half section, from below to above: it lies on the +y side."""
+    """Returns the (y, z) of the half section on the +y side, from below to above."""
     h, c = HALF_THICKNESS_M, _WRENCH_CHAMFER_M
     corners = [
         (inner, -h), (outer - c, -h), (outer, c - h), (outer, 0.0),

@@ -52,8 +52,8 @@ class PlacedShape:
     """An object of the room.
 
     Attributes:
-        name: unique.
-        shape: key of its surface in `MachineRoom.shapes`.
+        name: A unique name.
+        shape: Key of its surface in `MachineRoom.shapes`.
         X_WO: (4, 4) pose of the surface's frame in the room.
     """
 
@@ -67,8 +67,8 @@ class MachineRoom:
     """Shapes, and objects that are placed copies of them.
 
     Attributes:
-        shapes: surfaces by name, each in its own frame.
-        objects: in the order in which they were placed.
+        shapes: Surfaces by name, each in its own frame.
+        objects: In the order in which they were placed.
     """
 
     shapes: dict[str, Surface]
@@ -94,10 +94,10 @@ class RoomBuilder:
         """Places what `make(*sizes)` returns at the pose X_WO (4, 4).
 
         Args:
-            make: a generator named make_<kind>.
-            sizes: its arguments: lengths, m, rounded to 1 mm, so that shapes are
+            make: A generator named make_<kind>.
+            sizes: Its arguments: lengths, m, rounded to 1 mm, so that shapes are
                 shared; and counts, which are ints.
-            X_WO: the pose.
+            X_WO: The pose.
         """
         kind = make.__name__.removeprefix("make_")
         sizes = [s if isinstance(s, int) else round(s, 3) for s in sizes]
@@ -163,7 +163,7 @@ def _add_walls(room: RoomBuilder) -> None:
 
 
 def _add_rack_and_pumps(room: RoomBuilder) -> None:
-    """Pipes along the back wall, each down to a pump and up again to a header."""
+    """Adds pipes along the back wall, each down to a pump and up again to a header."""
     low, front, header = 0.5, 4.8, 2.8
     radius = _RACK_RADII_M[0]
     ends = [(x, front - 1.4, header + radius) for x in (1.6, 9.6)]
@@ -187,7 +187,7 @@ def _add_rack_and_pumps(room: RoomBuilder) -> None:
 
 
 def _add_rack_posts(room: RoomBuilder) -> None:
-    """Posts along the back wall, with an arm below the uppermost pipes."""
+    """Adds posts along the back wall, with an arm below the uppermost pipes."""
     for k in range(9):
         x = 0.6 + 1.0 * k
         room.place(make_slab, [0.06, 0.06, 3.1], pose((x, 6.95, 0)))
@@ -196,7 +196,7 @@ def _add_rack_posts(room: RoomBuilder) -> None:
 
 
 def _add_risers(room: RoomBuilder) -> None:
-    """Pipes up the left wall, with valves at hand height."""
+    """Adds pipes up the left wall, with valves at hand height."""
     for k, radius in enumerate(_RISER_RADII_M):
         y = 0.8 + 0.62 * k
         corners = [(0.35, y, 0.05), (0.35, y, 2.7), (1.1, y, 2.7)]
@@ -223,7 +223,7 @@ def _add_cabinets(room: RoomBuilder) -> None:
 
 
 def _add_railings(room: RoomBuilder) -> None:
-    """Railings are ladders on their side, before the tanks."""
+    """Adds railings before the tanks: ladders on their side."""
     for k in range(4):
         side = pose((5.4 + 1.15 * k, 1.0, 0.5), (1, 0, 0), (0, 0, 1))
         room.place(make_ladder, [1.1, 0.5, 3, 0.02], side)
@@ -242,11 +242,11 @@ def add_pipe_run(
     Straight parts are cut into flanged spools, each held by a clamp.
 
     Args:
-        room: to add to.
+        room: The room to add to.
         corners: (k, 3) of the axis, m; consecutive lines at right angles.
-        radius: of the pipe, m.
+        radius: Radius of the pipe, m.
         stem: (3,) unit, direction of the valves' stems, normal to the valves' pipes.
-        valves: indices of the straight parts that have a valve in their middle.
+        valves: Indices of the straight parts that have a valve in their middle.
     """
     points = np.asarray(corners, dtype=float)
     directions = np.diff(points, axis=0)
@@ -278,7 +278,7 @@ def _add_straight(
     radius: float,
     ends_flanged: tuple[bool, bool],
 ) -> None:
-    """Spools of equal length one after the other, with flanges where they meet."""
+    """Adds spools of equal length in a row, with flanges where they meet."""
     count = int(np.ceil(length / _LONGEST_SPOOL_M))
     spool = length / count
     x = _normal_to(u)
@@ -302,7 +302,7 @@ def _add_straight(
 def _add_flange(
     room: RoomBuilder, neck: np.ndarray, u: np.ndarray, x: np.ndarray, radius: float
 ) -> None:
-    """A flange from `neck` along u, and the nuts on its back."""
+    """Adds a flange from `neck` along u, and the nuts on its back."""
     room.place(make_flange, [radius], pose(neck, u, x))
     back = neck + (flange_length(radius) - flange_thickness(radius)) * u
     room_for_nut = flange_radius(radius) - 1.3 * radius
@@ -319,7 +319,7 @@ def _add_flange(
 def _add_valve(
     room: RoomBuilder, start: np.ndarray, u: np.ndarray, stem: np.ndarray, radius: float
 ) -> None:
-    """A valve's body from `start` along u, with bonnet and wheel along `stem`."""
+    """Adds a valve's body from `start` along u, with bonnet and wheel along `stem`."""
     middle = start + valve_length(radius) / 2 * u
     room.place(make_valve_body, [radius], pose(start, u, stem))
     room.place(make_bonnet, [radius], pose(middle, stem, u))
@@ -328,7 +328,7 @@ def _add_valve(
 
 
 def _normal_to(u: np.ndarray) -> np.ndarray:
-    """A unit vector normal to u, which is along an axis."""
+    """Returns a unit vector normal to u, which is along an axis."""
     return np.roll(np.abs(u), 1)
 
 
@@ -338,10 +338,10 @@ def make_tube(radius: float, bottom: float, top: float, reach: float) -> Surface
     Its front, at y = 0, is from z = `bottom` to z = `top`.
 
     Args:
-        radius: m.
-        bottom: m.
-        top: m.
-        reach: of its ends behind the front, m.
+        radius: M.
+        bottom: M.
+        top: M.
+        reach: Reach of its ends behind the front, m.
     """
     corners = np.array([(reach, bottom), (radius, bottom), (radius, top), (reach, top)])
     corners = np.column_stack([np.zeros(4), corners])
@@ -374,7 +374,7 @@ def wrench_path(num_poses: int) -> np.ndarray:
     0.15 m/s.
 
     Args:
-        num_poses: at equal times.
+        num_poses: Number of poses, at equal times.
 
     Returns:
         X_WTool (num_poses, 4, 4).

@@ -30,22 +30,22 @@ _RAIL_SECTORS = 8
 
 
 def flange_length(radius: float) -> float:
-    """Length along the pipe of a flange for a pipe of `radius`, both m."""
+    """Returns the length along the pipe of a flange for a pipe of `radius`, both m."""
     return 0.6 * radius + 0.012
 
 
 def flange_radius(radius: float) -> float:
-    """Radius of a flange for a pipe of `radius`, both m."""
+    """Returns the radius of a flange for a pipe of `radius`, both m."""
     return 1.7 * radius + 0.015
 
 
 def flange_thickness(radius: float) -> float:
-    """Thickness of a flange's rim for a pipe of `radius`, both m."""
+    """Returns the thickness of a flange's rim for a pipe of `radius`, both m."""
     return 0.3 * radius + 0.006
 
 
 def valve_length(radius: float) -> float:
-    """Length along the pipe of a valve for a pipe of `radius`, both m."""
+    """Returns the length along the pipe of a valve for a pipe of `radius`, both m."""
     return 6.0 * radius + 0.06
 
 
@@ -72,7 +72,7 @@ def make_nut(size: float) -> Surface:
     """Returns a hexagon nut on the end of a stud.
 
     Args:
-        size: diameter of the stud, m; the nut is 0.8 of it high.
+        size: Diameter of the stud, m; the nut is 0.8 of it high.
     """
     angle = 2 * np.pi * np.arange(12) / 12
     apothem = 0.8 * size
@@ -128,7 +128,7 @@ def make_handwheel(radius: float) -> Surface:
 
 
 def _flange(radius: float) -> list[tuple[float, float]]:
-    """The (radius, z) of a flange's neck and rim."""
+    """Returns the (radius, z) of a flange's neck and rim."""
     length, outer = flange_length(radius), flange_radius(radius)
     back = length - flange_thickness(radius)
     return [
@@ -141,7 +141,7 @@ def _flange(radius: float) -> list[tuple[float, float]]:
 
 
 def _add_hub(builder: SurfaceBuilder, radius: float) -> list[list[int]]:
-    """A short cylinder with an opening for each spoke; returns their rims."""
+    """Adds a short cylinder with an opening for each spoke; returns their rims."""
     count = 2 * _SPOKES
     levels = [(0.9, -1.0), (1.0, -0.5), (1.0, 0.5), (0.9, 1.0)]
     angle = 2 * np.pi * (np.arange(count) - 0.5) / count
@@ -160,7 +160,7 @@ def _add_hub(builder: SurfaceBuilder, radius: float) -> list[list[int]]:
 def _add_rim(
     builder: SurfaceBuilder, radius: float, thickness: float
 ) -> list[list[int]]:
-    """A torus with an opening for each spoke on its inside; returns their rims."""
+    """Adds a torus with an opening for each spoke inside; returns their rims."""
     tube = 2 * np.pi * (np.arange(_RIM_SECTION) + 0.5) / _RIM_SECTION
     inner = _RIM_SECTION // 2 - 1
     reach, z = radius + thickness * np.cos(tube), -thickness * np.sin(tube)
@@ -182,9 +182,9 @@ def make_cabinet(width: float, depth: float, height: float) -> Surface:
     """Returns a cabinet with a recessed door; width in x, door towards -y.
 
     Args:
-        width: m.
-        depth: m.
-        height: m.
+        width: M.
+        depth: M.
+        height: M.
     """
     edge, frame, recess = 0.004, 0.03, 0.012
     levels = [
@@ -214,8 +214,8 @@ def make_motor(radius: float, length: float) -> Surface:
     """Returns a motor along +z with cooling ribs around it and a shaft at its end.
 
     Args:
-        radius: of the ribs, m.
-        length: without the shaft, m.
+        radius: Radius of the ribs, m.
+        length: Length without the shaft, m.
     """
     profile = [(0.0, 0.0), (0.85 * radius, 0.0), (0.95 * radius, 0.08 * length)]
     for k in range(5):
@@ -239,9 +239,9 @@ def make_handle(length: float, reach: float, radius: float) -> Surface:
     """Returns a bent rod from z = 0 up to `reach`, `length` along x, back to z = 0.
 
     Args:
-        length: between its ends' axes, m.
-        reach: height of the rod's axis over its ends, m.
-        radius: m.
+        length: Distance between its ends' axes, m.
+        reach: Height of the rod's axis over its ends, m.
+        radius: M.
     """
     corners = np.array([(0, 0, 0), (0, 0, reach), (length, 0, reach), (length, 0, 0)])
     path = rounded_path(corners, 2.5 * radius, bend_steps=5)
@@ -264,10 +264,10 @@ def make_ladder(height: float, width: float, rungs: int, radius: float) -> Surfa
     """Returns two rails along z, at x = 0 and `width`, with rungs between them.
 
     Args:
-        height: of the rails, m.
-        width: between the rails' axes, m.
-        rungs: evenly spaced, the first and last half a space from the ends.
-        radius: of the rails, m.
+        height: Height of the rails, m.
+        width: Distance between the rails' axes, m.
+        rungs: Number of rungs, the first and last half a space from the ends.
+        radius: Radius of the rails, m.
     """
     builder = SurfaceBuilder()
     space, half = height / rungs, 0.6 * radius
@@ -286,7 +286,7 @@ def make_ladder(height: float, width: float, rungs: int, radius: float) -> Surfa
 def _add_rail(
     builder: SurfaceBuilder, x: float, side: int, radius: float, levels: list[float]
 ) -> list[list[int]]:
-    """A rail with openings towards `side` of x; returns their rims, of 8 vertices."""
+    """Adds a rail with openings towards `side` of x; returns their rims."""
     angle = 2 * np.pi * np.arange(_RAIL_SECTORS) / _RAIL_SECTORS
     if side < 0:
         angle = angle + np.pi

@@ -118,7 +118,7 @@ def make_cup() -> Surface:
 
 
 def _sector_circle(radius: float, z: float) -> np.ndarray:
-    """A ring whose column 0 is the sector that faces +x."""
+    """Returns a ring whose column 0 is the sector that faces +x."""
     half_sector = np.pi / _CUP_SECTORS
     c, s = np.cos(half_sector), np.sin(half_sector)
     return circle(radius, z, _CUP_SECTORS) @ np.array(
@@ -141,7 +141,7 @@ def _add_handle(builder: SurfaceBuilder, rings: list[list[int]]) -> None:
 
 
 def _handle_section(s: float) -> np.ndarray:
-    """The section at the fraction `s` of the way from upper to lower opening."""
+    """Returns the section at the fraction `s` of the way from the upper opening."""
     turn = np.pi * s
     radial = np.array([np.sin(turn), 0, np.cos(turn)])
     center = np.array([0.036, 0, 0.036]) + radial * [0.030, 0, 0.0185]
@@ -192,7 +192,7 @@ def make_sphere(divisions: int = 3) -> Surface:
     does not change its character along a path.
 
     Args:
-        divisions: how often; each makes four triangles of one.
+        divisions: How often; each makes four triangles of one.
     """
     unit, triangles = divide_icosahedron(divisions)
     return Surface(np.round(0.040 * unit, 9), triangles)
@@ -263,7 +263,7 @@ def make_spoon() -> Surface:
 def _make_crescent(
     x: float, half_width: float, depth: float, edge: float, thickness: float
 ) -> np.ndarray:
-    """A crescent in the plane x, counterclockwise about +x: underside, then top."""
+    """Returns a crescent at x, counterclockwise about +x: underside, then top."""
     top = edge - depth * (1 - _ACROSS**2)
     # The metal thins to two thirds at the edge.
     bottom = top - thickness * (1 - _ACROSS**2 / 3)

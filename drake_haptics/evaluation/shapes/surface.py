@@ -40,8 +40,8 @@ class Surface:
         """Writes the surface as a Wavefront OBJ file.
 
         Args:
-            path: the file to write.
-            title: one line for the head of the file.
+            path: The file to write.
+            title: One line for the head of the file.
         """
         lines = [
             f"# {title}",
@@ -79,12 +79,12 @@ class SurfaceBuilder:
         """Joins two rings of equal length by a band of quads.
 
         Args:
-            near: the ring the surface comes from.
-            far: the ring it advances to.
-            holes: columns i whose quad (near[i], near[i+1], ...) is left open.
+            near: The ring the surface comes from.
+            far: The ring it advances to.
+            holes: Columns i whose quad (near[i], near[i+1], ...) is left open.
 
         Raises:
-            ValueError: the rings differ in length.
+            ValueError: The rings differ in length.
         """
         if len(near) != len(far):
             raise ValueError(f"rings of unlike sizes: {len(near)} and {len(far)}")
@@ -97,8 +97,8 @@ class SurfaceBuilder:
         """Closes a ring by triangles to an apex.
 
         Args:
-            ring: the ring to close.
-            apex: index of the vertex in its middle.
+            ring: The ring to close.
+            apex: Index of the vertex in its middle.
             at_start: True where the surface begins, False where it ends.
         """
         for i, a in enumerate(ring):
@@ -161,7 +161,7 @@ def revolve(profile: Sequence[tuple[float, float]], count: int) -> Surface:
     Args:
         profile: (radius, z) pairs, m, from the lowest point of the axis to the highest;
             the first and last radius are 0, the others positive.
-        count: vertices around the axis.
+        count: Vertices around the axis.
     """
     (_, bottom), *walls, (_, top) = profile
     return loft((0, 0, bottom), (circle(r, z, count) for r, z in walls), (0, 0, top))
@@ -175,9 +175,9 @@ def opening_loop(rings: Sequence[Sequence[int]], columns: Sequence[int]) -> list
     `SurfaceBuilder.add_band` are `columns` without the last.
 
     Args:
-        rings: the rings that the opening begins and ends at, and those between, in the
+        rings: The rings that the opening begins and ends at, and those between, in the
             order of the surface's advance.
-        columns: of those rings, from one side of the opening to the other.
+        columns: Columns of those rings, from one side of the opening to the other.
     """
     first, last = columns[0], columns[-1]
     return [
@@ -233,9 +233,9 @@ def rounded_path(
     Args:
         corners: (k, 3) ends and corners, m. The lines between them must be long
             enough for the bends.
-        bend_radius: of the arcs at the corners, m.
-        bend_steps: steps per quarter turn of an arc, at least one per arc.
-        step: the longest step on a straight line, m.
+        bend_radius: Radius of the arcs at the corners, m.
+        bend_steps: Steps per quarter turn of an arc, at least one per arc.
+        step: The longest step on a straight line, m.
     """
     corners = np.asarray(corners, dtype=float)
     directions = np.diff(corners, axis=0)
@@ -276,10 +276,10 @@ def sweep_tube(
     """Returns a round solid along a path, with flat ends.
 
     Args:
-        path: the axis.
+        path: The axis.
         normal: (3,) direction of the first vertex, as in `SmoothPath.frames`.
-        radius: m.
-        count: vertices around the axis.
+        radius: M.
+        count: Vertices around the axis.
     """
     angle = 2 * np.pi * np.arange(count) / count
     section = radius * np.column_stack([np.cos(angle), np.sin(angle)])
@@ -291,7 +291,7 @@ def sweep_tube(
 
 
 def _make_frame(x: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """A rotation with the tangent z and x made normal to it."""
+    """Returns a rotation with the tangent z and x made normal to it."""
     x = x - (x @ z) * z
     x = x / np.linalg.norm(x)
     return np.column_stack([x, np.cross(z, x), z])

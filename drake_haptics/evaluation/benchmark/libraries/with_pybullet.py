@@ -73,7 +73,7 @@ class BulletQuery:
 
 
 def _quaternion(R: np.ndarray) -> list[float]:
-    """[x, y, z, w] of a rotation, from its largest component."""
+    """Returns [x, y, z, w] of a rotation, from its largest component."""
     K = np.array(
         [
             [R[0, 0] - R[1, 1] - R[2, 2], 0, 0, 0],
