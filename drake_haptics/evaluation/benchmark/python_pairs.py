@@ -90,7 +90,7 @@ class CoalQuery:
     """A pair of hulls in coal's own binding, asked for one pose after the other.
 
     Attributes:
-        result: Coal's result of the last query.
+        result: The result of coal's last query.
     """
 
     def __init__(self, A_vertices: np.ndarray, B_vertices: np.ndarray, start: str):

@@ -338,9 +338,9 @@ def make_tube(radius: float, bottom: float, top: float, reach: float) -> Surface
     Its front, at y = 0, is from z = `bottom` to z = `top`.
 
     Args:
-        radius: M.
-        bottom: M.
-        top: M.
+        radius: Radius, m.
+        bottom: Height of the front's lower end, m.
+        top: Height of the front's upper end, m.
         reach: Reach of its ends behind the front, m.
     """
     corners = np.array([(reach, bottom), (radius, bottom), (radius, top), (reach, top)])

@@ -182,9 +182,9 @@ def make_cabinet(width: float, depth: float, height: float) -> Surface:
     """Returns a cabinet with a recessed door; width in x, door towards -y.
 
     Args:
-        width: M.
-        depth: M.
-        height: M.
+        width: Width, m.
+        depth: Depth, m.
+        height: Height, m.
     """
     edge, frame, recess = 0.004, 0.03, 0.012
     levels = [
@@ -241,7 +241,7 @@ def make_handle(length: float, reach: float, radius: float) -> Surface:
     Args:
         length: Distance between its ends' axes, m.
         reach: Height of the rod's axis over its ends, m.
-        radius: M.
+        radius: Radius, m.
     """
     corners = np.array([(0, 0, 0), (0, 0, reach), (length, 0, reach), (length, 0, 0)])
     path = rounded_path(corners, 2.5 * radius, bend_steps=5)

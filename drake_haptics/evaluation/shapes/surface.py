@@ -278,7 +278,7 @@ def sweep_tube(
     Args:
         path: The axis.
         normal: (3,) direction of the first vertex, as in `SmoothPath.frames`.
-        radius: M.
+        radius: Radius, m.
         count: Vertices around the axis.
     """
     angle = 2 * np.pi * np.arange(count) / count
