@@ -19,40 +19,39 @@ from pathlib import Path
 
 from page_stamp import amend_page, write_page
 
-from drake_haptics.cli.console import progress_bar
-from drake_haptics.evaluation.accuracy.add_peers import add_peers
-from drake_haptics.evaluation.accuracy.budget import BudgetChoice, choose_setting
-from drake_haptics.evaluation.accuracy.budget_words import (
+from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.evaluation.accuracy.budget import (
+    BudgetChoice,
+    choose_setting,
     describe_outcome,
     describe_sacrifices,
 )
+from drake_haptics.evaluation.accuracy.costs import measure_p99
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, Row
-from drake_haptics.evaluation.accuracy.fresh_run import measure_p99
 from drake_haptics.evaluation.accuracy.knobs import list_settings, make_reference
-from drake_haptics.evaluation.accuracy.measurement import Measurement
-from drake_haptics.evaluation.accuracy.model_changes import find_model_change
+from drake_haptics.evaluation.accuracy.peers.run import add_peers
 from drake_haptics.evaluation.accuracy.plot import draw_study
 from drake_haptics.evaluation.accuracy.recorded_motion import record_motion
-from drake_haptics.evaluation.accuracy.setting import Setting
-from drake_haptics.evaluation.accuracy.study import run_accuracy_study
-from drake_haptics.evaluation.accuracy.study_rows import make_task
-from drake_haptics.evaluation.accuracy.table import (
+from drake_haptics.evaluation.accuracy.report import (
     COLUMNS,
-    get_columns,
-    group_rows,
-    make_cells,
-    make_error_cells,
-)
-from drake_haptics.evaluation.accuracy.truth import find_truth
-from drake_haptics.evaluation.accuracy.words import (
     describe_knees,
     describe_machine,
     describe_missing,
     describe_peers,
     describe_reference,
     describe_verdict,
-    make_front,
+    get_columns,
+    group_rows,
+    make_cells,
+    make_error_cells,
 )
+from drake_haptics.evaluation.accuracy.setting import Setting, find_model_change
+from drake_haptics.evaluation.accuracy.study import (
+    Measurement,
+    make_task,
+    run_accuracy_study,
+)
+from drake_haptics.evaluation.accuracy.truth import find_truth
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 
@@ -91,7 +90,7 @@ def make_prices(study: AccuracyStudy) -> str:
     parts = [
         " ".join([*describe_verdict(study), describe_reference(study)]) + "\n",
         _to_markdown(["knob", "setting", *heads], rows),
-        _make_list("Knee: ", describe_knees(study, make_front(study))),
+        _make_list("Knee: ", describe_knees(study)),
         _make_list("Beside it: ", describe_peers(study)),
         _make_list("Not measured: ", describe_missing(study)),
         describe_machine(study) + "\n",

@@ -16,9 +16,8 @@ from page_stamp import write_page
 
 from drake_haptics import SceneTracker
 from drake_haptics._core import penalty_force, share_stiffness, thin_contacts
-from drake_haptics.evaluation.benchmark.scene_problem import SceneProblem
-from drake_haptics.evaluation.benchmark.scenes import scene_makers
-from drake_haptics.evaluation.measuring.machine import describe_machine
+from drake_haptics.evaluation.benchmark.scenes import SceneProblem, scene_makers
+from drake_haptics.evaluation.measuring.timing import describe_machine
 
 PAGE = Path(__file__).parents[2] / "docs" / "under-load.md"
 BEGIN = "<!-- stages: written by docs/generate/load_table.py -->\n"

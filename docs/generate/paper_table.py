@@ -22,12 +22,13 @@ from drake_haptics.evaluation.paper.evaluation import (
     PaperEvaluation,
     evaluate_paper,
 )
-from drake_haptics.evaluation.paper.page import render, summarize
 from drake_haptics.evaluation.paper.report import (
     Picture,
     Section,
     describe_machine_line,
     make_sections,
+    render,
+    summarize,
 )
 
 _DOCS = Path(__file__).parents[2] / "docs"

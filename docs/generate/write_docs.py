@@ -12,8 +12,8 @@ from pathlib import Path
 
 from page_stamp import write_page
 
-from drake_haptics.evaluation.benchmark.benchmark import BenchFigures
-from drake_haptics.evaluation.benchmark.report import (
+from drake_haptics.evaluation.benchmark.benchmark import (
+    BenchFigures,
     machine_line,
     make_tables,
     missing_lines,

@@ -46,7 +46,6 @@ from drake_haptics.evaluation.accuracy.one_setting import apply_checked, parse_s
 from drake_haptics.evaluation.accuracy.page import write_accuracy_page
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.accuracy.study import run_accuracy_study
-from drake_haptics.evaluation.accuracy.study_json import to_json_data
 from drake_haptics.evaluation.accuracy.table import (
     MODEL_MARK,
     SCENE_MARK,
@@ -63,7 +62,6 @@ from drake_haptics.evaluation.accuracy.words import (
     describe_peers,
     describe_reference,
     describe_verdict,
-    make_front,
     name_setting,
 )
 from drake_haptics.report.paths import check_page_path
@@ -80,7 +78,7 @@ def print_study(console: Console, study: AccuracyStudy) -> None:
     console.print()
     console.print(_make_table(study))
     console.print()
-    for sentence in describe_knees(study, make_front(study)):
+    for sentence in describe_knees(study):
         console.print(f"Knee: {sentence}")
     for sentence in describe_peers(study):
         console.print(f"Beside it: {sentence}")
@@ -271,7 +269,7 @@ def _require_measured(study: AccuracyStudy, settings: list[Setting]) -> None:
 def _show_study(study: AccuracyStudy, page: Path | None, json_file: str | None) -> None:
     """Prints the price list."""
     if json_file is not None:
-        write_json(to_json_data(study), json_file)
+        write_json(study.to_json_data(), json_file)
     if json_file == "-":
         return
     console = make_console(markup=False)

@@ -16,12 +16,10 @@ from drake_haptics.evaluation.benchmark.benchmark import (
     QUICK,
     BenchFigures,
     Effort,
-    run_benchmarks,
-)
-from drake_haptics.evaluation.benchmark.report import (
     machine_line,
     make_tables,
     missing_lines,
+    run_benchmarks,
 )
 
 

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 
 from drake_haptics.cli import accuracy as command
 from drake_haptics.cli import main
-from drake_haptics.evaluation.accuracy.study_json import from_json_data
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import RunError
 
@@ -71,7 +71,7 @@ def test_one_row_from_end_to_end_and_again_from_its_store(tmp_path):
     assert first.returncode == 0, first.stderr
     # A machine that is busy makes it last long enough for a word on how far it is.
     assert re.sub(r"(errors|times): \d of \d: +\d+%\n", "", first.stderr) == ""
-    study = from_json_data(json.loads(first.stdout))
+    study = AccuracyStudy.from_dict(json.loads(first.stdout))
     scene, row = study.rows
     assert scene.is_scene and not row.is_scene
     assert (row.setting.knob, row.setting.label) == ("contact.tolerance_m", "0.5 mm")

@@ -10,7 +10,7 @@ from headless_browser import HeadlessBrowser, find_browser
 from paper_samples import make_evaluation
 
 from drake_haptics.cli import main
-from drake_haptics.evaluation.paper.page import write_paper_page
+from drake_haptics.evaluation.paper.report import write_paper_page
 
 
 @pytest.fixture(scope="module")

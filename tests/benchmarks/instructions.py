@@ -21,12 +21,12 @@ from pathlib import Path
 import numpy as np
 
 from drake_haptics import ConvexPair, ConvexPolytope
-from drake_haptics.evaluation.benchmark.pair_motion import make_presses
-from drake_haptics.evaluation.benchmark.pair_shapes import (
+from drake_haptics.evaluation.benchmark.pairs import (
     KINDS,
     SIZES,
     PairShape,
     make_pair,
+    make_presses,
 )
 
 _MORE = 300

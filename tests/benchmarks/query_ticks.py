@@ -28,7 +28,7 @@ _MARKS = Path(__file__).with_name("callgrind_marks.c")
 
 def record(name: str, file: Path) -> None:
     """Writes shapes and poses of a scenario to an .npz file."""
-    from drake_haptics.evaluation.paper.scenario import build_loop
+    from drake_haptics.evaluation.paper.exploration import build_loop
     from drake_haptics.evaluation.paper.scenarios import scenario_makers
     from drake_haptics.simulation.run import run
 

@@ -8,14 +8,12 @@ from paper_samples import make_evaluation
 from paper_table import PAGE, figures_of, file_of, keep_times, with_figures
 
 from drake_haptics.evaluation.paper.evaluation import Run
-from drake_haptics.evaluation.paper.force_scaling import measure_force_scaling
 from drake_haptics.evaluation.paper.pen_pass import OURS, measure_pen_pass
-from drake_haptics.evaluation.paper.profile import measure_profile
-from drake_haptics.evaluation.paper.profile_figures import sum_up
+from drake_haptics.evaluation.paper.profile import measure_profile, sum_up
 from drake_haptics.evaluation.paper.published import TABLE_1
 from drake_haptics.evaluation.paper.report import make_sections
+from drake_haptics.evaluation.paper.scaling import measure_force_scaling
 from drake_haptics.evaluation.paper.scenarios import scenario_makers
-from drake_haptics.evaluation.paper.statement import MEANING
 from drake_haptics.evaluation.paper.table1 import measure_table1
 from drake_haptics.evaluation.paper.tables import (
     make_pen_table,
@@ -23,6 +21,7 @@ from drake_haptics.evaluation.paper.tables import (
     make_run_table,
     make_table1,
 )
+from drake_haptics.evaluation.paper.words import MEANING
 
 TEXT = PAGE.read_text(encoding="utf-8")
 FIGURES = figures_of(TEXT)

@@ -27,7 +27,7 @@ from click.testing import CliRunner
 
 from drake_haptics.cli import main
 from drake_haptics.evaluation.accuracy.knobs import list_settings
-from drake_haptics.evaluation.accuracy.table import COLUMNS
+from drake_haptics.evaluation.accuracy.report import COLUMNS
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 

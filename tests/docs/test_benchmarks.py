@@ -7,18 +7,17 @@ import re
 from bench_samples import EVERYTHING
 from write_docs import PAGE, figures_of, with_figures
 
-from drake_haptics.evaluation.benchmark.benchmark import Effort
+from drake_haptics.evaluation.benchmark.benchmark import Effort, make_tables
 from drake_haptics.evaluation.benchmark.libraries.with_drake_haptics import LIBRARIES
 from drake_haptics.evaluation.benchmark.pair_runs import run_pair
-from drake_haptics.evaluation.benchmark.pair_shapes import KINDS, SIZES, make_pair
 from drake_haptics.evaluation.benchmark.pair_tables import error_table
-from drake_haptics.evaluation.benchmark.report import make_tables
+from drake_haptics.evaluation.benchmark.pairs import KINDS, SIZES, make_pair
 from drake_haptics.evaluation.benchmark.scene_runs import (
     NAME,
     DrakeHapticsScene,
     run_scene,
+    scene_table,
 )
-from drake_haptics.evaluation.benchmark.scene_table import scene_table
 from drake_haptics.evaluation.benchmark.scenes import scene_makers
 
 _SECTION = figures_of(PAGE.read_text(encoding="utf-8"))

@@ -17,7 +17,7 @@ OPTION = re.compile(r"(?<![\w-])--[a-z]")
 COMMAND = "drake-haptics "
 # Files whose business is a command line, another program's, or a style sheet.
 ARE_OPTIONS = {
-    "evaluation/accuracy/one_setting.py": "format_setting returns options",
+    "evaluation/accuracy/setting.py": "format_setting returns options",
     "evaluation/accuracy/page.py": "has variables of CSS",
     "evaluation/measuring/valgrind.py": "calls valgrind",
     "evaluation/paper/report.py": "tells of the command `paper`",

@@ -11,9 +11,9 @@ from drake_haptics.evaluation.accuracy.figures import (
     Errors,
     PeerRow,
     Row,
-    TickTimes,
 )
 from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.evaluation.measuring.timing import TickTimes
 
 MACHINE = {
     "processor": "a <processor>",

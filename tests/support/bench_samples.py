@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from drake_haptics.evaluation.benchmark.benchmark import BenchFigures
 from drake_haptics.evaluation.benchmark.pair_runs import PairFigures
-from drake_haptics.evaluation.benchmark.python_figures import PythonFigures
+from drake_haptics.evaluation.benchmark.python_pairs import PythonFigures
 from drake_haptics.evaluation.benchmark.scene_runs import SceneFigures
 from drake_haptics.evaluation.measuring.timing import Times
 

@@ -7,11 +7,9 @@ import numpy as np
 from drake_haptics.evaluation.paper.depth_cost import DepthCost, DepthCosts
 from drake_haptics.evaluation.paper.evaluation import Analysis, PaperEvaluation, Run
 from drake_haptics.evaluation.paper.fits import fit_line, fit_power
-from drake_haptics.evaluation.paper.force_scaling import ForceScaling
-from drake_haptics.evaluation.paper.pair_scaling import PairScaling
 from drake_haptics.evaluation.paper.pen_pass import measure_pen_pass
-from drake_haptics.evaluation.paper.profile import Profile
-from drake_haptics.evaluation.paper.profile_figures import sum_up
+from drake_haptics.evaluation.paper.profile import Profile, sum_up
+from drake_haptics.evaluation.paper.scaling import ForceScaling, PairScaling
 from drake_haptics.evaluation.paper.table1 import ModelFigures
 
 

@@ -1,4 +1,4 @@
-"""What accuracy costs in time, measured on the reader's own machine.
+"""Measures what accuracy costs in time on this machine.
 
 `drake-haptics accuracy` is the command.
 """

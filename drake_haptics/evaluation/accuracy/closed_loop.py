@@ -1,4 +1,4 @@
-"""What a setting does to the loop: energy from nothing, and how stiff it may be."""
+"""Measures what a setting does to the loop: energy created, and stable stiffness."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from drake_haptics.analysis.held_loop import analyse_held_scene
 from drake_haptics.analysis.held_scene import HeldScene, hold_scene
 from drake_haptics.analysis.stability_limit import find_stability_limit
-from drake_haptics.evaluation.accuracy.built_scenes import build_once
+from drake_haptics.evaluation.accuracy.costs import build_once
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError, run
 

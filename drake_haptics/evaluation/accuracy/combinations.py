@@ -1,4 +1,4 @@
-"""Combinations of settings, from the scene as it is to the fastest."""
+"""Combines settings step by step, from the scene as it is to the fastest."""
 
 from __future__ import annotations
 
@@ -9,9 +9,7 @@ from typing import Any
 
 from drake_haptics.common.errors import UserError
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Row
-from drake_haptics.evaluation.accuracy.model_changes import is_effect
-from drake_haptics.evaluation.accuracy.one_setting import apply_checked
-from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.evaluation.accuracy.setting import Setting, apply_checked, is_effect
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.schema import Scene
 

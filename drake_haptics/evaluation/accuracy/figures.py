@@ -1,30 +1,22 @@
-"""What a setting costs and how wrong it is: the rows of the price list."""
+"""Holds the price list: the cost and the error of each setting of a scene."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.evaluation.measuring.plain_data import (
+    name_number,
+    read_figures,
+    replace_numbers,
+)
+from drake_haptics.evaluation.measuring.timing import TickTimes
 
 # Why a stiffness is not known that nobody asked for.
 NOT_SOUGHT = "not sought"
-
-
-@dataclass(frozen=True)
-class TickTimes:
-    """How long ticks took.
-
-    Attributes:
-        median_us: Median, µs.
-        p99_us: 99 of 100 took less, µs.
-        p99_9_us: 999 of 1000 took less, µs.
-    """
-
-    median_us: float
-    p99_us: float
-    p99_9_us: float
 
 
 @dataclass(frozen=True)
@@ -56,7 +48,8 @@ class Errors:
             exact one, m.
         normal_jump_deg: Largest turn of the force's direction from one tick to the
             next, beyond the reference's own, degrees.
-        energy_created_J: What the loop made of nothing while it ran, J.
+        energy_created_J: What the loop made of nothing while it ran, J; NaN where no
+            loop was run.
         stable_stiffness_N_per_m: Largest stable stiffness of the coupling against
             this contact, N/m; None where it is not known, infinite where there is no
             limit.
@@ -69,7 +62,7 @@ class Errors:
     torque_max_Nm: float
     depth_max_m: float
     normal_jump_deg: float
-    energy_created_J: float
+    energy_created_J: float = math.nan
     stable_stiffness_N_per_m: float | None = None
     stiffness_why_not: str = ""
 
@@ -121,7 +114,7 @@ class AccuracyStudy:
     Attributes:
         scene: Its name.
         description: Its sentence.
-        machine: See `drake_haptics.evaluation.measuring.machine.describe_machine`.
+        machine: See `drake_haptics.evaluation.measuring.timing.describe_machine`.
         ticks: Of the recorded motion.
         contact_ticks: Those of them with a contact.
         reference: What the wrench is compared with: the finest exact setting.
@@ -146,49 +139,19 @@ class AccuracyStudy:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns the study ready for JSON."""
+        """Returns the study as plain data."""
         return asdict(self)
+
+    def to_json_data(self) -> dict[str, Any]:
+        """Returns the study as what `json.dumps(allow_nan=False)` takes.
+
+        Infinite numbers are the text "infinite", and NaN is "none"; a null is a figure
+        that was not sought.
+        """
+        data: dict[str, Any] = replace_numbers(self.to_dict(), name_number)
+        return data
 
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> AccuracyStudy:
-        """Returns what `to_dict` made plain data of."""
-        return replace(
-            AccuracyStudy(**data),
-            reference=Setting.from_dict(data["reference"]),
-            rows=tuple(_to_row(row) for row in data["rows"]),
-            peers=tuple(_to_peer(row) for row in data["peers"]),
-        )
-
-
-def _to_row(data: Mapping[str, Any]) -> Row:
-    return Row(
-        setting=Setting.from_dict(data["setting"]),
-        is_scene=data["is_scene"],
-        cost=_to_cost(data["cost"]),
-        errors=_to_errors(data["errors"]),
-        pieces=(data["pieces"][0], data["pieces"][1]),
-        why_not=data["why_not"],
-    )
-
-
-def _to_peer(data: Mapping[str, Any]) -> PeerRow:
-    native = data["native"]
-    return PeerRow(
-        library=data["library"],
-        method=data["method"],
-        native=None if native is None else TickTimes(**native),
-        errors=_to_errors(data["errors"]),
-        why_not=data["why_not"],
-    )
-
-
-def _to_cost(data: Mapping[str, Any] | None) -> Cost | None:
-    if data is None:
-        return None
-    return Cost(
-        TickTimes(**data["tick"]), TickTimes(**data["native"]), data["instructions"]
-    )
-
-
-def _to_errors(data: Mapping[str, Any] | None) -> Errors | None:
-    return None if data is None else Errors(**data)
+        """Returns the study that `to_dict` or `to_json_data` made data of."""
+        return read_figures(AccuracyStudy, data)

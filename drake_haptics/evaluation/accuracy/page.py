@@ -1,4 +1,4 @@
-"""Writes what accuracy costs as one page that any browser shows."""
+"""Writes the study of a scene as one page that any browser shows."""
 
 from __future__ import annotations
 
@@ -12,18 +12,23 @@ from pathlib import Path
 from string import Template
 
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, PeerRow, Row
-from drake_haptics.evaluation.accuracy.one_setting import format_setting
 from drake_haptics.evaluation.accuracy.pareto import (
     ERROR_FLOOR_N,
     get_force_error_N,
     get_native_us,
 )
 from drake_haptics.evaluation.accuracy.plot import draw_study
-from drake_haptics.evaluation.accuracy.table import (
+from drake_haptics.evaluation.accuracy.report import (
     COLUMNS,
     MODEL_MARK,
     SCENE_MARK,
     Column,
+    describe_knees,
+    describe_machine,
+    describe_missing,
+    describe_models,
+    describe_reference,
+    describe_verdict,
     format_N,
     format_times,
     get_columns,
@@ -32,16 +37,8 @@ from drake_haptics.evaluation.accuracy.table import (
     make_error_cells,
     make_label,
 )
-from drake_haptics.evaluation.accuracy.words import (
-    describe_knees,
-    describe_machine,
-    describe_missing,
-    describe_models,
-    describe_reference,
-    describe_verdict,
-    make_front,
-)
-from drake_haptics.report.page import check_page_path
+from drake_haptics.evaluation.accuracy.setting import format_setting
+from drake_haptics.report.paths import check_page_path
 
 _DPI = 110
 _PEER_COLUMNS = (
@@ -74,7 +71,7 @@ def write_accuracy_page(study: AccuracyStudy, path: Path, command: str) -> None:
         name=html.escape(study.scene),
         description=html.escape(study.description),
         verdict=html.escape(" ".join(describe_verdict(study))),
-        knees=_make_list("", describe_knees(study, make_front(study))),
+        knees=_make_list("", describe_knees(study)),
         picture=base64.b64encode(picture.getvalue()).decode(),
         scene_mark=SCENE_MARK,
         model_mark=MODEL_MARK,

@@ -1,4 +1,4 @@
-"""Which settings are worth their time: the front of a study, and its knees."""
+"""Finds the settings that are worth their time: the front of a study, and its knees."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Row
-from drake_haptics.evaluation.accuracy.model_changes import is_comparable
+from drake_haptics.evaluation.accuracy.setting import is_comparable
 
 # Smaller errors are alike: nobody feels so little.
 ERROR_FLOOR_N = 1e-3

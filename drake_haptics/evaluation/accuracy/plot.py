@@ -1,4 +1,4 @@
-"""Draws what accuracy costs: error over time, the front, its knees, and peers."""
+"""Draws a study: errors over times, the front and its knees, and other libraries."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from drake_haptics.common.colors import FRONT, INKS, OTHER_MODEL, Color
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, PeerRow, Row
-from drake_haptics.evaluation.accuracy.model_changes import is_comparable
 from drake_haptics.evaluation.accuracy.pareto import (
     ERROR_FLOOR_N,
     find_front,
@@ -18,8 +17,12 @@ from drake_haptics.evaluation.accuracy.pareto import (
     get_native_us,
     get_tick_us,
 )
-from drake_haptics.evaluation.accuracy.table import format_N, group_rows
-from drake_haptics.evaluation.accuracy.words import describe_machine
+from drake_haptics.evaluation.accuracy.report import (
+    describe_machine,
+    format_N,
+    group_rows,
+)
+from drake_haptics.evaluation.accuracy.setting import is_comparable
 from drake_haptics.report.plot_labels import (
     Label,
     add_legends,

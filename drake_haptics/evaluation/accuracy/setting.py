@@ -1,16 +1,38 @@
-"""A setting of one knob: what it changes in a scene."""
+"""Changes knobs of a scene: applies settings, judges them, and reads them as words."""
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+import dataclasses
+import difflib
+import json
+import shlex
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, is_dataclass
 from typing import Any, get_args, get_type_hints
 
-from drake_haptics.scene.schema import Scene
+from drake_haptics.common.errors import UserError
+from drake_haptics.scene.keys import list_keys
+from drake_haptics.scene.schema import EnvironmentObject, Scene
+from drake_haptics.scene.validation import check_values
+from drake_haptics.scene.yaml_loading import check_keys
 
 # A key that begins so is set in every object of the environment.
 _EACH_OBJECT = "environment."
+# Beginning of a key: what differs.
+_MODELS = {
+    "effects.": "what is felt besides contact",
+    "contact.clustering": "how contacts that are near count together",
+    "contact.cluster_size_m": "how far contacts count as one",
+    "contact.depth": "whether depth is the way back or the shortest way out",
+    "contact.tolerance_m": "how far from a surface it begins to push",
+    "device.rate_hz": "how often the loop ticks, and so what a second of it costs",
+}
+_EFFECTS = "effects."
+# What a device does and how long a tick may take: the loop, and not its contacts.
+_LOOP = "device."
+# Stands for no change at all.
+_NO_CHANGE = "scene"
 
 
 @dataclass(frozen=True)
@@ -77,3 +99,124 @@ def _find_part(owner: type, name: str) -> Any:
         if is_dataclass(kind):
             return kind
     raise TypeError(f"{name} cannot be given as a whole; give its keys one by one")
+
+
+def find_model_change(setting: Setting) -> str:
+    """Returns what a setting changes of the model, empty if nothing.
+
+    What differs then is what is felt, not how exactly it is computed: the "error" is
+    the difference between two models.
+    """
+    return next(
+        (
+            words
+            for beginning, words in _MODELS.items()
+            if any(key.startswith(beginning) for key in setting.changes)
+        ),
+        "",
+    )
+
+
+def is_comparable(setting: Setting) -> bool:
+    """Whether a setting's figure is an error, which another one may beat.
+
+    One of another model is exact in what it does, see `find_model_change`; in another
+    loop a tick is another share of a second, or leaves out what it has no time for.
+    """
+    of_loop = any(key.startswith(_LOOP) for key in setting.changes)
+    return not of_loop and not find_model_change(setting)
+
+
+def is_effect(setting: Setting) -> bool:
+    """Whether a setting takes away or changes an effect that a scene names."""
+    return any(key.startswith(_EFFECTS) for key in setting.changes)
+
+
+def parse_setting(words: Sequence[str], known: Iterable[Setting] = ()) -> Setting:
+    """Returns the setting that words such as `contact.tolerance_m=0.0005` make.
+
+    Args:
+        words: `KEY=VALUE` each, all of one setting; VALUE is JSON, or else a text. Or
+            the single word `scene`, for the scene as it is.
+        known: Settings with labels; the first with the same changes is returned.
+
+    Raises:
+        UserError: A word is no such thing, or a key is there twice.
+    """
+    changes: dict[str, Any] = {}
+    for word in words if list(words) != [_NO_CHANGE] else ():
+        key, sign, text = word.partition("=")
+        if not sign or not key:
+            raise UserError(
+                f"'{word}' is not KEY=VALUE, as in contact.tolerance_m=0.0005"
+            )
+        if key in changes:
+            raise UserError(f"{key} is given twice")
+        changes[key] = _parse_value(text)
+    for setting in known:
+        if dict(setting.changes) == changes:
+            return setting
+    if not changes:
+        return Setting(_NO_CHANGE, "as it is")
+    label = ", ".join(_format_value(value) for value in changes.values())
+    return Setting(" and ".join(changes), label, changes)
+
+
+def format_setting(setting: Setting) -> str:
+    """Returns the options that ask for a setting on a command line."""
+    words = [
+        f"{key}={_format_value(value)}" for key, value in setting.changes.items()
+    ] or [_NO_CHANGE]
+    return " ".join(f"--only {shlex.quote(word)}" for word in words)
+
+
+def apply_checked(setting: Setting, scene: Scene) -> Scene:
+    """Returns a copy of a scene with a setting, if that is a scene.
+
+    Raises:
+        UserError: A key is none of the scene's, or a value cannot be.
+    """
+    known = [*list_keys(Scene), *list_keys(EnvironmentObject, "environment.")]
+    for key in setting.changes:
+        if not any(name == key or name.startswith(f"{key}.") for name in known):
+            near = difflib.get_close_matches(key, known, n=1)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            raise UserError(f"{key} is no key of a scene{hint}")
+    try:
+        changed = setting.apply(scene)
+    except AttributeError as error:  # Of a part that the scene leaves out.
+        keys = [key for key in setting.changes if key.startswith("effects.")]
+        names = ", ".join(dict.fromkeys(key.rpartition(".")[0] for key in keys))
+        raise UserError(
+            f"the scene has no {names or 'such part'}; give the part as a"
+            " whole, like effects.friction='{\"coefficient\": 0.3}'"
+        ) from error
+    except TypeError as error:
+        names = " and ".join(setting.changes)
+        raise UserError(f"{names}: {error}") from error
+    check_keys(Scene, _without_none(dataclasses.asdict(changed)))
+    check_values(changed)
+    return changed
+
+
+def _parse_value(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
+def _format_value(value: Any) -> str:
+    """Returns what `_parse_value` makes the same value of."""
+    if isinstance(value, str) and _parse_value(value) == value:
+        return value
+    return json.dumps(value)
+
+
+def _without_none(data: Any) -> Any:
+    """Returns data as a scene file would have them: what is not given is not there."""
+    if isinstance(data, dict):
+        return {k: _without_none(v) for k, v in data.items() if v is not None}
+    if isinstance(data, list):
+        return [_without_none(v) for v in data]
+    return data

@@ -3,41 +3,60 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from subprocess import SubprocessError
 from typing import Any
 
 from drake_haptics.analysis.jobs.blas_threads import one_blas_thread
 from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.analysis.jobs.study import run_study
-from drake_haptics.evaluation.accuracy.closed_loop import find_pressed_place
-from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
+from drake_haptics.common.errors import UserError
+from drake_haptics.evaluation.accuracy.closed_loop import (
+    PressedPlace,
+    StableStiffness,
+    find_pressed_place,
+    find_stable_stiffness,
+    measure_created_energy,
+)
+from drake_haptics.evaluation.accuracy.costs import (
+    build_once,
+    combine,
+    make_native_part,
+    time_native,
+    time_ticks,
+)
+from drake_haptics.evaluation.accuracy.figures import (
+    NOT_SOUGHT,
+    AccuracyStudy,
+    Cost,
+    Errors,
+    Row,
+)
 from drake_haptics.evaluation.accuracy.knobs import (
     AS_IT_IS,
     list_few_settings,
     list_settings,
     make_reference,
 )
-from drake_haptics.evaluation.accuracy.measurement import Measurement
+from drake_haptics.evaluation.accuracy.native_part import count_native
 from drake_haptics.evaluation.accuracy.recorded_motion import (
+    RecordedMotion,
     choose_duration,
     record_motion,
 )
 from drake_haptics.evaluation.accuracy.setting import Setting
-from drake_haptics.evaluation.accuracy.study_rows import (
-    Task,
-    list_timing_tasks,
-    make_row,
-    make_task,
-)
-from drake_haptics.evaluation.accuracy.truth import find_truth
-from drake_haptics.evaluation.measuring.machine import describe_machine
+from drake_haptics.evaluation.accuracy.truth import Truth, find_truth, measure_open_loop
+from drake_haptics.evaluation.measuring.timing import TickTimes, describe_machine
 from drake_haptics.evaluation.measuring.valgrind import require_valgrind
 from drake_haptics.scene.schema import Scene
 
+# Under valgrind a tick takes fifty times as long; no more are needed, as counts do not
+# scatter.
+_COUNTED_TICKS = 500
+Task = dict[str, Any]
 Progress = Callable[[str, float], None]
-
 # Runs of each setting, in turns.
 _REPEATS = 3
 # Longest motion of a quick study, simulated.
@@ -46,6 +65,162 @@ _QUICK_S = 1.0
 _TRUTH, _PRESS = 0.01, 0.03
 # Those of stages, from where to where.
 _ERRORS, _COUNTS, _TIMES = (0.05, 0.3), (0.3, 0.35), (0.35, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """Measures one thing of a setting; for a `run_study`.
+
+    Attributes:
+        scene: As it is.
+        motion: Of its tool.
+        truth: On that motion.
+        place: Where its hand stops to press, for the stable stiffness; None where that
+            is not sought.
+    """
+
+    scene: Scene
+    motion: RecordedMotion
+    truth: Truth
+    place: PressedPlace | None
+
+    def __call__(self, task: dict[str, Any]) -> dict[str, Any]:
+        """Returns what is asked for, or why it cannot be had.
+
+        Args:
+            task: `what` ("errors", "instructions", "native" or "ticks") and the
+                `setting`; of times also the machine and the number of the repeat.
+        """
+        scene = Setting.from_dict(task["setting"]).apply(self.scene)
+        measure = getattr(self, f"_measure_{task['what']}")
+        try:
+            result: dict[str, Any] = measure(scene)
+        # Drake raises RuntimeError, as a run that diverges does.
+        except (UserError, ValueError, RuntimeError, SubprocessError) as error:
+            return {"why_not": str(error)}
+        return result
+
+    @property
+    def duration_s(self) -> float:
+        """Of the motion, s."""
+        return len(self.motion) * self.motion.period_s
+
+    def _measure_errors(self, scene: Scene) -> dict[str, Any]:
+        haptic = build_once(scene)
+        stiffness = StableStiffness(None, NOT_SOUGHT)
+        if self.place is not None:
+            stiffness = find_stable_stiffness(scene, self.place)
+        errors = replace(
+            measure_open_loop(scene, self.motion, self.truth),
+            energy_created_J=measure_created_energy(scene, self.duration_s),
+            stable_stiffness_N_per_m=stiffness.stiffness_N_per_m,
+            stiffness_why_not=stiffness.why_not,
+        )
+        num_objects = sum(len(part.pieces) for part in haptic.environment)
+        pieces = [len(haptic.tool.pieces), num_objects]
+        return {"errors": asdict(errors), "pieces": pieces}
+
+    def _measure_ticks(self, scene: Scene) -> dict[str, Any]:
+        return asdict(time_ticks(scene, self.duration_s))
+
+    def _measure_instructions(self, scene: Scene) -> dict[str, Any]:
+        haptic = build_once(scene)
+        busiest = self.motion.cut(*self.truth.find_busiest(_COUNTED_TICKS))
+        motion = busiest.sample(haptic.period_s)
+        part = make_native_part(haptic)
+        return {"instructions": count_native(part, motion.X_WTool, motion.V_WTool)}
+
+    def _measure_native(self, scene: Scene) -> dict[str, Any]:
+        haptic = build_once(scene)
+        motion = self.motion.sample(haptic.period_s)
+        return asdict(time_native(make_native_part(haptic), motion))
+
+
+def make_task(what: str, setting: Setting, **more: Any) -> Task:
+    """Returns a task of a `Measurement`."""
+    return {"what": what, "setting": setting.to_dict(), **more}
+
+
+def list_timing_tasks(
+    settings: Sequence[Setting], repeats: int, machine: Mapping[str, str | int]
+) -> list[Task]:
+    """Returns what to time, in turns that each begin at another setting.
+
+    So a machine that becomes slower or faster does so for all settings alike.
+
+    Args:
+        settings: To be timed.
+        repeats: Runs of each.
+        machine: On which; another one's times are others.
+    """
+    tasks = [make_task("native", setting, machine=machine) for setting in settings]
+    for repeat in range(repeats):
+        first = repeat * len(settings) // repeats
+        tasks += [
+            make_task("ticks", setting, machine=machine, repeat=repeat)
+            for setting in [*settings[first:], *settings[:first]]
+        ]
+    return tasks
+
+
+def make_row(
+    setting: Setting,
+    measured: Setting,
+    is_scene: bool,
+    done: Sequence[tuple[Task, Mapping[str, Any]]],
+) -> Row:
+    """Returns the row of a setting.
+
+    Args:
+        setting: Its setting.
+        measured: The setting that was measured and makes the same scene.
+        is_scene: Whether that is the scene as it is.
+        done: All tasks of the study with their results.
+    """
+    own: dict[str, list[Mapping[str, Any]]] = {
+        "errors": [],
+        "instructions": [],
+        "native": [],
+        "ticks": [],
+    }
+    for task, result in done:
+        if task["setting"] == measured.to_dict():
+            own[task["what"]].append(result)
+    reasons = [
+        result["why_not"]
+        for results in own.values()
+        for result in results
+        if "why_not" in result
+    ]
+    return Row(
+        setting=setting,
+        is_scene=is_scene,
+        cost=_make_cost(own),
+        errors=_make_errors(own["errors"]),
+        pieces=_read_pieces(own["errors"]),
+        why_not=reasons[0] if reasons else "",
+    )
+
+
+def _make_cost(own: Mapping[str, Sequence[Mapping[str, Any]]]) -> Cost | None:
+    counts = own["instructions"]
+    if any("why_not" in result for result in [*own["native"], *own["ticks"], *counts]):
+        return None
+    return Cost(
+        tick=combine([TickTimes(**result) for result in own["ticks"]]),
+        native=combine([TickTimes(**result) for result in own["native"]]),
+        instructions=counts[0]["instructions"] if counts else None,
+    )
+
+
+def _make_errors(results: Sequence[Mapping[str, Any]]) -> Errors | None:
+    (result,) = results
+    return None if "why_not" in result else Errors(**result["errors"])
+
+
+def _read_pieces(results: Sequence[Mapping[str, Any]]) -> tuple[int, int]:
+    tool, objects = results[0].get("pieces", (0, 0))
+    return tool, objects
 
 
 @dataclass(frozen=True)

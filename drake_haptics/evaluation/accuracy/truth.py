@@ -1,4 +1,4 @@
-"""What settings are compared with on a recorded motion."""
+"""Finds the truth on a recorded motion, and how far other answers are from it."""
 
 from __future__ import annotations
 
@@ -6,11 +6,78 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from drake_haptics._core import ConvexPair, ConvexPolytope
 from drake_haptics.analysis.held_scene import build_quietly
-from drake_haptics.evaluation.accuracy.exact_distance import calc_exact_distance
-from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
-from drake_haptics.evaluation.accuracy.tool_replay import replay_tool
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.evaluation.accuracy.figures import Errors
+from drake_haptics.evaluation.accuracy.recorded_motion import (
+    RecordedMotion,
+    replay_tool,
+)
+from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Scene
+
+# A force below this share of the reference's largest has no direction to speak of.
+_FIRM_SHARE = 0.1
+
+
+def calc_exact_distance(haptic: HapticDiagram, X_WTool: np.ndarray) -> np.ndarray:
+    """Returns the signed distance of the deepest pair of convex pieces at each pose.
+
+    For each pair whose bounding spheres come near, all poses at which they do are
+    asked for the global depth: the least way out of all, proven. No pair knows of
+    another, and none of what a tracker holds or leaves out. Where tool and objects are
+    one convex piece each that is the exact penetration depth. Of a mesh in many pieces
+    the hulls have faces that the mesh has not: a contact never leaves by such a face,
+    and can so be some micrometres deeper than the pair.
+
+    Args:
+        haptic: Whose pieces, and objects where they stand.
+        X_WTool: (n, 7) poses of the tool, m.
+
+    Returns:
+        (n,) distances, m, negative in depth; infinite beyond the contact's tolerance.
+    """
+    tolerance_m = haptic.scene.contact.tolerance_m
+    R_WTool = np.array([vector_to_pose(X).rotation().matrix() for X in X_WTool])
+    best = np.full(len(X_WTool), np.inf)
+    objects = [
+        (piece, item.pose.to_rigid_transform())
+        for item, part in zip(haptic.scene.environment, haptic.environment, strict=True)
+        for piece in part.pieces
+    ]
+    centers_W = np.array([X_WO @ piece.centroid for piece, X_WO in objects])
+    reach_m = tolerance_m + np.array([piece.radius for piece, _ in objects])
+    for tool_piece in haptic.tool.pieces:
+        p_WC = X_WTool[:, 4:] + R_WTool @ tool_piece.centroid
+        for i in _find_near(p_WC, centers_W, reach_m + tool_piece.radius):
+            piece, X_WO = objects[i]
+            apart_m = np.linalg.norm(p_WC - centers_W[i], axis=1)
+            near = np.flatnonzero(apart_m < reach_m[i] + tool_piece.radius)
+            found = _query(tool_piece, piece, X_WTool[near], pose_to_vector(X_WO))
+            best[near] = np.minimum(best[near], found)
+    return np.where(best < tolerance_m, best, np.inf)
+
+
+def _find_near(p_WC: np.ndarray, centers_W: np.ndarray, reach: np.ndarray) -> list[int]:
+    """Returns the spheres that a moving point may come into."""
+    low, high = p_WC.min(axis=0), p_WC.max(axis=0)
+    nearest = np.clip(centers_W, low, high)
+    near = np.linalg.norm(centers_W - nearest, axis=1) < reach
+    indices: list[int] = np.flatnonzero(near).tolist()
+    return indices
+
+
+def _query(
+    A: ConvexPolytope, B: ConvexPolytope, X_WA: np.ndarray, X_WB: np.ndarray
+) -> np.ndarray:
+    """Returns the global signed distance (n,) of a pair at each pose."""
+    if len(X_WA) == 0:
+        return np.empty(0)
+    distance: np.ndarray = (
+        ConvexPair(A, B, "global").query_trajectory(X_WA, X_WB).distance
+    )
+    return distance
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,3 +155,57 @@ def shift_wrench(
     p_TP_W = p_TP + 2.0 * (w * turned + np.cross(xyz, turned))
     force = F_Tool_W[:, 3:]
     return np.hstack([F_Tool_W[:, :3] - np.cross(p_TP_W, force), force])
+
+
+def measure_open_loop(scene: Scene, motion: RecordedMotion, truth: Truth) -> Errors:
+    """Replays a motion in a scene and compares its answers with the truth.
+
+    Returns:
+        The errors; energy and stiffness, which are the closed loop's, are NaN and None.
+    """
+    replay = replay_tool(scene, motion)
+    F_Tcm_W = shift_wrench(replay.F_Tool_W, motion.X_WTool, truth.p_TTcm)
+    return compare(F_Tcm_W, replay.distance, scene.contact.tolerance_m, truth)
+
+
+def compare(
+    F_Tcm_W: np.ndarray, distance: np.ndarray, tolerance_m: float, truth: Truth
+) -> Errors:
+    """Compares the answers of anything with the truth.
+
+    Args:
+        F_Tcm_W: (n, 6) wrench [τ; f] at the truth's center of mass, N·m and N.
+        distance: (n,) of the deepest contact, m; infinite where there is none.
+        tolerance_m: How far contacts were looked for, m. Depths are compared up to
+            where both look.
+        truth: At the same n ticks.
+    """
+    error = np.linalg.norm((F_Tcm_W - truth.F_Tcm_W).reshape(-1, 2, 3), axis=2)
+    rms, largest = np.sqrt((error**2).mean(axis=0)), error.max(axis=0)
+    cap_m = min(tolerance_m, truth.tolerance_m)
+    depth = np.minimum(distance, cap_m) - np.minimum(truth.distance, cap_m)
+    firm_N = _FIRM_SHARE * float(np.linalg.norm(truth.F_Tcm_W[:, 3:], axis=1).max())
+    turn = _calc_turns(F_Tcm_W[:, 3:], firm_N)
+    expected = _calc_turns(truth.F_Tcm_W[:, 3:], firm_N)
+    return Errors(
+        force_rms_N=float(rms[1]),
+        force_max_N=float(largest[1]),
+        torque_rms_Nm=float(rms[0]),
+        torque_max_Nm=float(largest[0]),
+        depth_max_m=float(np.abs(depth).max()),
+        normal_jump_deg=float(np.rad2deg((turn - expected).max(initial=0.0))),
+    )
+
+
+def _calc_turns(force: np.ndarray, firm_N: float) -> np.ndarray:
+    """Returns (n - 1,) how far forces turn from a tick to the next, rad.
+
+    Zero where one of the two is not firm.
+    """
+    before, after = force[:-1], force[1:]
+    # Sine and cosine together are exact for small turns as for large ones.
+    sine = np.linalg.norm(np.cross(before, after), axis=1)
+    turn = np.arctan2(sine, np.einsum("ni,ni->n", before, after))
+    size = np.linalg.norm(force, axis=1)
+    firm = (np.minimum(size[:-1], size[1:]) > firm_N) & (firm_N > 0.0)
+    return np.where(firm, turn, 0.0)

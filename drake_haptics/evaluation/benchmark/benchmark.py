@@ -1,7 +1,8 @@
-"""Runs the benchmarks and holds their figures."""
+"""Runs the benchmarks, holds their figures and makes their tables."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
@@ -9,26 +10,40 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from drake_haptics.evaluation.benchmark.libraries import find_libraries
-from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures
+from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures, loop_tables
+from drake_haptics.evaluation.benchmark.pair_library import find_libraries
 from drake_haptics.evaluation.benchmark.pair_runs import PairFigures, run_pair
-from drake_haptics.evaluation.benchmark.pair_shapes import KINDS, SIZES, make_pair
-from drake_haptics.evaluation.benchmark.python_figures import PythonFigures
-from drake_haptics.evaluation.benchmark.scene_problem import SceneProblem
+from drake_haptics.evaluation.benchmark.pair_tables import (
+    error_table,
+    python_table,
+    ratio_table,
+    time_table,
+)
+from drake_haptics.evaluation.benchmark.pairs import KINDS, SIZES, make_pair
+from drake_haptics.evaluation.benchmark.python_pairs import (
+    PythonFigures,
+    run_python_pair,
+)
 from drake_haptics.evaluation.benchmark.scene_runs import (
+    COAL,
     NAME,
+    CoalScene,
     DrakeHapticsScene,
     SceneFigures,
     SceneQuery,
     run_scene,
+    scene_table,
 )
-from drake_haptics.evaluation.benchmark.scenes import scene_makers
-from drake_haptics.evaluation.measuring.machine import describe_machine
+from drake_haptics.evaluation.benchmark.scenes import SceneProblem, scene_makers
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
+from drake_haptics.evaluation.measuring.plain_data import read_figures, replace_numbers
+from drake_haptics.evaluation.measuring.timing import describe_machine, name_machine
+from drake_haptics.report.table import Table
 
 PARTS = ("pairs", "python", "scenes", "loop")
 # Called with what is done next and the share of the part that is done.
 Progress = Callable[[str, float], None]
+_LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room")
 
 
 @dataclass(frozen=True)
@@ -36,12 +51,12 @@ class Effort:
     """How much is measured.
 
     Attributes:
-        sizes: of the bodies of convex pairs, vertices.
-        presses: of each pair.
-        motions: of each scene.
-        repeats: of each of these; at least 3, so that interruptions fall out.
-        large_scenes: whether scenes of 1000 pieces and more are run.
-        loop_s: of the loops' motion, s.
+        sizes: Sizes of the bodies of convex pairs, vertices.
+        presses: Presses of each pair.
+        motions: Motions in each scene.
+        repeats: Repeats of each of these; at least 3, so that interruptions fall out.
+        large_scenes: Whether scenes of 1000 pieces and more are run.
+        loop_s: Duration of the loops' motion, s.
     """
 
     sizes: tuple[int, ...] = SIZES
@@ -60,7 +75,6 @@ QUICK = Effort(
     large_scenes=False,
     loop_s=1.2,
 )
-_LARGE_SCENES = ("spoon on organ", "spoon on armadillo", "wrench in machine room")
 
 
 @dataclass(frozen=True)
@@ -68,13 +82,13 @@ class BenchFigures:
     """All figures of a run.
 
     Attributes:
-        machine: see `describe_machine`.
-        libraries: name -> version of those that were measured on pairs or in loops.
-        missing: name -> why it was not measured.
-        pairs: figures of convex pairs, those of a pair together.
-        python: figures of single queries from Python.
-        scenes: figures of scenes, those of a scene together.
-        loop: figures of whole loops.
+        machine: See `describe_machine`.
+        libraries: Name -> version of those that were measured on pairs or in loops.
+        missing: Name -> why it was not measured.
+        pairs: Figures of convex pairs, those of a pair together.
+        python: Figures of single queries from Python.
+        scenes: Figures of scenes, those of a scene together.
+        loop: Figures of whole loops.
     """
 
     machine: dict[str, Any]
@@ -87,20 +101,15 @@ class BenchFigures:
 
     def to_dict(self) -> dict[str, Any]:
         """Returns everything as plain data; None stands for NaN."""
-        plain: dict[str, Any] = _without_nan(asdict(self))
+        plain: dict[str, Any] = replace_numbers(
+            asdict(self), lambda number: None if math.isnan(number) else number
+        )
         return plain
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> BenchFigures:
-        """Returns what `to_dict` was called on."""
-        rest = {name: data[name] for name in ("machine", "libraries", "missing")}
-        return BenchFigures(
-            **rest,
-            pairs=[PairFigures.from_dict(d) for d in data["pairs"]],
-            python=[PythonFigures(**d) for d in data["python"]],
-            scenes=[SceneFigures.from_dict(d) for d in data["scenes"]],
-            loop=[LoopFigures.from_dict(d) for d in data["loop"]],
-        )
+        """Returns the figures that `to_dict` made data of."""
+        return read_figures(BenchFigures, data)
 
 
 def run_benchmarks(
@@ -112,10 +121,10 @@ def run_benchmarks(
     """Measures this package and the libraries that are installed, in this thread.
 
     Args:
-        parts: of `PARTS`.
-        effort: how much.
-        meshes: a folder of real meshes for the scenes, see `scene_makers`.
-        progress: called before each step.
+        parts: Some of `PARTS`.
+        effort: How much is measured.
+        meshes: A folder of real meshes for the scenes, see `scene_makers`.
+        progress: Called before each step.
 
     Raises:
         UserError: The folder has none of the meshes.
@@ -149,8 +158,6 @@ def _run_python(figures: BenchFigures, effort: Effort, progress: Progress) -> No
     if find_spec("coal") is None:
         figures.missing["coal"] = "No module named 'coal'"
         return
-    from drake_haptics.evaluation.benchmark.python_runs import run_python_pair
-
     pairs = [(kind, size) for kind in KINDS for size in effort.sizes]
     for done, (kind, size) in enumerate(pairs):
         progress(f"from Python: {kind}, {size} vertices", done / len(pairs))
@@ -197,17 +204,44 @@ def _run_loop(figures: BenchFigures, effort: Effort, progress: Progress) -> None
 
 def _scene_peer(figures: BenchFigures, problem: SceneProblem) -> dict[str, SceneQuery]:
     try:
-        from drake_haptics.evaluation.benchmark import scene_peer
-
-        return {scene_peer.NAME: scene_peer.CoalScene(problem)}
+        return {COAL: CoalScene(problem)}
     except (ImportError, NativeBuildError) as error:
         figures.missing["coal"] = str(error)
         return {}
 
 
-def _without_nan(data: Any) -> Any:
-    if isinstance(data, dict):
-        return {key: _without_nan(value) for key, value in data.items()}
-    if isinstance(data, list):
-        return [_without_nan(value) for value in data]
-    return None if data != data else data  # NaN alone differs from itself
+def make_tables(figures: BenchFigures) -> list[Table]:
+    """Returns the tables of the parts that were run."""
+    tables = []
+    if figures.pairs:
+        tables += [
+            ratio_table(figures.pairs),
+            error_table(figures.pairs),
+            time_table(figures.pairs),
+        ]
+    if figures.python:
+        tables.append(python_table(figures.python))
+    if figures.scenes:
+        tables.append(scene_table(figures.scenes))
+    if figures.loop:
+        tables += loop_tables(figures.loop)
+    return tables
+
+
+def machine_line(figures: BenchFigures) -> str:
+    """Returns what the figures were taken on, and with which libraries."""
+    machine = figures.machine
+    versions = {
+        name.partition(",")[0]: version for name, version in figures.libraries.items()
+    }
+    versions.setdefault("drake_haptics", machine["drake_haptics"])
+    named = ", ".join(f"{name} {version}" for name, version in versions.items())
+    return (
+        f"{name_machine(machine)}; {named}. One thread. Whatever else runs on the "
+        "machine disturbs the times: read ratios, not microseconds."
+    )
+
+
+def missing_lines(figures: BenchFigures) -> list[str]:
+    """Returns a line for each library that was not measured."""
+    return [f"not measured: {name} ({why})" for name, why in figures.missing.items()]

@@ -1,14 +1,19 @@
-"""What a collision library must do to be measured on a convex pair."""
+"""Defines what a library must do on a convex pair, and finds those installed."""
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.benchmark.pairs import PairShape
+from drake_haptics.evaluation.measuring.native_build import NativeBuildError
+
+_PACKAGE = "drake_haptics.evaluation.benchmark.libraries"
+_MODULES = ("drake_haptics", "coal", "mujoco", "fcl", "pybullet", "pydrake")
 
 
 @dataclass(frozen=True)
@@ -43,16 +48,29 @@ class PairLibrary:
     """A library in one of its modes.
 
     Attributes:
-        name: as tables show it.
-        version: of the library.
-        ours: whether it is this package.
-        make_query: builds the bodies of a pair in the library.
+        name: Name in tables.
+        version: Version of the library.
+        ours: Whether it is this package.
+        make_query: Builds the bodies of a pair in the library.
     """
 
     name: str
     version: str
     ours: bool
     make_query: Callable[[PairShape], PairQuery]
+
+
+def ask_each(
+    X_WA: np.ndarray, ask: Callable[[np.ndarray], tuple[float, np.ndarray, float]]
+) -> PairAnswers:
+    """Returns the answers of a library that is asked for one pose after the other.
+
+    Args:
+        X_WA: (n, 4, 4) poses of A.
+        ask: Returns distance, normal and time of an answer, see `PairAnswers`.
+    """
+    distance, normal, seconds = zip(*map(ask, X_WA), strict=True)
+    return PairAnswers(np.array(distance), np.array(normal), np.array(seconds))
 
 
 def normals_between(
@@ -69,3 +87,23 @@ def normals_between(
     along = np.copysign(1.0, distance)[:, None] * (p_WCa - p_WCb)
     length = np.linalg.norm(along, axis=1, keepdims=True)
     return np.divide(along, length, out=np.full_like(along, np.nan), where=length > 0)
+
+
+def find_libraries() -> tuple[list[PairLibrary], dict[str, str]]:
+    """Returns the libraries that can be measured here, this package's depths first.
+
+    Adapters in C++ are compiled when they are first asked for, in some ten seconds.
+
+    Returns:
+        The libraries; and of each other one, by its name, why not.
+    """
+    found: list[PairLibrary] = []
+    missing: dict[str, str] = {}
+    for name in _MODULES:
+        try:
+            module = importlib.import_module(f"{_PACKAGE}.with_{name}")
+        except (ImportError, NativeBuildError) as error:
+            missing[name] = str(error)
+        else:
+            found += module.LIBRARIES
+    return found, missing

@@ -1,10 +1,9 @@
-"""Measures the libraries on a convex pair, side by side."""
+"""Measures libraries on a convex pair, side by side, against its exact answer."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -13,10 +12,8 @@ from drake_haptics.evaluation.benchmark.pair_library import (
     PairLibrary,
     PairQuery,
 )
-from drake_haptics.evaluation.benchmark.pair_motion import Press, make_presses
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
-from drake_haptics.evaluation.benchmark.pair_truth import PairTruth, find_truth
-from drake_haptics.evaluation.measuring.timing import Times, typical
+from drake_haptics.evaluation.benchmark.pairs import PairShape, Press, make_presses
+from drake_haptics.evaluation.measuring.timing import Times, take_turns, typical
 
 # Relative errors are of frames whose distance is at least this, m.
 _JUDGED_M = 1e-6
@@ -28,22 +25,69 @@ _STEADY_RAD = np.radians(1.0)
 
 
 @dataclass(frozen=True)
+class PairTruth:
+    """The best answer known of each frame.
+
+    Attributes:
+        distance: (n,) signed distances, m.
+        nhat_BA_W: (n, 3) unit normals that have them.
+    """
+
+    distance: np.ndarray
+    nhat_BA_W: np.ndarray
+
+
+def find_truth(
+    pair: PairShape, X_WA: np.ndarray, answers: Sequence[PairAnswers]
+) -> PairTruth:
+    """Returns the best of all libraries' answers, checked without any of them.
+
+    Every unit vector n bounds the signed distance of two convex bodies from below by
+    its support gap h(n) = min n·a − max n·b, and the largest gap is the distance,
+    apart as well as in depth. So gaps of the libraries' normals, found by going
+    through all vertices, judge all libraries alike: whoever finds a larger one shows
+    the others wrong.
+
+    Args:
+        pair: The bodies.
+        X_WA: (n, 4, 4) poses of A; B is at the world's origin.
+        answers: One per library.
+    """
+    normals = np.stack([a.nhat_BA_W for a in answers])
+    gaps = np.stack([support_gaps(pair, X_WA, n) for n in normals])
+    gaps[np.isnan(gaps)] = -np.inf
+    best = gaps.argmax(axis=0)
+    frame = np.arange(len(X_WA))
+    return PairTruth(gaps[best, frame], normals[best, frame])
+
+
+def support_gaps(
+    pair: PairShape, X_WA: np.ndarray, nhat_BA_W: np.ndarray
+) -> np.ndarray:
+    """Returns (n,) support gaps h(n), m, of (n, 3) unit normals from B into A."""
+    n_A = np.einsum("fij,fi->fj", X_WA[:, :3, :3], nhat_BA_W)
+    offset = np.einsum("fi,fi->f", X_WA[:, :3, 3], nhat_BA_W)
+    nearest_A = (n_A @ pair.A_vertices.T).min(axis=1) + offset
+    return nearest_A - (nhat_BA_W @ pair.B_vertices.T).max(axis=1)
+
+
+@dataclass(frozen=True)
 class PairFigures:
     """What one library cost on one pair, and how right it was.
 
     Attributes:
-        kind: of the pair.
-        size: vertices of each body.
-        library: its name.
-        ours: whether it is this package.
-        apart: times of the frames in which the bodies are apart.
-        in_depth: times of the others.
-        max_relative_error: of the distance, over the frames of at least 1 µm.
-        wrong_share: of the frames, that is wrong by more than 0.1 %.
-        exact_depth_share: of the frames in depth, that has the global depth.
-        max_jump_deg: largest turn of the normal in a frame in which the exact one
+        kind: Kind of the pair.
+        size: Vertices of each body.
+        library: Name of the library.
+        ours: Whether it is this package.
+        apart: Times of the frames in which the bodies are apart.
+        in_depth: Times of the others.
+        max_relative_error: Largest of the distance, over the frames of at least 1 µm.
+        wrong_share: Share of the frames that are wrong by more than 0.1 %.
+        exact_depth_share: Share of the frames in depth that have the global depth.
+        max_jump_deg: Largest turn of the normal in a frame in which the exact one
             turns by less than 1°.
-        failed_frames: frames without an answer.
+        failed_frames: Frames without an answer.
     """
 
     kind: str
@@ -58,19 +102,12 @@ class PairFigures:
     max_jump_deg: float
     failed_frames: int
 
-    @staticmethod
-    def from_dict(data: dict[str, Any]) -> PairFigures:
-        """Returns what `dataclasses.asdict` made plain data of."""
-        times = {name: Times.from_dict(data[name]) for name in ("apart", "in_depth")}
-        return PairFigures(**{**data, **times})
-
 
 def run_pair(
     pair: PairShape,
     libraries: Sequence[PairLibrary],
     presses: int,
     repeats: int,
-    progress: Callable[[], None] = lambda: None,
 ) -> list[PairFigures]:
     """Returns the figures of each library on one pair.
 
@@ -78,11 +115,10 @@ def run_pair(
     The first frame of a press starts from nothing and is left out.
 
     Args:
-        pair: the bodies.
-        libraries: what is measured.
-        presses: how many presses, see `make_presses`.
-        repeats: how often each press is run.
-        progress: called after each press.
+        pair: The bodies.
+        libraries: What is measured.
+        presses: How many presses, see `make_presses`.
+        repeats: How often each press is run.
     """
     queries = [library.make_query(pair) for library in libraries]
     seconds, answers, truths = [], [], []
@@ -91,7 +127,6 @@ def run_pair(
         truths.append(find_truth(pair, press.X_WA, last))
         seconds.append(times)
         answers.append(last)
-        progress()
     return [
         _figures(
             pair, library, [t[i] for t in seconds], [a[i] for a in answers], truths
@@ -103,14 +138,12 @@ def run_pair(
 def _run_press(
     press: Press, queries: Sequence[PairQuery], repeats: int
 ) -> tuple[list[np.ndarray], list[PairAnswers]]:
-    """Typical times (n,) and answers of each query."""
+    """Returns typical times (n,) and the answers of each query."""
     seconds: list[list[np.ndarray]] = [[] for _ in queries]
     answers: dict[int, PairAnswers] = {}
-    for repeat in range(repeats):
-        for turn in range(len(queries)):
-            i = (turn + repeat) % len(queries)
-            answers[i] = queries[i].run(press.X_WA)
-            seconds[i].append(answers[i].seconds)
+    for i in take_turns(range(len(queries)), repeats):
+        answers[i] = queries[i].run(press.X_WA)
+        seconds[i].append(answers[i].seconds)
     times = [typical(np.array(repeated)) for repeated in seconds]
     return times, [answers[i] for i in range(len(queries))]
 
@@ -148,14 +181,14 @@ def _figures(
 
 
 def _jumps(normals: np.ndarray, exact: np.ndarray) -> np.ndarray:
-    """Turns (m,), rad, of the normals where the exact ones turn steadily."""
+    """Returns turns (m,), rad, of normals where the exact ones turn steadily."""
     steady = _turns(exact) < _STEADY_RAD
     turns = _turns(normals)[steady]
     return turns[np.isfinite(turns)]
 
 
 def _turns(normals: np.ndarray) -> np.ndarray:
-    """Angles (n - 1,) between successive (n, 3) unit vectors, rad."""
+    """Returns the angles (n - 1,) between successive (n, 3) unit vectors, rad."""
     before, after = normals[:-1], normals[1:]
     sine = np.linalg.norm(np.cross(before, after), axis=1)
     return np.arctan2(sine, (before * after).sum(axis=1))

@@ -2,17 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import ctypes
+import weakref
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from functools import cache
+from itertools import groupby
+from typing import Protocol
 
 import numpy as np
 
 from drake_haptics._core import SceneTracker
-from drake_haptics.evaluation.benchmark.scene_problem import SceneAnswers, SceneProblem
-from drake_haptics.evaluation.measuring.timing import Times, clock_interval, typical
+from drake_haptics.evaluation.benchmark.scenes import SceneAnswers, SceneProblem
+from drake_haptics.evaluation.measuring.native_build import (
+    HANDLE,
+    INTEGER,
+    INTEGERS,
+    PIECE,
+    REAL,
+    REALS,
+    add_pieces,
+    load_coal_native,
+)
+from drake_haptics.evaluation.measuring.timing import (
+    Times,
+    clock_interval,
+    take_turns,
+    typical,
+)
+from drake_haptics.report.table import Table
 
 NAME = "drake_haptics"
+COAL = "coal, dynamic AABB tree"
 
 
 class SceneQuery(Protocol):
@@ -43,22 +64,80 @@ class DrakeHapticsScene:
         return SceneAnswers(count, nearest, contacts.seconds - clock_interval())
 
 
+class CoalScene:
+    """A scene in coal, in C++: the tool's pieces in one tree, all others in another.
+
+    A tick poses the tool's pieces, grows their boxes by the tolerance, refits the
+    tool's tree, and takes the signed distance of each pair whose boxes overlap (here
+    faster than coal's own distance traversal). GJK starts from the boxes'
+    centers, the fastest start that needs no memory of a pair.
+    """
+
+    def __init__(self, problem: SceneProblem):
+        """Builds the scene.
+
+        Raises:
+            ImportError: coal is not installed.
+            NativeBuildError: The adapter cannot be built.
+        """
+        import coal
+
+        self._start = int(coal.GJKInitialGuess.BoundingVolumeGuess)
+        self._tolerance_m = problem.tolerance_m
+        self._native = _native_scene()
+        self._scene = self._native.coal_scene_new()
+        weakref.finalize(self, self._native.coal_scene_delete, self._scene)
+        add, scene = self._native.coal_scene_add, self._scene
+        # Pieces of the tool have the owner 1.
+        add_pieces(add, scene, 1, problem.tool, np.eye(4))
+        for decomposition, X_WO in zip(problem.objects, problem.X_WO, strict=True):
+            add_pieces(add, scene, 0, decomposition, X_WO)
+        self._native.coal_scene_setup(self._scene)
+
+    def run(self, X_WTool: np.ndarray) -> SceneAnswers:
+        """Answers one pose of the tool, (n, 4, 4) in all, after the other."""
+        n = len(X_WTool)
+        contacts = np.empty(n, dtype=np.int32)
+        nearest, seconds = np.empty(n), np.empty(n)
+        self._native.coal_scene_run(
+            self._scene,
+            self._tolerance_m,
+            self._start,
+            n,
+            np.ascontiguousarray(X_WTool),
+            contacts,
+            nearest,
+            seconds,
+        )
+        return SceneAnswers(contacts, nearest, seconds - clock_interval())
+
+
+@cache
+def _native_scene() -> ctypes.CDLL:
+    return load_coal_native(
+        "coal_scene",
+        add=PIECE,
+        setup=[HANDLE],
+        run=[HANDLE, REAL, INTEGER, INTEGER, REALS, INTEGERS, REALS, REALS],
+    )
+
+
 @dataclass(frozen=True)
 class SceneFigures:
     """What one library cost in one scene.
 
     Attributes:
-        scene: its name.
-        library: its name.
-        triangles: of all meshes.
-        tool_pieces: convex pieces of the tool.
-        object_pieces: convex pieces of all objects.
-        objects: how many there are.
-        near: times of the ticks in which both libraries find a contact.
-        all_ticks: times of all ticks.
-        median_contacts: pairs of pieces within the tolerance, over the near ticks.
-        max_contacts: the same.
-        deepest_m: largest penetration depth, m.
+        scene: Name of the scene.
+        library: Name of the library.
+        triangles: Triangles of all meshes.
+        tool_pieces: Convex pieces of the tool.
+        object_pieces: Convex pieces of all objects.
+        objects: Number of the objects.
+        near: Times of the ticks in which both libraries find a contact.
+        all_ticks: Times of all ticks.
+        median_contacts: Pairs of pieces within the tolerance, over the near ticks.
+        max_contacts: Most pairs of pieces within the tolerance at a tick.
+        deepest_m: Largest penetration depth, m.
     """
 
     scene: str
@@ -73,18 +152,11 @@ class SceneFigures:
     max_contacts: int
     deepest_m: float
 
-    @staticmethod
-    def from_dict(data: dict[str, Any]) -> SceneFigures:
-        """Returns what `dataclasses.asdict` made plain data of."""
-        times = {name: Times.from_dict(data[name]) for name in ("near", "all_ticks")}
-        return SceneFigures(**{**data, **times})
-
 
 def run_scene(
     problem: SceneProblem,
     queries: dict[str, SceneQuery],
     repeats: int,
-    progress: Callable[[], None] = lambda: None,
 ) -> list[SceneFigures]:
     """Returns the figures of each library in one scene.
 
@@ -92,10 +164,9 @@ def run_scene(
     The first tick of a motion starts from nothing and is left out.
 
     Args:
-        problem: the scene.
-        queries: library name -> the scene in it.
-        repeats: how often each motion is run.
-        progress: called after each motion.
+        problem: The scene.
+        queries: Library name -> the scene in it.
+        repeats: How often each motion is run.
     """
     names = list(queries)
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}
@@ -103,15 +174,12 @@ def run_scene(
     for X_WTool in problem.motions:
         repeated: dict[str, list[np.ndarray]] = {name: [] for name in names}
         last: dict[str, SceneAnswers] = {}
-        for repeat in range(repeats):
-            for turn in range(len(names)):
-                name = names[(turn + repeat) % len(names)]
-                last[name] = queries[name].run(X_WTool)
-                repeated[name].append(last[name].seconds[1:])
+        for name in take_turns(names, repeats):
+            last[name] = queries[name].run(X_WTool)
+            repeated[name].append(last[name].seconds[1:])
         for name in names:
             seconds[name].append(typical(np.array(repeated[name])))
             answers[name].append(last[name])
-        progress()
     contacts = {n: _joined(answers[n], "num_contacts") for n in names}
     near = np.all([contacts[n] > 0 for n in names], axis=0)
     return [
@@ -152,4 +220,52 @@ def _figures(
         median_contacts=float(np.median(contacts[near])) if near.any() else 0.0,
         max_contacts=int(contacts.max(initial=0)),
         deepest_m=float(max(0.0, -nearest_m.min(initial=0.0))),
+    )
+
+
+def scene_table(figures: Sequence[SceneFigures]) -> Table:
+    """Returns times and sizes of the scenes, this package and its peer."""
+    return Table(
+        title="Scenes: times of a whole query in µs, median / p99",
+        note=(
+            "Over the ticks in which all libraries find a contact within 2 mm, on the "
+            "same convex pieces: of the tool, of all objects. Contacts: median, most. "
+            "coal: dynamic AABB trees, the tool's boxes grown by "
+            "2 mm, and the signed distance of each pair whose boxes overlap, in C++. "
+            "Its contacts include those on facets that are not on the mesh, which "
+            "this package leaves out."
+        ),
+        header=(
+            "scene",
+            "pieces",
+            "contacts",
+            "ours",
+            "coal",
+            "ratio",
+        ),
+        rows=[
+            _row({f.library: f for f in group})
+            for _, group in groupby(figures, key=lambda f: f.scene)
+        ],
+    )
+
+
+def _row(by_library: dict[str, SceneFigures]) -> tuple[str, ...]:
+    ours = by_library[NAME]
+    peers = [f for name, f in by_library.items() if name != NAME]
+    coal, ratio = "–", "–"
+    if peers:
+        near = peers[0].near
+        coal = f"{near.median_us:.1f} / {near.p99_us:.1f}"
+        ratio = (
+            f"{ours.near.median_us / near.median_us:.2f}"
+            f" / {ours.near.p99_us / near.p99_us:.2f}"
+        )
+    return (
+        ours.scene,
+        f"{ours.tool_pieces}, {ours.object_pieces}",
+        f"{ours.median_contacts:.0f}–{ours.max_contacts}",
+        f"{ours.near.median_us:.1f} / {ours.near.p99_us:.1f}",
+        coal,
+        ratio,
     )

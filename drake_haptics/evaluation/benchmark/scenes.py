@@ -1,38 +1,154 @@
-"""The scenes that are measured: those of the paper's Table 1, and larger ones."""
+"""Makes the scenes that are measured: those of the paper's Table 1, and larger ones."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from drake_haptics.common.errors import UserError
-from drake_haptics.evaluation.benchmark.scene_motion import make_touches
-from drake_haptics.evaluation.benchmark.scene_problem import SceneProblem
-from drake_haptics.evaluation.shapes import SHAPES, Surface
-from drake_haptics.evaluation.shapes.machine_room import (
-    make_machine_room,
-    make_wrench,
-    wrench_path,
+from drake_haptics._core import SceneTracker
+from drake_haptics.evaluation.benchmark.pairs import RATE_HZ, rotation, unit
+from drake_haptics.evaluation.shapes.hand_tools import make_wrench
+from drake_haptics.evaluation.shapes.machine_room import make_machine_room, wrench_path
+from drake_haptics.evaluation.shapes.models import (
+    check_folder,
+    cut_shape,
+    find_sources,
+    load_model,
 )
-from drake_haptics.evaluation.shapes.organ import make_organ
-from drake_haptics.geometry.decomposition.decompose import decompose
-from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
+from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
 
-# The armadillo has no unit; at this scale it is 250 mm tall.
-_ARMADILLO_SCALE = 0.25
+_AWAY_M = 0.010
+_DEEP_M = 0.0005
+_SLIDE_M = 0.010
+_SWAY_RAD = 0.1
+_SECONDS = 1.0
+_SEARCH_STEP_M = 0.002
 
 
-# Real meshes, of which a folder need not have all.
-_FILES = (
-    "cup_500.obj",
-    "spoon_336.obj",
-    "torus_2000.obj",
-    "hammer_1692.obj",
-    "armadillo_31240.stl",
-    "digestive_24846.ply",
-)
+@dataclass(frozen=True)
+class SceneProblem:
+    """What all libraries are asked in a scene.
+
+    Attributes:
+        name: Name of the scene.
+        tool: The tool in convex pieces.
+        objects: The objects in convex pieces.
+        X_WO: (k, 4, 4) poses of the objects, at rest.
+        motions: (n, 4, 4) poses of the tool a millisecond apart, several times.
+        tolerance_m: Contacts up to this distance are asked for.
+    """
+
+    name: str
+    tool: Decomposition
+    objects: list[Decomposition]
+    X_WO: np.ndarray
+    motions: list[np.ndarray]
+    tolerance_m: float = 0.002
+
+    @property
+    def num_triangles(self) -> int:
+        """Triangles of all meshes."""
+        meshes = [self.tool, *self.objects]
+        return sum(len(d.mesh.triangles) for d in meshes)
+
+    @property
+    def num_pieces(self) -> tuple[int, int]:
+        """Convex pieces of the tool and of all objects."""
+        return len(self.tool.pieces), sum(len(d.pieces) for d in self.objects)
+
+
+@dataclass(frozen=True)
+class SceneAnswers:
+    """A library's answers along a motion.
+
+    Attributes:
+        num_contacts: (n,) pairs of pieces within the tolerance.
+        nearest_m: (n,) smallest signed distance of any, at most the tolerance, m.
+        seconds: (n,) what each tick cost inside the library, s.
+    """
+
+    num_contacts: np.ndarray
+    nearest_m: np.ndarray
+    seconds: np.ndarray
+
+
+def make_touches(
+    tool: Decomposition, target: Decomposition, count: int, seed: int
+) -> list[np.ndarray]:
+    """Returns motions that touch the object from random sides, the same on every call.
+
+    In a second the tool comes in from 10 mm off, presses 0.5 mm beyond first touch,
+    slides 10 mm sideways and back while it sways by 0.1 rad, and leaves: below
+    0.1 m/s and 1 rad/s.
+
+    Args:
+        tool: The body that moves; it touches with random places of its surface.
+        target: The body that rests at the world's origin.
+        count: How many motions.
+        seed: Seed of the random numbers.
+
+    Returns:
+        (n, 4, 4) poses of the tool each.
+    """
+    rng = np.random.default_rng(seed)
+    search = SceneTracker(tool, [target], _SEARCH_STEP_M)
+    return [_touch(tool, target, search, rng) for _ in range(count)]
+
+
+def _touch(
+    tool: Decomposition,
+    target: Decomposition,
+    search: SceneTracker,
+    rng: np.random.Generator,
+) -> np.ndarray:
+    R_WTool = rotation(unit(rng.normal(size=3)), rng.uniform(0, 2 * np.pi))
+    way_W = unit(rng.normal(size=3))
+    side_W = unit(np.cross(way_W, rng.normal(size=3)))
+    # A random point of the tool comes in on a random point of the target.
+    p_ToolP, p_WQ = (rng.choice(body.mesh.vertices) for body in (tool, target))
+    start_W = p_WQ - R_WTool @ p_ToolP
+    touch_m = _first_touch(search, R_WTool, start_W, way_W, _size(tool) + _size(target))
+
+    phase = np.linspace(0, 2 * np.pi, round(_SECONDS * RATE_HZ))
+    press = np.clip(1.5 * np.sin(phase / 2), 0, 1)
+    press = press**2 * (3 - 2 * press)
+    along_m = touch_m + _AWAY_M - (_AWAY_M + _DEEP_M) * press
+    sway = np.sin(phase)
+    X_WTool = np.tile(np.eye(4), (len(phase), 1, 1))
+    for X, along, s in zip(X_WTool, along_m, sway, strict=True):
+        R_sway = rotation(way_W, _SWAY_RAD * s)
+        X[:3, :3] = R_sway @ R_WTool
+        # Swaying turns the tool about the point that comes in.
+        X[:3, 3] = p_WQ + along * way_W + _SLIDE_M * s * side_W - X[:3, :3] @ p_ToolP
+    return X_WTool
+
+
+def _first_touch(
+    search: SceneTracker,
+    R_WTool: np.ndarray,
+    start_W: np.ndarray,
+    way_W: np.ndarray,
+    far_m: float,
+) -> float:
+    """Returns how far out along the way the tool touches first, m, from afar."""
+    X_WTool = np.eye(4)
+    X_WTool[:3, :3] = R_WTool
+    along_m = far_m
+    while along_m > -far_m:
+        X_WTool[:3, 3] = start_W + along_m * way_W
+        distance = search.query(X_WTool).distance
+        if len(distance):
+            return along_m - float(distance.min())
+        along_m -= _SEARCH_STEP_M / 2
+    raise AssertionError("a point of one mesh on a point of the other always touches")
+
+
+def _size(body: Decomposition) -> float:
+    return float(np.linalg.norm(body.mesh.report.extent))
 
 
 def scene_makers(
@@ -41,8 +157,8 @@ def scene_makers(
     """Returns scene name -> a function that makes it.
 
     Args:
-        motions: how many motions each has.
-        meshes: a folder of real meshes (cup_500.obj, spoon_336.obj, torus_2000.obj,
+        motions: How many motions each has.
+        meshes: A folder of real meshes (cup_500.obj, spoon_336.obj, torus_2000.obj,
             hammer_1692.obj, armadillo_31240.stl, digestive_24846.ply); those that it
             lacks are replaced by the package's own shapes, and the armadillo is left
             out without it.
@@ -50,45 +166,38 @@ def scene_makers(
     Raises:
         UserError: The folder has none of them.
     """
-    if meshes is not None and not any((meshes / file).exists() for file in _FILES):
-        raise UserError(f"the folder {meshes} has none of {', '.join(_FILES)}")
-    cup = _source("cup", meshes, "cup_500.obj")
-    spoon = _source("spoon", meshes, "spoon_336.obj")
-    torus = _source("torus", meshes, "torus_2000.obj")
-    hammer = _source("hammer", meshes, "hammer_1692.obj")
-    organ = _mesh_file(meshes, "digestive_24846.ply") or (
-        lambda: _mesh(make_organ(), "organ")
-    )
-    armadillo = _mesh_file(meshes, "armadillo_31240.stl", _ARMADILLO_SCALE)
-
-    def touching(
-        name: str, tool: Callable[[], Mesh], target: Callable[[], Mesh]
-    ) -> Callable[[], SceneProblem]:
-        def make() -> SceneProblem:
-            pieces, others = decompose(tool()), decompose(target())
-            ways = make_touches(pieces, others, motions, seed=len(name))
-            return SceneProblem(name, pieces, [others], np.eye(4)[None], ways)
-
-        return make
-
-    makers = {
-        name: touching(name, tool, target)
-        for name, tool, target in (
-            ("spoon on cup", spoon, cup),
-            ("torus on torus", torus, torus),
-            ("torus on hammer", torus, hammer),
-            ("spoon on organ", spoon, organ),
-        )
+    check_folder(meshes)
+    pairs = [
+        ("spoon on cup", "Spoon", "Cup"),
+        ("torus on torus", "Torus", "Torus"),
+        ("torus on hammer", "Torus", "Hammer"),
+        ("spoon on organ", "Spoon", "Digestive System"),
+        ("spoon on armadillo", "Spoon", "Armadillo"),
+    ]
+    makers: dict[str, Callable[[], SceneProblem]] = {
+        name: partial(_touch_model, name, tool, target, meshes, motions)
+        for name, tool, target in pairs
+        if find_sources(target, meshes)
     }
-    if armadillo is not None:
-        makers["spoon on armadillo"] = touching("spoon on armadillo", spoon, armadillo)
-    makers["peg in hole"] = lambda: _peg_in_hole(motions)
-    makers["wrench in machine room"] = lambda: _machine_room(motions)
+    makers["peg in hole"] = partial(_peg_in_hole, motions)
+    makers["wrench in machine room"] = partial(_machine_room, motions)
     return makers
 
 
+def _touch_model(
+    name: str, tool: str, target: str, meshes: Path | None, motions: int
+) -> SceneProblem:
+    """Returns a model that touches another one, real meshes where there are any."""
+    pieces, others = (
+        decompose(load_model(model, find_sources(model, meshes)[-1], meshes))
+        for model in (tool, target)
+    )
+    ways = make_touches(pieces, others, motions, seed=len(name))
+    return SceneProblem(name, pieces, [others], np.eye(4)[None], ways)
+
+
 def _peg_in_hole(motions: int) -> SceneProblem:
-    peg, torus = (decompose(_mesh(SHAPES[n](), n)) for n in ("peg", "torus"))
+    peg, torus = (cut_shape(name) for name in ("peg", "torus"))
     phase = np.linspace(0, 2 * np.pi, 1000)
     inside = np.clip(1.5 * np.sin(phase / 2), 0, 1)
     ways = []
@@ -107,28 +216,12 @@ def _peg_in_hole(motions: int) -> SceneProblem:
 def _machine_room(motions: int) -> SceneProblem:
     room = make_machine_room()
     shapes = {
-        name: decompose(_mesh(surface, name)) for name, surface in room.shapes.items()
+        name: decompose(surface.to_mesh(name)) for name, surface in room.shapes.items()
     }
     return SceneProblem(
         name="wrench in machine room",
-        tool=decompose(_mesh(make_wrench(), "wrench")),
+        tool=decompose(make_wrench().to_mesh("wrench")),
         objects=[shapes[placed.shape] for placed in room.objects],
         X_WO=np.array([placed.X_WO for placed in room.objects]),
         motions=[wrench_path(3000)] * min(motions, 1),
     )
-
-
-def _mesh(surface: Surface, name: str) -> Mesh:
-    return Mesh.from_arrays(surface.vertices, surface.triangles, name=name)
-
-
-def _mesh_file(
-    folder: Path | None, file: str, scale: float | None = None
-) -> Callable[[], Mesh] | None:
-    if folder is None or not (folder / file).exists():
-        return None
-    return lambda: load_mesh(folder / file, scale=scale)
-
-
-def _source(shape: str, folder: Path | None, file: str) -> Callable[[], Mesh]:
-    return _mesh_file(folder, file) or (lambda: _mesh(SHAPES[shape](), shape))

@@ -13,11 +13,24 @@ import os
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from drake_haptics.common.errors import UserError
 from drake_haptics.geometry.decomposition.cache import cache_folder
+from drake_haptics.geometry.decomposition.decompose import Decomposition
+
+# Types of arguments.
+REALS = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
+INTEGERS = np.ctypeslib.ndpointer(dtype=np.int32, flags="C_CONTIGUOUS")
+REAL, INTEGER, HANDLE = ctypes.c_double, ctypes.c_int, ctypes.c_void_p
+# Longest message of an adapter, in bytes.
+_MESSAGE_SIZE = 1000
+# Types of the arguments of a coal adapter's function that takes a piece.
+PIECE = (HANDLE, INTEGER, REALS, INTEGER, INTEGERS, INTEGER, REALS)
 
 _SOURCES = Path(__file__).parent / "native"
 
@@ -26,19 +39,108 @@ class NativeBuildError(UserError):
     """There is no C++ compiler, or it cannot build an adapter."""
 
 
-def load_native(
-    name: str, include: Sequence[Path], libraries: Sequence[Path]
-) -> ctypes.CDLL:
-    """Compiles `native/<name>.cc`, unless that was done before, and loads it.
+def load_coal_native(name: str, **functions: Sequence[Any]) -> ctypes.CDLL:
+    """Compiles and loads an adapter of coal.
 
     Args:
-        name: of the adapter.
-        include: folders of the library's headers.
-        libraries: the library's shared objects.
+        name: Name of the adapter, with which the names of its functions begin.
+        functions: Types of the arguments of each function, by the rest of its name;
+            `new` returns a handle, which `delete` takes.
 
     Raises:
-        NativeBuildError: no compiler was found, or it failed.
+        ImportError: coal is not installed.
+        NativeBuildError: No compiler was found, or it failed.
     """
+    import coal
+
+    prefix = next(
+        folder
+        for folder in Path(coal.__file__).parents
+        if (folder / "include" / "coal").is_dir()
+    )
+    include = prefix / "include"
+    library = next((prefix / "lib").glob("libcoal.*"))
+    native = _load_native(name, [include, include / "eigen3"], [library])
+    return _declare(native, name, functions)
+
+
+def load_mujoco_native(name: str, **functions: Sequence[Any]) -> ctypes.CDLL:
+    """Compiles and loads an adapter of MuJoCo, see `load_coal_native`.
+
+    Its `new` is called by `open_mjcf`.
+    """
+    import mujoco
+
+    folder = Path(mujoco.__file__).parent
+    library = next(folder.glob("libmujoco*"))
+    native = _load_native(name, [folder / "include"], [library])
+    text = ctypes.c_char_p
+    return _declare(native, name, {"new": [text, text, INTEGER], **functions})
+
+
+def open_mjcf(new: Callable[..., int | None], mjcf: str) -> int:
+    """Returns the handle of a model in an adapter of MuJoCo.
+
+    Args:
+        new: The adapter's function.
+        mjcf: The model.
+
+    Raises:
+        RuntimeError: MuJoCo refuses the model.
+    """
+    error = ctypes.create_string_buffer(_MESSAGE_SIZE)
+    with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
+        file.write(mjcf)
+        file.flush()
+        handle = new(file.name.encode(), error, len(error))
+    if not handle:
+        raise RuntimeError(f"MuJoCo refused the model: {error.value.decode()}")
+    return handle
+
+
+def add_pieces(
+    add: Callable[..., None],
+    scene: int,
+    owner: int,
+    decomposition: Decomposition,
+    X_WO: np.ndarray,
+) -> None:
+    """Hands convex pieces to a scene in an adapter of coal.
+
+    Args:
+        add: The adapter's function.
+        scene: The handle of the scene.
+        owner: Number by which the adapter tells bodies apart.
+        decomposition: The pieces.
+        X_WO: (4, 4) pose of their body, m.
+    """
+    for piece in decomposition.pieces:
+        vertices = np.ascontiguousarray(piece.vertices)
+        fans = [
+            (loop[0], loop[k], loop[k + 1])
+            for loop in piece.facets
+            for k in range(1, len(loop) - 1)
+        ]
+        triangles = np.array(fans, dtype=np.int32)
+        add(
+            *(scene, owner, vertices, len(vertices)),
+            *(triangles, len(triangles), np.ascontiguousarray(X_WO)),
+        )
+
+
+def _declare(
+    native: ctypes.CDLL, name: str, functions: dict[str, Sequence[Any]]
+) -> ctypes.CDLL:
+    for rest, arguments in {"delete": [HANDLE], **functions}.items():
+        getattr(native, f"{name}_{rest}").argtypes = list(arguments)
+    getattr(native, f"{name}_new").restype = HANDLE
+    return native
+
+
+def _load_native(
+    name: str, include: Sequence[Path], libraries: Sequence[Path]
+) -> ctypes.CDLL:
+    """Compiles `native/<name>.cc`, unless that was done before, and loads it."""
     compiler = os.environ.get("CXX") or next(
         filter(None, map(shutil.which, ("c++", "g++", "clang++"))), None
     )
@@ -62,7 +164,7 @@ def load_native(
 
 
 def _target(name: str, command: Sequence[str]) -> Path:
-    """Where the result is kept: a change of sources or command names another file."""
+    """Returns where the result is kept; each change of sources or command moves it."""
     digest = hashlib.sha256("\0".join(command).encode())
     for source in sorted(_SOURCES.iterdir()):
         if source.is_file():

@@ -1,23 +1,31 @@
-"""How times are taken and summed up."""
+"""Takes and sums up times, and describes the machine that they were taken on."""
 
 from __future__ import annotations
 
+import gc
+import os
+import platform
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 
 from drake_haptics import _core
+
+Name = TypeVar("Name")
 
 _TRIVIAL_CALLS = 2000
 
 
 @cache
 def clock_interval() -> float:
-    """Seconds between two readings of the compiled clock with nothing between them.
+    """Returns the seconds between two readings of the compiled clock in succession.
 
     Libraries that time themselves include it in each figure; it is taken off.
     """
@@ -35,8 +43,8 @@ class CallTimer:
         """Measures the trivial call.
 
         Args:
-            function: the bound function.
-            trivial: arguments with which it has next to nothing to do.
+            function: The bound function.
+            trivial: Arguments with which it has next to nothing to do.
         """
         self._function = function
         self._trivial_s = 0.0
@@ -51,13 +59,33 @@ class CallTimer:
 
 
 @dataclass(frozen=True)
+class TickTimes:
+    """How long ticks took.
+
+    Attributes:
+        median_us: Median, µs.
+        p99_us: 99 of 100 took less, µs.
+        p99_9_us: 999 of 1000 took less, µs.
+    """
+
+    median_us: float
+    p99_us: float
+    p99_9_us: float
+
+    @staticmethod
+    def of(seconds: np.ndarray) -> TickTimes:
+        """Sums up (n,) times of ticks, s; NaN where there are none."""
+        return TickTimes(*_calc_percentiles_us(seconds, [50, 99, 99.9]))
+
+
+@dataclass(frozen=True)
 class Times:
     """Times of many frames of one kind.
 
     Attributes:
-        frames: how many.
-        median_us: half of the frames took less, µs.
-        p99_us: one frame in a hundred took more, µs.
+        frames: Number of the frames.
+        median_us: Half of the frames took less, µs.
+        p99_us: One frame in a hundred took more, µs.
     """
 
     frames: int
@@ -65,25 +93,13 @@ class Times:
     p99_us: float
 
     @staticmethod
-    def from_dict(data: dict[str, Any]) -> Times:
-        """Returns what was written as plain data, where null stands for NaN."""
-        median, p99 = (
-            np.nan if data[name] is None else data[name]
-            for name in ("median_us", "p99_us")
-        )
-        return Times(data["frames"], median, p99)
-
-    @staticmethod
     def of(seconds: np.ndarray) -> Times:
         """Sums up (n,) times of frames, s; NaN where there are none."""
-        if len(seconds) == 0:
-            return Times(0, np.nan, np.nan)
-        median, p99 = 1e6 * np.percentile(seconds, [50, 99])
-        return Times(len(seconds), float(median), float(p99))
+        return Times(len(seconds), *_calc_percentiles_us(seconds, [50, 99]))
 
 
 def typical(seconds: np.ndarray) -> np.ndarray:
-    """What each frame costs when nothing disturbs it.
+    """Returns what each frame costs when nothing disturbs it.
 
     The mean of the middle half of its repeats: interruptions fall out, and the
     clock's ticks, which are a tenth of a fast query here, average out.
@@ -97,3 +113,60 @@ def typical(seconds: np.ndarray) -> np.ndarray:
     ordered = np.sort(seconds, axis=0)
     edge = (len(ordered) + 1) // 4
     return ordered[edge : len(ordered) - edge].mean(axis=0)
+
+
+def _calc_percentiles_us(seconds: np.ndarray, percents: list[float]) -> list[float]:
+    if len(seconds) == 0:
+        return [np.nan] * len(percents)
+    percentiles: list[float] = (1e6 * np.percentile(seconds, percents)).tolist()
+    return percentiles
+
+
+def take_turns(names: Sequence[Name], repeats: int) -> Iterator[Name]:
+    """Yields each name `repeats` times, in turns that each begin at another name.
+
+    What disturbs the machine for a while then disturbs all alike.
+    """
+    for repeat in range(repeats):
+        for turn in range(len(names)):
+            yield names[(turn + repeat) % len(names)]
+
+
+@contextmanager
+def steady_memory() -> Iterator[None]:
+    """Keeps earlier garbage from being collected while its block is timed."""
+    gc.collect()
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
+
+
+def describe_machine() -> dict[str, str | int]:
+    """Returns the processor, its cores, and the versions of what runs on it."""
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count() or 0,
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        "drake_haptics": version("drake_haptics"),
+    }
+
+
+def name_machine(machine: Mapping[str, str | int]) -> str:
+    """Returns what `describe_machine` returned in a few words."""
+    return (
+        f"{machine['processor']}, {machine['cores']} cores, {machine['system']},"
+        f" Python {machine['python']}"
+    )
+
+
+def _processor() -> str:
+    """Returns the processor's name where the system tells it."""
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        for line in info.read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or "unknown"

@@ -7,6 +7,7 @@ not counted, so that importing and building do not blur it.
 from __future__ import annotations
 
 import os
+import pickle
 import re
 import shutil
 import subprocess
@@ -15,6 +16,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from drake_haptics.common.errors import UserError
 
@@ -46,6 +48,24 @@ def count_instructions(arguments: Sequence[str]) -> int:
     if found is None:
         raise RuntimeError(f"valgrind counted nothing:\n{said}")
     return int(found[1])
+
+
+def count_with_data(module: str, data: Any) -> int:
+    """Counts a module that is run with a file of data, which `read_data` returns.
+
+    Raises:
+        subprocess.CalledProcessError: The program failed.
+        RuntimeError: valgrind counted nothing.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "data"
+        file.write_bytes(pickle.dumps(data))
+        return count_instructions(["-m", module, str(file)])
+
+
+def read_data() -> Any:
+    """Returns what `count_with_data` has handed to this program."""
+    return pickle.loads(Path(sys.argv[1]).read_bytes())
 
 
 def count_by_library(arguments: Sequence[str]) -> dict[str, int]:

@@ -1,23 +1,88 @@
-"""What a penetration depth costs, over the triangles of the bodies (section 6.3)."""
+"""Measures what a penetration depth costs, over the triangles of the bodies (6.3).
+
+`python -m drake_haptics.evaluation.paper.depth_cost FILE` is the program whose
+instructions are counted: it moves a pair as FILE says.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
-from drake_haptics.evaluation.benchmark.pair_motion import make_presses
-from drake_haptics.evaluation.benchmark.pair_shapes import RADIUS_M, PairShape
+from drake_haptics.evaluation.benchmark.pairs import RADIUS_M, PairShape, make_presses
 from drake_haptics.evaluation.measuring.timing import clock_interval, typical
+from drake_haptics.evaluation.measuring.valgrind import (
+    count_with_data,
+    counted,
+    read_data,
+)
 from drake_haptics.evaluation.paper.fits import PowerFit, fit_power
-from drake_haptics.evaluation.paper.instruction_count import count_depths
 
+_PASSES = 3
 TRIANGLES = (42, 100, 250, 500, 1_000, 2_500, 5_000, 10_000)
 _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 _REPEATS = 5
+
+
+def count_depths(
+    motions: Mapping[int, tuple[PairShape, np.ndarray]],
+) -> dict[int, float] | None:
+    """Counts the instructions of each query of a motion, by valgrind.
+
+    What a pair of points far from each other takes is taken off: switching the count
+    on and off, checking poses and reading the clock.
+
+    Args:
+        motions: A pair and the poses X_WA (n, 4, 4) of A, by some number.
+
+    Returns:
+        The mean per query, warm, by the same number; None without valgrind.
+
+    Raises:
+        subprocess.CalledProcessError: The program that is counted failed.
+        RuntimeError: valgrind counted nothing.
+    """
+    if shutil.which("valgrind") is None:
+        return None
+    # As many queries of each, so that what is taken off is the same.
+    queries = min(len(X_WA) for _, X_WA in motions.values())
+    apart = np.tile(np.eye(4), (2 * queries, 1, 1))
+    apart[:, 0, 3] = 1.0
+    point = np.zeros((1, 3))
+    jobs = [(point, point, apart)]
+    for pair, X_WA in motions.values():
+        # There and back, so that each query is near the last one.
+        there_and_back = np.concatenate([X_WA[:queries], X_WA[:queries][::-1]])
+        jobs.append((pair.A_vertices, pair.B_vertices, there_and_back))
+    # Counts do not mind what runs beside them.
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        base, *counts = pool.map(partial(count_with_data, __name__), jobs)
+    return {
+        number: (count - base) / (_PASSES * 2 * queries)
+        for number, count in zip(motions, counts, strict=True)
+    }
+
+
+def main() -> None:
+    """Moves a pair as a file says, counted, after a pass that is not."""
+    A, B, X_WA = read_data()
+    pair = ConvexPair(ConvexPolytope(A), ConvexPolytope(B))
+    pair.query_trajectory(X_WA, np.eye(4))
+    with counted():
+        for _ in range(_PASSES):
+            pair.query_trajectory(X_WA, np.eye(4))
+
+
+if __name__ == "__main__":
+    main()
 
 
 @dataclass(frozen=True)

@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
-from drake_haptics.evaluation.measuring.machine import describe_machine
+from drake_haptics.evaluation.measuring.timing import describe_machine
 from drake_haptics.evaluation.paper.depth_cost import DepthCosts, measure_depth_costs
-from drake_haptics.evaluation.paper.force_scaling import (
-    ForceScaling,
-    measure_force_scaling,
+from drake_haptics.evaluation.paper.pen_pass import PenPass, measure_pen_pass
+from drake_haptics.evaluation.paper.profile import (
+    Profile,
+    ProfileFigures,
+    measure_profile,
+    sum_up,
 )
-from drake_haptics.evaluation.paper.models import check_folder
-from drake_haptics.evaluation.paper.pair_scaling import (
+from drake_haptics.evaluation.paper.scaling import (
+    ForceScaling,
     PairScaling,
+    measure_force_scaling,
     measure_pair_scaling,
 )
-from drake_haptics.evaluation.paper.pen_pass import PenPass, measure_pen_pass
-from drake_haptics.evaluation.paper.profile import Profile, measure_profile
-from drake_haptics.evaluation.paper.profile_figures import ProfileFigures, sum_up
 from drake_haptics.evaluation.paper.scenarios import scenario_makers
 from drake_haptics.evaluation.paper.table1 import ModelFigures, measure_table1
-from drake_haptics.evaluation.shapes.sphere import make_sphere
+from drake_haptics.evaluation.shapes.models import check_folder
+from drake_haptics.evaluation.shapes.solids import make_sphere
 
 Part = Literal["table1", "figure11", "figure12", "analysis"]
 PARTS: tuple[Part, ...] = get_args(Part)
@@ -98,7 +100,7 @@ class PaperEvaluation:
     """All figures; empty or None where a part was not asked for.
 
     Attributes:
-        machine: See `drake_haptics.evaluation.measuring.machine.describe_machine`.
+        machine: See `drake_haptics.evaluation.measuring.timing.describe_machine`.
         table1: Rows of Table 1.
         figure11: Runs, those of the paper first.
         figure12: Passes of the pen over a coarse and a fine sphere.
@@ -119,13 +121,13 @@ class PaperEvaluation:
         if self.analysis is not None:
             analysis = {
                 "depths": self.analysis.depths.to_dict(),
-                "pairs": self.analysis.pairs.to_dict(),
-                "forces": [forces.to_dict() for forces in self.analysis.forces],
+                "pairs": asdict(self.analysis.pairs),
+                "forces": [asdict(forces) for forces in self.analysis.forces],
             }
         return {
             "machine": self.machine,
             "is_cut_short": self.is_cut_short,
-            "table1": [row.to_dict() for row in self.table1],
+            "table1": [asdict(row) for row in self.table1],
             "figure11": [run.figures.to_dict() for run in self.figure11],
             "figure12": [passed.to_dict() for passed in self.figure12],
             "analysis": analysis,

@@ -1,4 +1,4 @@
-"""Plans how a hand explores something with a tool: touch, press, slide, leave."""
+"""Plans how a hand explores something with a tool, and builds the haptic loop of it."""
 
 from __future__ import annotations
 
@@ -8,17 +8,28 @@ from itertools import pairwise
 
 import numpy as np
 from pydrake.math import RigidTransform
+from pydrake.systems.framework import DiagramBuilder
 
+from drake_haptics import _core
 from drake_haptics._core import SceneTracker
+from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.geometry.decomposition.decompose import Decomposition
+from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
+from drake_haptics.loop.builder import AddHapticLoop, HapticDiagram
+from drake_haptics.scene.schema import Contact, Coupling, Scene
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.device.haptic_device import HapticDevice
+from drake_haptics.systems.device.replayed_handle import ReplayedHandle
 
 # A hand that looks for something with a tool.
 _SPEED_M_S = 0.10
 _TURN_RAD_S = 1.0
 _SHORTEST_S = 0.06
 _SEARCH_STEP_M = 0.002
+PERIOD_S = 1e-3
+# Of the device of the paper.
+_MAX_FORCE_N, _MAX_TORQUE_NM = 8.5, 0.515
 
 
 @dataclass(frozen=True)
@@ -85,3 +96,97 @@ def _press(search: SceneTracker, place: Place, reach_m: float) -> RigidTransform
             return RigidTransform(R_WTool, start_W + aim_m * place.toward_W)
         along_m += _SEARCH_STEP_M / 2
     raise ValueError(f"the tool passes by from {start_W} along {place.toward_W}")
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A tool, what it meets, and where a hand leads it.
+
+    Attributes:
+        name: For people.
+        figure: The paper's chart that is like it, such as "11-(a)"; empty if none is.
+        tool: Pieces of the tool, in its frame T.
+        mass_kg: Of the tool, kg.
+        p_TH: (3,) where the handle is in the tool's frame, m.
+        objects: What the tool meets, at rest.
+        path: Where the hand aims the tool at.
+        contact: Tolerance, clustering and gains.
+    """
+
+    name: str
+    figure: str
+    tool: Decomposition
+    mass_kg: float
+    p_TH: np.ndarray
+    objects: tuple[ContactObject, ...]
+    path: HandPath
+    contact: Contact
+
+
+def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
+    """Builds the whole loop of a scenario around a handle that its path leads.
+
+    The handle does not yield, as that of a firm hand does not much; the coupling
+    between it and the tool does.
+
+    Args:
+        scenario: What to build.
+        seconds: Of the path that the handle knows, s.
+    """
+    X_TH = RigidTransform(scenario.p_TH)
+    X_WH, V_WH = sample_handle(scenario.path, X_TH, seconds)
+    device = HapticDevice(
+        ReplayedHandle(X_WH, V_WH, PERIOD_S),
+        period_s=PERIOD_S,
+        max_force_N=_MAX_FORCE_N,
+        max_torque_Nm=_MAX_TORQUE_NM,
+    )
+    mass_kg = scenario.mass_kg
+    p_TTcm, I_TTcm_T = calc_mass_properties(scenario.tool.mesh, mass_kg)
+    builder = DiagramBuilder()
+    loop = AddHapticLoop(
+        builder,
+        device=device,
+        tool=scenario.tool.core,
+        tool_dynamics=_core.RigidToolDynamics(mass_kg, p_TTcm, I_TTcm_T),
+        objects=scenario.objects,
+        contact=scenario.contact,
+        coupling=Coupling(),
+        X_HT=X_TH.inverse(),
+        X_WT=scenario.path.start,
+        period_s=PERIOD_S,
+    )
+    return HapticDiagram(
+        diagram=builder.Build(),
+        scene=Scene(description=scenario.name, contact=scenario.contact),
+        period_s=PERIOD_S,
+        loop=loop,
+        tool=scenario.tool,
+        environment=(),
+        visualizer=None,
+    )
+
+
+def sample_handle(
+    path: HandPath, X_TH: RigidTransform, seconds: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the handle's motion tick by tick while it leads the tool along a path.
+
+    Args:
+        path: X_WTool over time.
+        X_TH: Where the tool is held.
+        seconds: How long, s.
+
+    Returns:
+        X_WH (n, 7) and V_WH (n, 6).
+    """
+    ticks = round(seconds / PERIOD_S) + 1
+    X_WH, V_WH = np.empty((ticks, 7)), np.empty((ticks, 6))
+    for k in range(ticks):
+        q_WT, V_WT = path.calc(k * PERIOD_S)
+        X_WT = vector_to_pose(q_WT)
+        p_TH_W = X_WT.rotation() @ X_TH.translation()
+        X_WH[k] = pose_to_vector(X_WT @ X_TH)
+        V_WH[k, :3] = V_WT[:3]
+        V_WH[k, 3:] = V_WT[3:] + np.cross(V_WT[:3], p_TH_W)
+    return X_WH, V_WH

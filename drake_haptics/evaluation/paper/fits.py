@@ -1,4 +1,4 @@
-"""Straight lines and powers through measured points."""
+"""Fits straight lines and powers to measured points."""
 
 from __future__ import annotations
 

@@ -1,22 +1,19 @@
-"""Figure 12: a pen passes over a sphere, in and out of it."""
+"""Follows the contact of a pen that passes over a sphere, in and out (Figure 12)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from importlib.util import find_spec
 from typing import Any, Literal
 
 import numpy as np
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
-from drake_haptics.evaluation.benchmark.pair_motion import rotation, unit
-from drake_haptics.evaluation.paper.pen_truth import ContactCurves, calc_sphere_contact
-from drake_haptics.evaluation.paper.smoothness import Smoothness, measure_smoothness
-from drake_haptics.evaluation.shapes.pen import make_pen
-from drake_haptics.evaluation.shapes.sphere import make_sphere
+from drake_haptics.evaluation.benchmark.pairs import rotation, unit
+from drake_haptics.evaluation.benchmark.python_pairs import CoalQuery
+from drake_haptics.evaluation.shapes.solids import make_pen, make_sphere
 from drake_haptics.evaluation.shapes.surface import Surface
-
-_Follow = Callable[[Surface, Surface, np.ndarray], ContactCurves]
 
 RADIUS_M = 0.040
 OURS = "drake_haptics"
@@ -27,6 +24,135 @@ _ARC_RAD = 2.0
 _TILT_RAD = 0.6
 # Off by 1.5 mm and 2.5 mm deep in turn.
 _MIDDLE_M, _SWING_M = -0.0005, 0.0020
+
+
+@dataclass(frozen=True)
+class ContactCurves:
+    """One contact, tick by tick.
+
+    Attributes:
+        distance_m: (n,) signed, negative where the bodies penetrate, m.
+        nhat_BA_W: (n, 3) unit normals out of the sphere into the pen.
+        p_WC: (n, 3) means of both witness points, m.
+    """
+
+    distance_m: np.ndarray
+    nhat_BA_W: np.ndarray
+    p_WC: np.ndarray
+
+
+def calc_sphere_contact(
+    vertices: np.ndarray, triangles: np.ndarray, X_WA: np.ndarray, radius_m: float
+) -> ContactCurves:
+    """Calculates the contact of a convex body and a sphere about the world's origin.
+
+    While the sphere's center is outside the body, the signed distance is that of the
+    center from the body less the radius, disjoint and penetrating alike.
+
+    Args:
+        vertices: (v, 3) of the body, in its frame A, m.
+        triangles: (t, 3) of its surface.
+        X_WA: (n, 4, 4) poses of A.
+        radius_m: Of the sphere, m.
+    """
+    corners = vertices[triangles]
+    nearest_W = np.empty((len(X_WA), 3))
+    for k, X in enumerate(X_WA):
+        p_ACentre = -X[:3, :3].T @ X[:3, 3]
+        points = _find_nearest(corners, p_ACentre)
+        nearest_A = points[np.linalg.norm(points - p_ACentre, axis=1).argmin()]
+        nearest_W[k] = X[:3, :3] @ nearest_A + X[:3, 3]
+    far_m = np.linalg.norm(nearest_W, axis=1)
+    normal_W = nearest_W / far_m[:, None]
+    return ContactCurves(
+        distance_m=far_m - radius_m,
+        nhat_BA_W=normal_W,
+        p_WC=(nearest_W + radius_m * normal_W) / 2,
+    )
+
+
+def _find_nearest(corners: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """Returns the point of each triangle (t, 3, 3) that is nearest to p (3,).
+
+    It is p's foot on the plane where that is within, else the nearest of its feet on
+    the three sides.
+    """
+    a, b, c = np.swapaxes(corners, 0, 1)
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    foot = p - np.einsum("ti,ti->t", p - a, normal)[:, None] * normal
+    inside = np.ones(len(a), dtype=bool)
+    best = a
+    best_m = np.full(len(a), np.inf)
+    for start, end in ((a, b), (b, c), (c, a)):
+        side = end - start
+        inside &= np.einsum("ti,ti->t", np.cross(side, foot - start), normal) >= 0.0
+        share = np.einsum("ti,ti->t", p - start, side) / (side**2).sum(axis=1)
+        on_side = start + np.clip(share, 0.0, 1.0)[:, None] * side
+        far_m = np.linalg.norm(on_side - p, axis=1)
+        best = np.where((far_m < best_m)[:, None], on_side, best)
+        best_m = np.minimum(best_m, far_m)
+    return np.where(inside[:, None], foot, best)
+
+
+@dataclass(frozen=True)
+class Smoothness:
+    """Steps from tick to tick beyond those of the truth, and errors.
+
+    A step is what a value changes by from one tick to the next. That of the truth is
+    what the motion explains; the difference from it is told here.
+
+    Attributes:
+        point_step_m: Largest of the contact point, m.
+        normal_step_deg: Largest of the normal, degrees.
+        distance_step_m: Largest of the distance, m.
+        crossing_step_m: Largest of the distance where it changes its sign, m.
+        normal_error_deg: Largest angle between the normal and the true one, degrees.
+        distance_error_m: Largest error of the distance, m.
+        true_normal_step_deg: Largest step of the true normal, degrees.
+        true_distance_step_m: Largest step of the true distance, m.
+    """
+
+    point_step_m: float
+    normal_step_deg: float
+    distance_step_m: float
+    crossing_step_m: float
+    normal_error_deg: float
+    distance_error_m: float
+    true_normal_step_deg: float
+    true_distance_step_m: float
+
+
+def measure_smoothness(curves: ContactCurves, truth: ContactCurves) -> Smoothness:
+    """Compares the curves of two ticks or more with the truth."""
+    off_m = curves.distance_m - truth.distance_m
+    steps_m = np.abs(np.diff(off_m))
+    inside = curves.distance_m < 0.0
+    crossing = inside[1:] != inside[:-1]
+    # The chord of two unit vectors, as an angle.
+    chord = np.linalg.norm(curves.nhat_BA_W - truth.nhat_BA_W, axis=1).max()
+    return Smoothness(
+        point_step_m=_largest_step(curves.p_WC - truth.p_WC),
+        normal_step_deg=_degrees(_largest_step(curves.nhat_BA_W - truth.nhat_BA_W)),
+        distance_step_m=float(steps_m.max()),
+        crossing_step_m=float(steps_m[crossing].max(initial=0.0)),
+        normal_error_deg=_degrees(2.0 * np.arcsin(min(1.0, chord / 2.0))),
+        distance_error_m=float(np.abs(off_m).max()),
+        true_normal_step_deg=_degrees(_largest_step(truth.nhat_BA_W)),
+        true_distance_step_m=float(np.abs(np.diff(truth.distance_m)).max()),
+    )
+
+
+def _largest_step(values: np.ndarray) -> float:
+    """Returns the largest change of (n, 3) vectors from one to the next."""
+    return float(np.linalg.norm(np.diff(values, axis=0), axis=1).max())
+
+
+def _degrees(angle_rad: float) -> float:
+    return float(np.rad2deg(angle_rad))
+
+
+_Follow = Callable[[Surface, Surface, np.ndarray], ContactCurves]
 
 
 @dataclass(frozen=True)
@@ -120,21 +246,32 @@ def _follow(
     X_WA: np.ndarray,
     depth: Literal["tracked", "global"] = "tracked",
 ) -> ContactCurves:
-    """Our own answers."""
+    """Returns this package's answers."""
     A, B = (ConvexPolytope(body.vertices) for body in (pen, sphere))
     pair = ConvexPair(A, B, depth)
     found = pair.query_trajectory(X_WA, np.eye(4))
     return ContactCurves(found.distance, found.nhat_BA_W, found.p_WC)
 
 
+def _follow_with_coal(pen: Surface, sphere: Surface, X_WA: np.ndarray) -> ContactCurves:
+    """Returns coal's answers, each query warm."""
+    query = CoalQuery(pen.vertices, sphere.vertices, "CachedGuess")
+    rows = []
+    for X in X_WA:
+        distance_m, found = query(X), query.result
+        points = (found.getNearestPoint1() + found.getNearestPoint2()) / 2
+        # coal's normal points from A to B.
+        rows.append([distance_m, *-found.normal, *points])
+    distance, normal, point = np.split(np.array(rows), [1, 4], axis=1)
+    return ContactCurves(distance[:, 0], normal, point)
+
+
 def _find_libraries() -> dict[str, _Follow]:
     """Returns what can follow a contact here, by name."""
     found: dict[str, _Follow] = {OURS: _follow}
-    try:
-        from drake_haptics.evaluation.paper.coal_contact import follow_with_coal
-    except ImportError:
-        return found
-    return {**found, "coal": follow_with_coal}
+    if find_spec("coal") is not None:
+        found["coal"] = _follow_with_coal
+    return found
 
 
 def _find_corner(surface: Surface) -> float:

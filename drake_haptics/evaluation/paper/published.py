@@ -1,4 +1,4 @@
-"""What the paper says, in its own figures (section 6)."""
+"""Holds what the paper says, in its own figures (section 6)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scenarios of Figure 11, and those with the largest models of Table 1."""
+"""Makes the scenarios of Figure 11, and those with the largest models of Table 1."""
 
 from __future__ import annotations
 
@@ -9,20 +9,15 @@ from pathlib import Path
 import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 
-from drake_haptics.evaluation.paper.exploration import Place, plan_exploration
-from drake_haptics.evaluation.paper.models import (
+from drake_haptics.evaluation.paper.exploration import Place, Scenario, plan_exploration
+from drake_haptics.evaluation.shapes.hand_tools import make_wrench
+from drake_haptics.evaluation.shapes.machine_room import make_machine_room, wrench_path
+from drake_haptics.evaluation.shapes.models import (
     MODELS,
     OWN,
-    as_mesh,
     cut_shape,
     find_sources,
     load_model,
-)
-from drake_haptics.evaluation.paper.scenario import Scenario
-from drake_haptics.evaluation.shapes.machine_room import (
-    make_machine_room,
-    make_wrench,
-    wrench_path,
 )
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
@@ -79,7 +74,7 @@ def scenario_makers(meshes: Path | None) -> dict[str, Callable[[], Scenario]]:
 
 
 def _soft_contact(tolerance_m: float, stiffness_N_per_m: float) -> Contact:
-    """The paper's clustering, and so soft that a few newtons penetrate: P as well."""
+    """Returns the paper's clustering; so soft that a few newtons penetrate."""
     return Contact(
         tolerance_m=tolerance_m,
         stiffness_N_per_m=stiffness_N_per_m,
@@ -90,7 +85,7 @@ def _soft_contact(tolerance_m: float, stiffness_N_per_m: float) -> Contact:
 
 
 def _make_cup_spoon(meshes: Path | None, name: str, figure: str) -> Scenario:
-    """Down into the cup, round its wall, and across its floor."""
+    """Goes down into the cup, round its wall, and across its floor."""
     if meshes is None:
         cup, spoon = cut_shape("cup"), cut_shape("spoon")
     else:
@@ -128,7 +123,7 @@ def _make_cup_spoon(meshes: Path | None, name: str, figure: str) -> Scenario:
 def _make_probe(
     model: str, source: str, meshes: Path | None, name: str, figure: str
 ) -> Scenario:
-    """A convex probe over the front of a model, in rows, upright and nearly flat."""
+    """Leads a convex probe over the front of a model, upright and nearly flat."""
     # Round and convex, 24 mm thick.
     probe, mesh = cut_shape("peg"), load_model(model, source, meshes)
     target = decompose(mesh)
@@ -167,14 +162,14 @@ def _find_front(mesh: Mesh) -> Iterator[np.ndarray]:
 
 
 def _make_machine_room() -> Scenario:
-    """The wrench's flat over the tubes of the panel, up, down and rocking."""
+    """Leads the wrench's flat over the tubes of the panel, up, down and rocking."""
     room = make_machine_room()
-    pieces = {n: decompose(as_mesh(s, n)) for n, s in room.shapes.items()}
+    pieces = {n: decompose(s.to_mesh(n)) for n, s in room.shapes.items()}
     objects = tuple(
         ContactObject(o.name, pieces[o.shape].core, RigidTransform(o.X_WO))
         for o in room.objects
     )
-    wrench = decompose(as_mesh(make_wrench(), "wrench"))
+    wrench = decompose(make_wrench().to_mesh("wrench"))
     low, high = (RigidTransform(X) for X in wrench_path(2))
     places = []
     press = _press_again()

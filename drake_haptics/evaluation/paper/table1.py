@@ -1,14 +1,13 @@
-"""Table 1: how many convex pieces models like the paper's are cut into."""
+"""Cuts models like the paper's into convex pieces, as its Table 1 does."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
-from drake_haptics.evaluation.paper.models import find_sources, load_model
 from drake_haptics.evaluation.paper.published import TABLE_1
+from drake_haptics.evaluation.shapes.models import find_sources, load_model
 from drake_haptics.geometry.decomposition.decompose import decompose
 
 
@@ -39,10 +38,6 @@ class ModelFigures:
     facets: int = 0
     virtual_facets: int = 0
     seconds: float = 0.0
-
-    def to_dict(self) -> dict[str, Any]:
-        """Returns the figures ready for JSON."""
-        return asdict(self)
 
 
 def measure_table1(

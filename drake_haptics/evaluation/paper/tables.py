@@ -1,13 +1,13 @@
-"""The tables of the evaluation."""
+"""Makes the tables of the evaluation."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from drake_haptics.evaluation.accuracy.figures import TickTimes
+from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.evaluation.paper.evaluation import Analysis, Run
 from drake_haptics.evaluation.paper.pen_pass import EXACT, PenPass
-from drake_haptics.evaluation.paper.profile_figures import ProfileFigures, StateTimes
+from drake_haptics.evaluation.paper.profile import ProfileFigures, StateTimes
 from drake_haptics.evaluation.paper.table1 import ModelFigures
 from drake_haptics.report.page import Table
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
 
 from drake_haptics.evaluation.paper.evaluation import Analysis
-from drake_haptics.evaluation.paper.force_scaling import FEWEST_FITTED, ForceScaling
-from drake_haptics.evaluation.paper.pen_pass import OURS, PenPass
-from drake_haptics.evaluation.paper.profile_figures import ProfileFigures
+from drake_haptics.evaluation.paper.pen_pass import OURS, PenPass, Smoothness
+from drake_haptics.evaluation.paper.profile import ProfileFigures
 from drake_haptics.evaluation.paper.published import (
     CUP_SPOON_CONTACTS,
     CUP_SPOON_RATE_HZ,
@@ -18,10 +19,17 @@ from drake_haptics.evaluation.paper.published import (
     TOUCHED_OBJECTS,
     TOUCHED_TRIANGLES,
 )
-from drake_haptics.evaluation.paper.smoothness import Smoothness
-from drake_haptics.evaluation.paper.statement import Statement, Verdict
+from drake_haptics.evaluation.paper.scaling import FEWEST_FITTED, ForceScaling
 from drake_haptics.evaluation.paper.table1 import ModelFigures
 
+Verdict = Literal["agrees", "better", "differs", "not measured"]
+# What statements of each verdict do, as the end of a sentence that counts them.
+MEANING: dict[Verdict, str] = {
+    "agrees": "agree with the paper",
+    "better": "are better than the paper says",
+    "differs": "differ from it, or are worse",
+    "not measured": "were not measured",
+}
 # Powers that are "roughly proportional"; with a smaller one contacts cost less.
 _PROPORTIONAL = (0.7, 1.3)
 # A rate is better from this many times the paper's on: a newer processor alone makes
@@ -36,6 +44,19 @@ _LINEAR_R_SQUARED = 0.95
 _NEAR = 0.02
 # Steps that differ by less are the same.
 _SAME = 1.02
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A sentence and what it comes to.
+
+    Attributes:
+        verdict: One of `MEANING`.
+        text: The sentence, with figures.
+    """
+
+    verdict: Verdict
+    text: str
 
 
 def judge_table1(rows: Sequence[ModelFigures]) -> list[Statement]:

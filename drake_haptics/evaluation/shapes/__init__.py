@@ -6,15 +6,17 @@ drake_haptics.evaluation.shapes` writes them all to `models/meshes`.
 
 from collections.abc import Callable
 
-from drake_haptics.evaluation.shapes.block import make_block
-from drake_haptics.evaluation.shapes.cup import make_cup
-from drake_haptics.evaluation.shapes.hammer import make_hammer
-from drake_haptics.evaluation.shapes.peg import make_peg
-from drake_haptics.evaluation.shapes.pen import make_pen
-from drake_haptics.evaluation.shapes.sphere import make_sphere
-from drake_haptics.evaluation.shapes.spoon import make_spoon
+from drake_haptics.evaluation.shapes.hand_tools import make_hammer
+from drake_haptics.evaluation.shapes.solids import (
+    make_block,
+    make_cup,
+    make_peg,
+    make_pen,
+    make_sphere,
+    make_spoon,
+    make_torus,
+)
 from drake_haptics.evaluation.shapes.surface import Surface
-from drake_haptics.evaluation.shapes.torus import make_torus
 
 # Name of a shipped mesh -> the function that makes it.
 SHAPES: dict[str, Callable[[], Surface]] = {

@@ -1,4 +1,4 @@
-"""An organ: a folded, branching tube, after the digestive system of the paper."""
+"""Makes an organ: a folded, branching tube, after the paper's digestive system."""
 
 from __future__ import annotations
 
@@ -7,9 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from drake_haptics.evaluation.shapes.opening import opening_loop
-from drake_haptics.evaluation.shapes.surface import Surface, SurfaceBuilder
-from drake_haptics.evaluation.shapes.sweep import Path, rounded_path
+from drake_haptics.evaluation.shapes.surface import (
+    SmoothPath,
+    Surface,
+    SurfaceBuilder,
+    opening_loop,
+    rounded_path,
+)
 
 # Corners of the axes, (x, y, z) in m, before all is bent a little.
 _COLON = (
@@ -59,7 +63,7 @@ def make_organ() -> Surface:
 
 
 def _bowel_corners() -> np.ndarray:
-    """From the colon in rows up the front and down the back."""
+    """Returns the bowel's way from the colon in rows, up the front, down the back."""
     corners = [(-0.076, 0.0, _ROWS_Z_M[0])]
     for y, rows in ((0.0, _ROWS_Z_M), (_BACK_Y_M, _ROWS_Z_M[::-1])):
         for z in rows:
@@ -87,7 +91,7 @@ def _appendix_radius(s: float, length: float, angle: np.ndarray) -> np.ndarray:
 
 
 def _dome(from_end: float, radius: float) -> float:
-    """Share of the radius that far from an end, where it falls to nothing."""
+    """Returns the share of the radius so far from an end, where it falls to nothing."""
     share = min(from_end / radius, 1.0)
     return float(np.sqrt(share * (2 - share)))
 
@@ -105,12 +109,12 @@ def _bend(points: np.ndarray) -> np.ndarray:
 
 def _add_rings(
     builder: SurfaceBuilder,
-    path: Path,
+    path: SmoothPath,
     normal: np.ndarray,
     count: int,
     radius: Callable[[float, float, np.ndarray], np.ndarray],
 ) -> list[list[int]]:
-    """Rings of `count` vertices around a path, but for its ends."""
+    """Adds rings of `count` vertices around a path, but for its ends."""
     steps = np.linalg.norm(np.diff(path.points, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     angle = 2 * np.pi * np.arange(count) / count
@@ -126,18 +130,18 @@ def _add_rings(
 def _add_branch(
     builder: SurfaceBuilder,
     rim: list[int],
-    path: Path,
+    path: SmoothPath,
     normal: np.ndarray,
     radius: Callable[[float, float, np.ndarray], np.ndarray],
 ) -> None:
-    """A tube from the rim of an opening along a path to a closed end.
+    """Adds a tube from the rim of an opening along a path to a closed end.
 
     Args:
-        builder: to add to.
-        rim: of the opening.
-        path: its axis.
+        builder: The surface to add to.
+        rim: The rim of the opening.
+        path: The axis of the tube.
         normal: (3,) direction in which the rim begins, seen from the axis.
-        radius: of the tube.
+        radius: Radius of the tube, m.
     """
     for ring in _add_rings(builder, path, normal, len(rim), radius):
         builder.add_band(rim, ring)
@@ -147,13 +151,13 @@ def _add_branch(
 
 
 def _rim(rings: list[list[int]], rows: range, columns: range) -> list[int]:
-    """The rim of an opening of the colon."""
+    """Returns the rim of an opening of the colon."""
     around = [column % _COLON_SECTORS for column in columns]
     return opening_loop([rings[row] for row in rows], around)
 
 
 def _holes(row: int) -> list[int]:
-    """The colon's columns that are open between the rings `row` and `row` + 1."""
+    """Returns the columns that are open between the rings `row` and `row` + 1."""
     return [
         column % _COLON_SECTORS
         for rows, columns in (

@@ -1,4 +1,6 @@
-"""Closed triangle surfaces built from rings of vertices, with exact topology."""
+"""Builds closed triangle surfaces from rings of vertices, with exact topology."""
+
+from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
@@ -7,11 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
+from drake_haptics.geometry.mesh.mesh import Mesh
+
 # Shipped coordinates are rounded to a nanometre, so that the last digit of a
 # platform's sine does not show in the files.
 _DECIMALS = 9
 # A quad whose corners are closer to a plane than this needs no choice of diagonal.
 _FLAT_M = 1e-7
+# Two bends may follow each other at once.
+_NO_LENGTH_M = 1e-9
 
 
 @dataclass(frozen=True)
@@ -26,16 +32,20 @@ class Surface:
     vertices: np.ndarray
     triangles: np.ndarray
 
+    def to_mesh(self, name: str = "") -> Mesh:
+        """Returns the surface as a checked mesh of this name."""
+        return Mesh.from_arrays(self.vertices, self.triangles, name=name)
+
     def write_obj(self, path: Path, title: str) -> None:
         """Writes the surface as a Wavefront OBJ file.
 
         Args:
-            path: the file to write.
-            title: one line for the head of the file.
+            path: The file to write.
+            title: One line for the head of the file.
         """
         lines = [
             f"# {title}",
-            "# Units: meters. Made by: python -m drake_haptics.shapes",
+            "# Units: meters. Made by: python -m drake_haptics.evaluation.shapes",
         ]
         lines += [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in self.vertices]
         lines += [f"f {a} {b} {c}" for a, b, c in self.triangles + 1]
@@ -69,12 +79,12 @@ class SurfaceBuilder:
         """Joins two rings of equal length by a band of quads.
 
         Args:
-            near: the ring the surface comes from.
-            far: the ring it advances to.
-            holes: columns i whose quad (near[i], near[i+1], ...) is left open.
+            near: The ring the surface comes from.
+            far: The ring it advances to.
+            holes: Columns i whose quad (near[i], near[i+1], ...) is left open.
 
         Raises:
-            ValueError: the rings differ in length.
+            ValueError: The rings differ in length.
         """
         if len(near) != len(far):
             raise ValueError(f"rings of unlike sizes: {len(near)} and {len(far)}")
@@ -87,8 +97,8 @@ class SurfaceBuilder:
         """Closes a ring by triangles to an apex.
 
         Args:
-            ring: the ring to close.
-            apex: index of the vertex in its middle.
+            ring: The ring to close.
+            apex: Index of the vertex in its middle.
             at_start: True where the surface begins, False where it ends.
         """
         for i, a in enumerate(ring):
@@ -151,7 +161,137 @@ def revolve(profile: Sequence[tuple[float, float]], count: int) -> Surface:
     Args:
         profile: (radius, z) pairs, m, from the lowest point of the axis to the highest;
             the first and last radius are 0, the others positive.
-        count: vertices around the axis.
+        count: Vertices around the axis.
     """
     (_, bottom), *walls, (_, top) = profile
     return loft((0, 0, bottom), (circle(r, z, count) for r, z in walls), (0, 0, top))
+
+
+def opening_loop(rings: Sequence[Sequence[int]], columns: Sequence[int]) -> list[int]:
+    """Returns the rim of an opening, a ring for a branch that leaves the surface.
+
+    It runs counterclockwise about the outward normal; for a branch that arrives, run
+    through it backwards. The quads between the rings are to be left open: `holes` of
+    `SurfaceBuilder.add_band` are `columns` without the last.
+
+    Args:
+        rings: The rings that the opening begins and ends at, and those between, in the
+            order of the surface's advance.
+        columns: Columns of those rings, from one side of the opening to the other.
+    """
+    first, last = columns[0], columns[-1]
+    return [
+        *(rings[0][c] for c in columns[:-1]),
+        *(ring[last] for ring in rings[:-1]),
+        *(rings[-1][c] for c in columns[:0:-1]),
+        *(ring[first] for ring in rings[:0:-1]),
+    ]
+
+
+@dataclass(frozen=True)
+class SmoothPath:
+    """A smooth path, sampled.
+
+    Attributes:
+        points: (n, 3), m.
+        tangents: (n, 3) unit vectors along the path.
+    """
+
+    points: np.ndarray
+    tangents: np.ndarray
+
+    def frames(self, normal: np.ndarray) -> np.ndarray:
+        """Returns (n, 3, 3) frames that turn about the path no more than they must.
+
+        Args:
+            normal: (3,) the first frame's x axis lies in the plane of this vector and
+                the first tangent, and on the same side.
+
+        Returns:
+            Rotations whose columns are x, y and the tangent.
+        """
+        x = normal - (normal @ self.tangents[0]) * self.tangents[0]
+        frames = [_make_frame(x, self.tangents[0])]
+        for before, after in pairwise(self.tangents):
+            # The least turn that takes one tangent to the next.
+            axis, cosine = np.cross(before, after), before @ after
+            x = frames[-1][:, 0]
+            x = cosine * x + np.cross(axis, x) + axis * (axis @ x) / (1 + cosine)
+            frames.append(_make_frame(x, after))
+        return np.array(frames)
+
+
+def rounded_path(
+    corners: np.ndarray,
+    bend_radius: float,
+    *,
+    bend_steps: int,
+    step: float = np.inf,
+) -> SmoothPath:
+    """Returns the path along straight lines with rounded corners.
+
+    Args:
+        corners: (k, 3) ends and corners, m. The lines between them must be long
+            enough for the bends.
+        bend_radius: Radius of the arcs at the corners, m.
+        bend_steps: Steps per quarter turn of an arc, at least one per arc.
+        step: The longest step on a straight line, m.
+    """
+    corners = np.asarray(corners, dtype=float)
+    directions = np.diff(corners, axis=0)
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    points, tangents = [corners[0]], [directions[0]]
+
+    def go_straight(end: np.ndarray, direction: np.ndarray) -> None:
+        start = points[-1]
+        length = np.linalg.norm(end - start)
+        if length < _NO_LENGTH_M:
+            return
+        count = max(1, int(np.ceil(length / step - 1e-9)))
+        for k in range(1, count + 1):
+            points.append(start + (end - start) * k / count)
+            tangents.append(direction)
+
+    for corner, before, after in zip(
+        corners[1:-1], directions[:-1], directions[1:], strict=True
+    ):
+        angle = np.arccos(np.clip(before @ after, -1, 1))
+        inset = bend_radius * np.tan(angle / 2)
+        go_straight(corner - inset * before, before)
+        inward = after - (after @ before) * before
+        inward /= np.linalg.norm(inward)
+        start = points[-1]
+        count = max(1, round(bend_steps * angle / (np.pi / 2)))
+        for turn in angle * np.arange(1, count + 1) / count:
+            c, s = np.cos(turn), np.sin(turn)
+            points.append(start + bend_radius * (s * before + (1 - c) * inward))
+            tangents.append(c * before + s * inward)
+    go_straight(corners[-1], directions[-1])
+    return SmoothPath(np.array(points), np.array(tangents))
+
+
+def sweep_tube(
+    path: SmoothPath, normal: np.ndarray, radius: float, count: int
+) -> Surface:
+    """Returns a round solid along a path, with flat ends.
+
+    Args:
+        path: The axis.
+        normal: (3,) direction of the first vertex, as in `SmoothPath.frames`.
+        radius: Radius, m.
+        count: Vertices around the axis.
+    """
+    angle = 2 * np.pi * np.arange(count) / count
+    section = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    rings = (
+        p + section @ frame[:, :2].T
+        for p, frame in zip(path.points, path.frames(normal), strict=True)
+    )
+    return loft(path.points[0], rings, path.points[-1])
+
+
+def _make_frame(x: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Returns a rotation with the tangent z and x made normal to it."""
+    x = x - (x @ z) * z
+    x = x / np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])

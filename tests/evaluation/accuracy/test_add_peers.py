@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from accuracy_samples import make_peers, make_study
 
-from drake_haptics.evaluation.accuracy import add_peers as module
+from drake_haptics.evaluation.accuracy.peers import run as module
 from drake_haptics.evaluation.accuracy.recorded_motion import record_motion
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.scene.library import find_scene

@@ -7,8 +7,9 @@ import pytest
 from accuracy_samples import make_row, make_study
 
 from drake_haptics.common.errors import UserError
-from drake_haptics.evaluation.accuracy.budget import Trial, choose_setting
-from drake_haptics.evaluation.accuracy.budget_words import (
+from drake_haptics.evaluation.accuracy.budget import (
+    Trial,
+    choose_setting,
     describe_file,
     describe_help,
     describe_outcome,

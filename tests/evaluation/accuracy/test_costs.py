@@ -5,15 +5,17 @@ import shutil
 import numpy as np
 import pytest
 
-from drake_haptics.evaluation.accuracy.built_scenes import build_once
-from drake_haptics.evaluation.accuracy.figures import TickTimes
-from drake_haptics.evaluation.accuracy.instruction_count import count_native
-from drake_haptics.evaluation.accuracy.native_cost import make_native_part, time_native
-from drake_haptics.evaluation.accuracy.recorded_motion import record_motion
+from drake_haptics.evaluation.accuracy.costs import (
+    build_once,
+    combine,
+    make_native_part,
+    time_native,
+)
+from drake_haptics.evaluation.accuracy.native_part import count_native
+from drake_haptics.evaluation.accuracy.recorded_motion import record_motion, replay_tool
 from drake_haptics.evaluation.accuracy.setting import Setting
-from drake_haptics.evaluation.accuracy.study_rows import list_timing_tasks
-from drake_haptics.evaluation.accuracy.tick_cost import combine
-from drake_haptics.evaluation.accuracy.tool_replay import replay_tool
+from drake_haptics.evaluation.accuracy.study import list_timing_tasks
+from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import Braking, Material

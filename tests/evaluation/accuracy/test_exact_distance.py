@@ -7,7 +7,7 @@ from trimesh.creation import box
 from trimesh.util import concatenate
 
 from drake_haptics.common.pose_vector import vector_to_pose
-from drake_haptics.evaluation.accuracy.exact_distance import calc_exact_distance
+from drake_haptics.evaluation.accuracy.truth import calc_exact_distance
 from drake_haptics.loop.builder import BuildHapticDiagram
 
 _REST = [(0.0, 0.0, 0.0, 0.03), (1.0, 0.0, 0.0, 0.03)]

@@ -5,12 +5,12 @@ import shlex
 import pytest
 
 from drake_haptics.common.errors import UserError
-from drake_haptics.evaluation.accuracy.one_setting import (
+from drake_haptics.evaluation.accuracy.setting import (
+    Setting,
     apply_checked,
     format_setting,
     parse_setting,
 )
-from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 

@@ -5,11 +5,16 @@ import dataclasses
 import numpy as np
 import pytest
 
+from drake_haptics.evaluation.accuracy.figures import Errors
 from drake_haptics.evaluation.accuracy.knobs import make_reference
-from drake_haptics.evaluation.accuracy.open_loop import compare, measure_open_loop
 from drake_haptics.evaluation.accuracy.recorded_motion import record_motion
 from drake_haptics.evaluation.accuracy.setting import Setting
-from drake_haptics.evaluation.accuracy.truth import Truth, find_truth
+from drake_haptics.evaluation.accuracy.truth import (
+    Truth,
+    compare,
+    find_truth,
+    measure_open_loop,
+)
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 
@@ -24,7 +29,7 @@ def _make_truth(force=(0.0, 0.0, 2.0), distance=-1e-4, tolerance_m=1e-3):
 def test_the_truth_is_right():
     truth = _make_truth()
     errors = compare(truth.F_Tcm_W, truth.distance, truth.tolerance_m, truth)
-    assert set(dataclasses.asdict(errors).values()) == {0.0}
+    assert errors == Errors(*[0.0] * 6)
 
 
 def test_wrenches_differ_by_their_difference():

@@ -9,14 +9,15 @@ import pytest
 from accuracy_samples import make_peers, make_row, make_study
 from PIL import Image
 
-from drake_haptics.evaluation.accuracy.one_setting import parse_setting
 from drake_haptics.evaluation.accuracy.page import write_accuracy_page
-from drake_haptics.evaluation.accuracy.table import get_columns, group_rows, make_cells
-from drake_haptics.evaluation.accuracy.words import (
+from drake_haptics.evaluation.accuracy.report import (
     describe_knees,
     describe_verdict,
-    make_front,
+    get_columns,
+    group_rows,
+    make_cells,
 )
+from drake_haptics.evaluation.accuracy.setting import parse_setting
 
 STUDY = make_study(peers=make_peers())
 
@@ -35,7 +36,7 @@ def test_sentences_come_before_the_picture_and_it_before_the_table(page):
     words = html.unescape(page)
     order = [
         *describe_verdict(STUDY),
-        *describe_knees(STUDY, make_front(STUDY)),
+        *describe_knees(STUDY),
         "data:image/png;base64,iVBOR",
         "Price list",
         "Differences of model",

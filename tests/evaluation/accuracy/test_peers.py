@@ -115,7 +115,7 @@ def test_a_box_on_a_box_is_one_spring(
 
 
 # A compliant ball is softer while little of it touches: no spring.
-_SPRINGS = [m for m in METHODS if "hydroelastic" not in m.module]
+_SPRINGS = [m for m in METHODS if "hydroelastic" not in m.words]
 
 
 @pytest.mark.parametrize("method", _SPRINGS, ids=lambda m: f"{m.library}-{m.function}")

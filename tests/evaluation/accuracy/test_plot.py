@@ -12,8 +12,8 @@ from matplotlib.text import Text
 from drake_haptics.common.colors import FRONT
 from drake_haptics.evaluation.accuracy.pareto import ERROR_FLOOR_N
 from drake_haptics.evaluation.accuracy.plot import draw_study
+from drake_haptics.evaluation.accuracy.report import group_rows
 from drake_haptics.evaluation.accuracy.setting import Setting
-from drake_haptics.evaluation.accuracy.table import group_rows
 from drake_haptics.report.plot_labels import Label, label_points
 
 STUDY = make_study(peers=make_peers())

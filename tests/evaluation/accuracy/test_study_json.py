@@ -6,13 +6,13 @@ from dataclasses import replace
 
 from accuracy_samples import make_errors, make_peers, make_row, make_study
 
-from drake_haptics.evaluation.accuracy.study_json import from_json_data, to_json_data
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
 
 
 def test_a_study_comes_back_from_json():
     study = make_study(peers=make_peers())
-    text = json.dumps(to_json_data(study), allow_nan=False)
-    assert from_json_data(json.loads(text)) == study
+    text = json.dumps(study.to_json_data(), allow_nan=False)
+    assert AccuracyStudy.from_dict(json.loads(text)) == study
 
 
 def test_numbers_that_json_lacks_come_back():
@@ -23,8 +23,8 @@ def test_numbers_that_json_lacks_come_back():
         normal_jump_deg=math.nan,
     )
     study = make_study(replace(row, errors=odd))
-    data = json.loads(json.dumps(to_json_data(study), allow_nan=False))
-    (back,) = from_json_data(data).rows
+    data = json.loads(json.dumps(study.to_json_data(), allow_nan=False))
+    (back,) = AccuracyStudy.from_dict(data).rows
     assert back.errors.force_rms_N == math.inf
     assert back.errors.energy_created_J == -math.inf
     assert math.isnan(back.errors.normal_jump_deg)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from accuracy_samples import make_row, make_study
 
-from drake_haptics.evaluation.accuracy.table import (
+from drake_haptics.evaluation.accuracy.report import (
     COLUMNS,
     INSTRUCTIONS,
     format_us,

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from accuracy_samples import make_peers, make_row, make_study
 
-from drake_haptics.evaluation.accuracy.words import (
+from drake_haptics.evaluation.accuracy.report import (
     describe_knees,
     describe_machine,
     describe_missing,
@@ -12,7 +12,6 @@ from drake_haptics.evaluation.accuracy.words import (
     describe_peers,
     describe_reference,
     describe_verdict,
-    make_front,
 )
 
 STUDY = make_study(peers=make_peers())
@@ -60,7 +59,7 @@ def test_a_scene_without_figures_has_no_verdict():
 
 
 def test_a_knee_is_compared_with_the_scene_and_its_neighbours():
-    (words,) = describe_knees(STUDY, make_front(STUDY))
+    (words,) = describe_knees(STUDY)
     # 2.1 µs and 2.4 N on one side: 5.9 µs for 1.68 decades; 24 µs and 4 mN on the
     # other: 16 µs for 1.10.
     assert words == (
@@ -76,7 +75,7 @@ def test_half_is_called_so():
         make_row("k", "coarse", 150.0, 9.0, 5.0),
         make_row("k", "fine", 150.0, 10.1, 0.01),
     )
-    (words,) = describe_knees(study, make_front(study))
+    (words,) = describe_knees(study)
     assert "half the scene's time" in words
 
 

@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 from bench_samples import EVERYTHING, FIGURES, pair, scene
 
-from drake_haptics.evaluation.benchmark.benchmark import BenchFigures
-from drake_haptics.evaluation.benchmark.pair_ratios import (
+from drake_haptics.evaluation.benchmark.benchmark import (
+    BenchFigures,
+    machine_line,
+    make_tables,
+    missing_lines,
+)
+from drake_haptics.evaluation.benchmark.pair_tables import (
     COLUMNS,
     geometric_mean,
     growth,
     ratios_to_fastest,
-)
-from drake_haptics.evaluation.benchmark.pair_tables import time_table
-from drake_haptics.evaluation.benchmark.report import (
-    machine_line,
-    make_tables,
-    missing_lines,
+    time_table,
 )
 from drake_haptics.evaluation.measuring import timing
 from drake_haptics.evaluation.measuring.timing import CallTimer, Times, typical

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from minkowski_truth import place, signed_distance
 
-from drake_haptics.evaluation.benchmark.pair_motion import make_presses
-from drake_haptics.evaluation.benchmark.pair_shapes import make_pair
-from drake_haptics.evaluation.benchmark.pair_truth import find_truth
+from drake_haptics.evaluation.benchmark.pair_runs import find_truth
+from drake_haptics.evaluation.benchmark.pairs import make_pair, make_presses
 from drake_haptics.evaluation.measuring.timing import clock_interval
 
 # Library -> (module it needs, m by which its distance may be off on these pairs).

@@ -12,10 +12,21 @@ import numpy as np
 import pytest
 from write_docs import PAGE, figures_of
 
-from drake_haptics.evaluation.benchmark.benchmark import BenchFigures, Effort
+from drake_haptics.evaluation.benchmark.benchmark import (
+    BenchFigures,
+    Effort,
+    make_tables,
+)
 from drake_haptics.evaluation.benchmark.loop import runs
-from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures, LoopTimes
-from drake_haptics.evaluation.benchmark.loop.names import MUJOCO, NATIVE, OURS, STOCK
+from drake_haptics.evaluation.benchmark.loop.figures import (
+    MUJOCO,
+    NATIVE,
+    OURS,
+    STOCK,
+    LoopFigures,
+    LoopTimes,
+    loop_tables,
+)
 from drake_haptics.evaluation.benchmark.loop.problem import (
     Loop,
     LoopCourse,
@@ -23,9 +34,7 @@ from drake_haptics.evaluation.benchmark.loop.problem import (
     make_problem,
 )
 from drake_haptics.evaluation.benchmark.loop.runs import make_loops, run_loops
-from drake_haptics.evaluation.benchmark.loop.table import loop_tables
 from drake_haptics.evaluation.benchmark.loop.this_package import NativeLoop, ThisLoop
-from drake_haptics.evaluation.benchmark.report import make_tables
 
 # The spoon comes in and begins to scrape.
 _SECONDS = 1.2

@@ -8,8 +8,12 @@ from minkowski_truth import place, signed_distance
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from drake_haptics.evaluation.benchmark.pair_motion import make_presses
-from drake_haptics.evaluation.benchmark.pair_shapes import KINDS, SIZES, make_pair
+from drake_haptics.evaluation.benchmark.pairs import (
+    KINDS,
+    SIZES,
+    make_pair,
+    make_presses,
+)
 
 
 @pytest.mark.parametrize("kind", KINDS)

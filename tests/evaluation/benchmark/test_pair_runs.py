@@ -15,10 +15,13 @@ from drake_haptics.evaluation.benchmark.pair_library import (
     PairQuery,
     normals_between,
 )
-from drake_haptics.evaluation.benchmark.pair_motion import make_presses
-from drake_haptics.evaluation.benchmark.pair_runs import PairFigures, run_pair
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape, make_pair
-from drake_haptics.evaluation.benchmark.pair_truth import find_truth, support_gaps
+from drake_haptics.evaluation.benchmark.pair_runs import (
+    PairFigures,
+    find_truth,
+    run_pair,
+    support_gaps,
+)
+from drake_haptics.evaluation.benchmark.pairs import PairShape, make_pair, make_presses
 
 PAIR = make_pair("slab", 8)
 

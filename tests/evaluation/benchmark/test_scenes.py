@@ -8,14 +8,18 @@ from mesh_samples import box, l_prism, real_mesh
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import Mesh, SceneTracker, decompose
-from drake_haptics.evaluation.benchmark.scene_motion import make_touches
-from drake_haptics.evaluation.benchmark.scene_problem import SceneAnswers, SceneProblem
 from drake_haptics.evaluation.benchmark.scene_runs import (
     NAME,
+    CoalScene,
     DrakeHapticsScene,
     run_scene,
 )
-from drake_haptics.evaluation.benchmark.scenes import scene_makers
+from drake_haptics.evaluation.benchmark.scenes import (
+    SceneAnswers,
+    SceneProblem,
+    make_touches,
+    scene_makers,
+)
 
 
 def pieces(V: np.ndarray, F: np.ndarray):
@@ -48,8 +52,8 @@ def test_touches_start_apart_touch_lightly_and_stay_slow(problem) -> None:
 
 
 def test_coal_finds_the_same_nearest_distance(problem) -> None:
-    coal = pytest.importorskip("drake_haptics.evaluation.benchmark.scene_peer")
-    ours, theirs = DrakeHapticsScene(problem), coal.CoalScene(problem)
+    pytest.importorskip("coal")
+    ours, theirs = DrakeHapticsScene(problem), CoalScene(problem)
     for X_WTool in problem.motions:
         mine, its = ours.run(X_WTool), theirs.run(X_WTool)
         apart = its.nearest_m > 0
@@ -62,7 +66,7 @@ def test_coal_finds_the_same_nearest_distance(problem) -> None:
 
 
 def test_coal_takes_flat_pieces(problem) -> None:
-    coal = pytest.importorskip("drake_haptics.evaluation.benchmark.scene_peer")
+    pytest.importorskip("coal")
     sheet = pieces(
         np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]),
         np.array([[0, 1, 2], [0, 2, 3]]),
@@ -71,7 +75,7 @@ def test_coal_takes_flat_pieces(problem) -> None:
     above[2, 3] = 0.021
     flat = SceneProblem("sheet", problem.tool, [sheet], np.eye(4)[None], [above[None]])
     assert sheet.pieces[0].dimension == 2
-    assert coal.CoalScene(flat).run(above[None]).nearest_m == pytest.approx(0.001)
+    assert CoalScene(flat).run(above[None]).nearest_m == pytest.approx(0.001)
 
 
 class Scripted:

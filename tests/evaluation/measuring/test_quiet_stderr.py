@@ -7,14 +7,14 @@ import sys
 
 import pytest
 
-from drake_haptics.evaluation.measuring.quiet_stderr import quiet_stderr
+from drake_haptics.evaluation.measuring.pieces import quiet_streams
 
 
 def test_only_what_is_written_meanwhile_is_dropped(
     capfd: pytest.CaptureFixture[str],
 ) -> None:
     os.write(2, b"before ")
-    with pytest.raises(ZeroDivisionError), quiet_stderr():
+    with pytest.raises(ZeroDivisionError), quiet_streams(2):
         os.write(2, b"compiled ")
         _ = 1 / 0
     print("after", file=sys.stderr)

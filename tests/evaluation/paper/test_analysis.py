@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 from drake_haptics import ConvexPair, ConvexPolytope, SceneTracker
-from drake_haptics.evaluation.benchmark.pair_motion import make_presses
+from drake_haptics.evaluation.benchmark.pairs import make_presses
 from drake_haptics.evaluation.paper.depth_cost import (
     TRIANGLES,
+    count_depths,
     make_balls,
     measure_depth_costs,
 )
-from drake_haptics.evaluation.paper.force_scaling import measure_force_scaling
-from drake_haptics.evaluation.paper.instruction_count import count_depths
-from drake_haptics.evaluation.paper.pair_scaling import (
+from drake_haptics.evaluation.paper.scaling import (
     NUM_TEETH,
     make_brush,
     make_plate,
+    measure_force_scaling,
     measure_pair_scaling,
     plan_slide,
 )

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from drake_haptics.evaluation.paper.intervals import Interval, find_intervals
+from drake_haptics.evaluation.paper.profile import Interval, find_intervals
 
 
 def signal(text):

@@ -9,13 +9,13 @@ from scipy.optimize import minimize
 from drake_haptics.evaluation.paper.pen_pass import (
     OURS,
     RADIUS_M,
+    ContactCurves,
+    calc_sphere_contact,
     measure_pen_pass,
+    measure_smoothness,
     plan_pen_pass,
 )
-from drake_haptics.evaluation.paper.pen_truth import ContactCurves, calc_sphere_contact
-from drake_haptics.evaluation.paper.smoothness import measure_smoothness
-from drake_haptics.evaluation.shapes.pen import make_pen
-from drake_haptics.evaluation.shapes.sphere import make_sphere
+from drake_haptics.evaluation.shapes.solids import make_pen, make_sphere
 
 
 @pytest.fixture(scope="module")

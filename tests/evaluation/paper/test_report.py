@@ -6,9 +6,12 @@ import re
 import pytest
 from paper_samples import make_evaluation, make_run
 
-from drake_haptics.evaluation.paper.page import summarize, write_paper_page
-from drake_haptics.evaluation.paper.profile_plot import draw_profile
-from drake_haptics.evaluation.paper.report import make_sections
+from drake_haptics.evaluation.paper.plots import draw_profile
+from drake_haptics.evaluation.paper.report import (
+    make_sections,
+    summarize,
+    write_paper_page,
+)
 
 
 def test_there_is_a_section_for_each_part():

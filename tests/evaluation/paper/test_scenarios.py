@@ -6,17 +6,21 @@ from pydrake.math import RigidTransform
 
 from drake_haptics import SceneTracker
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
-from drake_haptics.evaluation.paper.exploration import Place, plan_exploration
-from drake_haptics.evaluation.paper.models import cut_shape
-from drake_haptics.evaluation.paper.profile import measure_profile
-from drake_haptics.evaluation.paper.profile_figures import sum_up
+from drake_haptics.evaluation.paper.exploration import (
+    PERIOD_S,
+    Place,
+    build_loop,
+    plan_exploration,
+    sample_handle,
+)
+from drake_haptics.evaluation.paper.profile import measure_profile, sum_up
 from drake_haptics.evaluation.paper.published import (
     ROOM_OBJECTS,
     ROOM_TRIANGLES,
     TOUCHED_OBJECTS,
 )
-from drake_haptics.evaluation.paper.scenario import PERIOD_S, build_loop, sample_handle
 from drake_haptics.evaluation.paper.scenarios import scenario_makers
+from drake_haptics.evaluation.shapes.models import cut_shape
 from drake_haptics.systems.contact.contact_query import ContactObject
 
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from drake_haptics.evaluation.paper.models import MODELS, OWN, find_sources
 from drake_haptics.evaluation.paper.published import TABLE_1
 from drake_haptics.evaluation.paper.table1 import measure_table1
 from drake_haptics.evaluation.shapes import SHAPES
+from drake_haptics.evaluation.shapes.models import MODELS, OWN, find_sources
 from drake_haptics.evaluation.shapes.organ import make_organ
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh

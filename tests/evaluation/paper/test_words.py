@@ -14,7 +14,7 @@ from paper_samples import (
 )
 
 from drake_haptics.evaluation.paper.pen_pass import OURS
-from drake_haptics.evaluation.paper.profile_figures import sum_up
+from drake_haptics.evaluation.paper.profile import sum_up
 from drake_haptics.evaluation.paper.words import (
     judge_analysis,
     judge_figure12,

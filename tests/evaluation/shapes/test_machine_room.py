@@ -10,11 +10,8 @@ import trimesh
 from surface_crossings import crossing_edges
 
 from drake_haptics import decompose
-from drake_haptics.evaluation.shapes.machine_room import (
-    make_machine_room,
-    make_wrench,
-    wrench_path,
-)
+from drake_haptics.evaluation.shapes.hand_tools import make_wrench
+from drake_haptics.evaluation.shapes.machine_room import make_machine_room, wrench_path
 from drake_haptics.geometry.mesh.mesh import Mesh
 
 # Kim, Otaduy, Lin and Manocha, section 6.1.

@@ -1,4 +1,4 @@
-"""What a library is asked, and what it answers."""
+"""Defines what a library is asked and answers, and applies the scene's law of force."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from typing import Protocol
 
 import numpy as np
 
-from drake_haptics.evaluation.accuracy.native_cost import make_native_part
+from drake_haptics import _core
+from drake_haptics.evaluation.accuracy.costs import make_native_part
+from drake_haptics.evaluation.accuracy.native_part import NativePart
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.accuracy.truth import Truth
-from drake_haptics.evaluation.measuring.native_part import NativePart
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Scene
@@ -92,3 +93,75 @@ def make_peer_problem(
         part=replace(part, search_m=part.tolerance_m),
         f_W=truth.F_Tcm_W[:, 3:],
     )
+
+
+@dataclass(frozen=True, eq=False)
+class FoundContacts:
+    """The contacts at each of k ticks, tick after tick, n in all.
+
+    Attributes:
+        start: (k + 1,) those of tick i are the rows start[i] to start[i + 1].
+        distance: (n,) signed distance, m.
+        nhat_BA_W: (n, 3) unit normal out of the object into the tool.
+        p_WCa: (n, 3) witness point on the tool, m.
+        p_WCb: (n, 3) witness point on the object, m.
+        object_index: (n,) which object.
+        seconds: (k,) what finding them took, s.
+    """
+
+    start: np.ndarray
+    distance: np.ndarray
+    nhat_BA_W: np.ndarray
+    p_WCa: np.ndarray
+    p_WCb: np.ndarray
+    object_index: np.ndarray
+    seconds: np.ndarray
+
+    @staticmethod
+    def of(start: np.ndarray, rows: np.ndarray, seconds: np.ndarray) -> FoundContacts:
+        """Returns contacts whose numbers are in rows.
+
+        Args:
+            start: The same as the attribute.
+            rows: (n, 11) distance, normal, both witness points, and the object.
+            seconds: The same as the attribute.
+        """
+        distance, normal, p_WCa, p_WCb, owner = np.split(rows, [1, 4, 7, 10], axis=1)
+        index = owner[:, 0].astype(np.int32)
+        return FoundContacts(
+            start, distance[:, 0], normal, p_WCa, p_WCb, index, seconds
+        )
+
+
+def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
+    """Returns what this package's clustering and penalty law make of contacts.
+
+    So that the query alone differs. A contact without a finite normal pushes nothing.
+    """
+    part, motion = problem.part, problem.motion
+    cluster, force = part.make_clustering(), part.make_force()
+    F_Tool_W = np.zeros((len(motion), 6))
+    distance = np.full(len(motion), np.inf)
+    valid = np.isfinite(found.nhat_BA_W).all(axis=1)
+    valid &= found.distance < part.tolerance_m
+    for k in range(len(motion)):
+        rows = np.arange(found.start[k], found.start[k + 1])
+        rows = rows[valid[rows]]
+        if len(rows) == 0:
+            continue
+        distance[k] = found.distance[rows].min()
+        rows = rows[np.argsort(found.object_index[rows], kind="stable")]
+        contacts = _core.contact_set(
+            found.distance[rows],
+            found.nhat_BA_W[rows],
+            found.p_WCa[rows],
+            found.p_WCb[rows],
+            found.object_index[rows].astype(np.int32),
+        )
+        wrench = force(
+            clusters=cluster(contacts),
+            p_WTo=motion.X_WTool[k, 4:],
+            V_WTool=motion.V_WTool[k],
+        )
+        F_Tool_W[k] = wrench.F_Tool_W
+    return PeerAnswers(F_Tool_W, distance, part.tolerance_m, found.seconds)

@@ -5,25 +5,34 @@ from __future__ import annotations
 import copy
 import importlib
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
-
-import numpy as np
 
 from drake_haptics.analysis.held_scene import build_quietly
 from drake_haptics.common.errors import UserError
-from drake_haptics.evaluation.accuracy.figures import Errors, PeerRow, TickTimes
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, PeerRow
 from drake_haptics.evaluation.accuracy.knobs import make_reference
-from drake_haptics.evaluation.accuracy.open_loop import compare
 from drake_haptics.evaluation.accuracy.peers.problem import (
     Answer,
     PeerAnswers,
     PeerProblem,
     make_peer_problem,
 )
-from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
-from drake_haptics.evaluation.accuracy.truth import Truth, find_truth, shift_wrench
-from drake_haptics.scene.schema import Effects, Scene
+from drake_haptics.evaluation.accuracy.recorded_motion import (
+    RecordedMotion,
+    record_motion,
+)
+from drake_haptics.evaluation.accuracy.truth import (
+    Truth,
+    compare,
+    find_truth,
+    shift_wrench,
+)
+from drake_haptics.evaluation.measuring.timing import TickTimes
+from drake_haptics.scene.effects import Effects
+from drake_haptics.scene.schema import Scene
+
+_SAME_LAW = "of the same pieces, this package's law"
 
 
 @dataclass(frozen=True)
@@ -57,58 +66,26 @@ class PeerMethod:
         return answer
 
 
+# fmt: off
 METHODS = (
-    PeerMethod(
-        "coal",
-        "coal",
-        "with_coal",
-        "answer",
-        "signed distances of the same pieces, this package's law",
-    ),
-    PeerMethod(
-        "MuJoCo",
-        "mujoco",
-        "with_mujoco",
-        "answer",
-        "mj_collision of the same pieces, this package's law",
-    ),
-    PeerMethod(
-        "Drake",
-        "drake",
-        "with_drake_point",
-        "answer_by_distances",
-        "signed distances of the same pieces, this package's law",
-    ),
-    PeerMethod(
-        "Drake",
-        "drake",
-        "with_drake_point",
-        "answer_on_pieces",
-        "point contact of the same pieces, without a tolerance",
-    ),
-    PeerMethod(
-        "Drake",
-        "drake",
-        "with_drake_point",
-        "answer_on_meshes",
-        "point contact of meshes as it takes them: convex hulls",
-    ),
-    PeerMethod(
-        "Drake",
-        "drake",
-        "with_drake_hydroelastic",
-        "answer_with_hull",
-        "hydroelastic without a tolerance: tool's hull compliant, objects rigid",
-    ),
-    PeerMethod(
-        "Drake",
-        "drake",
-        "with_drake_hydroelastic",
-        "answer_with_pieces",
-        "hydroelastic without a tolerance: tool's pieces compliant, objects rigid",
-        for_pieces=True,
-    ),
+    PeerMethod("coal", "coal", "with_native", "answer_with_coal",
+               f"signed distances {_SAME_LAW}"),
+    PeerMethod("MuJoCo", "mujoco", "with_native", "answer_with_mujoco",
+               f"mj_collision {_SAME_LAW}"),
+    PeerMethod("Drake", "drake", "with_drake", "answer_by_distances",
+               f"signed distances {_SAME_LAW}"),
+    PeerMethod("Drake", "drake", "with_drake", "answer_on_pieces",
+               "point contact of the same pieces, without a tolerance"),
+    PeerMethod("Drake", "drake", "with_drake", "answer_on_meshes",
+               "point contact of meshes as it takes them: convex hulls"),
+    PeerMethod("Drake", "drake", "with_drake", "answer_with_hull",
+               "hydroelastic without a tolerance: tool's hull compliant, objects"
+               " rigid"),
+    PeerMethod("Drake", "drake", "with_drake", "answer_with_pieces",
+               "hydroelastic without a tolerance: tool's pieces compliant, objects"
+               " rigid", for_pieces=True),
 )
+# fmt: on
 
 
 def run_peers(
@@ -160,11 +137,10 @@ def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
     except (ImportError, UserError, RuntimeError, ValueError) as error:
         return _explain(library, method, str(error))
     remark = f", {answers.remark}" if answers.remark else ""
-    median, p99, p99_9 = (1e6 * np.percentile(answers.seconds, [50, 99, 99.9])).tolist()
     return PeerRow(
         library=library,
         method=method.words + remark,
-        native=TickTimes(median, p99, p99_9),
+        native=TickTimes.of(answers.seconds),
         errors=_find_errors(answers, problem, truth),
     )
 
@@ -180,9 +156,30 @@ def _leave_out_effects(scene: Scene) -> Scene:
 
 def _find_errors(answers: PeerAnswers, problem: PeerProblem, truth: Truth) -> Errors:
     F_Tcm_W = shift_wrench(answers.F_Tool_W, problem.motion.X_WTool, truth.p_TTcm)
-    errors = compare(F_Tcm_W, answers.distance, answers.tolerance_m, truth)
-    return Errors(**asdict(errors), energy_created_J=float("nan"))
+    return compare(F_Tcm_W, answers.distance, answers.tolerance_m, truth)
 
 
 def _explain(library: str, method: PeerMethod, why_not: str) -> PeerRow:
     return PeerRow(library, method.words, None, None, why_not)
+
+
+def add_peers(
+    study: AccuracyStudy,
+    scene: Scene,
+    *,
+    progress: Callable[[str, float], None] | None = None,
+) -> AccuracyStudy:
+    """Returns a study with a row for each way of another library.
+
+    Args:
+        study: Of the scene.
+        scene: Whose motion is recorded again, which is the same again.
+        progress: Called with what is done now and the share of all, in [0, 1].
+
+    Raises:
+        RunError: The scene diverges.
+        KeyboardInterrupt: At Ctrl-C.
+    """
+    motion = record_motion(scene, study.ticks / scene.device.rate_hz)
+    truth = find_truth(study.reference.apply(scene), motion)
+    return replace(study, peers=run_peers(scene, motion, truth, progress=progress))

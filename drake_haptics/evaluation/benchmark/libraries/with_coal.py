@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import weakref
 from functools import partial
 from importlib.metadata import version
@@ -11,8 +10,13 @@ import coal
 import numpy as np
 
 from drake_haptics.evaluation.benchmark.pair_library import PairAnswers, PairLibrary
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
-from drake_haptics.evaluation.measuring.coal_native import load_coal_native
+from drake_haptics.evaluation.benchmark.pairs import PairShape
+from drake_haptics.evaluation.measuring.native_build import (
+    HANDLE,
+    INTEGER,
+    REALS,
+    load_coal_native,
+)
 from drake_haptics.evaluation.measuring.timing import clock_interval
 
 _STARTS = {
@@ -20,6 +24,11 @@ _STARTS = {
     "coal, boxes": coal.GJKInitialGuess.BoundingVolumeGuess,
     "coal, warm": coal.GJKInitialGuess.CachedGuess,
 }
+_NATIVE = load_coal_native(
+    "coal_pair",
+    new=[REALS, INTEGER, REALS, INTEGER, INTEGER],
+    run=[HANDLE, INTEGER, REALS, REALS, REALS, REALS],
+)
 
 
 class CoalQuery:
@@ -43,19 +52,6 @@ class CoalQuery:
         _NATIVE.coal_pair_run(self._pair, n, X_WA, distance, normal, seconds)
         return PairAnswers(distance, normal, seconds - clock_interval())
 
-
-def _load() -> ctypes.CDLL:
-    native = load_coal_native("coal_pair")
-    array = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
-    handle, integer = ctypes.c_void_p, ctypes.c_int
-    native.coal_pair_new.restype = handle
-    native.coal_pair_new.argtypes = [array, integer, array, integer, integer]
-    native.coal_pair_delete.argtypes = [handle]
-    native.coal_pair_run.argtypes = [handle, integer, array, array, array, array]
-    return native
-
-
-_NATIVE = _load()
 
 LIBRARIES = [
     PairLibrary(name, version("coal"), False, partial(CoalQuery, start=start))

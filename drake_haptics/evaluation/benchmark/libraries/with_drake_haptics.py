@@ -10,7 +10,7 @@ import numpy as np
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
 from drake_haptics.evaluation.benchmark.pair_library import PairAnswers, PairLibrary
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.benchmark.pairs import PairShape
 from drake_haptics.evaluation.measuring.timing import clock_interval
 
 Depth = Literal["tracked", "global"]

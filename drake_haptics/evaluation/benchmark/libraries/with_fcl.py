@@ -13,7 +13,7 @@ from drake_haptics.evaluation.benchmark.pair_library import (
     PairLibrary,
     normals_between,
 )
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.benchmark.pairs import PairShape
 from drake_haptics.evaluation.measuring.timing import CallTimer
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
-import tempfile
 import weakref
 
 import mujoco
@@ -14,9 +12,15 @@ from drake_haptics.evaluation.benchmark.pair_library import (
     PairLibrary,
     normals_between,
 )
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
-from drake_haptics.evaluation.measuring.mujoco_native import load_mujoco_native
-from drake_haptics.evaluation.measuring.mujoco_pieces import listed
+from drake_haptics.evaluation.benchmark.pairs import PairShape
+from drake_haptics.evaluation.measuring.native_build import (
+    HANDLE,
+    INTEGER,
+    REALS,
+    load_mujoco_native,
+    open_mjcf,
+)
+from drake_haptics.evaluation.measuring.pieces import listed
 from drake_haptics.evaluation.measuring.timing import clock_interval
 
 _XML = """
@@ -31,6 +35,9 @@ _XML = """
   </worldbody>
 </mujoco>
 """
+_NATIVE = load_mujoco_native(
+    "mujoco_pair", run=[HANDLE, INTEGER, REALS, REALS, REALS, REALS]
+)
 
 
 class MujocoQuery:
@@ -38,13 +45,7 @@ class MujocoQuery:
 
     def __init__(self, pair: PairShape):
         xml = _XML.format(A=listed(pair.A_vertices), B=listed(pair.B_vertices))
-        error = ctypes.create_string_buffer(1000)
-        with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
-            file.write(xml)
-            file.flush()
-            self._pair = _NATIVE.mujoco_pair_new(file.name.encode(), error, len(error))
-        if not self._pair:
-            raise RuntimeError(f"MuJoCo refused {pair.name}: {error.value.decode()}")
+        self._pair = open_mjcf(_NATIVE.mujoco_pair_new, xml)
         weakref.finalize(self, _NATIVE.mujoco_pair_delete, self._pair)
 
     def run(self, X_WA: np.ndarray) -> PairAnswers:
@@ -56,18 +57,5 @@ class MujocoQuery:
         normals = normals_between(fromto[:, :3], fromto[:, 3:], distance)
         return PairAnswers(distance, normals, seconds - clock_interval())
 
-
-def _load() -> ctypes.CDLL:
-    native = load_mujoco_native("mujoco_pair")
-    array = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
-    handle, text, integer = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int
-    native.mujoco_pair_new.restype = handle
-    native.mujoco_pair_new.argtypes = [text, text, integer]
-    native.mujoco_pair_delete.argtypes = [handle]
-    native.mujoco_pair_run.argtypes = [handle, integer, array, array, array, array]
-    return native
-
-
-_NATIVE = _load()
 
 LIBRARIES = [PairLibrary("MuJoCo", mujoco.__version__, False, MujocoQuery)]

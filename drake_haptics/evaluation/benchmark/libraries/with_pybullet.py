@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import contextlib
-import ctypes
-import os
 import weakref
-from collections.abc import Iterator
 from importlib.metadata import version
 
 import numpy as np
 
-from drake_haptics.evaluation.benchmark.pair_library import PairAnswers, PairLibrary
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.benchmark.pair_library import (
+    PairAnswers,
+    PairLibrary,
+    ask_each,
+)
+from drake_haptics.evaluation.benchmark.pairs import PairShape
+from drake_haptics.evaluation.measuring.pieces import quiet_streams
 from drake_haptics.evaluation.measuring.timing import CallTimer
 
 # Far enough for every pose of the motion; Bullet gives no points beyond.
@@ -20,24 +21,8 @@ _REACH_M = 1.0
 _DISTANCE, _NORMAL_ON_B = 8, 7
 
 
-@contextlib.contextmanager
-def _without_banner() -> Iterator[None]:
-    """Keeps what pybullet's C code prints on import off the terminal."""
-    kept = [os.dup(stream) for stream in (1, 2)]
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    for stream in (1, 2):
-        os.dup2(nowhere, stream)
-    try:
-        yield
-    finally:
-        ctypes.CDLL(None).fflush(None)  # what C still holds back goes nowhere too
-        for stream, own in zip((1, 2), kept, strict=True):
-            os.dup2(own, stream)
-            os.close(own)
-        os.close(nowhere)
-
-
-with _without_banner():
+# What its C code prints on import stays off the terminal.
+with quiet_streams(1, 2):
     import pybullet
 
 
@@ -60,15 +45,13 @@ class BulletQuery:
 
     def run(self, X_WA: np.ndarray) -> PairAnswers:
         """See `PairQuery.run`."""
-        distance, normal, seconds = [], [], []
-        for X in X_WA:
-            self._place(self._A, X[:3, 3].tolist(), X[:3, :3])
-            points, time_s = self._timer.call((self._A, self._B))
-            deepest = min(points, key=lambda point: point[_DISTANCE])
-            distance.append(deepest[_DISTANCE])
-            normal.append(deepest[_NORMAL_ON_B])
-            seconds.append(time_s)
-        return PairAnswers(np.array(distance), np.array(normal), np.array(seconds))
+        return ask_each(X_WA, self._ask)
+
+    def _ask(self, X_WA: np.ndarray) -> tuple[float, np.ndarray, float]:
+        self._place(self._A, X_WA[:3, 3].tolist(), X_WA[:3, :3])
+        points, time_s = self._timer.call((self._A, self._B))
+        deepest = min(points, key=lambda point: point[_DISTANCE])
+        return deepest[_DISTANCE], deepest[_NORMAL_ON_B], time_s
 
     def _closest_points(self, body_A: int, body_B: int) -> list[tuple]:
         points: list[tuple] = pybullet.getClosestPoints(
@@ -90,7 +73,7 @@ class BulletQuery:
 
 
 def _quaternion(R: np.ndarray) -> list[float]:
-    """[x, y, z, w] of a rotation, from its largest component."""
+    """Returns [x, y, z, w] of a rotation, from its largest component."""
     K = np.array(
         [
             [R[0, 0] - R[1, 1] - R[2, 2], 0, 0, 0],

@@ -21,8 +21,12 @@ from pydrake.geometry import (
 )
 from pydrake.math import RigidTransform
 
-from drake_haptics.evaluation.benchmark.pair_library import PairAnswers, PairLibrary
-from drake_haptics.evaluation.benchmark.pair_shapes import PairShape
+from drake_haptics.evaluation.benchmark.pair_library import (
+    PairAnswers,
+    PairLibrary,
+    ask_each,
+)
+from drake_haptics.evaluation.benchmark.pairs import PairShape
 from drake_haptics.evaluation.measuring.timing import CallTimer
 
 
@@ -46,16 +50,14 @@ class SceneGraphQuery:
 
     def run(self, X_WA: np.ndarray) -> PairAnswers:
         """See `PairQuery.run`."""
-        distance, normal, seconds = [], [], []
-        for X in X_WA:
-            answer, time_s = self._timer.call((self._query_at(X), *self._ids))
-            distance.append(answer.distance)
-            normal.append(answer.nhat_BA_W)
-            seconds.append(time_s)
-        return PairAnswers(np.array(distance), np.array(normal), np.array(seconds))
+        return ask_each(X_WA, self._ask)
+
+    def _ask(self, X_WA: np.ndarray) -> tuple[float, np.ndarray, float]:
+        answer, time_s = self._timer.call((self._query_at(X_WA), *self._ids))
+        return answer.distance, answer.nhat_BA_W, time_s
 
     def _query_at(self, X_WA: np.ndarray) -> QueryObject:
-        """The query object with A posed, and its poses up to date."""
+        """Returns the query object with A posed, and its poses up to date."""
         poses = FramePoseVector()
         poses.set_value(self._frame, RigidTransform(X_WA))
         port = self._scene_graph.get_source_pose_port(self._source)

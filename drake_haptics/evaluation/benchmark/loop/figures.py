@@ -1,11 +1,35 @@
-"""What loops cost, and what they did."""
+"""Holds what loops cost and did, and makes the tables of it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass
 
 import numpy as np
+
+from drake_haptics.evaluation.measuring.timing import TickTimes
+from drake_haptics.report.table import Table
+
+PACED = "drake_haptics, whole tick, paced"
+OURS = "drake_haptics, whole tick"
+NATIVE = "drake_haptics, native part"
+# Bushing and point contact. Name -> contact solver of Drake.
+STOCK = {
+    "Drake, bushing, TAMSI": "tamsi",
+    "Drake, bushing, SAP": "similar",
+}
+MUJOCO = "MuJoCo, mj_step"
+# What each of them does in a tick.
+_COMPUTES = (
+    "drake_haptics: every pair within the tolerance with its exact depth, stiffness "
+    "shared among contacts, an implicit step of tool, contact and coupling; its native "
+    "part is the same in the core alone, without device, Drake and Python. Drake: "
+    "penetrating pairs, an implicit contact, and a bushing taken at the beginning of "
+    "the step, for which its rotational damping had to be less. MuJoCo: penetrating "
+    "pairs, soft constraints with the same stiffness and damping where the whole mass "
+    "of the tool moves; timed in C. In Drake's and MuJoCo's the handle is moved "
+    "between two ticks, which is not timed."
+)
 
 
 @dataclass(frozen=True)
@@ -27,18 +51,8 @@ class LoopTimes:
     @staticmethod
     def of(seconds: np.ndarray) -> LoopTimes:
         """Sums up (n,) times of ticks, s; NaN where there are none."""
-        if len(seconds) == 0:
-            return LoopTimes(0, np.nan, np.nan, np.nan)
-        median, p99, p99_9 = (1e6 * np.percentile(seconds, [50, 99, 99.9])).tolist()
-        return LoopTimes(len(seconds), median, p99, p99_9)
-
-    @staticmethod
-    def from_dict(data: dict[str, Any]) -> LoopTimes:
-        """Returns what was written as plain data, where null stands for NaN."""
-        names = ("median_us", "p99_us", "p99_9_us")
-        return LoopTimes(
-            data["ticks"], *(np.nan if data[n] is None else data[n] for n in names)
-        )
+        times = TickTimes.of(seconds)
+        return LoopTimes(len(seconds), *astuple(times))
 
 
 @dataclass(frozen=True)
@@ -69,11 +83,77 @@ class LoopFigures:
     max_force_N: float
     apart_m: float
 
-    @staticmethod
-    def from_dict(data: dict[str, Any]) -> LoopFigures:
-        """Returns what `dataclasses.asdict` made plain data of."""
-        times = {
-            name: LoopTimes.from_dict(data[name])
-            for name in ("in_contact", "all_ticks")
-        }
-        return LoopFigures(**{**data, **times})
+
+def loop_tables(figures: Sequence[LoopFigures]) -> list[Table]:
+    """Returns what the loops cost, and what they did for it."""
+    by_name = {f.loop: f for f in figures}
+    scene = figures[0].scene
+    return [_make_times(scene, by_name), _make_deeds(scene, by_name)]
+
+
+def _make_times(scene: str, by_name: dict[str, LoopFigures]) -> Table:
+    ours, native = by_name[OURS], by_name[NATIVE]
+    return Table(
+        title=f"Whole ticks of the 1 kHz loop, {scene}: µs",
+        note=(
+            "`paced`: each tick waits for the clock, as a device needs it, with caches "
+            "and a processor that have rested. All other rows run as fast as they can, "
+            "those of other libraries too, so that ratios are of rows that do not "
+            "wait. "
+            "Undisturbed: what a tick takes is the mean of the middle half of its "
+            "repeats, so that interruptions by the machine fall out. "
+            "Median, p99 and p99.9 over the ticks at which all loops have a contact; "
+            "then median and p99 over all ticks. `ours / it` is the time of this "
+            "package's whole tick, from the device's reading through Drake's Simulator "
+            "to the device's wrench, divided by that of the row; `native / it` is that "
+            "of its native part: medians in contact, and below 1 this package is "
+            "faster."
+        ),
+        header=(
+            *("loop", "median", "p99, undisturbed", "p99.9, undisturbed"),
+            *("median, all", "p99, all, undisturbed"),
+            *("ours / it", "native / it"),
+        ),
+        rows=[
+            (
+                name,
+                *_list_times(f.in_contact),
+                *_list_times(f.all_ticks)[:2],
+                _ratio(ours.in_contact, f.in_contact),
+                _ratio(native.in_contact, f.in_contact),
+            )
+            for name, f in by_name.items()
+        ],
+    )
+
+
+def _make_deeds(scene: str, by_name: dict[str, LoopFigures]) -> Table:
+    return Table(
+        title=f"What the loops did, {scene}",
+        note=(
+            f"{_COMPUTES} Contacts: pairs of pieces that push, median and most, in "
+            "contact. Deepest: largest penetration of a pair. Force: of the spring "
+            "between handle and tool, median in contact and largest. Apart: median "
+            "distance of the tool's origin from this package's."
+        ),
+        header=("loop", "contacts", "deepest", "force", "apart"),
+        rows=[
+            (
+                name,
+                f"{f.median_contacts:.0f}–{f.max_contacts}",
+                f"{1e3 * f.deepest_m:.2f} mm",
+                f"{f.force_N:.2f} / {f.max_force_N:.2f} N",
+                f"{1e3 * f.apart_m:.2f} mm",
+            )
+            for name, f in by_name.items()
+        ],
+    )
+
+
+def _list_times(times: LoopTimes) -> tuple[str, ...]:
+    figures = (times.median_us, times.p99_us, times.p99_9_us)
+    return tuple(f"{us:.1f}" if us < 100.0 else f"{us:.0f}" for us in figures)
+
+
+def _ratio(ours: LoopTimes, other: LoopTimes) -> str:
+    return f"{ours.median_us / other.median_us:.2f}"

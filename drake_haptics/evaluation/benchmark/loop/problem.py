@@ -1,4 +1,4 @@
-"""A tool that is drawn along a recorded way of the hand, for the loops."""
+"""Defines what a loop is given and tells: a tool that is drawn along a recorded way."""
 
 from __future__ import annotations
 

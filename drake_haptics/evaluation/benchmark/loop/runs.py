@@ -6,13 +6,14 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures, LoopTimes
-from drake_haptics.evaluation.benchmark.loop.names import (
+from drake_haptics.evaluation.benchmark.loop.figures import (
     MUJOCO,
     NATIVE,
     OURS,
     PACED,
     STOCK,
+    LoopFigures,
+    LoopTimes,
 )
 from drake_haptics.evaluation.benchmark.loop.problem import (
     Loop,
@@ -22,7 +23,7 @@ from drake_haptics.evaluation.benchmark.loop.problem import (
 from drake_haptics.evaluation.benchmark.loop.stock_drake import StockLoop, has_solver
 from drake_haptics.evaluation.benchmark.loop.this_package import NativeLoop, ThisLoop
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
-from drake_haptics.evaluation.measuring.timing import typical
+from drake_haptics.evaluation.measuring.timing import take_turns, typical
 
 
 def make_loops(problem: LoopProblem) -> tuple[dict[str, Loop], dict[str, str]]:
@@ -68,12 +69,10 @@ def run_loops(
     names = list(loops)
     courses = {name: loops[name].observe() for name in names}
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}
-    for repeat in range(repeats):
-        for turn in range(len(names)):
-            progress((repeat + turn / len(names)) / repeats)
-            name = names[(turn + repeat) % len(names)]
-            # The first tick starts from nothing.
-            seconds[name].append(loops[name].time()[1:])
+    for done, name in enumerate(take_turns(names, repeats)):
+        progress(done / (repeats * len(names)))
+        # The first tick starts from nothing.
+        seconds[name].append(loops[name].time()[1:])
     touching = np.all([c.num_contacts[1:] > 0 for c in courses.values()], axis=0)
     return [
         _make_figures(

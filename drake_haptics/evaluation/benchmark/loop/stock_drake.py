@@ -1,8 +1,7 @@
-"""What Drake itself offers: a bushing, and point contact on the same pieces."""
+"""Runs the loop that Drake itself offers: a bushing, and point contact on pieces."""
 
 from __future__ import annotations
 
-import gc
 import time
 from collections.abc import Callable
 
@@ -27,11 +26,12 @@ from drake_haptics.evaluation.benchmark.loop.problem import (
     LoopProblem,
     moments_and_products,
 )
-from drake_haptics.evaluation.measuring.drake_pieces import (
+from drake_haptics.evaluation.measuring.pieces import (
     make_surface,
+    quiet_streams,
     register_pieces,
 )
-from drake_haptics.evaluation.measuring.quiet_stderr import quiet_stderr
+from drake_haptics.evaluation.measuring.timing import steady_memory
 
 # So heavy that the bushing does not move the handle within a tick: 1 µm/s at 1 kN.
 _HANDLE_KG = 1e6
@@ -73,7 +73,7 @@ class StockLoop:
             discrete_contact_approximation=solver,
         )
         # Drake warns that TAMSI will go. Qhull tells of flat pieces.
-        with quiet_stderr():
+        with quiet_streams(2):
             self._plant, _ = AddMultibodyPlant(config, builder)
             self._plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
             self._add_bodies()
@@ -132,16 +132,12 @@ class StockLoop:
             begin = clock()
             return EventStatus.Succeeded()
 
-        gc.collect()
-        gc.freeze()
-        try:
+        with steady_memory():
             simulator.Initialize()
             note(context)
             simulator.set_monitor(between)
             begin = clock()
             simulator.AdvanceTo((n - 0.5) * motion.period_s)
-        finally:
-            gc.unfreeze()
         return seconds
 
     def _add_bodies(self) -> None:

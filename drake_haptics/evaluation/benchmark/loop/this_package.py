@@ -1,8 +1,7 @@
-"""The loop of this package: through Drake's Simulator, and its native part alone."""
+"""Runs the loop of this package: through Drake's Simulator, and in the core alone."""
 
 from __future__ import annotations
 
-import gc
 import time
 import warnings
 
@@ -15,7 +14,7 @@ from drake_haptics import _core
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.real_time import TickClock
 from drake_haptics.evaluation.benchmark.loop.problem import LoopCourse, LoopProblem
-from drake_haptics.evaluation.measuring.timing import clock_interval
+from drake_haptics.evaluation.measuring.timing import clock_interval, steady_memory
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.validation import SceneWarning
@@ -80,15 +79,11 @@ class ThisLoop:
             begins.append(clock())
             return EventStatus.Succeeded()
 
-        gc.collect()
-        gc.freeze()
-        try:
+        with steady_memory():
             simulator.Initialize()
             simulator.set_monitor(note)
             begins.append(clock())
             simulator.AdvanceTo((n - 0.5) * self._problem.motion.period_s)
-        finally:
-            gc.unfreeze()
         # The last tick ends where the run does, not where a tick does.
         return (np.array(ends) - begins[: len(ends)])[:n]
 

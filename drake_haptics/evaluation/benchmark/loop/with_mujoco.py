@@ -1,9 +1,8 @@
-"""The same in MuJoCo: a free tool, welded to a mocap body that is the handle."""
+"""Runs the loop in MuJoCo: a free tool, welded to a mocap body that is the handle."""
 
 from __future__ import annotations
 
 import ctypes
-import tempfile
 import weakref
 from functools import cache
 
@@ -15,8 +14,15 @@ from drake_haptics.evaluation.benchmark.loop.problem import (
     LoopProblem,
     moments_and_products,
 )
-from drake_haptics.evaluation.measuring.mujoco_native import load_mujoco_native
-from drake_haptics.evaluation.measuring.mujoco_pieces import (
+from drake_haptics.evaluation.measuring.native_build import (
+    HANDLE,
+    INTEGER,
+    INTEGERS,
+    REALS,
+    load_mujoco_native,
+    open_mjcf,
+)
+from drake_haptics.evaluation.measuring.pieces import (
     listed,
     mesh_assets,
     mesh_geoms,
@@ -42,14 +48,7 @@ class MujocoLoop:
     def __init__(self, problem: LoopProblem):
         self._X_WG = np.ascontiguousarray(problem.X_WG)
         self._native = _load()
-        error = ctypes.create_string_buffer(1000)
-        with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
-            file.write(make_mjcf(problem))
-            file.flush()
-            name = file.name.encode()
-            self._loop = self._native.mujoco_loop_new(name, error, len(error))
-        if not self._loop:
-            raise RuntimeError(f"MuJoCo refused the scene: {error.value.decode()}")
+        self._loop = open_mjcf(self._native.mujoco_loop_new, make_mjcf(problem))
         weakref.finalize(self, self._native.mujoco_loop_delete, self._loop)
 
     def observe(self) -> LoopCourse:
@@ -127,15 +126,7 @@ def _solref(stiffness: float, damping: float, mass_kg: float) -> str:
 
 @cache
 def _load() -> ctypes.CDLL:
-    native = load_mujoco_native("mujoco_loop")
-    reals = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
-    integers = np.ctypeslib.ndpointer(dtype=np.int32, flags="C_CONTIGUOUS")
-    handle, text, integer = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int
-    native.mujoco_loop_new.restype = handle
-    native.mujoco_loop_new.argtypes = [text, text, integer]
-    native.mujoco_loop_delete.argtypes = [handle]
-    native.mujoco_loop_run.argtypes = [
-        *(handle, integer, reals),
-        *(reals, integers, reals, reals, reals),
-    ]
-    return native
+    return load_mujoco_native(
+        "mujoco_loop",
+        run=[*(HANDLE, INTEGER, REALS), *(REALS, INTEGERS, REALS, REALS, REALS)],
+    )

@@ -1,5 +1,5 @@
 // The contacts of a tool among objects, all in convex pieces, by coal, for
-// drake_haptics/evaluation/accuracy/peers/with_coal.py.
+// drake_haptics/evaluation/accuracy/peers/with_native.py.
 
 #include <coal/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <coal/distance.h>

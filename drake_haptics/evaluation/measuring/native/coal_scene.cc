@@ -1,5 +1,5 @@
 // A tool among objects, all in convex pieces, in coal's broadphase, for
-// drake_haptics/evaluation/benchmark/scene_peer.py.
+// drake_haptics/evaluation/benchmark/scene_runs.py.
 
 #include <coal/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <coal/distance.h>

@@ -1,5 +1,5 @@
 // The contacts of a tool among objects, by MuJoCo's collision detection, for
-// drake_haptics/evaluation/accuracy/peers/with_mujoco.py.
+// drake_haptics/evaluation/accuracy/peers/with_native.py.
 
 #include <mujoco/mujoco.h>
 

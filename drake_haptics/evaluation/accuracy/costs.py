@@ -1,0 +1,188 @@
+"""Measures what the ticks of a scene take: whole, inside the core, or in a new process.
+
+`python -m drake_haptics.evaluation.accuracy.costs FILE` is the new process.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.common.errors import UserError
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.evaluation.accuracy.native_part import NativePart
+from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
+from drake_haptics.evaluation.measuring.timing import CallTimer, TickTimes, typical
+from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.loop.simulated_device import make_hand_path
+from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import write_scene
+from drake_haptics.scene.schema import Scene
+from drake_haptics.simulation.run import RunError, run
+from drake_haptics.systems.contact.contact_query import DepthSearch
+
+# A diagram that Python systems are part of is never freed: that it is kept here costs
+# nothing, and another one for the next measurement of the scene would.
+_BUILT: dict[str, HapticDiagram] = {}
+# As often each tick is timed; but no pass begins later than this, s.
+_PASSES = 3
+_LONGEST_S = 1.0
+# Where nothing touches the tool, m.
+_FAR_M = 1e3
+# A lap that is longer is cut.
+_LONGEST_LAP_S = 5.0
+
+
+def build_once(scene: Scene) -> HapticDiagram:
+    """Returns the diagram of a scene, the same one for the same scene.
+
+    All that a run changes is in its context, so that runs know nothing of each other.
+    A mesh file that changes meanwhile is not seen.
+    """
+    key = repr(asdict(scene))  # all of it: a scene's own repr is a line
+    if key not in _BUILT:
+        _BUILT[key] = build_quietly(scene)
+    return _BUILT[key]
+
+
+def time_ticks(scene: Scene, duration_s: float) -> TickTimes:
+    """Runs a scene once in real time and returns what its ticks took.
+
+    Between two ticks the processor rests and others use its caches, so that a tick
+    takes longer than in a loop that never waits.
+
+    Raises:
+        RunError: The loop diverges.
+        KeyboardInterrupt: At Ctrl-C.
+    """
+    haptic = build_once(scene)
+    pace = TickClock(haptic.period_s)
+    times = run(haptic, duration_s, pace=pace).to_dict()["tick_us"]
+    assert isinstance(times, dict)
+    return TickTimes(times["median"], times["p99"], times["p99_9"])
+
+
+def combine(repeats: Sequence[TickTimes]) -> TickTimes:
+    """Returns the middle of several runs: of each figure the median.
+
+    Each run has its own percentiles, as a user's has, interruptions by the system
+    included; the median drops a run that something else disturbed.
+    """
+    table = np.array([[r.median_us, r.p99_us, r.p99_9_us] for r in repeats])
+    median, p99, p99_9 = np.median(table, axis=0).tolist()
+    return TickTimes(median, p99, p99_9)
+
+
+def make_native_part(haptic: HapticDiagram) -> NativePart:
+    """Returns what the systems of a scene ask the core.
+
+    Effects are no part of it, and what a loop leaves out under load is not left out.
+    """
+    scene, effects = haptic.scene, haptic.scene.effects
+    contact, items = scene.contact, scene.environment
+    stiffness = [item.material.stiffness_N_per_m for item in items]
+    damping = [item.material.damping_Ns_per_m for item in items]
+    query_hz = contact.query_rate_hz
+    braking_m = 0.0 if effects.braking is None else effects.braking.distance_m
+    return NativePart(
+        tool=haptic.tool,
+        objects=haptic.environment,
+        X_WO=np.array(
+            [pose_to_vector(item.pose.to_rigid_transform()) for item in items]
+        ),
+        search_m=max(contact.tolerance_m, braking_m),
+        depth=cast(DepthSearch, contact.depth),
+        max_walk_steps=contact.max_walk_steps,
+        query_every=None
+        if query_hz is None
+        else round(scene.device.rate_hz / query_hz),
+        tolerance_m=contact.tolerance_m,
+        cluster_size_m=contact.cluster_size_m,
+        stiffness_N_per_m=np.array(
+            [contact.stiffness_N_per_m if k is None else k for k in stiffness]
+        ),
+        damping_Ns_per_m=np.array(
+            [contact.damping_Ns_per_m if b is None else b for b in damping]
+        ),
+    )
+
+
+def time_native(part: NativePart, motion: RecordedMotion) -> TickTimes:
+    """Times query, clusters and wrench of a recorded motion, without Python.
+
+    The query is timed inside the core; of carrying, clusters and wrench what a call
+    takes more than one without contacts. Each tick counts with the middle of several
+    passes, so that the percentiles are those of the work, not of what disturbed it.
+
+    Args:
+        part: What the core is asked.
+        motion: Of the tool.
+    """
+    far = np.array([1.0, 0.0, 0.0, 0.0, _FAR_M, 0.0, 0.0])
+    nothing, _ = part.make_search().look(far)
+    cluster = CallTimer(part.make_clustering(), (nothing,))
+    none = part.make_clustering()(nothing)
+    force = CallTimer(part.make_force(), (none, far[4:], np.zeros(6)))
+    passes: list[np.ndarray] = []
+    begin_s = time.perf_counter()
+    while len(passes) < _PASSES and time.perf_counter() < begin_s + _LONGEST_S:
+        passes.append(np.zeros(len(motion)))
+        search = part.make_search()
+        carry = CallTimer(search.carry, (nothing, far))
+        for tick, X_WTool in enumerate(motion.X_WTool):
+            found, query_s = search.look(X_WTool)
+            contacts, carry_s = carry.call((found, X_WTool))
+            clusters, cluster_s = cluster.call((contacts,))
+            _, force_s = force.call((clusters, X_WTool[4:], motion.V_WTool[tick]))
+            # A call without contacts is the least there is, but for the clock's ticks.
+            passes[-1][tick] = query_s + carry_s + cluster_s + force_s
+    return TickTimes.of(np.maximum(typical(np.array(passes)), 0.0))
+
+
+def measure_p99(scene: Scene) -> float:
+    """Runs a scene anew and returns the 99th percentile of its ticks, µs.
+
+    The process, its memory and its caches are new, as they are for whoever runs the
+    scene. It runs one lap of the hand's path, at most 5 s of it.
+
+    Raises:
+        UserError: The scene cannot be built or diverges.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "scene.yaml"
+        write_scene(scene, file)
+        done = subprocess.run(
+            [sys.executable, "-m", __name__, str(file)],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    if done.returncode != 0:
+        lines = done.stderr.strip().splitlines()
+        raise UserError(f"the scene does not run: {lines[-1] if lines else '?'}")
+    return float(done.stdout)
+
+
+def _main(file: str) -> None:
+    """Prints the figure of a scene file."""
+    scene = load_scene(file)
+    lap_s = make_hand_path(scene.hand.path).duration_s
+    try:
+        times = time_ticks(scene, min(lap_s, _LONGEST_LAP_S))
+    except (UserError, RunError) as error:
+        sys.exit(str(error))
+    print(repr(times.p99_us))
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1])

@@ -1,0 +1,171 @@
+"""Runs the part of a tick that is inside the core, and counts its instructions.
+
+`python -m drake_haptics.evaluation.accuracy.native_part FILE` is the program that is
+counted: it moves the tool as FILE says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Literal
+
+import numpy as np
+
+from drake_haptics import _core
+from drake_haptics.evaluation.measuring.valgrind import (
+    count_with_data,
+    counted,
+    read_data,
+)
+from drake_haptics.geometry.decomposition.decompose import Decomposition
+
+_REST = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+# Where nothing touches the tool, m.
+_FAR_M = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class NativePart:
+    """What the core is asked in each tick, without Drake. Pickles.
+
+    Attributes:
+        tool: Pieces of the tool.
+        objects: Pieces of what it meets.
+        X_WO: (m, 7) poses [qw qx qy qz x y z] of the objects, m.
+        search_m: How far contacts are looked for, m.
+        depth: Of two pieces in overlap, as `SceneTracker` has it.
+        max_walk_steps: The same.
+        query_every: Every how many ticks contacts are looked for, to be carried along
+            from then on; None where each tick looks for its own.
+        tolerance_m: How far contacts push, m.
+        cluster_size_m: δ of the octree, m; None where contacts share stiffness.
+        stiffness_N_per_m: (m,) of each object, N/m.
+        damping_Ns_per_m: (m,) of each object, N·s/m.
+    """
+
+    tool: Decomposition
+    objects: tuple[Decomposition, ...]
+    X_WO: np.ndarray
+    search_m: float
+    depth: Literal["tracked", "global"]
+    max_walk_steps: int
+    query_every: int | None
+    tolerance_m: float
+    cluster_size_m: float | None
+    stiffness_N_per_m: np.ndarray
+    damping_Ns_per_m: np.ndarray
+
+    def make_search(self) -> ContactSearch:
+        """Returns what looks for contacts from the first tick on."""
+        return ContactSearch(self)
+
+    def make_clustering(self) -> Callable[[_core.ContactSet], _core.ClusterSet]:
+        """Returns what makes clusters of contacts."""
+        cluster: Callable[..., Any] = _core.share_stiffness
+        if self.cluster_size_m is not None:
+            cluster = partial(_core.cluster_contacts, delta=self.cluster_size_m)
+        return partial(cluster, tolerance=self.tolerance_m)
+
+    def make_force(self) -> Callable[..., _core.PenaltyWrench]:
+        """Returns what makes a wrench of clusters, the tool's position and velocity."""
+        return partial(
+            _core.penalty_force,
+            p_WO=self.X_WO[:, 4:].copy(),
+            V_WO=np.zeros((len(self.X_WO), 6)),
+            stiffness=self.stiffness_N_per_m,
+            damping=self.damping_Ns_per_m,
+        )
+
+
+class ContactSearch:
+    """Looks for contacts tick by tick, as the systems of a loop do."""
+
+    def __init__(self, part: NativePart):
+        """Begins before the first tick.
+
+        Args:
+            part: Whose contacts are found.
+        """
+        self._every = part.query_every
+        self._tracker = _core.SceneTracker(
+            part.tool, part.objects, part.search_m, part.depth, part.max_walk_steps
+        )
+        for i, X_WO in enumerate(part.X_WO):
+            self._tracker.set_object_pose(i, X_WO)
+        self._carrier = _core.ContactCarrier(
+            part.tool.core, [item.core for item in part.objects], list(part.X_WO)
+        )
+        self._tick = 0
+        self._sample = self._found_at = _REST
+        self._found: _core.ContactSet | None = None
+
+    def look(self, X_WTool: np.ndarray) -> tuple[_core.ContactSet, float]:
+        """Looks for contacts if it is time to.
+
+        Args:
+            X_WTool: (7,) pose of the tool at the next tick.
+
+        Returns:
+            What was found last, and the seconds that this look took in the core.
+        """
+        if self._every is None:
+            found = self._tracker.query(X_WTool)
+            return found, found.query_seconds
+        tick, query_s = self._tick, 0.0
+        self._tick += 1
+        if tick == 0:
+            self._sample = X_WTool
+        # What is sampled at a tick is known from the next one on.
+        if self._found is None or (tick - 1) % self._every == 0:
+            self._found_at = self._sample
+            self._found = self._tracker.query(self._found_at)
+            query_s = self._found.query_seconds
+        if tick % self._every == 0:
+            self._sample = X_WTool
+        return self._found, query_s
+
+    def carry(self, found: _core.ContactSet, X_WTool: np.ndarray) -> _core.ContactSet:
+        """Returns contacts that were found where the tool is now."""
+        if self._every is None:
+            return found
+        return self._carrier.advance(found, self._found_at, X_WTool)
+
+
+def count_native(part: NativePart, X_WTool: np.ndarray, V_WTool: np.ndarray) -> float:
+    """Returns how many instructions query, clusters and wrench take in a tick.
+
+    What the same calls take far from everything is taken off: Python, the binding and
+    the start of the program. The first tick, which finds the first contacts, is in it.
+
+    Args:
+        part: What the core is asked.
+        X_WTool: (n, 7) poses of the tool.
+        V_WTool: (n, 6) its velocities.
+
+    Returns:
+        The mean over all ticks.
+
+    Raises:
+        subprocess.CalledProcessError: The program failed.
+        RuntimeError: valgrind counted nothing.
+    """
+    far = X_WTool + _FAR_M * np.eye(7)[4]
+    near, base = (count_with_data(__name__, (part, X, V_WTool)) for X in (X_WTool, far))
+    return (near - base) / len(X_WTool)
+
+
+def main() -> None:
+    """Moves the tool as a file says, counted."""
+    part, X_WTool, V_WTool = read_data()
+    search, cluster = part.make_search(), part.make_clustering()
+    force = part.make_force()
+    with counted():
+        for X, V in zip(X_WTool, V_WTool, strict=True):
+            found, _ = search.look(X)
+            force(cluster(search.carry(found, X)), X[4:], V)
+
+
+if __name__ == "__main__":
+    main()

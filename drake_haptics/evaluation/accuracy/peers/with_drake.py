@@ -1,0 +1,356 @@
+"""Answers with Drake: signed distances, point contact and hydroelastic contact."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from pydrake.common import MemoryFile
+from pydrake.geometry import (
+    AddCompliantHydroelasticProperties,
+    AddContactMaterial,
+    AddRigidHydroelasticProperties,
+    GeometryId,
+    InMemoryMesh,
+    Mesh,
+    ProximityProperties,
+    SceneGraph,
+    SignedDistancePair,
+)
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import (
+    AddMultibodyPlant,
+    ContactResults,
+    CoulombFriction,
+    MultibodyPlant,
+    MultibodyPlantConfig,
+)
+from pydrake.multibody.tree import RigidBody, SpatialInertia
+from pydrake.systems.framework import Context, DiagramBuilder, OutputPort
+
+from drake_haptics.common.pose_vector import vector_to_pose
+from drake_haptics.evaluation.accuracy.peers.problem import (
+    PASSES,
+    FoundContacts,
+    PeerAnswers,
+    PeerProblem,
+    apply_law,
+)
+from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
+from drake_haptics.evaluation.measuring.pieces import (
+    make_surface,
+    quiet_streams,
+    register_pieces,
+)
+from drake_haptics.evaluation.measuring.timing import typical
+from drake_haptics.geometry.decomposition.decompose import Decomposition
+
+AddGeometry = Callable[[MultibodyPlant, RigidBody, int, RigidTransform], None]
+
+# Of a tool whose motion is given; they change nothing.
+_MASS_KG, _RADIUS_M = 0.1, 0.1
+# Against a rigid object forces are proportional to the modulus: any will do at first.
+_MODULUS_PA = 1e6
+# Pieces and meshes are exact; this is for round shapes alone, m.
+_RESOLUTION_M = 2e-3
+_AddTool = Callable[[MultibodyPlant, RigidBody, ProximityProperties], None]
+
+
+@dataclass(frozen=True)
+class DrakePlant:
+    """A continuous plant, whose contacts are a function of pose and velocity alone.
+
+    Attributes:
+        plant: Finalized.
+        scene_graph: With its geometry.
+        tool: Of the plant.
+        root: A context of the diagram.
+    """
+
+    plant: MultibodyPlant
+    scene_graph: SceneGraph
+    tool: RigidBody
+    root: Context
+
+    def ask(
+        self,
+        motion: RecordedMotion,
+        port: OutputPort,
+        ask: Callable[[Any], Any],
+        read: Callable[[int, Any], None],
+    ) -> np.ndarray:
+        """Moves the tool as recorded and asks at each tick.
+
+        Args:
+            motion: Of the tool.
+            port: Evaluated at each tick.
+            ask: Called with the port's value.
+            read: Called with the tick and the answer, once for each.
+
+        Returns:
+            (n,) what evaluating and asking took, poses brought up to date included, s.
+        """
+        context = self.plant.GetMyMutableContextFromRoot(self.root)
+        of_port = port.get_system().GetMyContextFromRoot(self.root)
+        states = np.hstack([motion.X_WTool, motion.V_WTool])
+        seconds = np.zeros((PASSES, len(motion)))
+        for i, one_pass in enumerate(seconds):
+            for k, state in enumerate(states):
+                self.plant.SetPositionsAndVelocities(context, state)
+                start = time.perf_counter()
+                answer = ask(port.Eval(of_port))
+                one_pass[k] = time.perf_counter() - start
+                if i == 0:
+                    read(k, answer)
+        return typical(seconds)
+
+
+def make_plant(
+    contact_model: str,
+    X_WO: np.ndarray,
+    add: AddGeometry,
+) -> DrakePlant:
+    """Builds a plant with a tool and objects.
+
+    Args:
+        contact_model: As `MultibodyPlantConfig` has it.
+        X_WO: (m, 7) poses of the objects.
+        add: Gives a body its geometry: called with the plant, the body, the object's
+            index or -1 for the tool, and where the geometry is in the body's frame.
+    """
+    # Qhull tells of flat pieces.
+    with quiet_streams(2):
+        return _build(contact_model, X_WO, add)
+
+
+def _build(contact_model: str, X_WO: np.ndarray, add: AddGeometry) -> DrakePlant:
+    builder = DiagramBuilder()
+    config = MultibodyPlantConfig(time_step=0.0, contact_model=contact_model)
+    plant, scene_graph = AddMultibodyPlant(config, builder)
+    inertia = SpatialInertia.SolidSphereWithMass(_MASS_KG, _RADIUS_M)
+    tool = plant.AddRigidBody("tool", inertia)
+    add(plant, tool, -1, RigidTransform())
+    for i, pose in enumerate(X_WO):
+        add(plant, plant.world_body(), i, vector_to_pose(pose))
+    plant.Finalize()
+    diagram = builder.Build()
+    return DrakePlant(plant, scene_graph, tool, diagram.CreateDefaultContext())
+
+
+def answer_on_pieces(problem: PeerProblem) -> PeerAnswers:
+    """Takes the plant's own forces on the same pieces."""
+    return _read_forces(problem, _add_pieces(problem))
+
+
+def answer_on_meshes(problem: PeerProblem) -> PeerAnswers:
+    """Takes the plant's own forces on `Mesh` shapes, of which it uses the hulls."""
+
+    def add(
+        plant: MultibodyPlant, body: RigidBody, which: int, X_BM: RigidTransform
+    ) -> None:
+        part, surface = _find_part(problem, which)
+        shape = to_drake_mesh(part)
+        plant.RegisterCollisionGeometry(body, X_BM, shape, f"mesh_{which}", surface)
+
+    return _read_forces(problem, add)
+
+
+def answer_by_distances(problem: PeerProblem) -> PeerAnswers:
+    """Takes signed distances within the tolerance, of the same pieces."""
+    drake = make_plant("point", problem.part.X_WO, _add_pieces(problem))
+    owners = _find_owners(problem, drake)
+    start = [0]
+    rows: list[np.ndarray] = []
+
+    def read(tick: int, pairs: list[SignedDistancePair]) -> None:
+        X_WTool = vector_to_pose(problem.motion.X_WTool[tick])
+        rows.extend(_to_row(pair, X_WTool, owners) for pair in pairs)
+        start.append(len(rows))
+
+    seconds = drake.ask(
+        problem.motion,
+        drake.scene_graph.get_query_output_port(),
+        lambda query: query.ComputeSignedDistancePairwiseClosestPoints(
+            problem.tolerance_m
+        ),
+        read,
+    )
+    columns = np.array(rows).reshape(-1, 11)
+    found = FoundContacts.of(np.array(start), columns, seconds)
+    return apply_law(problem, found)
+
+
+def to_drake_mesh(part: Decomposition) -> Mesh:
+    """Returns a mesh as Drake's, without a file."""
+    lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for x, y, z in part.mesh.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in (part.mesh.triangles + 1).tolist()]
+    file = MemoryFile("\n".join(lines) + "\n", ".obj", "mesh")
+    return Mesh(mesh_data=InMemoryMesh(mesh_file=file))
+
+
+def _find_part(
+    problem: PeerProblem, which: int
+) -> tuple[Decomposition, ProximityProperties]:
+    """Returns the shape of the tool (-1) or an object, and what it is made of."""
+    stiffness, damping = problem.part.stiffness_N_per_m, problem.part.damping_Ns_per_m
+    if np.ptp(stiffness) > 0.0 or np.ptp(damping) > 0.0:
+        # The tool would need another surface for each object.
+        raise ValueError("the objects differ in stiffness or damping")
+    surface = make_surface(float(stiffness[0]), float(damping[0]))
+    return problem.tool if which < 0 else problem.objects[which], surface
+
+
+def _add_pieces(problem: PeerProblem) -> AddGeometry:
+    def add(
+        plant: MultibodyPlant, body: RigidBody, which: int, X_BP: RigidTransform
+    ) -> None:
+        register_pieces(plant, body, X_BP, *_find_part(problem, which))
+
+    return add
+
+
+def _read_forces(problem: PeerProblem, add: AddGeometry) -> PeerAnswers:
+    """Sums the forces of the plant's point contacts at the tool's origin."""
+    drake = make_plant("point", problem.part.X_WO, add)
+    motion, tool = problem.motion, drake.tool.index()
+    F_Tool_W = np.zeros((len(motion), 6))
+    distance = np.full(len(motion), np.inf)
+
+    def read(tick: int, results: ContactResults) -> None:
+        for i in range(results.num_point_pair_contacts()):
+            info = results.point_pair_contact_info(i)
+            # The force is the one on B, at C.
+            force = info.contact_force() * (1 if info.bodyB_index() == tool else -1)
+            arm = info.contact_point() - motion.X_WTool[tick, 4:]
+            F_Tool_W[tick] += np.concatenate([np.cross(arm, force), force])
+            distance[tick] = min(distance[tick], -info.point_pair().depth)
+
+    port = drake.plant.get_contact_results_output_port()
+    seconds = drake.ask(motion, port, lambda results: results, read)
+    return PeerAnswers(F_Tool_W, distance, 0.0, seconds)
+
+
+def _find_owners(
+    problem: PeerProblem, drake: DrakePlant
+) -> dict[GeometryId, tuple[int, RigidTransform]]:
+    """Returns the object (or -1) of each piece, and where its frame is in the body."""
+    inspector = drake.scene_graph.model_inspector()
+    owners = {
+        piece: (-1, inspector.GetPoseInFrame(piece))
+        for piece in drake.plant.GetCollisionGeometriesForBody(drake.tool)
+    }
+    anchored = iter(drake.plant.GetCollisionGeometriesForBody(drake.plant.world_body()))
+    # In the order in which they were added.
+    for i, part in enumerate(problem.objects):
+        for _ in part.pieces:
+            piece = next(anchored)
+            owners[piece] = (i, inspector.GetPoseInFrame(piece))
+    return owners
+
+
+def _to_row(
+    pair: SignedDistancePair,
+    X_WTool: RigidTransform,
+    owners: dict[GeometryId, tuple[int, RigidTransform]],
+) -> np.ndarray:
+    """Returns distance, normal out of the object, both points, and the object."""
+    points = {}
+    for piece, p in ((pair.id_A, pair.p_ACa), (pair.id_B, pair.p_BCb)):
+        owner, X_BP = owners[piece]
+        points[owner] = (X_WTool @ X_BP if owner < 0 else X_BP) @ p
+    is_A = owners[pair.id_A][0] < 0
+    normal = pair.nhat_BA_W if is_A else -pair.nhat_BA_W
+    which = max(points)
+    return np.array([pair.distance, *normal, *points[-1], *points[which], which])
+
+
+def answer_with_hull(problem: PeerProblem) -> PeerAnswers:
+    """Has the tool as a compliant `Mesh`, which Drake fills as its convex hull."""
+
+    def add(plant: MultibodyPlant, body: RigidBody, soft: ProximityProperties) -> None:
+        shape = to_drake_mesh(problem.tool)
+        plant.RegisterCollisionGeometry(body, RigidTransform(), shape, "tool", soft)
+
+    return _answer(problem, add)
+
+
+def answer_with_pieces(problem: PeerProblem) -> PeerAnswers:
+    """Has the tool's pieces compliant, each by itself."""
+
+    def add(plant: MultibodyPlant, body: RigidBody, soft: ProximityProperties) -> None:
+        register_pieces(plant, body, RigidTransform(), problem.tool, soft)
+
+    return _answer(problem, add)
+
+
+def _answer(problem: PeerProblem, add_tool: _AddTool) -> PeerAnswers:
+    """Takes the plant's hydroelastic forces; there is no distance.
+
+    No modulus is the scene's stiffness: it is the one whose forces are nearest to the
+    reference's, in least squares over the whole motion.
+    """
+    rigid, soft = _make_surface(), _make_surface()
+    AddRigidHydroelasticProperties(_RESOLUTION_M, rigid)
+    AddCompliantHydroelasticProperties(_RESOLUTION_M, _MODULUS_PA, soft)
+
+    def add(
+        plant: MultibodyPlant, body: RigidBody, which: int, X_BM: RigidTransform
+    ) -> None:
+        if which < 0:
+            add_tool(plant, body, soft)
+        else:
+            shape = to_drake_mesh(problem.objects[which])
+            plant.RegisterCollisionGeometry(body, X_BM, shape, f"mesh_{which}", rigid)
+
+    drake = make_plant("hydroelastic", problem.part.X_WO, add)
+    motion = problem.motion
+    own = set(drake.plant.GetCollisionGeometriesForBody(drake.tool))
+    F_Tool_W = np.zeros((len(motion), 6))
+
+    def read(tick: int, results: ContactResults) -> None:
+        for i in range(results.num_hydroelastic_contacts()):
+            info = results.hydroelastic_contact_info(i)
+            surface, F_Ac_W = info.contact_surface(), info.F_Ac_W()
+            # The force is the one on M, at the surface's centroid.
+            sign = 1 if surface.id_M() in own else -1
+            force = sign * F_Ac_W.translational()
+            arm = surface.centroid() - motion.X_WTool[tick, 4:]
+            torque = sign * F_Ac_W.rotational() + np.cross(arm, force)
+            F_Tool_W[tick] += np.concatenate([torque, force])
+
+    port = drake.plant.get_contact_results_output_port()
+    seconds = drake.ask(motion, port, lambda results: results, read)
+    scale = _fit(F_Tool_W[:, 3:], problem.f_W)
+    return PeerAnswers(
+        scale * F_Tool_W,
+        np.full(len(motion), np.nan),
+        0.0,
+        seconds,
+        f"with {scale * _MODULUS_PA:.1e} Pa, which fits best",
+    )
+
+
+def _make_surface() -> ProximityProperties:
+    """Returns a surface without friction and damping."""
+    surface = ProximityProperties()
+    AddContactMaterial(
+        dissipation=0.0, friction=CoulombFriction(0.0, 0.0), properties=surface
+    )
+    return surface
+
+
+def _fit(f_W: np.ndarray, wanted_W: np.ndarray) -> float:
+    """Returns the factor that brings forces nearest to others; 1 where there are none.
+
+    Raises:
+        ValueError: None above zero does.
+    """
+    if not f_W.any():
+        return 1.0
+    scale = float((f_W * wanted_W).sum() / (f_W**2).sum())
+    if scale <= 0.0:
+        raise ValueError("its forces point against the reference's on the whole")
+    return scale

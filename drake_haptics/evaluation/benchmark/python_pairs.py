@@ -1,0 +1,131 @@
+"""Asks one pair query from Python: this package and coal's own binding."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from drake_haptics._core import ConvexPair, ConvexPolytope
+from drake_haptics.evaluation.benchmark.pairs import PairShape, make_presses
+from drake_haptics.evaluation.measuring.timing import typical
+
+
+@dataclass(frozen=True)
+class PythonFigures:
+    """What one query costs a Python program, from the pose to the distance.
+
+    Attributes:
+        kind: Kind of the pair.
+        size: Vertices of each body.
+        ours_us: Median, this package, tracked, µs.
+        coal_us: Median of the faster of coal's starts, µs.
+    """
+
+    kind: str
+    size: int
+    ours_us: float
+    coal_us: float
+
+    @property
+    def ratio(self) -> float:
+        """Of this package to coal."""
+        return self.ours_us / self.coal_us
+
+
+def run_python_pair(pair: PairShape, presses: int, repeats: int) -> PythonFigures:
+    """Returns what a single query costs from Python, on all frames of the presses.
+
+    Both sides get a (4, 4) pose and give the distance, in turns on each press. Coal
+    needs its own pose object, which is part of its query.
+
+    Args:
+        pair: The bodies.
+        presses: How many presses, see `make_presses`.
+        repeats: How often each press is run.
+    """
+    bodies = pair.A_vertices, pair.B_vertices
+    queries: dict[str, Callable[[np.ndarray], float]] = {
+        "ours": _our_query(pair),
+        "cold": CoalQuery(*bodies, "DefaultGuess"),
+        "boxes": CoalQuery(*bodies, "BoundingVolumeGuess"),
+        "warm": CoalQuery(*bodies, "CachedGuess"),
+    }
+    seconds: dict[str, list[np.ndarray]] = {name: [] for name in queries}
+    for press in make_presses(pair, presses):
+        repeated: dict[str, list[list[float]]] = {name: [] for name in queries}
+        for _ in range(repeats):
+            for name, query in queries.items():
+                repeated[name].append(_timed(query, press.X_WA))
+        for name in queries:
+            seconds[name].append(typical(np.array(repeated[name])))
+    medians = {n: 1e6 * float(np.median(np.concatenate(s))) for n, s in seconds.items()}
+    ours_us = medians.pop("ours")
+    return PythonFigures(pair.kind, pair.size, ours_us, min(medians.values()))
+
+
+def _timed(query: Callable[[np.ndarray], float], X_WA: np.ndarray) -> list[float]:
+    seconds = []
+    for X in X_WA:
+        start = time.perf_counter()
+        query(X)
+        seconds.append(time.perf_counter() - start)
+    return seconds
+
+
+def _our_query(pair: PairShape) -> Callable[[np.ndarray], float]:
+    A, B = ConvexPolytope(pair.A_vertices), ConvexPolytope(pair.B_vertices)
+    bodies = ConvexPair(A, B)
+    X_WB = np.eye(4)
+
+    def query(X_WA: np.ndarray) -> float:
+        return bodies.query(X_WA, X_WB).distance
+
+    return query
+
+
+class CoalQuery:
+    """A pair of hulls in coal's own binding, asked for one pose after the other.
+
+    Attributes:
+        result: The result of coal's last query.
+    """
+
+    def __init__(self, A_vertices: np.ndarray, B_vertices: np.ndarray, start: str):
+        """Builds the hulls.
+
+        Args:
+            A_vertices: (n, 3) vertices of the moving body, m.
+            B_vertices: (m, 3) vertices of the resting body, m.
+            start: Where GJK starts, a name of `coal.GJKInitialGuess`.
+
+        Raises:
+            ImportError: coal is not installed.
+        """
+        import coal
+
+        def make_hull(vertices: np.ndarray) -> coal.Convex:
+            points = coal.StdVec_Vec3s()
+            points.extend(list(vertices))
+            hull = coal.Convex.convexHull(points, True, "Qt")
+            hull.computeLocalAABB()
+            return hull
+
+        # `ComputeDistance` does not keep the bodies alive.
+        self._bodies = make_hull(A_vertices), make_hull(B_vertices)
+        self._compute = coal.ComputeDistance(*self._bodies)
+        self._request = coal.DistanceRequest()
+        self._request.enable_signed_distance = True
+        self._request.gjk_initial_guess = getattr(coal.GJKInitialGuess, start)
+        self.result = coal.DistanceResult()
+        self._make_pose, self._X_WB = coal.Transform3s, coal.Transform3s()
+
+    def __call__(self, X_WA: np.ndarray) -> float:
+        """Returns the signed distance, m, at a pose (4, 4) of A; B is at the origin."""
+        X = self._make_pose(X_WA[:3, :3], X_WA[:3, 3])
+        self.result.clear()
+        distance: float = self._compute(X, self._X_WB, self._request, self.result)
+        self._request.updateGuess(self.result)
+        return distance

@@ -1,0 +1,115 @@
+"""Gives convex pieces to other simulators, Drake and MuJoCo, and keeps them quiet."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from pydrake.geometry import AddContactMaterial, Convex, ProximityProperties
+from pydrake.math import RigidTransform
+from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
+from pydrake.multibody.tree import RigidBody
+
+from drake_haptics._core import ConvexPolytope
+from drake_haptics.geometry.decomposition.decompose import Decomposition
+
+# Penetration at which the contact's damping is what was asked for: Hunt and Crossley's
+# grows with it, m.
+_TYPICAL_DEPTH_M = 5e-4
+# MuJoCo takes no flat mesh: a flat piece gets this thickness, on its inner side, m.
+THICKNESS_M = 2e-5
+
+
+def register_pieces(
+    plant: MultibodyPlant,
+    body: RigidBody,
+    X_BP: RigidTransform,
+    decomposition: Decomposition,
+    surface: ProximityProperties,
+) -> None:
+    """Adds each piece to a body, flat ones as they are.
+
+    Args:
+        plant: Not yet finalized.
+        body: Of it.
+        X_BP: Pose of the pieces in the body's frame.
+        decomposition: The pieces.
+        surface: What they are made of.
+    """
+    for piece in decomposition.pieces:
+        name = f"piece_{len(plant.GetCollisionGeometriesForBody(body))}"
+        shape = Convex(points=piece.vertices.T, label=name)
+        plant.RegisterCollisionGeometry(body, X_BP, shape, name, surface)
+
+
+def make_surface(
+    stiffness_N_per_m: float, damping_Ns_per_m: float
+) -> ProximityProperties:
+    """Returns a material of which two surfaces have these gains together."""
+    properties = ProximityProperties()
+    AddContactMaterial(
+        dissipation=damping_Ns_per_m / (stiffness_N_per_m * _TYPICAL_DEPTH_M),
+        # Two springs in series.
+        point_stiffness=2.0 * stiffness_N_per_m,
+        friction=CoulombFriction(0.0, 0.0),
+        properties=properties,
+    )
+    return properties
+
+
+@contextmanager
+def quiet_streams(*streams: int) -> Iterator[None]:
+    """Drops what is written to these streams of the process meanwhile.
+
+    So a library does not write on the terminal, where a progress bar is.
+
+    Args:
+        streams: 1 for standard output, 2 for standard error.
+    """
+    sys.stderr.flush()
+    kept = [os.dup(stream) for stream in streams]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        for stream in streams:
+            os.dup2(nowhere, stream)
+        yield
+    finally:
+        sys.stderr.flush()
+        # What C still holds back goes nowhere too.
+        ctypes.CDLL(None).fflush(None)
+        for stream, own in zip(streams, kept, strict=True):
+            os.dup2(own, stream)
+            os.close(own)
+        os.close(nowhere)
+
+
+def mesh_assets(name: str, decomposition: Decomposition) -> str:
+    """Returns an MJCF element for each piece, the mesh `<name>_<number>`."""
+    return "\n".join(
+        f'<mesh name="{name}_{k}" inertia="convex" vertex="{_list_vertices(piece)}"/>'
+        for k, piece in enumerate(decomposition.pieces)
+    )
+
+
+def mesh_geoms(name: str, decomposition: Decomposition, attributes: str) -> str:
+    """Returns a geom for each mesh of `mesh_assets`, with these attributes."""
+    return "\n".join(
+        f'<geom type="mesh" mesh="{name}_{k}" {attributes}/>'
+        for k in range(len(decomposition.pieces))
+    )
+
+
+def listed(numbers: np.ndarray) -> str:
+    """Returns numbers as an attribute, each exactly."""
+    return " ".join(f"{x:.17g}" for x in np.ravel(numbers))
+
+
+def _list_vertices(piece: ConvexPolytope) -> str:
+    if piece.dimension == 3:
+        return listed(piece.vertices)
+    inner = piece.vertices - THICKNESS_M * piece.facet_normals[0]
+    return listed(np.vstack([piece.vertices, inner]))

@@ -1,0 +1,191 @@
+"""Measures how query and force computation grow with pairs and contacts (6.3)."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from drake_haptics import _core
+from drake_haptics._core import SceneTracker
+from drake_haptics.evaluation.measuring.timing import typical
+from drake_haptics.evaluation.paper.fits import LineFit, PowerFit, fit_line, fit_power
+from drake_haptics.evaluation.shapes.surface import SurfaceBuilder, circle, loft
+from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
+
+NUM_TEETH = (1, 2, 4, 8, 16, 32, 64)
+_TOLERANCE_M = 1e-3
+_DEEP_M = 5e-4
+_SPACING_M = 0.005
+_ACROSS = 8
+_WIDEST_M = 0.002
+_PLATE_M = 0.2
+_SLIDE_REPEATS = 7
+_TEETH_ACROSS = (1, 2, 4, 6, 8, 12, 16)
+_WIDTH_M = 0.04
+_CLUSTER_M = 8e-3
+# With fewer contacts a call takes most of the time.
+FEWEST_FITTED = 16
+
+
+@dataclass(frozen=True)
+class PairScaling:
+    """Times of a query over the number of pairs that penetrate.
+
+    Attributes:
+        pairs: How many penetrate.
+        median_us: Of the whole query, µs.
+        line: Through them.
+    """
+
+    pairs: tuple[int, ...]
+    median_us: tuple[float, ...]
+    line: LineFit
+
+
+def measure_pair_scaling(ticks: int) -> PairScaling:
+    """Slides brushes of 1 to 64 teeth over a plate, all teeth 0.5 mm deep.
+
+    Args:
+        ticks: Of each motion.
+    """
+    plate = make_plate()
+    motion = plan_slide(ticks)
+    brushes = [make_brush(teeth) for teeth in NUM_TEETH]
+    trackers = [SceneTracker(brush, [plate], _TOLERANCE_M) for brush in brushes]
+    # In turns, so that what disturbs the computer disturbs all.
+    seconds = np.array(
+        [
+            [[tracker.query(X).query_seconds for X in motion] for tracker in trackers]
+            for _ in range(_SLIDE_REPEATS)
+        ]
+    )
+    median_us = (1e6 * np.median(typical(seconds), axis=1)).tolist()
+    line = fit_line(np.array(NUM_TEETH), median_us)
+    return PairScaling(NUM_TEETH, tuple(median_us), line)
+
+
+def make_brush(
+    teeth: int, across: int = _ACROSS, spacing_m: float = _SPACING_M
+) -> Decomposition:
+    """Returns a tool of separate pointed teeth, their points at z = 0.
+
+    A tooth is convex, has eight sides, and is 10 mm high. It is as wide as a third of
+    the spacing, and 2 mm at most.
+
+    Args:
+        teeth: Number of the teeth, which stand row by row about the origin.
+        across: Number of the teeth in a row.
+        spacing_m: Distance of two neighbors, m.
+    """
+    builder = SurfaceBuilder()
+    row, column = np.divmod(np.arange(teeth), across)
+    places = (np.column_stack([column, row]) - (across - 1) / 2) * spacing_m
+    radius_m = min(spacing_m / 3, _WIDEST_M) / 2
+    for x, y in places:
+        rings = [
+            builder.add_ring(np.add(circle(radius_m, z, 8), (x, y, 0.0)))
+            for z in (0.003, 0.010)
+        ]
+        builder.add_fan(rings[0], builder.add_vertex((x, y, 0.0)), at_start=True)
+        builder.add_band(*rings)
+        builder.add_fan(rings[1], builder.add_vertex((x, y, 0.0105)), at_start=False)
+    return decompose(builder.build().to_mesh())
+
+
+def make_plate() -> Decomposition:
+    """Returns a plate 200 mm wide and 20 mm thick, with its top at z = 0."""
+    corners = np.array([(1, -1), (1, 1), (-1, 1), (-1, -1)]) * _PLATE_M / 2
+    levels = [np.column_stack([corners, np.full(4, z)]) for z in (-0.02, 0.0)]
+    surface = loft((0.0, 0.0, -0.02), levels, (0.0, 0.0, 0.0))
+    return decompose(surface.to_mesh())
+
+
+def plan_slide(ticks: int) -> np.ndarray:
+    """Returns X_WTool (ticks, 4, 4): round in a circle of 10 mm, 0.5 mm deep."""
+    angle = np.linspace(0.0, 2.0 * np.pi, ticks)
+    X_WT = np.tile(np.eye(4), (ticks, 1, 1))
+    X_WT[:, 0, 3], X_WT[:, 1, 3] = 0.01 * np.cos(angle), 0.01 * np.sin(angle)
+    X_WT[:, 2, 3] = -_DEEP_M
+    return X_WT
+
+
+@dataclass(frozen=True)
+class ForceScaling:
+    """What one way of clustering makes of many contacts.
+
+    Attributes:
+        method: "octree" (the paper's) or "shared".
+        contacts: Before clustering.
+        forces: That are computed: one for each cluster.
+        median_us: Of clustering and force, µs.
+        force_growth: Of the forces with the contacts.
+        time_growth: Of the time with the contacts, from `FEWEST_FITTED` on.
+    """
+
+    method: str
+    contacts: tuple[int, ...]
+    forces: tuple[int, ...]
+    median_us: tuple[float, ...]
+    force_growth: PowerFit
+    time_growth: PowerFit
+
+
+def measure_force_scaling(repeats: int) -> tuple[ForceScaling, ...]:
+    """Presses brushes of 1 to 256 teeth, all 40 mm wide, into a plate.
+
+    Args:
+        repeats: Of each computation.
+
+    Returns:
+        Figures of the paper's clusters (of 8 mm), and of shared stiffness.
+    """
+    plate = make_plate()
+    sets = [_touch(across, plate) for across in _TEETH_ACROSS]
+    cluster = {
+        "octree": partial(
+            _core.cluster_contacts, delta=_CLUSTER_M, tolerance=_TOLERANCE_M
+        ),
+        "shared": partial(_core.share_stiffness, tolerance=_TOLERANCE_M),
+    }
+    return tuple(_measure(name, call, sets, repeats) for name, call in cluster.items())
+
+
+def _touch(across: int, plate: Decomposition) -> _core.ContactSet:
+    """Returns the contacts of a square brush with that many teeth along a side."""
+    brush = make_brush(across**2, across, _WIDTH_M / across)
+    return SceneTracker(brush, [plate], _TOLERANCE_M).query(plan_slide(2)[0])
+
+
+def _measure(
+    method: str,
+    cluster: Callable[[_core.ContactSet], _core.ClusterSet],
+    sets: list[_core.ContactSet],
+    repeats: int,
+) -> ForceScaling:
+    zero, one = np.zeros((1, 3)), np.ones(1)
+    forces, median_us = [], []
+    for contacts in sets:
+        seconds = []
+        for _ in range(repeats):
+            start = time.perf_counter()
+            clusters = cluster(contacts)
+            _core.penalty_force(
+                clusters, zero[0], np.zeros(6), zero, np.zeros((1, 6)), one, one
+            )
+            seconds.append(time.perf_counter() - start)
+        forces.append(len(clusters))
+        median_us.append(1e6 * float(np.median(seconds)))
+    numbers = tuple(map(len, sets))
+    many = np.array(numbers) >= FEWEST_FITTED
+    return ForceScaling(
+        method=method,
+        contacts=numbers,
+        forces=tuple(forces),
+        median_us=tuple(median_us),
+        force_growth=fit_power(np.array(numbers), np.array(forces)),
+        time_growth=fit_power(np.array(numbers)[many], np.array(median_us)[many]),
+    )
