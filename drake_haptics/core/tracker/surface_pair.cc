@@ -39,7 +39,6 @@ constexpr double kComingFrom = -0.2;
 constexpr double kEntryShare = 0.25;
 // Cosine of the angle within which two normals count as one.
 constexpr double kSameNormal = 0.996;
-constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 
 class Query {
  public:
