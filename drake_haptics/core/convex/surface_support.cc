@@ -1,6 +1,7 @@
 #include "convex/surface_support.h"
 
 #include <algorithm>
+#include <span>
 
 namespace drake_haptics {
 namespace {
@@ -17,10 +18,26 @@ bool FacetHolds(const Polytope& polytope, int facet, int vertex) {
   return std::find(loop.begin(), loop.end(), vertex) != loop.end();
 }
 
+// Whether directions of a surface fall away from n, none rises, and so n points
+// out of what is convex there.
+bool FallsAway(std::span<const Vec3> directions, const Vec3& n) {
+  const auto rises = [&](const Vec3& r) { return n.dot(r) > kSurfaceSlack; };
+  const auto falls = [&](const Vec3& r) { return n.dot(r) < -kSurfaceSlack; };
+  return std::none_of(directions.begin(), directions.end(), rises) &&
+         std::any_of(directions.begin(), directions.end(), falls);
+}
+
+// Whether the surface has both facets beside an edge, which is convex then.
+bool IsOnSurface(const Polytope& polytope, const Polytope::Edge& edge) {
+  return edge.left >= 0 && edge.right >= 0 &&
+         polytope.facets[edge.left].original &&
+         polytope.facets[edge.right].original;
+}
+
 // Whether n leaves the solid at an edge of the mesh: seen from inside, a
 // concave edge is a ridge like any other. The normals of the mesh's faces
 // beside it follow from its wings. Along the rim of an open mesh, n may lie in
-// the one face there is.
+// the one face there is. Out of a blade it is nearly in both faces.
 bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
                 const Vec3& n) {
   const Vec3 along = polytope.vertices[edge.v1] - polytope.vertices[edge.v0];
@@ -30,13 +47,15 @@ bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
     return !wing.isZero(0) && n.dot(normal) > least;
   };
   return edge.left < 0 || leaves(edge.wings[0], along.cross(edge.wings[0])) ||
-         leaves(edge.wings[1], edge.wings[1].cross(along));
+         leaves(edge.wings[1], edge.wings[1].cross(along)) ||
+         (IsOnSurface(polytope, edge) && FallsAway(edge.wings, n));
 }
 
 // The same at a vertex, by the faces that the piece has there: along its faces
-// a direction leaves nothing, but at the rim of an open mesh.
+// a direction leaves nothing, but at the rim of an open mesh, at the edge of a
+// blade, and at the tip of a needle.
 bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
-  bool has_surface = false;
+  bool has_surface = false, has_all_surface = true;
   bool is_rim = false;
   double most = -1;
   for (const Polytope::Spoke& spoke : polytope.fan_of(vertex)) {
@@ -44,12 +63,17 @@ bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
       const Polytope::Edge& edge = polytope.edges[spoke.edge];
       is_rim |=
           edge.original && (edge.wings[0].isZero(0) || edge.wings[1].isZero(0));
+      if (IsOnSurface(polytope, edge) && FallsAway(edge.wings, n)) return true;
     }
-    if (spoke.facet < 0 || !polytope.facets[spoke.facet].original) continue;
+    if (spoke.facet < 0 || !polytope.facets[spoke.facet].original) {
+      has_all_surface = false;
+      continue;
+    }
     most = std::max(most, n.dot(spoke.normal));
     has_surface = true;
   }
-  return !has_surface || most > (is_rim ? -kSurfaceSlack : kSurfaceSlack);
+  return !has_surface || most > (is_rim ? -kSurfaceSlack : kSurfaceSlack) ||
+         (has_all_surface && FallsAway(polytope.ring_of(vertex), n));
 }
 
 // Support of one side; n points out of the polytope, in its frame.
