@@ -27,11 +27,17 @@ bool FallsAway(std::span<const Vec3> directions, const Vec3& n) {
          std::any_of(directions.begin(), directions.end(), falls);
 }
 
-// Whether the surface has both facets beside an edge, which is convex then.
-bool IsOnSurface(const Polytope& polytope, const Polytope::Edge& edge) {
-  return edge.left >= 0 && edge.right >= 0 &&
-         polytope.facets[edge.left].original &&
-         polytope.facets[edge.right].original;
+// Whether the surface is convex at an edge: between facets of its own a piece
+// is, and elsewhere one face falls away from the other.
+bool IsConvex(const Polytope& polytope, const Polytope::Edge& edge) {
+  if (!edge.original || edge.left < 0 || edge.right < 0) return false;
+  if (polytope.facets[edge.left].original &&
+      polytope.facets[edge.right].original) {
+    return true;
+  }
+  const Vec3 along = polytope.vertices[edge.v1] - polytope.vertices[edge.v0];
+  return !edge.wings[0].isZero(0) && !edge.wings[1].isZero(0) &&
+         along.cross(edge.wings[0]).dot(edge.wings[1]) < 0;
 }
 
 // Whether n leaves the solid at an edge of the mesh: seen from inside, a
@@ -48,14 +54,29 @@ bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
   };
   return edge.left < 0 || leaves(edge.wings[0], along.cross(edge.wings[0])) ||
          leaves(edge.wings[1], edge.wings[1].cross(along)) ||
-         (IsOnSurface(polytope, edge) && FallsAway(edge.wings, n));
+         (IsConvex(polytope, edge) && FallsAway(edge.wings, n));
+}
+
+// Out of a vertex at the edge of a blade, or at the tip of a needle.
+bool LeavesTip(const Polytope& polytope, int vertex, const Vec3& n) {
+  if (!FallsAway(polytope.ring_of(vertex), n)) return false;
+  const auto fan = polytope.fan_of(vertex);
+  const auto is_on_surface = [&](const Polytope::Spoke& spoke) {
+    return spoke.facet >= 0 && polytope.facets[spoke.facet].original;
+  };
+  const auto is_of_blade = [&](const Polytope::Spoke& spoke) {
+    if (spoke.edge < 0) return false;
+    const Polytope::Edge& edge = polytope.edges[spoke.edge];
+    return IsConvex(polytope, edge) && FallsAway(edge.wings, n);
+  };
+  return std::all_of(fan.begin(), fan.end(), is_on_surface) ||
+         std::any_of(fan.begin(), fan.end(), is_of_blade);
 }
 
 // The same at a vertex, by the faces that the piece has there: along its faces
-// a direction leaves nothing, but at the rim of an open mesh, at the edge of a
-// blade, and at the tip of a needle.
+// a direction leaves nothing, but at the rim of an open mesh and at a tip.
 bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
-  bool has_surface = false, has_all_surface = true;
+  bool has_surface = false;
   bool is_rim = false;
   double most = -1;
   for (const Polytope::Spoke& spoke : polytope.fan_of(vertex)) {
@@ -63,17 +84,13 @@ bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
       const Polytope::Edge& edge = polytope.edges[spoke.edge];
       is_rim |=
           edge.original && (edge.wings[0].isZero(0) || edge.wings[1].isZero(0));
-      if (IsOnSurface(polytope, edge) && FallsAway(edge.wings, n)) return true;
     }
-    if (spoke.facet < 0 || !polytope.facets[spoke.facet].original) {
-      has_all_surface = false;
-      continue;
-    }
+    if (spoke.facet < 0 || !polytope.facets[spoke.facet].original) continue;
     most = std::max(most, n.dot(spoke.normal));
     has_surface = true;
   }
   return !has_surface || most > (is_rim ? -kSurfaceSlack : kSurfaceSlack) ||
-         (has_all_surface && FallsAway(polytope.ring_of(vertex), n));
+         LeavesTip(polytope, vertex, n);
 }
 
 // Support of one side; n points out of the polytope, in its frame.
