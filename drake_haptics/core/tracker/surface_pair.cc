@@ -151,10 +151,15 @@ class Query {
       is_refused_ = true;
       return TakenOver();
     }
-    const Depth depth = entry               ? *entry
-                        : state_.in_contact ? WarmDepth()
-                        : is_new            ? EntryDepth()
-                                            : RefusedDepth();
+    Depth depth = entry               ? *entry
+                  : state_.in_contact ? WarmDepth()
+                  : is_new            ? EntryDepth()
+                                      : RefusedDepth();
+    // Round-off can hide every facet from where a walk began.
+    if (depth.status == DepthStatus::kNoFacet) {
+      depth = ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
+                        Bounds(kWarmPromotionHubs), &workspace_.depth);
+    }
     const bool apart = separation_.status == SeparationStatus::kApart;
     Hub hub = separation_.simplex.hubs[0];
     if (apart && (depth.status == DepthStatus::kNoFacet ||
