@@ -152,6 +152,10 @@ class Check {
     ++tally_.queries;
     double deepest = std::numeric_limits<double>::infinity();
     for (const Contact& contact : contacts.contacts) {
+      if (!IsFinite(contact)) {
+        tally_.Violated("not finite", "d = %g, size %g", contact.distance,
+                        scale_);
+      }
       deepest = std::min(deepest, contact.distance);
     }
     if (has_come && deepest < -step_ - noise_) {
@@ -214,6 +218,13 @@ class Check {
 };
 
 }  // namespace
+
+bool IsFinite(const Contact& contact) {
+  return std::isfinite(contact.distance) && contact.nhat_BA_W.allFinite() &&
+         contact.p_WCa.allFinite() && contact.p_WCb.allFinite() &&
+         contact.p_WC.allFinite() && std::isfinite(contact.extent) &&
+         std::isfinite(contact.flushness);
+}
 
 Landing DrawLanding(ByteSource* source) {
   Landing landing;

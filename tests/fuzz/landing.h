@@ -5,6 +5,7 @@
 #include "base/types.h"
 #include "byte_source.h"
 #include "mesh/decomposition.h"
+#include "pair/contact.h"
 #include "tally.h"
 
 namespace drake_haptics::fuzz {
@@ -20,6 +21,9 @@ struct Landing {
   double tolerance = 0;  ///< of the trackers, m; less than the gap before
 };
 
+/// Whether a contact gives only finite numbers to the forces.
+bool IsFinite(const Contact& contact);
+
 /// Draws the two solids, where they meet and a step of at most the tool's size.
 /// The pose before is reached from afar through poses that are apart, so that
 /// neither solid is within the other there.
@@ -28,6 +32,7 @@ Landing DrawLanding(ByteSource* source);
 
 /// Holds what trackers find after the step against promises of first overlaps:
 ///
+/// - every number of every contact is finite,
 /// - no way out that a tracker finds which came from the pose apart is longer
 ///   than the step,
 /// - where convex solids overlap, it has a contact that penetrates, and so has

@@ -68,12 +68,6 @@ void Move(ByteSource* source, double size, Pose* X) {
              .toRotationMatrix();
 }
 
-bool IsFinite(const Contact& contact) {
-  return std::isfinite(contact.distance) && contact.nhat_BA_W.allFinite() &&
-         contact.p_WCa.allFinite() && contact.p_WCb.allFinite() &&
-         contact.p_WC.allFinite();
-}
-
 // How far the corners of a facet may be off its plane, m: small parts of a
 // large mesh are flat to it.
 double Flatness(const Decomposition& decomposition) {

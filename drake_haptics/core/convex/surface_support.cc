@@ -1,6 +1,7 @@
 #include "convex/surface_support.h"
 
 #include <algorithm>
+#include <span>
 
 namespace drake_haptics {
 namespace {
@@ -17,10 +18,32 @@ bool FacetHolds(const Polytope& polytope, int facet, int vertex) {
   return std::find(loop.begin(), loop.end(), vertex) != loop.end();
 }
 
+// Whether directions of a surface fall away from n, none rises, and so n points
+// out of what is convex there.
+bool FallsAway(std::span<const Vec3> directions, const Vec3& n) {
+  const auto rises = [&](const Vec3& r) { return n.dot(r) > kSurfaceSlack; };
+  const auto falls = [&](const Vec3& r) { return n.dot(r) < -kSurfaceSlack; };
+  return std::none_of(directions.begin(), directions.end(), rises) &&
+         std::any_of(directions.begin(), directions.end(), falls);
+}
+
+// Whether the surface is convex at an edge: between facets of its own a piece
+// is, and elsewhere one face falls away from the other.
+bool IsConvex(const Polytope& polytope, const Polytope::Edge& edge) {
+  if (!edge.original || edge.left < 0 || edge.right < 0) return false;
+  if (polytope.facets[edge.left].original &&
+      polytope.facets[edge.right].original) {
+    return true;
+  }
+  const Vec3 along = polytope.vertices[edge.v1] - polytope.vertices[edge.v0];
+  return !edge.wings[0].isZero(0) && !edge.wings[1].isZero(0) &&
+         along.cross(edge.wings[0]).dot(edge.wings[1]) < 0;
+}
+
 // Whether n leaves the solid at an edge of the mesh: seen from inside, a
 // concave edge is a ridge like any other. The normals of the mesh's faces
 // beside it follow from its wings. Along the rim of an open mesh, n may lie in
-// the one face there is.
+// the one face there is. Out of a blade it is nearly in both faces.
 bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
                 const Vec3& n) {
   const Vec3 along = polytope.vertices[edge.v1] - polytope.vertices[edge.v0];
@@ -30,11 +53,28 @@ bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
     return !wing.isZero(0) && n.dot(normal) > least;
   };
   return edge.left < 0 || leaves(edge.wings[0], along.cross(edge.wings[0])) ||
-         leaves(edge.wings[1], edge.wings[1].cross(along));
+         leaves(edge.wings[1], edge.wings[1].cross(along)) ||
+         (IsConvex(polytope, edge) && FallsAway(edge.wings, n));
+}
+
+// Out of a vertex at the edge of a blade, or at the tip of a needle.
+bool LeavesTip(const Polytope& polytope, int vertex, const Vec3& n) {
+  if (!FallsAway(polytope.ring_of(vertex), n)) return false;
+  const auto fan = polytope.fan_of(vertex);
+  const auto is_on_surface = [&](const Polytope::Spoke& spoke) {
+    return spoke.facet >= 0 && polytope.facets[spoke.facet].original;
+  };
+  const auto is_of_blade = [&](const Polytope::Spoke& spoke) {
+    if (spoke.edge < 0) return false;
+    const Polytope::Edge& edge = polytope.edges[spoke.edge];
+    return IsConvex(polytope, edge) && FallsAway(edge.wings, n);
+  };
+  return std::all_of(fan.begin(), fan.end(), is_on_surface) ||
+         std::any_of(fan.begin(), fan.end(), is_of_blade);
 }
 
 // The same at a vertex, by the faces that the piece has there: along its faces
-// a direction leaves nothing, but at the rim of an open mesh.
+// a direction leaves nothing, but at the rim of an open mesh and at a tip.
 bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
   bool has_surface = false;
   bool is_rim = false;
@@ -49,7 +89,8 @@ bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
     most = std::max(most, n.dot(spoke.normal));
     has_surface = true;
   }
-  return !has_surface || most > (is_rim ? -kSurfaceSlack : kSurfaceSlack);
+  return !has_surface || most > (is_rim ? -kSurfaceSlack : kSurfaceSlack) ||
+         LeavesTip(polytope, vertex, n);
 }
 
 // Support of one side; n points out of the polytope, in its frame.

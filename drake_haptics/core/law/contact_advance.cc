@@ -3,11 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "law/contact_gradient.h"
+
 namespace drake_haptics {
 namespace {
-
-// Sine below which two edges count as parallel.
-constexpr double kParallel = 1e-9;
 
 // A piece of a body that has moved. What is fixed to it moves along.
 template <typename T>
@@ -34,9 +33,10 @@ Mat3Of<T> TurnOf(const MovedBodyOf<T>& body) {
 }
 
 template <typename T>
-class Carry {
+class Advancing {
  public:
-  Carry(const MovedPiece<T>& A, const MovedPiece<T>& B, ContactOf<T>* contact)
+  Advancing(const MovedPiece<T>& A, const MovedPiece<T>& B,
+            ContactOf<T>* contact)
       : A_(A), B_(B), contact_(*contact) {}
 
   void Run() {
@@ -76,7 +76,8 @@ class Carry {
     const Vec3Of<T> u = A_.Along(a), v = B_.Along(b);
     const Vec3Of<T> cross = u.cross(v);
     const T square = cross.squaredNorm();
-    if (!(ValueOf(square) > kParallel * kParallel * ValueOf(u.squaredNorm()) *
+    if (!(ValueOf(square) > kParallelEdges * kParallelEdges *
+                                ValueOf(u.squaredNorm()) *
                                 ValueOf(v.squaredNorm()))) {
       return false;
     }
@@ -134,8 +135,8 @@ void ContactCarrier::Advance(const MovedBodyOf<T>& tool,
     const MovedBodyOf<T>& B = rest ? at_rest : moving[place_[contact.object]];
     const Mat3Of<T> turn_B =
         rest ? Mat3Of<T>(Mat3Of<T>::Identity()) : TurnOf(B);
-    Carry<T>({tool, turn_A, tool_->pieces.at(contact.piece_A)},
-             {B, turn_B, object.pieces.at(contact.piece_B)}, &contact)
+    Advancing<T>({tool, turn_A, tool_->pieces.at(contact.piece_A)},
+                 {B, turn_B, object.pieces.at(contact.piece_B)}, &contact)
         .Run();
   }
 }

@@ -8,9 +8,6 @@
 namespace drake_haptics {
 namespace {
 
-// Sine below which two edges count as parallel.
-constexpr double kParallel = 1e-9;
-
 // Velocity of a point of the tool at `r` from To, by the displacement.
 Mat36 MotionAt(const Vec3& r) {
   Mat36 motion;
@@ -52,7 +49,7 @@ class Differentiation {
     if (IsEdge(b_)) edge_B_ = EdgeOfB();
     common_ = edge_A_.along.cross(edge_B_.along);
     cross_ = common_.norm() >
-             kParallel * edge_A_.along.norm() * edge_B_.along.norm();
+             kParallelEdges * edge_A_.along.norm() * edge_B_.along.norm();
     p_a_ = FindWitness();
   }
 

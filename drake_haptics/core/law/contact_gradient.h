@@ -9,6 +9,9 @@ namespace drake_haptics {
 using Row6 = Eigen::Matrix<double, 1, 6>;
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 
+/// Sine below which two edges count as parallel.
+inline constexpr double kParallelEdges = 1e-9;
+
 /// The matrix of v ×.
 inline Mat3 Cross(const Vec3& v) {
   Mat3 matrix;

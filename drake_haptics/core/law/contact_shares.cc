@@ -78,7 +78,7 @@ struct Kin {
 };
 
 // A contact along the axis in which all are farthest apart.
-struct Placed {
+struct AlongAxis {
   double at;     // m
   double reach;  // m
   std::size_t contact;
@@ -138,10 +138,10 @@ class Kinship {
 
   // Looks at the pairs that are near along the axis or both flush.
   void Compare() {
-    const std::vector<Placed> placed = Place();
+    const std::vector<AlongAxis> placed = Place();
     double widest = 0;
     std::vector<GroupedContact> flush;
-    for (const Placed& one : placed) {
+    for (const AlongAxis& one : placed) {
       widest = std::max(widest, one.reach);
       const ContactOf<T>& contact = *contacts_[one.contact];
       if (!(contact.flushness > 0.0)) continue;
@@ -157,11 +157,11 @@ class Kinship {
     if (flush.size() > 1) CompareFlush(GroupContacts(&flush));
   }
 
-  bool IsFlush(const Placed& placed) const {
+  bool IsFlush(const AlongAxis& placed) const {
     return contacts_[placed.contact]->flushness > 0.0;
   }
 
-  std::vector<Placed> Place() const {
+  std::vector<AlongAxis> Place() const {
     Eigen::Array3d low = ValuesOf(contacts_[0]->p_WC), high = low;
     for (const ContactOf<T>* contact : contacts_) {
       const Eigen::Array3d p = ValuesOf(contact->p_WC);
@@ -170,7 +170,7 @@ class Kinship {
     }
     Eigen::Index axis;
     (high - low).maxCoeff(&axis);
-    std::vector<Placed> placed(contacts_.size());
+    std::vector<AlongAxis> placed(contacts_.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
       placed[i] = {ValueOf(contacts_[i]->p_WC[axis]),
                    ValueOf(Reach(*contacts_[i], tolerance_)), i};
@@ -182,7 +182,7 @@ class Kinship {
   }
 
   // One that is not flush, with those near it that come after it on the axis.
-  void CompareAfter(const std::vector<Placed>& placed, std::size_t k,
+  void CompareAfter(const std::vector<AlongAxis>& placed, std::size_t k,
                     double widest) {
     const double end = placed[k].at + tolerance_ + placed[k].reach + widest;
     for (std::size_t l = k + 1; l < placed.size() && placed[l].at <= end; ++l) {
@@ -191,7 +191,7 @@ class Kinship {
   }
 
   // The same with those before it, of which only the flush ones are left.
-  void CompareFlushBefore(const std::vector<Placed>& placed, std::size_t k,
+  void CompareFlushBefore(const std::vector<AlongAxis>& placed, std::size_t k,
                           double widest) {
     const double end = placed[k].at - tolerance_ - placed[k].reach - widest;
     for (std::size_t l = k; l > 0 && placed[l - 1].at >= end; --l) {

@@ -13,11 +13,10 @@
 namespace drake_haptics {
 namespace {
 
-constexpr int kCapacity = AdhesiveContactsOf<double>::kCapacity;
-
 // The clusters that rub, in their order, and the normal forces that they bear.
 template <typename T>
 struct Rubbing {
+  static constexpr int kCapacity = AdhesiveContactsOf<T>::kCapacity;
   std::array<int, kCapacity> cluster;
   std::array<T, kCapacity> normal_force;
   int size = 0;
@@ -39,7 +38,7 @@ Rubbing<T> FindRubbing(const std::vector<ClusterOf<T>>& clusters,
   bool all = true;
   for (int c = 0; c < num_clusters; ++c) {
     if (!rubs(c)) continue;
-    if (rubbing.size < kCapacity) {
+    if (rubbing.size < Rubbing<T>::kCapacity) {
       rubbing.cluster[rubbing.size++] = c;
       continue;
     }

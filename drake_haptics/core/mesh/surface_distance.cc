@@ -10,11 +10,10 @@
 namespace drake_haptics {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kExcess = 1.05;
 // Share of the size. Flat places that are divided otherwise are as near as that
 // only once their parts are as small.
-constexpr double kNegligible = 1e-4;
+constexpr double kNegligibleShare = 1e-4;
 
 std::vector<BoxTree::Box> TriangleBoxes(std::span<const Vec3> vertices,
                                         std::span<const Triangle> triangles) {
@@ -38,8 +37,8 @@ double Farthest(const SurfaceDistance& surface, std::span<const Vec3> vertices,
     corners.push_back({vertices[t[0]], vertices[t[1]], vertices[t[2]]});
     for (const Vec3& v : corners.back()) box.extend(v);
   }
-  return surface.BoundFarthest(corners, kInfinity,
-                               kNegligible * box.diagonal().norm());
+  return surface.BoundFarthest(corners, std::numeric_limits<double>::infinity(),
+                               kNegligibleShare * box.diagonal().norm());
 }
 
 }  // namespace
@@ -58,7 +57,7 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3> vertices,
 }
 
 SurfaceDistance::Nearest SurfaceDistance::FindNearest(const Vec3& p) const {
-  double least = kInfinity;
+  double least = std::numeric_limits<double>::infinity();
   int triangle = -1;
   NearestOnTriangle nearest;
   tree_.VisitNear(p, [&](int t) {

@@ -130,16 +130,20 @@ SurfacePiece MakeSurfacePiece(const MeshTopology& mesh,
   std::vector<Vec3> points;
   for (const int v : corners) points.push_back(mesh.vertices[v]);
 
-  const bool closed = IsClosed(mesh, patch);
-  const HullShape shape =
-      closed ? FindHullShape(points, kFacetTolerances * tolerance)
-             : FindOpenShape(mesh, patch, points, tolerance);
+  // The hull of a closed patch is the surface: nothing goes on beyond it. Edges
+  // of the mesh that are shorter than the hull is exact would tell otherwise.
+  if (IsClosed(mesh, patch)) {
+    return {MakePolytope(points,
+                         FindHullShape(points, kFacetTolerances * tolerance)),
+            {}};
+  }
+  const HullShape shape = FindOpenShape(mesh, patch, points, tolerance);
   SurfacePiece piece{MakePolytope(points, shape), {}};
   std::vector<int> source;
   for (const int i : shape.extreme) source.push_back(corners[i]);
   const double on_facet = kOnFacetTolerances * tolerance;
   ConnectToSurface(mesh, patch, source, on_facet, &piece.polytope);
-  if (patch.size() > 1 && !closed) {
+  if (patch.size() > 1) {
     piece.lost = FindLost(mesh, patch, on_facet, piece.polytope);
   }
   return piece;

@@ -144,6 +144,18 @@ class Listing {
     });
   }
 
+  // Parallel edges have an arc in common where others cross at one direction:
+  // no facet, and no point at which they pass each other.
+  bool AreCrossed(int edge_A, int edge_B) const {
+    const Polytope::Edge& a = pair_.A.edges[edge_A];
+    const Polytope::Edge& b = pair_.B.edges[edge_B];
+    const Vec3 along_A = pair_.a(a.v1) - pair_.a(a.v0);
+    const Vec3 along_B =
+        pair_.X_AB.R * (pair_.B.vertices[b.v1] - pair_.B.vertices[b.v0]);
+    return along_A.cross(along_B).norm() >
+           kParallelSine * along_A.norm() * along_B.norm();
+  }
+
   void AddArcsOfA() {
     int hint = near_.b;
     for (int i = 0; i < static_cast<int>(pair_.A.edges.size()); ++i) {
@@ -157,7 +169,7 @@ class Listing {
       }
       const auto append = [&](const Vec3& n_B, int j) {
         const Vec3 n = pair_.X_AB.R * n_B;
-        if (!IsSupport(pair_.A, edge.v0, -n)) return;
+        if (!AreCrossed(i, j) || !IsSupport(pair_.A, edge.v0, -n)) return;
         Append(n, {FeatureKind::kEdge, i}, {FeatureKind::kEdge, j});
       };
       CrossRegions(pair_.B, R_BA_ * from, R_BA_ * to, &hint, append);
@@ -178,7 +190,10 @@ class Listing {
         continue;
       }
       const auto append = [&](const Vec3& outward_A, int i) {
-        if (!IsSupport(pair_.B, edge.v0, R_BA_ * -outward_A)) return;
+        if (!AreCrossed(i, j) ||
+            !IsSupport(pair_.B, edge.v0, R_BA_ * -outward_A)) {
+          return;
+        }
         Append(-outward_A, {FeatureKind::kEdge, i}, {FeatureKind::kEdge, j});
       };
       CrossRegions(pair_.A, -from, -to, &hint, append);

@@ -15,7 +15,6 @@ namespace {
 // How far behind a facet A may have been, as a share of the size: as far as
 // pieces that touch may be apart or not.
 constexpr double kTouchShare = 1e-9;
-constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 
 // Down to where a facet may be in front of which A lay, m.
 double LeastGap(const PosedPair& pair, const Pose& last_X_AB) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "convex/support.h"
@@ -8,6 +9,9 @@
 #include "tracker/surface_request.h"
 
 namespace drake_haptics {
+
+/// Gap of a facet, m, for where any depth counts.
+inline constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 
 /// Whether A lay in front of a facet of A ⊖ B at the last pose: an overlap that
 /// has come about since then may have begun there, however deep it is by now.

@@ -39,7 +39,6 @@ constexpr double kComingFrom = -0.2;
 constexpr double kEntryShare = 0.25;
 // Cosine of the angle within which two normals count as one.
 constexpr double kSameNormal = 0.996;
-constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 
 class Query {
  public:
@@ -152,10 +151,15 @@ class Query {
       is_refused_ = true;
       return TakenOver();
     }
-    const Depth depth = entry               ? *entry
-                        : state_.in_contact ? WarmDepth()
-                        : is_new            ? EntryDepth()
-                                            : RefusedDepth();
+    Depth depth = entry               ? *entry
+                  : state_.in_contact ? WarmDepth()
+                  : is_new            ? EntryDepth()
+                                      : RefusedDepth();
+    // Round-off can hide every facet from where a walk began.
+    if (depth.status == DepthStatus::kNoFacet) {
+      depth = ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
+                        Bounds(kWarmPromotionHubs), &workspace_.depth);
+    }
     const bool apart = separation_.status == SeparationStatus::kApart;
     Hub hub = separation_.simplex.hubs[0];
     if (apart && (depth.status == DepthStatus::kNoFacet ||
