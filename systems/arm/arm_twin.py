@@ -1,4 +1,4 @@
-"""What a simulated arm has of a real one's faults, and the systems that give it."""
+"""Imperfections of a real arm for a simulated one, and the systems that add them."""
 
 from __future__ import annotations
 

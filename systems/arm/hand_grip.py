@@ -1,4 +1,4 @@
-"""How firmly a simulated hand holds: named grips."""
+"""Named grips: impedances of a hand that holds loosely or firmly."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a simulated hand wants the tool to go."""
+"""The path on which a simulated hand wants to move the tool."""
 
 from __future__ import annotations
 

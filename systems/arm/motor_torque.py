@@ -1,4 +1,4 @@
-"""What an arm's motors make of a wrench: their torques, up to what they can give."""
+"""Turns a wrench on the handle into motor torques, within the motors' limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a haptic device is asked for over LCM, from a vector."""
+"""Makes the LCM command of a haptic device from a vector."""
 
 from __future__ import annotations
 

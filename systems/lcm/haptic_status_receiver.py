@@ -1,4 +1,4 @@
-"""What a haptic device told over LCM, as vectors."""
+"""Splits the LCM status of a haptic device into vectors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a haptic device tells over LCM, from vectors."""
+"""Makes the LCM status of a haptic device from vectors."""
 
 from __future__ import annotations
 

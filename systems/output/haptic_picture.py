@@ -1,4 +1,4 @@
-"""What the haptic loop looks like in Meshcat."""
+"""Draws the haptic loop in Meshcat."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the wrench on the handle changes as the handle moves on."""
+"""A linear model of the wrench on the handle, for a servo between two ticks."""
 
 from __future__ import annotations
 
