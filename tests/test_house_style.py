@@ -6,7 +6,7 @@ import ast
 import io
 import re
 import tokenize
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import pytest
@@ -65,10 +65,9 @@ def list_pages() -> list[Path]:
 def find_python_prose(source: str) -> Iterator[tuple[int, str]]:
     """Yields each docstring and comment of a Python file, with its first line."""
     for node in ast.walk(ast.parse(source)):
-        # Those of attributes and enumerators too.
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-            if isinstance(node.value.value, str):
-                yield node.lineno, node.value.value
+        match node:  # those of attributes and enumerators too
+            case ast.Expr(value=ast.Constant(value=str(docstring))):
+                yield node.lineno, docstring
     for token in tokenize.generate_tokens(io.StringIO(source).readline):
         if token.type == tokenize.COMMENT:
             yield token.start[0], token.string
@@ -100,7 +99,9 @@ def find_words(prose: Iterable[tuple[int, str]]) -> list[str]:
     return found
 
 
-def find_offenders(files: Iterable[Path], find_prose) -> list[str]:
+def find_offenders(
+    files: Iterable[Path], find_prose: Callable[[str], Iterator[tuple[int, str]]]
+) -> list[str]:
     """The words to mend in files, each with its place."""
     return [
         f"{path.relative_to(ROOT)}:{word}"
