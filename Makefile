@@ -30,9 +30,10 @@ unit: $(STAMP)-test
 
 # What depends on Python and Drake themselves (calls of the core, loop, AutoDiff, device,
 # command line), on the newest CPython of this machine that Drake has a wheel for.
-NEWEST_TESTS := $(filter-out tests/test_core_cpp.py, \
-  $(foreach part,core autodiff haptic device udp builder,$(wildcard tests/test_$(part)_*.py))) \
-  tests/test_convex_pair.py tests/test_contact_query.py tests/test_rendering_gradients.py \
+NEWEST_TESTS := $(wildcard tests/core/*/test_*.py tests/loop/test_*.py) \
+  $(foreach part,device lcm tool,$(wildcard tests/systems/$(part)/test_*.py)) \
+  tests/systems/contact/test_contact_query.py tests/device/test_udp_device.py \
+  $(foreach part,gradients haptic_rendering,tests/rendering/test_$(part).py) \
   $(foreach part,cli_run cli_help closed_loop_two_processes,tests/acceptance/test_$(part).py)
 test-newest:
 	@newest=$$(.ci/newest-python $(PYTHON)) || exit 1; \
@@ -69,7 +70,7 @@ build:
 
 # The core's own tests in C++, under sanitizers and without Python: all of them, or one as
 # of CORE_TEST=law/skin_forces_test. Only what was edited is compiled again, into the
-# folder of tests/test_core_cpp.py, by whose settings it is configured.
+# folder of tests/core/test_cpp.py, by whose settings it is configured.
 CORE_TESTS := build/core_tests
 CORE_TEST ?=
 core-tests: $(CORE_TESTS)/build.ninja

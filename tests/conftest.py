@@ -19,30 +19,31 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
     signal.signal(signal.SIGHUP, lambda *_: None)
 
+FOLDER = Path(__file__).parent
 # The files that take longest, longest first: begun last, they would be waited for.
 LONGEST = (
-    "test_core_cpp.py",
-    "test_readme.py",
-    "test_cockpit_in_browser.py",
-    "test_slow_ticks.py",
-    "test_docs_site.py",
-    "test_rest_cup_and_spoon.py",
-    "test_six_dof_limits.py",
-    "test_examples.py",
-    "test_tutorials.py",
-    "test_cli_stability.py",
-    "test_closed_loop_two_processes.py",
-    "test_accuracy_study.py",
-    "test_stability_docs.py",
-    "test_cli_accuracy.py",
-    "test_types_consumer.py",
+    "core/test_cpp.py",
+    "acceptance/test_readme.py",
+    "acceptance/test_cockpit_in_browser.py",
+    "stability/test_slow_ticks.py",
+    "acceptance/test_docs_site.py",
+    "stability/test_rest_cup_and_spoon.py",
+    "stability/test_six_dof_limits.py",
+    "acceptance/test_examples.py",
+    "acceptance/test_tutorials.py",
+    "acceptance/test_cli_stability.py",
+    "acceptance/test_closed_loop_two_processes.py",
+    "evaluation/accuracy/test_study.py",
+    "acceptance/test_stability_docs.py",
+    "acceptance/test_cli_accuracy.py",
+    "consumer/test_whole_api.py",
 )
 
 
 def pytest_collection_modifyitems(items):
     """Puts the longest files first, as `LONGEST` has them; within a file as it is."""
-    ranks = {name: rank for rank, name in enumerate(LONGEST)}
-    items.sort(key=lambda item: ranks.get(Path(item.path).name, len(ranks)))
+    ranks = {FOLDER / name: rank for rank, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: ranks.get(item.path, len(ranks)))
 
 
 def pytest_unconfigure(config):

@@ -1,8 +1,8 @@
 """Lets links to files and folders of the repository lead somewhere on the site.
 
-On a code host `[the test](../tests/test_mesh.py)` shows the file. The site has a page
-for each file that is linked (see `repository_pages`), and one for each folder. So no
-page needs to know where the repository is hosted.
+On a code host `[the test](../tests/geometry/mesh/test_mesh.py)` shows the file. The
+site has a page for each file that is linked (see `repository_pages`), and one for each
+folder. So no page needs to know where the repository is hosted.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ def make_simulator(haptic: HapticDiagram, context: Context | None = None) -> Sim
     """Returns a simulator that integrates one step per tick.
 
     The step is fixed and of second order: the stiffest motion of a shipped arm in
-    a shipped grip is slow against a tick (tests/test_simulation.py).
+    a shipped grip is slow against a tick (tests/simulation/test_run.py).
 
     Args:
         haptic: What `BuildHapticDiagram` returned.

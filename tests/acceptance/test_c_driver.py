@@ -131,7 +131,7 @@ def test_force_is_held_to_the_limit_and_torque_to_none(host):
 def test_a_host_that_is_killed_leaves_zero_and_a_fault(driver, host):
     _, port = driver
     other = subprocess.Popen(
-        [sys.executable, TESTS / "struct_host.py", str(port), "60", "3"],
+        [sys.executable, TESTS / "support" / "struct_host.py", str(port), "60", "3"],
         stdout=subprocess.PIPE,
         text=True,
     )

@@ -9,8 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from mesh_samples import box, l_prism, real_mesh
 
 from drake_haptics.evaluation.shapes import SHAPES

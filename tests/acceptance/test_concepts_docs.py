@@ -50,7 +50,7 @@ def test_links_lead_somewhere(target):
 @pytest.fixture(scope="module")
 def maker():
     """The program that makes the pictures."""
-    file = DOCS / "make_concept_pictures.py"
+    file = DOCS / "generate" / "make_concept_pictures.py"
     specification = importlib.util.spec_from_file_location(file.stem, file)
     module = importlib.util.module_from_spec(specification)
     with mpl.rc_context():

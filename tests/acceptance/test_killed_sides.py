@@ -17,7 +17,7 @@ from host_process import hosting
 from pressing_driver import GENTLE_M, LOW_M
 from struct_host import ACTIVE
 
-PRESSING = Path(__file__).parents[1] / "pressing_driver.py"
+PRESSING = Path(__file__).parents[1] / "support" / "pressing_driver.py"
 # The cube touches where its middle is 20 mm high. A quarter of the largest force,
 # 2.1 N, is that of the coupling, 800 N/m, where the handle is less than 1 mm below.
 DEEP_M = 0.0185

@@ -38,9 +38,9 @@ OTHER_PROGRAMS = {
     "make docs",  # test_docs_site.py
     "make tutorials",  # its notebooks: test_tutorials.py
     "pip install PATH_OF_THE_CHECKOUT",  # make runs it, on the checkout
-    "python -m drake_haptics.evaluation.shapes",  # tests/test_shapes.py
+    "python -m drake_haptics.evaluation.shapes",  # evaluation/shapes/test_shapes.py
     "run",  # a function, and the command in short
-    "run --log FILE",  # tests/acceptance/test_cli_log.py
+    "run --log FILE",  # test_cli_log.py
 }
 
 

@@ -60,6 +60,6 @@ def test_any_diagram(capsys):
     assert slowest.startswith("15.1 Hz") or slowest.startswith("15 Hz")
 
 
-@pytest.mark.parametrize("name", re.findall(r"`(tests/[\w/]+\.py)`", TEXT))
+@pytest.mark.parametrize("name", re.findall(r"`((?:docs|tests)/[\w/]+\.py)`", TEXT))
 def test_files_that_are_named_exist(name):
     assert (ROOT / name).is_file()

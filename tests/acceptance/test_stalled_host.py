@@ -8,7 +8,7 @@ from pathlib import Path
 from driver_process import WatchedLink, check_figures, device_command, running
 from struct_host import ACTIVE, IDLE
 
-HOST = Path(__file__).parents[1] / "stalling_host.py"
+HOST = Path(__file__).parents[1] / "support" / "stalling_host.py"
 
 
 def test_a_stall_ends_the_force_and_nothing_else(tmp_path):

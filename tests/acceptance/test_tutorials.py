@@ -10,8 +10,8 @@ import pytest
 
 FOLDER = Path(__file__).parents[2] / "docs" / "tutorials"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
-EXECUTE = run_path(str(FOLDER / "execute.py"))
-AGAIN = "run docs/tutorials/execute.py and look at what has changed"
+EXECUTE = run_path(str(FOLDER.parent / "generate" / "execute_tutorials.py"))
+AGAIN = "run docs/generate/execute_tutorials.py and look at what has changed"
 NUMBER = re.compile(r"[-+]?\d[\d,]*\.?\d*(?:e[-+]?\d+)?")
 COLOR = re.compile(r"\x1b\[[\d;]*m")
 by_name = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -34,7 +34,7 @@ from drake_haptics.systems.output.haptic_visualizer import HapticVisualizer
 from drake_haptics.visualization.meshcat import open_meshcat, set_stage
 from drake_haptics.web.port import open_page_port
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "support"))
 from headless_browser import HeadlessBrowser, find_browser
 
 KINDS = ("without a page", "with the page", "slider dragged")

@@ -22,7 +22,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "support"))
 from driver_process import device_command, running
 from lossy_link import LossyLink, Trouble
 from soak_injections import NAMES, Injections

@@ -1,11 +1,6 @@
 """The page on stability has the tables that its command prints."""
 
-import sys
-from pathlib import Path
-
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from boundary_table import PAGE, PICTURE, TABLES, span_of, to_markdown
 
 

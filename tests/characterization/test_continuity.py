@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from contact_samples import box, hull, pose
 from continuity_rig import CAUSES, JUMP, compare, measure
 from continuity_scenes import SCENES, make_scene
+from continuity_table import PAGE, TITLES, row
 from continuity_walk import calc_rotation, calc_turn, walk
 from press_rig import LARGEST_FORCE_N
 from scipy.spatial.transform import Rotation
+from wrench_chain import METHODS
 
 from drake_haptics import _core
-
-sys.path.insert(0, str(Path(__file__).parent))
-from continuity_table import PAGE, TITLES, row
-from wrench_chain import METHODS
 
 T = 1e-3
 FLOOR = box([0.1, 0.1, 0.02], [0, 0, -0.01])

@@ -1,9 +1,5 @@
 """The page on the derivatives of whole loops: what it claims, and that it is so."""
 
-import sys
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).parent))
 import loop_gradient_table
 from loop_gradient_table import MARK, PAGE, SCENES, TITLES, with_table
 

@@ -10,7 +10,7 @@ TEXT = PAGE.read_text(encoding="utf-8")
 
 
 def test_the_summary_is_not_stale():
-    """To mend it: python tests/characterization/numerics_table.py --write."""
+    """To mend it: python docs/generate/numerics_table.py --write."""
     rows = list(summary_rows())
     assert TEXT[span_of(TEXT)].strip() == numerics_table.to_markdown(iter(rows)).strip()
 
@@ -29,6 +29,8 @@ def test_a_table_is_found_by_its_first_heading(tmp_path, monkeypatch):
         read_table("page.md", "z")
 
 
-@pytest.mark.parametrize("name", sorted({*re.findall(r"`(tests/[\w/*]+\.py)`", TEXT)}))
+@pytest.mark.parametrize(
+    "name", sorted({*re.findall(r"`((?:docs|tests)/[\w/*]+\.py)`", TEXT)})
+)
 def test_files_that_are_named_exist(name):
     assert list(DOCS.parent.glob(name))

@@ -1,14 +1,9 @@
 """The page on the paper has every part that the command makes, whose figures agree."""
 
 import re
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
-sys.path.insert(0, str(Path(__file__).parent))
 from paper_samples import make_evaluation
 from paper_table import PAGE, figures_of, file_of, keep_times, with_figures
 

@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import math
-import sys
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from press_cells import COLUMNS, REAL, SHIPPED, TITLES, TOOLS, Cell, row, run_points
 from press_page import COMMAND, PAGE, THIN, read_rows
 from press_rig import GAINS

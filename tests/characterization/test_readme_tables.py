@@ -13,7 +13,7 @@ TEXT = README.read_text(encoding="utf-8")
 
 @pytest.mark.parametrize("name", MAKERS)
 def test_what_other_pages_have_is_not_stale(name):
-    """To mend it: python tests/characterization/readme_tables.py --write."""
+    """To mend it: python docs/generate/readme_tables.py --write."""
     assert TEXT[span_of(TEXT, name)].strip() == MAKERS[name]().strip()
 
 

@@ -1,12 +1,8 @@
 """The page on the servo has the tables that its command prints, and says what is so."""
 
 import re
-import sys
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from servo_loop import NOMINAL_HAND, SERVO, simulate
 from servo_table import MAP, PAGE, TABLES, TRACES, span_of, to_markdown
 

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import pytest
 from slide_scenes import (
     fifty_pieces,
@@ -12,8 +9,6 @@ from slide_scenes import (
     pitted_block,
     pitted_block_path,
 )
-
-sys.path.insert(0, str(Path(__file__).parent))
 from sliding_table import HEIGHTS_M, PAGE, TITLES, row
 
 FACES = {

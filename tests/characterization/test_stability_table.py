@@ -1,13 +1,9 @@
 """The page on stability has tables of every scene, whose figures agree."""
 
-import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from stability_table import PAGE, PICTURE, SCENES, limit_rows, place_rows, span_of
 
 from drake_haptics.analysis import analyse_held_scene, hold_scene

@@ -1,13 +1,9 @@
 """The page on the twin has the table of the command, and its figures agree."""
 
 import math
-import sys
-from pathlib import Path
 
 import pytest
 from other_arm import PRESET
-
-sys.path.insert(0, str(Path(__file__).parent))
 from twin_table import (
     HEAD,
     PAGE,

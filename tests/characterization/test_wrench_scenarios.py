@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import re
-import sys
 from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from wrench_chain import METHODS, Case, wrench_at
 from wrench_table import EQUATIONS, PAGE, SCENARIOS, TITLES, rows
 

@@ -1,9 +1,9 @@
 """A haptic loop makes no energy but what the sampling of its forces explains."""
 
-import sys
 from pathlib import Path
 
 import pytest
+from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.effects import Braking, Friction, Gravity
@@ -11,9 +11,6 @@ from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.loading import load_scene
 from drake_haptics.scene.schema import Effects
 from drake_haptics.simulation.run import run
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
 # Far below what can be felt, far above rounding.
 ROUNDING_J = 1e-9

@@ -1,10 +1,8 @@
 """The passivity control against loops that are not stable without it."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from coupled_device import add_device_on_fixed_tool
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import Diagram, DiagramBuilder
@@ -18,9 +16,6 @@ from drake_haptics.systems.arm.simulated_arm import SimulatedArm
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.framework.vector_ports import export_parts
 from drake_haptics.systems.tool.passivity_control import PassivityControl
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from coupled_device import add_device_on_fixed_tool
 
 PERIOD = 1e-3
 MASS, DAMPING, SPEED = 0.1, 0.5, 0.1

@@ -1,17 +1,12 @@
 """A hand presses the tool onto a plate: it comes to rest, and stays."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from box_scenes import TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from box_scenes import TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate
 
 PRESS_N = 2.0
 SETTLED_S, END_S = 3.0, 5.0

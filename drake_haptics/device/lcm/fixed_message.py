@@ -2,7 +2,7 @@
 
 What Python's `lcm` package and `lcm-gen` would give, without asking for either:
 Drake's wheel has LCM's transport but not them. The bytes are the same
-(tests/test_lcm_types.py).
+(tests/device/lcm/test_lcm_types.py).
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 // The adjacency of polytopes, which only C++ sees. Shapes and volumes are
-// tested against qhull in tests/test_polytope.py.
+// tested against qhull in tests/core/convex/test_polytope.py.
 #include "convex/polytope.h"
 
 #include <Eigen/Geometry>

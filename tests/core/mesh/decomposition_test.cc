@@ -1,5 +1,5 @@
 // Provenance of the pieces of an L: what only C++ sees. Invariants on many
-// meshes are tested in tests/test_core_decomposition.py.
+// meshes are tested in tests/core/mesh/test_decomposition.py.
 #include "mesh/decomposition.h"
 
 #include <Eigen/Geometry>

@@ -1,0 +1,272 @@
+"""Tabulates what accuracy costs in some scenes, and what budgets they hold.
+
+python docs/generate/accuracy_table.py --write
+
+Some minutes, on a machine that does nothing else. Ctrl-C keeps what is measured where
+--store names a folder. On any machine, this makes the errors of some knobs again and
+leaves the rest of the page as it is:
+
+python docs/generate/accuracy_table.py --write --errors KNOB ...
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from page_stamp import amend_page, write_page
+
+from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.evaluation.accuracy.add_peers import add_peers
+from drake_haptics.evaluation.accuracy.budget import BudgetChoice, choose_setting
+from drake_haptics.evaluation.accuracy.budget_words import (
+    describe_outcome,
+    describe_sacrifices,
+)
+from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, Row
+from drake_haptics.evaluation.accuracy.fresh_run import measure_p99
+from drake_haptics.evaluation.accuracy.knobs import list_settings, make_reference
+from drake_haptics.evaluation.accuracy.measurement import Measurement
+from drake_haptics.evaluation.accuracy.model_changes import find_model_change
+from drake_haptics.evaluation.accuracy.plot import draw_study
+from drake_haptics.evaluation.accuracy.recorded_motion import record_motion
+from drake_haptics.evaluation.accuracy.setting import Setting
+from drake_haptics.evaluation.accuracy.study import run_accuracy_study
+from drake_haptics.evaluation.accuracy.study_rows import make_task
+from drake_haptics.evaluation.accuracy.table import (
+    COLUMNS,
+    get_columns,
+    group_rows,
+    make_cells,
+    make_error_cells,
+)
+from drake_haptics.evaluation.accuracy.truth import find_truth
+from drake_haptics.evaluation.accuracy.words import (
+    describe_knees,
+    describe_machine,
+    describe_missing,
+    describe_peers,
+    describe_reference,
+    describe_verdict,
+    make_front,
+)
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.loading import load_scene
+
+_DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE = _DOCS / "accuracy.md"
+PICTURE = _DOCS / "accuracy_cup_spoon.png"
+SCENES = ("cup_spoon", "rubbed_sphere")
+BUDGET_SCENES = (*SCENES, "torus_peg")
+_BUDGET_RUNS = 3
+# Of the scene's own p99: a budget that costs something.
+_BUDGET_SHARE = 0.8
+_BUDGET_STEP_US = 10.0
+BEGIN = "<!-- {}: written by docs/generate/accuracy_table.py -->\n"
+END = "<!-- end of {} -->\n"
+COLUMNS_NAME, BUDGETS_NAME = "columns", "budgets"
+BUDGET_HEADINGS = ("scene", "budget, µs", "p99, µs", "scene's p99, µs", "given up")
+# Knob, setting, and times of tick and core are before the errors; energy is the last.
+ERRORS = slice(4, 8)
+_DPI = 90
+
+
+def make_columns() -> str:
+    """Returns what the columns mean, as a list."""
+    return "\n".join(f"- **{c.head}**, {c.unit}: {c.meaning}" for c in COLUMNS) + "\n"
+
+
+def make_prices(study: AccuracyStudy) -> str:
+    """Returns the price list of a scene with its sentences."""
+    columns = get_columns(study)
+    heads = [f"{column.head}, {column.unit}" for column in columns]
+    rows = [
+        [knob, _make_label(row), *make_cells(row, columns)]
+        for knob, group in group_rows(study)
+        for row in group
+    ]
+    parts = [
+        " ".join([*describe_verdict(study), describe_reference(study)]) + "\n",
+        _to_markdown(["knob", "setting", *heads], rows),
+        _make_list("Knee: ", describe_knees(study, make_front(study))),
+        _make_list("Beside it: ", describe_peers(study)),
+        _make_list("Not measured: ", describe_missing(study)),
+        describe_machine(study) + "\n",
+    ]
+    return "\n".join(part for part in parts if part)
+
+
+def make_budgets(choices: dict[str, BudgetChoice]) -> str:
+    """Returns what was given up for budgets, a row for each scene."""
+    rows = []
+    for name, choice in choices.items():
+        scene = load_scene(find_scene(name))
+        lost = describe_sacrifices(choice, scene) or ["nothing"]
+        rows.append(
+            [
+                name,
+                f"{choice.budget_us:g}",
+                f"{choice.trial.middle_us:.0f}",
+                f"{choice.trial.scene_us:.0f}",
+                "; ".join(lost) if choice.holds else describe_outcome(choice, name),
+            ]
+        )
+    return _to_markdown(list(BUDGET_HEADINGS), rows)
+
+
+def span_of(page: str, name: str) -> slice:
+    """Returns where in the page the part of that name is.
+
+    Raises:
+        ValueError: a mark is missing.
+    """
+    begin = BEGIN.format(name)
+    return slice(page.index(begin) + len(begin), page.index(END.format(name)))
+
+
+def with_parts(page: str, parts: dict[str, str]) -> str:
+    """Returns the page with new parts between their marks."""
+    for name, text in parts.items():
+        span = span_of(page, name)
+        page = f"{page[: span.start]}\n{text}\n{page[span.stop :]}"
+    return page
+
+
+def measure_prices(name: str, store: Path | None) -> AccuracyStudy:
+    """Measures all settings of a scene, and other libraries."""
+    scene = load_scene(find_scene(name))
+    kept = None if store is None else store / f"{name}.jsonl"
+    with progress_bar() as show:
+        study = run_accuracy_study(scene, name, store=kept, progress=show)
+        return add_peers(study, scene, progress=show)
+
+
+def measure_errors(
+    name: str, is_meant: Callable[[Setting], bool]
+) -> dict[tuple[str, str], list[str]]:
+    """Returns cells of the errors of settings, by knob and setting.
+
+    Args:
+        name: Of the scene.
+        is_meant: Whether a setting is.
+    """
+    scene = load_scene(find_scene(name))
+    motion = record_motion(scene)
+    truth = find_truth(make_reference(scene).apply(scene), motion)
+    measurement = Measurement(scene, motion, truth, None)
+    found = {}
+    for setting in filter(is_meant, list_settings(scene)):
+        print(f"{name}: {setting.knob} {setting.label}", file=sys.stderr)
+        result = measurement(make_task("errors", setting))
+        cells = make_error_cells(Errors(**result["errors"]))
+        found[setting.knob, setting.label] = list(cells)
+    return found
+
+
+def with_errors(page: str, name: str, errors: dict[tuple[str, str], list[str]]) -> str:
+    """Returns the page with these errors in the rows of a scene."""
+    span = span_of(page, name)
+    lines = page[span].split("\n")
+    for i, line in enumerate(lines):
+        cells = line[2:-2].split(" | ")
+        found = errors.get((cells[0], cells[1].strip("*† ")) if cells[1:] else ("", ""))
+        if found is not None:
+            cells[ERRORS] = found
+            lines[i] = f"| {' | '.join(cells)} |"
+    return page[: span.start] + "\n".join(lines) + page[span.stop :]
+
+
+def hold_budget(name: str, study: AccuracyStudy | None) -> BudgetChoice:
+    """Holds a budget of four fifths of what a scene takes by itself.
+
+    Args:
+        name: Of the scene.
+        study: Of it; a quick one is made where not given.
+    """
+    scene = load_scene(find_scene(name))
+    with progress_bar() as show:
+
+        def make_study(settings: list[Setting] | None) -> AccuracyStudy:
+            if settings is None and study is not None:
+                return study
+            return run_accuracy_study(
+                scene, name, settings=settings, quick=study is None, progress=show
+            )
+
+        return choose_setting(
+            scene,
+            _choose_budget(measure_p99(scene)),
+            make_study=make_study,
+            measure_p99=measure_p99,
+            progress=show,
+            runs=_BUDGET_RUNS,
+        )
+
+
+def _choose_budget(p99_us: float) -> float:
+    return math.floor(_BUDGET_SHARE * p99_us / _BUDGET_STEP_US) * _BUDGET_STEP_US
+
+
+def _make_label(row: Row) -> str:
+    """Returns a setting; bold is the scene's own, † another model."""
+    if row.is_scene:
+        return f"**{row.setting.label}**"
+    return (
+        f"{row.setting.label} †"
+        if find_model_change(row.setting)
+        else (row.setting.label)
+    )
+
+
+def _make_list(beginning: str, sentences: list[str]) -> str:
+    return "".join(f"- {beginning}{sentence}\n" for sentence in sentences)
+
+
+def _to_markdown(header: list[str], rows: list[list[str]]) -> str:
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines) + "\n"
+
+
+def main() -> None:
+    """Measures, prints, and writes the page if asked to."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    parser.add_argument("--store", type=Path, help="folder that keeps results")
+    parser.add_argument(
+        "--errors", nargs="+", metavar="KNOB", help="of these knobs alone"
+    )
+    arguments = parser.parse_args()
+    if arguments.errors:
+        page = PAGE.read_text(encoding="utf-8")
+        for name in SCENES:
+            errors = measure_errors(name, lambda x: x.knob in arguments.errors)
+            page = with_errors(page, name, errors)
+            for key, cells in errors.items():
+                print(name, *key, *cells)
+        if arguments.write:
+            what = f"errors of {', '.join(arguments.errors)}"
+            amend_page(PAGE, page, __file__, what)
+        return
+    if arguments.store is not None:
+        arguments.store.mkdir(parents=True, exist_ok=True)
+    studies = {name: measure_prices(name, arguments.store) for name in SCENES}
+    choices = {name: hold_budget(name, studies.get(name)) for name in BUDGET_SCENES}
+    parts = {
+        COLUMNS_NAME: make_columns(),
+        **{name: make_prices(study) for name, study in studies.items()},
+        BUDGETS_NAME: make_budgets(choices),
+    }
+    print("\n".join(parts.values()))
+    if arguments.write:
+        page = PAGE.read_text(encoding="utf-8")
+        write_page(PAGE, with_parts(page, parts), __file__)
+        draw_study(studies[SCENES[0]]).savefig(PICTURE, dpi=_DPI)
+
+
+if __name__ == "__main__":
+    main()

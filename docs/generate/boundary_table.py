@@ -1,0 +1,172 @@
+"""Tabulates the exact stability of sampled walls, and draws their boundary.
+
+python docs/generate/boundary_table.py --write
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
+from page_stamp import write_page
+from wall_motion import HAND, NO_HAND, TABLE, find_simulated_limit, make_wall
+
+from drake_haptics.analysis.exact_boundary import (
+    calc_boundary_peak,
+    calc_exact_alpha,
+    calc_exact_boundary,
+)
+from drake_haptics.analysis.sampled_wall import SampledWall, calc_largest_stiffness
+from drake_haptics.bounds.sampled_spring import (
+    calc_passive_stiffness,
+    calc_stable_stiffness,
+)
+
+_DOCS = Path(__file__).parents[2] / "docs"
+PAGE = _DOCS / "stability-theory.md"
+PICTURE = _DOCS / "stability_boundary.png"
+BEGIN = "<!-- {}: written by docs/generate/boundary_table.py -->\n"
+END = "<!-- end of {} -->\n"
+DELAYS = range(5)
+BETAS = (0.05, 0.1, 0.2)
+MASS_KG, PERIOD_S = 0.1, 1e-3
+
+
+def boundary_rows() -> Iterator[list[str]]:
+    """The peak of each delay, from the closed form and from the loop's eigenvalues."""
+    yield [
+        "delay d",
+        "largest α",
+        "at β",
+        "θ, rad",
+        "slope 1/(½ + d)",
+        *(f"α at β = {beta:g}" for beta in BETAS),
+        "K, N/m",
+        "by eigenvalues",
+    ]
+    for d in DELAYS:
+        peak = calc_boundary_peak(d)
+        wall = SampledWall(
+            mass=MASS_KG,
+            damping=0.0,
+            period_s=PERIOD_S,
+            wall_damping=peak.beta * MASS_KG / PERIOD_S,
+            delay_s=d * PERIOD_S,
+        )
+        K = peak.alpha * MASS_KG / PERIOD_S**2
+        yield [
+            f"{d}",
+            f"{peak.alpha:.6f}",
+            f"{peak.beta:.5f}",
+            f"{peak.angle:.5f}",
+            f"{1 / (0.5 + d):.4f}",
+            *(f"{calc_exact_alpha(beta, d):.5f}" for beta in BETAS),
+            f"{K:.1f}",
+            f"{abs(calc_largest_stiffness(wall) / K - 1):.0e}",
+        ]
+
+
+def wall_rows() -> Iterator[list[str]]:
+    """Walls with damping and a hand: laws, eigenvalues and simulation."""
+    yield [
+        "b",
+        "B",
+        "delay d",
+        "hand",
+        "passive K",
+        "law of Gil et al.",
+        "eigenvalues",
+        "simulation",
+        "difference",
+    ]
+    for b, B, d, hand, *_ in TABLE:
+        wall = make_wall(b, B, d, hand)
+        held = b + wall.hand_damping
+        passive = calc_passive_stiffness(held, B, wall.period_s, wall.delay_s)
+        exact = calc_largest_stiffness(wall)
+        simulated = find_simulated_limit(wall, exact)
+        yield [
+            f"{b:g}",
+            f"{B:g}",
+            f"{d}",
+            {id(NO_HAND): "none", id(HAND): "0.2, 5, 300"}[id(hand)],
+            f"{passive:.1f}" if passive > 0.0 else "none",
+            f"{calc_stable_stiffness(held, B, wall.period_s, wall.delay_s):.1f}",
+            f"{exact:.2f}",
+            f"{simulated:.2f}",
+            f"{abs(simulated / exact - 1):.0e}",
+        ]
+
+
+def to_markdown(rows: Iterator[list[str]]) -> str:
+    """The rows as a table, the first one its head."""
+    lines = ["| " + " | ".join(cells) + " |" for cells in rows]
+    lines.insert(1, "|" + "---|" * (lines[0].count("|") - 1))
+    return "\n".join(lines) + "\n"
+
+
+TABLES = {"boundaries": boundary_rows, "walls": wall_rows}
+
+
+def span_of(page: str, name: str) -> slice:
+    """Returns where in the page the table of that name is.
+
+    Raises:
+        ValueError: a mark is missing.
+    """
+    begin = BEGIN.format(name)
+    return slice(page.index(begin) + len(begin), page.index(END.format(name)))
+
+
+def with_tables(page: str) -> str:
+    """Returns the page with the tables of now."""
+    for name, rows in TABLES.items():
+        table = f"\n{to_markdown(rows())}\n"
+        print(table)
+        span = span_of(page, name)
+        page = page[: span.start] + table + page[span.stop :]
+    return page
+
+
+def draw() -> None:
+    """Draws the boundaries, whole and near the origin."""
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, (whole, near) = pyplot.subplots(1, 2, figsize=(10.0, 4.2))
+    for d in DELAYS:
+        boundary = calc_exact_boundary(d)
+        boundary.plot(whole)
+        boundary.plot(near)
+    near.set_xlim(0.0, 0.4)
+    near.set_ylim(0.0, 0.16)
+    near.get_legend().remove()
+    whole.set_xlim(0.0, 2.05)
+    whole.set_ylim(0.0, 0.75)
+    whole.legend(loc="center", bbox_to_anchor=(0.42, 0.5))
+    whole.set_title("stable below each curve")
+    near.set_title("near the origin; dotted: α = β/(½ + d)")
+    figure.tight_layout()
+    figure.savefig(PICTURE, dpi=110)
+
+
+def main() -> None:
+    """Prints the tables, and writes page and picture if asked to."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    write = parser.parse_args().write
+    page = with_tables(PAGE.read_text(encoding="utf-8"))
+    if write:
+        write_page(PAGE, page, __file__)
+        draw()
+
+
+if __name__ == "__main__":
+    main()

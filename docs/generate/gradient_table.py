@@ -1,0 +1,245 @@
+"""Tabulates errors of AutoDiff through contact against differences of fresh queries.
+
+python docs/generate/gradient_table.py --write
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
+from autodiff_check import REACH, derivative_errors
+from cell_mesh import cell_mesh
+from contact_chain_diagram import ContactChain
+from contact_samples import box, pose
+from contact_state import METHODS, State, T, keeps_features, random_states
+from page_stamp import write_page
+from press_tools import MODELS
+from touching_poses import touching_pose
+
+from drake_haptics import _core
+from drake_haptics.geometry.decomposition.decompose import decompose
+from drake_haptics.geometry.mesh.mesh import load_mesh
+
+PAGE = Path(__file__).parents[2] / "docs" / "gradients.md"
+BEGIN = "<!-- chain: written by docs/generate/gradient_table.py -->\n"
+END = "<!-- end of chain -->\n"
+STEP = 5e-7
+TARGET = 1e-6
+# One in so many states goes through Drake too, which takes longer.
+DIAGRAM_EVERY = 4
+_K = np.arange(36).reshape(6, 6)
+# Parts of the wrench model that have one unit.
+BLOCKS = {
+    "F": [np.arange(3), np.arange(3, 6)],
+    **{
+        name: [start + _K[r : r + 3, c : c + 3].ravel() for r in (0, 3) for c in (0, 3)]
+        for name, start in (("K", 6), ("B", 42))
+    },
+}
+
+
+@dataclass(frozen=True)
+class Pair:
+    """What is touched with what.
+
+    Attributes:
+        name: Of the row.
+        make: The tool and the object.
+        touch: Gives random poses of the tool.
+        moves: Whether the object moves too.
+    """
+
+    name: str
+    make: Callable[[], tuple[_core.Decomposition, _core.Decomposition]]
+    touch: Callable[..., np.ndarray] = touching_pose
+    moves: bool = False
+
+
+@dataclass
+class Row:
+    """The measured states of one pair and one method.
+
+    Attributes:
+        pair: Its name.
+        method: Of clustering.
+        num_states: Random contact states.
+        num_changing: Those whose features change within the differences' reach.
+        num_unsettled: Those with a part whose differences depend on the step.
+        errors: Of each part, one for each state that is left.
+    """
+
+    pair: str
+    method: str
+    num_states: int = 0
+    num_changing: int = 0
+    num_unsettled: int = 0
+    errors: dict[str, list[float]] = field(
+        default_factory=lambda: {name: [] for name in (*BLOCKS, "diagram")}
+    )
+
+
+def shipped(tool: str, solid: str) -> Callable[[], tuple]:
+    """A pair of shipped meshes."""
+    return lambda: tuple(
+        decompose(load_mesh(MODELS / f"{name}.obj", scale=1.0)).core
+        for name in (tool, solid)
+    )
+
+
+def box_and_cut_plate() -> tuple[_core.Decomposition, _core.Decomposition]:
+    """A box, and a plate whose top, z = 0, is cut into 50 pieces."""
+    mesh = cell_mesh(product(range(10), range(5), (0,)), 0.01)
+    corners = mesh.vertices[mesh.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sides = np.unique(np.round(normals * 1e4), axis=0, return_inverse=True)[1].ravel()
+    cells = (corners.mean(axis=1)[:, :2] // 0.01) @ [10, 1]
+    _, piece = np.unique(
+        np.where(normals[:, 2] > 0, 1000 + cells, sides), return_inverse=True
+    )
+    plate = _core.assemble_surface_pieces(
+        mesh.vertices - [0, 0, 0.01], mesh.triangles, piece.ravel().astype("i4")
+    )
+    return box([0.032, 0.024, 0.006], [0, 0, 0.003]), plate
+
+
+def nearly_level(rng: np.random.Generator, *_: object) -> np.ndarray:
+    """A box on the plate, tilted by 3° at most: faces lie nearly flush."""
+    turn = Rotation.from_rotvec([*np.deg2rad(rng.uniform(-3, 3, 2)), rng.uniform(0, 7)])
+    x, y, z, w = turn.as_quat()
+    place = [rng.uniform(0.03, 0.07), rng.uniform(0.02, 0.03), rng.uniform(-T, T)]
+    return pose(place, [w, x, y, z])
+
+
+PAIRS = (
+    Pair("cup_spoon", shipped("spoon", "cup")),
+    Pair("torus_peg", shipped("peg", "torus")),
+    Pair("hammer_block", shipped("hammer", "block")),
+    Pair("sphere_pen", shipped("pen", "sphere")),
+    Pair("box on a face in 50 pieces", box_and_cut_plate, nearly_level),
+    Pair("cup_spoon, the cup moves too", shipped("spoon", "cup"), moves=True),
+)
+
+
+def measure(pair: Pair, method: str, count: int) -> Row:
+    """Measures random states of a pair."""
+    row = Row(pair.name, method)
+    tool, solid = pair.make()
+    states = random_states(
+        tool, solid, method, count, num_objects=1, seed=5, touch=pair.touch
+    )
+    for i, state in enumerate(states):
+        row.num_states += 1
+        if not keeps_features(state, REACH * STEP):
+            row.num_changing += 1
+            continue
+        chains = [_of_core(state, pair.moves)]
+        if i % DIAGRAM_EVERY == 0:
+            chains.append(_of_drake(state, pair.moves))
+        for names, errors in zip((BLOCKS, ("diagram",)), chains, strict=False):
+            row.num_unsettled += len(errors) < len(names) and names is BLOCKS
+            for name, error in errors.items():
+                row.errors[name].append(error)
+    return row
+
+
+def _of_core(state: State, moves: bool) -> dict[str, float]:
+    """Errors of the wrench model's parts, through the core alone."""
+    x = state.x[: 26 if moves else 13]
+
+    def evaluate(x: np.ndarray) -> np.ndarray:
+        return state.at(np.r_[x, state.x[len(x) :]]).wrench().wrench_model
+
+    answer = state.differentiate_wrench().wrench_model
+    answer = _core.AutoDiffVector(answer.value, answer.gradient[:, : len(x)])
+    return _largest(derivative_errors(evaluate, answer, x, STEP, _flat_blocks()))
+
+
+def _of_drake(state: State, moves: bool) -> dict[str, float]:
+    """The largest of all parts through the systems, converted to AutoDiffXd."""
+    chain = ContactChain(state, (moves,))
+    x = chain.variables(state)
+    errors = derivative_errors(
+        lambda x: chain.evaluate("wrench_model", x),
+        chain.differentiate("wrench_model", x),
+        x,
+        STEP,
+        _flat_blocks(),
+    )
+    parts = _largest(errors)
+    return {"diagram": max(parts.values())} if len(parts) == len(BLOCKS) else {}
+
+
+def _flat_blocks() -> dict[tuple[str, int], np.ndarray]:
+    return {(name, i): rows for name in BLOCKS for i, rows in enumerate(BLOCKS[name])}
+
+
+def _largest(errors: dict[tuple[str, int], float]) -> dict[str, float]:
+    """The largest of each part that is told in all units."""
+    return {
+        name: max(errors[name, i] for i in range(len(blocks)))
+        for name, blocks in BLOCKS.items()
+        if all((name, i) in errors for i in range(len(blocks)))
+    }
+
+
+TITLES = ("pair", "clusters", "states", "left out", *BLOCKS, "as a diagram")
+
+
+def cells(row: Row) -> list[str]:
+    """The texts of a line."""
+    changing, unsettled = (
+        f"{100 * n / row.num_states:.0f} %"
+        for n in (row.num_changing, row.num_unsettled)
+    )
+    return [
+        row.pair,
+        row.method,
+        str(row.num_states),
+        f"{changing}, {unsettled}",
+        *(_quantiles(errors) for errors in row.errors.values()),
+    ]
+
+
+def _quantiles(errors: list[float]) -> str:
+    return " / ".join(f"{q:.0e}" for q in np.quantile(errors, [0.5, 0.99, 1.0]))
+
+
+def rows(count: int) -> Iterator[Row]:
+    """Measures all pairs."""
+    for pair, method in product(PAIRS, METHODS):
+        print(f"{pair.name}, {method} ...", file=sys.stderr)
+        yield measure(pair, method, count)
+
+
+def main() -> None:
+    """Prints the table, and writes it into the page if asked to."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--states", type=int, default=300, help="of each row")
+    parser.add_argument("--write", action="store_true", help="write docs/gradients.md")
+    arguments = parser.parse_args()
+    lines = [
+        "| " + " | ".join(texts) + " |"
+        for texts in (TITLES, *map(cells, rows(arguments.states)))
+    ]
+    lines.insert(1, "|" + "---|" * len(TITLES))
+    print(*lines, sep="\n")
+    if arguments.write:
+        page = PAGE.read_text(encoding="utf-8")
+        start, end = page.index(BEGIN) + len(BEGIN), page.index(END)
+        table = "\n".join(["", *lines, "", ""])
+        write_page(PAGE, page[:start] + table + page[end:], __file__)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,203 @@
+"""Sums up, for docs/numerics.md, what the pages on hard cases measured.
+
+python docs/generate/numerics_table.py --write
+
+Nothing is measured here: each figure is that of the page in its row, written by that
+page's own command.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from boundary_table import to_markdown
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = DOCS / "numerics.md"
+BEGIN = "<!-- summary: written by docs/generate/numerics_table.py -->\n"
+END = "<!-- end of summary -->\n"
+HEAD = ["what could be wrong", "tried on", "here", "for comparison", "page"]
+# Rows of docs/no-fall-through.md by their gains, and what they are called here.
+PRESSED = {
+    "default": "default gains",
+    "sinking": "a contact that sinks in 1.2 mm",
+    "soft": "the gains of the shipped scenes, which sink in 3.2 mm",
+}
+# Its truth is a smooth sphere; its error is that of the triangles.
+_TESSELLATED = "tessellated sphere at 40 orientations"
+
+
+def read_table(page: str, first_heading: str) -> list[dict[str, str]]:
+    """Returns the rows of the table of a page whose first heading that is.
+
+    Args:
+        page: Name of the file.
+        first_heading: Of the table's first column.
+
+    Raises:
+        ValueError: There is no such table.
+    """
+    text = (DOCS / page).read_text(encoding="utf-8")
+    for table in re.findall(r"(?m)(?:^\|.*\|$\n?)+", text):
+        head, _, *rows = [
+            [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+            for line in table.splitlines()
+        ]
+        if head[0] == first_heading:
+            return [dict(zip(_name_apart(head), row, strict=False)) for row in rows]
+    raise ValueError(f"{page}: no table begins with {first_heading!r}")
+
+
+def _name_apart(head: list[str]) -> list[str]:
+    """Numbers headings that come again: `gross`, `gross 2`, ..."""
+    return [
+        name if (before := head[:i].count(name)) == 0 else f"{name} {before + 1}"
+        for i, name in enumerate(head)
+    ]
+
+
+def _total(rows: list[dict[str, str]], column: str) -> int:
+    """Sums a column, without what was not asked."""
+    return sum(int(row[column]) for row in rows if row.get(column, "").isdigit())
+
+
+def _percent(rows: list[dict[str, str]], columns: list[str]) -> str:
+    largest = max(float(row[c].removesuffix("%")) for row in rows for c in columns)
+    return f"{largest:g} %"
+
+
+def summary_rows() -> Iterator[list[str]]:
+    """The table's rows, the first one its head."""
+    yield HEAD
+    cases = read_table("hard-cases.md", "case")
+    yield [
+        "distance, depth, normal or witness of a pair in a degenerate pose",
+        f"{len(cases)} cases, {_total(cases, 'poses'):,} poses, held against integers",
+        f"{_total(cases, 'tracked: wrong')} wrong tracked,"
+        f" {_total(cases, 'global: wrong')} wrong global",
+        f"coal {_total(cases, 'coal: wrong'):,},"
+        f" {_total(cases, 'gross 3')} of them grossly; Drake"
+        f" {_total(cases, 'Drake: wrong'):,}, {_total(cases, 'gross 4'):,} grossly",
+        "[hard cases](hard-cases.md)",
+    ]
+    presses = read_table("no-fall-through.md", "solid")
+    for gains, words in PRESSED.items():
+        rows = [row for row in presses if row["gains"] == gains]
+        yield [
+            f"the tool falls through, {words}",
+            f"{_total(rows, 'met'):,} presses and jabs on"
+            f" {len({row['solid'] for row in rows})} solids",
+            f"{_total(rows, 'lost')} lost contact, {_total(rows, 'through')} got"
+            f" through, {_total(rows, 'hooked')} hooked behind an edge",
+            f"{_total(rows, 'inward')} pushed inward, {_total(rows, 'NaN')} NaN",
+            "[no fall-through](no-fall-through.md)",
+        ]
+    slides = read_table("sliding.md", "face")
+    octree = [name for name in slides[0] if name.startswith("δ")]
+    yield [
+        "seams between pieces are felt",
+        f"{len(slides)} slides over one plane in many pieces",
+        f"ripple of the force {_percent(slides, ['shared'])},"
+        f" {_total(slides, 'lost')} ticks without contact",
+        f"octree up to {_percent(slides, octree)}",
+        "[sliding](sliding.md)",
+    ]
+    wrenches = read_table("wrenches.md", "scenario")
+    exact = [row for row in wrenches if row["scenario"] != _TESSELLATED]
+    yield [
+        "force or torque is not that of the formula",
+        f"{len(exact)} scenarios with closed forms",
+        f"error {_largest(exact, 'error, shared')} at most",
+        f"octree {_largest(exact, 'error, octree')}, where a face is cut",
+        "[wrenches](wrenches.md)",
+    ]
+    yield _make_jump_row()
+    yield _make_derivative_row()
+
+
+def _largest(rows: list[dict[str, str]], column: str) -> str:
+    values = [float(row[column]) for row in rows if row[column] != "–"]
+    return f"{max(values):.0e}"
+
+
+def _make_jump_row() -> list[str]:
+    rows = read_table("continuity.md", "scene")
+    steps = int(_find("continuity.md", r"take ([\d,]+) random").replace(",", ""))
+    over = {
+        method: [int(row["over 10"]) for row in rows if row["method"] == method]
+        for method in ("shared", "octree")
+    }
+    share = {
+        method: f"{1e3 * sum(counts) / (steps * len(counts)):.2f} ‰"
+        for method, counts in over.items()
+    }
+    chain = max(float(row["chain alone"]) for row in rows if row["method"] == "shared")
+    return [
+        "the force jumps in a micrometer",
+        f"{steps:,} steps in each of {len(over['shared'])} scenes",
+        f"{share['shared']} of the steps change it by over 10 times what their spring"
+        f" explains; of a change of contacts the chain makes at most {chain:g} times",
+        f"octree {share['octree']}",
+        "[continuity](continuity.md)",
+    ]
+
+
+def _make_derivative_row() -> list[str]:
+    rows = read_table("gradients.md", "pair")
+    worst = max(
+        float(part)
+        for row in rows
+        for name in ("F", "K", "B", "as a diagram")
+        for part in row[name].split(" / ")
+    )
+    loops = read_table("loop-gradients.md", "scene")
+    loop = max(float(row[name]) for row in loops for name in ("largest", "largest 2"))
+    return [
+        "a derivative is wrong",
+        f"{_total(rows, 'states'):,} states of contact, and whole loops of"
+        f" {len(loops)} scenes",
+        f"relative error {worst:.0e} at most, {loop:.0e} of whole loops",
+        "central differences",
+        "[gradients](gradients.md), [loops](loop-gradients.md)",
+    ]
+
+
+def _find(page: str, pattern: str) -> str:
+    """Returns the group of a pattern in a page."""
+    found = re.search(pattern, (DOCS / page).read_text(encoding="utf-8"))
+    if found is None:
+        raise ValueError(f"{page}: nothing like {pattern}")
+    return found[1]
+
+
+def span_of(page: str) -> slice:
+    """Returns where in the page the table is.
+
+    Raises:
+        ValueError: a mark is missing.
+    """
+    return slice(page.index(BEGIN) + len(BEGIN), page.index(END))
+
+
+def main() -> None:
+    """Prints the table, and with --write puts it into the page."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    write = parser.parse_args().write
+    table = to_markdown(summary_rows())
+    print(table)
+    if write:
+        page = PAGE.read_text(encoding="utf-8")
+        span = span_of(page)
+        PAGE.write_text(
+            f"{page[: span.start]}\n{table}\n{page[span.stop :]}", encoding="utf-8"
+        )
+
+
+if __name__ == "__main__":
+    main()

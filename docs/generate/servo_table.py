@@ -1,0 +1,197 @@
+"""Tabulates and draws what a stalled loop does to a device, with a servo and without.
+
+python docs/generate/servo_table.py --write
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
+from page_stamp import write_page
+from servo_loop import (
+    HELD,
+    LOCAL,
+    NOMINAL_HAND,
+    ONE_SIDED,
+    SCHEMES,
+    SERVO,
+    UNBRAKED,
+    Scheme,
+    simulate,
+)
+
+_DOCS = Path(__file__).parents[2] / "docs"
+PAGE = _DOCS / "servo.md"
+MAP = _DOCS / "servo.png"
+TRACES = _DOCS / "servo_stall.png"
+BEGIN = "<!-- {}: written by docs/generate/servo_table.py -->\n"
+END = "<!-- end of {} -->\n"
+RATES_HZ = (100, 250, 500, 1000)
+STALLS_S = (0.0, 0.02, 0.05, 0.121, 0.2)
+STIFFNESSES = (250, 500, 1000, 1500, 2000, 3000)
+HANDS = {"nobody holds it": None, "nominal hand": NOMINAL_HAND}
+# Below this nothing is felt: a tenth of a millimeter; a twentieth of a newton.
+BUZZ_M, STALE_N = 1e-4, 0.05
+WILD_M = 0.02
+
+
+def part_rows() -> Iterator[list[str]]:
+    """What the parts of the law do, without the link's sample of delay."""
+    yield ["scheme", "K, N/m", "stalls of", "motion at the end", "farthest"]
+    for scheme, K, stall_s in [
+        (HELD, 500, 0.0),
+        (LOCAL, 500, 0.0),
+        (UNBRAKED, 500, 0.2),
+        (SERVO, 500, 0.2),
+        (UNBRAKED, 1500, 0.2),
+        (SERVO, 1500, 0.2),
+        (ONE_SIDED, 1500, 0.0),
+    ]:
+        run = simulate(scheme, K, 100, stall_s, delay=0, stall_period_s=0.5)
+        last = run.x_m[run.time_s >= run.time_s[-1] - 0.5]
+        yield [
+            scheme.name,
+            f"{K}",
+            f"{1e3 * stall_s:.0f} ms" if stall_s else "none",
+            _millimetres(np.ptp(last)),
+            _millimetres(np.abs(run.x_m).max()),
+        ]
+
+
+def stall_rows() -> Iterator[list[str]]:
+    """Buzz and stale force at the slowest loop and the stall that was measured."""
+    yield ["held by", "K, N/m", *(scheme.name for scheme in SCHEMES)]
+    for name, hand in HANDS.items():
+        for K in STIFFNESSES:
+            yield [name, f"{K}", *(_cell(scheme, K, hand) for scheme in SCHEMES)]
+
+
+def _cell(scheme: Scheme, K: float, hand: tuple[float, float, float] | None) -> str:
+    run = simulate(scheme, K, 100, 0.121, hand=hand)
+    return f"{_millimetres(run.calc_buzz())}, {run.calc_stale_force():.1f} N"
+
+
+def _millimetres(length_m: float) -> str:
+    if length_m < BUZZ_M:
+        return "still"
+    # What is wilder has no figure that means anything.
+    return f"{1e3 * length_m:.1f} mm" if length_m < WILD_M else "over 20 mm"
+
+
+def to_markdown(rows: Iterator[list[str]]) -> str:
+    """The rows as a table, the first one its head."""
+    lines = ["| " + " | ".join(cells) + " |" for cells in rows]
+    lines.insert(1, "|" + "---|" * (lines[0].count("|") - 1))
+    return "\n".join(lines) + "\n"
+
+
+TABLES: dict[str, Callable[[], Iterator[list[str]]]] = {
+    "parts": part_rows,
+    "stalls": stall_rows,
+}
+
+
+def span_of(page: str, name: str) -> slice:
+    """Returns where in the page the table of that name is.
+
+    Raises:
+        ValueError: a mark is missing.
+    """
+    begin = BEGIN.format(name)
+    return slice(page.index(begin) + len(begin), page.index(END.format(name)))
+
+
+def with_tables(page: str) -> str:
+    """Returns the page with the tables of now."""
+    for name, rows in TABLES.items():
+        table = f"\n{to_markdown(rows())}\n"
+        print(table)
+        span = span_of(page, name)
+        page = page[: span.start] + table + page[span.stop :]
+    return page
+
+
+def draw_map() -> None:
+    """Draws buzz and stale force over rate, stall, stiffness and scheme."""
+    from matplotlib import pyplot
+    from matplotlib.colors import LogNorm
+
+    figure, axes = pyplot.subplots(
+        len(SCHEMES), 2 * len(STALLS_S), figsize=(14.0, 7.0), sharex=True, sharey=True
+    )
+    for column, (name, hand, stall_s) in enumerate(
+        (name, hand, stall_s) for name, hand in HANDS.items() for stall_s in STALLS_S
+    ):
+        for axis, scheme in zip(axes[:, column], SCHEMES, strict=True):
+            runs = [
+                [simulate(scheme, K, hz, stall_s, hand=hand) for hz in RATES_HZ]
+                for K in STIFFNESSES
+            ]
+            buzz = np.array([[run.calc_buzz() for run in row] for row in runs])
+            stale = np.array([[run.calc_stale_force() for run in row] for row in runs])
+            image = axis.imshow(
+                1e3 * buzz.clip(1e-5),
+                origin="lower",
+                aspect="auto",
+                norm=LogNorm(1e-2, 1e2),
+                cmap="YlOrRd",
+            )
+            rows, columns = np.nonzero(stale > STALE_N)
+            axis.plot(columns, rows, "x", color="tab:blue", markersize=7)
+            axis.set_xticks(range(len(RATES_HZ)), RATES_HZ, rotation=90)
+            axis.set_yticks(range(len(STIFFNESSES)), STIFFNESSES)
+        axes[0, column].set_title(f"{name}\nstall {1e3 * stall_s:.0f} ms", fontsize=9)
+        print(f"  {name}, stall {1e3 * stall_s:.0f} ms", file=sys.stderr)
+    for axis, scheme in zip(axes[:, 0], SCHEMES, strict=True):
+        axis.set_ylabel(f"{scheme.name}\nK, N/m")
+    for axis in axes[-1]:
+        axis.set_xlabel("loop, Hz")
+    figure.tight_layout(rect=(0.0, 0.0, 0.93, 1.0))
+    bar = figure.colorbar(image, cax=figure.add_axes((0.94, 0.15, 0.012, 0.7)))
+    bar.set_label("buzz, mm peak to peak; ×: a stale force stays")
+    figure.savefig(MAP, dpi=110)
+
+
+def draw_traces() -> None:
+    """Draws one stall in a nominal hand that presses on a wall."""
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(2, 4, figsize=(12.0, 4.8), sharex=True, sharey="row")
+    for column, scheme in zip(axes.T, SCHEMES, strict=True):
+        run = simulate(scheme, 1500, 100, 0.121, hand=NOMINAL_HAND)
+        shown = (run.time_s >= 1.8) & (run.time_s < 2.6)
+        for axis, values in zip(column, (1e3 * run.x_m, run.force_N), strict=True):
+            axis.axvspan(2.0, 2.121, color="0.85")
+            axis.plot(run.time_s[shown], values[shown], linewidth=0.9)
+        column[0].set_title(scheme.name)
+        column[1].set_xlabel("time, s")
+    axes[0, 0].set_ylabel("handle, mm into the wall")
+    axes[1, 0].set_ylabel("force, N")
+    figure.tight_layout()
+    figure.savefig(TRACES, dpi=110)
+
+
+def main() -> None:
+    """Prints the tables, and writes page and pictures if asked to."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    write = parser.parse_args().write
+    page = with_tables(PAGE.read_text(encoding="utf-8"))
+    if write:
+        write_page(PAGE, page, __file__)
+        matplotlib.use("Agg")
+        draw_traces()
+        draw_map()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,56 @@
+"""Writes the figures of a run into docs/benchmarks.md.
+
+drake-haptics bench --json figures.json
+python docs/generate/write_docs.py figures.json
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+from page_stamp import write_page
+
+from drake_haptics.evaluation.benchmark.benchmark import BenchFigures
+from drake_haptics.evaluation.benchmark.report import (
+    machine_line,
+    make_tables,
+    missing_lines,
+)
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
+_BEGIN = "<!-- figures: written by docs/generate/write_docs.py -->\n"
+_END = "<!-- end of figures -->\n"
+
+
+def figures_of(page: str) -> str:
+    """Returns the part of the page between the marks.
+
+    Raises:
+        ValueError: a mark is missing.
+    """
+    return page[page.index(_BEGIN) + len(_BEGIN) : page.index(_END)]
+
+
+def with_figures(page: str, figures: BenchFigures) -> str:
+    """Returns the page with the tables of these figures."""
+    sections = [f"{machine_line(figures)}\n"]
+    if figures.missing:
+        sections.append(
+            "\n".join(f"- {line}" for line in missing_lines(figures)) + "\n"
+        )
+    sections += [table.to_markdown() for table in make_tables(figures)]
+    start = page.index(_BEGIN) + len(_BEGIN)
+    return page[:start] + "\n" + "\n".join(sections) + "\n" + page[page.index(_END) :]
+
+
+def main() -> None:
+    """Reads the figures from the file named on the command line."""
+    data = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
+    page = PAGE.read_text(encoding="utf-8")
+    write_page(PAGE, with_figures(page, BenchFigures.from_dict(data)), __file__)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,156 @@
+"""Studies that are stopped, in programs of their own."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from study_functions import (
+    Journal,
+)
+
+from drake_haptics.analysis.jobs.pool import SerialExecutor
+from drake_haptics.analysis.jobs.study import run_study
+
+SUPPORT = Path(__file__).parents[2] / "support"
+
+SERIAL = SerialExecutor()
+
+
+PROGRAM = """
+import sys
+from study_functions import Journal
+from drake_haptics.analysis.jobs.study import run_study
+
+SUPPORT = Path(__file__).parents[2] / "support"
+
+if __name__ == "__main__":
+    journal, store, *tasks = sys.argv[1:]
+    print(len(run_study(Journal(journal, 0.02), tasks, store=store)))
+"""
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Starts a program in a group of its own, as a terminal does, and ends it."""
+    started = []
+
+    def start(program: str, *args: object) -> subprocess.Popen:
+        file = tmp_path / "program.py"
+        file.write_text(program)
+        driver = subprocess.Popen(
+            [sys.executable, file, *map(str, args)],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(SUPPORT)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        started.append(driver)
+        return driver
+
+    yield start
+    for driver in started:
+        with contextlib.suppress(ProcessLookupError):  # as it should be
+            os.killpg(driver.pid, signal.SIGKILL)
+        driver.communicate()
+
+
+def wait_until(condition, seconds: float = 30.0) -> None:
+    """Waits for what another process does; slow machines have their time."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "nothing happened"
+        time.sleep(0.01)
+
+
+def lives(pid: int) -> bool:
+    """Whether a process runs (a zombie does not)."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")")[-1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def find_living(group: int) -> set[int]:
+    """The processes of a group that run."""
+    try:
+        members = subprocess.run(
+            ["pgrep", "-g", str(group)], capture_output=True, text=True
+        ).stdout.split()
+    except FileNotFoundError:
+        pytest.skip("needs pgrep")
+    return {pid for pid in map(int, members) if lives(pid)}
+
+
+def count_lines(path: Path) -> int:
+    return path.read_bytes().count(b"\n") if path.exists() else 0
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
+def test_a_study_that_was_killed_goes_on_where_it_was(start, tmp_path, how):
+    store, journal = tmp_path / "store", Journal(str(tmp_path / "journal"), 0.02)
+    tasks = [*map(str, range(8)), "wait", *map(str, range(8, 12))]
+    driver = start(PROGRAM, journal.path, store, *tasks)
+    wait_until(lambda: count_lines(store) >= 8 and "wait" in journal.read())
+    if how == signal.SIGKILL:
+        driver.kill()
+    else:  # Ctrl-C reaches all; were one worker to take it, the pool would break
+        workers = find_living(driver.pid) - {driver.pid}
+        for pid in workers:
+            os.kill(pid, how)
+        time.sleep(0.2)
+        assert find_living(driver.pid) == {driver.pid, *workers}
+        driver.send_signal(how)
+    _, stderr = driver.communicate(timeout=120)
+    done = count_lines(store)
+    if how == signal.SIGINT:
+        assert f"KeyboardInterrupt: Stopped. {done} of 13 tasks are done" in stderr
+        assert "kept in" in stderr
+        assert stderr.count("Traceback") == 1  # of the driver; workers are silent
+    # Not one worker is left waiting, although one had a minute to go.
+    wait_until(lambda: not find_living(driver.pid))
+
+    before = len(journal.read())
+    kept = {json.loads(line)["task"] for line in store.read_text().splitlines()}
+    rest = [task for task in tasks if task != "wait"]
+    results = run_study(journal, rest, executor=SERIAL, store=store)
+    assert [task for task, _ in results] == rest
+    assert journal.read()[before:] == [task for task in rest if task not in kept]
+
+
+def test_a_program_without_its_guard_is_told_so(start, tmp_path):
+    program = PROGRAM.replace('if __name__ == "__main__":', "if True:")
+    driver = start(program, tmp_path / "journal", tmp_path / "store", 1)
+    _, stderr = driver.communicate(timeout=120)
+    assert driver.returncode == 1
+    assert "RuntimeError: a worker process imports your program" in stderr
+    assert 'put that under if __name__ == "__main__":' in stderr
+    assert "StudyError: The executor broke: a worker process died" in stderr
+
+
+def test_a_program_from_standard_input_is_told_to_become_a_file():
+    program = (
+        "import math\n"
+        "from drake_haptics.analysis.jobs.study import run_study\n"
+        "run_study(math.sqrt, [1])"
+    )
+    piped = subprocess.run(
+        [sys.executable, "-"], input=program, capture_output=True, text=True
+    )
+    assert "ValueError: worker processes cannot start, because" in piped.stderr
+    program = program.replace("math.sqrt", "f").replace(
+        "import math", "f = lambda x: x"
+    )
+    given = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True
+    )
+    assert "ValueError: function is defined in an interactive session" in given.stderr

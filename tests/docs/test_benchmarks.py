@@ -1,0 +1,95 @@
+"""docs/benchmarks.md has the tables that the benchmark makes now."""
+
+from __future__ import annotations
+
+import re
+
+from bench_samples import EVERYTHING
+from write_docs import PAGE, figures_of, with_figures
+
+from drake_haptics.evaluation.benchmark.benchmark import Effort
+from drake_haptics.evaluation.benchmark.libraries.with_drake_haptics import LIBRARIES
+from drake_haptics.evaluation.benchmark.pair_runs import run_pair
+from drake_haptics.evaluation.benchmark.pair_shapes import KINDS, SIZES, make_pair
+from drake_haptics.evaluation.benchmark.pair_tables import error_table
+from drake_haptics.evaluation.benchmark.report import make_tables
+from drake_haptics.evaluation.benchmark.scene_runs import (
+    NAME,
+    DrakeHapticsScene,
+    run_scene,
+)
+from drake_haptics.evaluation.benchmark.scene_table import scene_table
+from drake_haptics.evaluation.benchmark.scenes import scene_makers
+
+_SECTION = figures_of(PAGE.read_text(encoding="utf-8"))
+
+
+def rows_below(title: str) -> list[list[str]]:
+    """The cells of the table under a title, headings first."""
+    section = _SECTION.split(f"### {title}\n")[1].split("###")[0]
+    rows = re.findall(r"^\| (.*) \|$", section, flags=re.MULTILINE)
+    return [row.split(" | ") for row in rows]
+
+
+def test_every_table_is_there_with_its_headings() -> None:
+    for table in make_tables(EVERYTHING):
+        headings = rows_below(table.title)[0]
+        if table.title.startswith("Convex pairs: times"):
+            continue  # has a column for each depth
+        assert tuple(headings) == table.header
+        assert table.note.split(".")[0] in _SECTION
+
+
+def test_every_pair_and_scene_has_a_row() -> None:
+    pairs = [f"{kind}, {size}" for kind in KINDS for size in SIZES]
+    for title in (
+        "Convex pairs: times in µs, median / p99",
+        "One pair query from Python",
+    ):
+        assert [row[0] for row in rows_below(title)[2:]] == pairs
+    scenes = [row[0] for row in rows_below(make_tables(EVERYTHING)[-1].title)[2:]]
+    assert set(scenes) >= set(scene_makers(1))
+
+
+def test_every_library_has_a_row() -> None:
+    libraries = [row[0] for row in rows_below(make_tables(EVERYTHING)[0].title)[2:]]
+    for name in ("drake_haptics", "coal", "MuJoCo", "FCL", "Bullet", "Drake"):
+        assert any(row.startswith(name) for row in libraries)
+
+
+def number(text: str) -> float:
+    return float(text.rstrip(" %°"))
+
+
+def test_pairs_that_are_pressed_again_are_as_right_as_the_page_tells() -> None:
+    """The page's figures are the worst of all sizes."""
+    pairs = [make_pair(kind, size) for kind in KINDS for size in SIZES[:3]]
+    presses = Effort().presses
+    found = [f for pair in pairs for f in run_pair(pair, LIBRARIES, presses, repeats=1)]
+    again = error_table(found)
+    told = {row[0]: row[1:] for row in rows_below(again.title)}
+    for library, *now in again.rows:
+        error, wrong, exact, jump, failed = map(number, now)
+        most_error, most_wrong, least_exact, most_jump, most_failed = map(
+            number, told[library]
+        )
+        assert error <= most_error and wrong <= most_wrong and jump <= most_jump
+        assert exact >= least_exact and failed <= most_failed
+
+
+def test_a_scene_that_is_run_again_has_the_contacts_of_the_page() -> None:
+    """One of the package's own shapes, which every machine has."""
+    problem = scene_makers(Effort().motions)["peg in hole"]()
+    ours = run_scene(problem, {NAME: DrakeHapticsScene(problem)}, repeats=1)
+    again = scene_table(ours)
+    [told] = [r for r in rows_below(again.title) if r[0] == problem.name]
+    for what in ("scene", "pieces", "contacts"):
+        at = again.header.index(what)
+        assert again.rows[0][at] == told[at], what
+
+
+def test_new_figures_replace_the_old_ones_and_nothing_else() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    renewed = with_figures(page, EVERYTHING)
+    assert "abacus" in figures_of(renewed) and "abacus" not in page
+    assert renewed.replace(figures_of(renewed), "") == page.replace(_SECTION, "")

@@ -1,0 +1,42 @@
+"""The programs of docs/compose.md run as they stand."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+PAGE = Path(__file__).parents[2] / "docs" / "compose.md"
+PROGRAMS = re.findall(
+    r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S
+)
+
+
+def run_programs(folder, programs):
+    """Runs parts of a page as one program and returns what it prints."""
+    (folder / "program.py").write_text("\n".join(programs), encoding="utf-8")
+    return subprocess.run(
+        [sys.executable, "-W", "error::UserWarning", "program.py"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+
+
+def test_the_ring_comes_down_over_the_peg(tmp_path):
+    found = run_programs(tmp_path, PROGRAMS[:1])
+    force, height = map(float, re.findall(r"[\d.]+", found))
+    # Its weight, on the board: half its thickness and what is left of the tolerance.
+    assert abs(force - 0.1 * 9.81) < 0.05
+    assert abs(height - (12.0 + 2.0 - 0.1 * 9.81 / 4.0)) < 0.2
+
+
+def test_a_tick_reads_what_a_log_notes(tmp_path):
+    most, apart = map(
+        float, re.findall(r"[\d.]+(?:e-?\d+)?", run_programs(tmp_path, PROGRAMS[1:]))
+    )
+    # Pressed, and within what the device can show; the integrators differ.
+    assert 0.5 < most < 8.5
+    assert apart < 1e-2

@@ -1,0 +1,51 @@
+"""docs/no-device.md says what the devices do."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+from drake_haptics.device import followed_handle, gamepad, meshcat_device
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "no-device.md").read_text(encoding="utf-8")
+KEYS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowDown": "↓", "ArrowUp": "↑",
+        "PageDown": "Page Down", "PageUp": "Page Up"}  # fmt: skip
+
+
+def test_every_slider_is_listed_with_its_keys():
+    for name, less, more in meshcat_device._SLIDERS:
+        keys = [KEYS.get(key, key.removeprefix("Key")) for key in (less, more)]
+        assert f"| {name} | <kbd>{keys[0]}</kbd> | <kbd>{keys[1]}</kbd> |" in PAGE
+    assert meshcat_device._HOME in PAGE
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        f"{followed_handle._MAX_SPEED_M_PER_S:g} m/s",
+        f"{followed_handle._MAX_TURN_RAD_PER_S:g} rad/s",
+        f"{2e3 / followed_handle._RATE_PER_S:g} ms behind",
+        f"{100 * gamepad._DEADZONE:g} % of its middle",
+        f"{meshcat_device._STICK_TURN_DEG_PER_S:g}° in a",
+    ],
+)
+def test_its_numbers_are_the_codes(sentence):
+    assert sentence in " ".join(PAGE.split())
+
+
+def test_its_pictures_are_there():
+    pictures = re.findall(r"\]\((\S+\.png)\)", PAGE)
+    assert len(pictures) == 2
+    assert all((DOCS / picture).is_file() for picture in pictures)
+
+
+def test_its_program_imports_what_there_is():
+    (program,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    imports = [
+        node for node in ast.parse(program).body if isinstance(node, ast.ImportFrom)
+    ]
+    assert len(imports) == 4
+    module = ast.Module(body=imports, type_ignores=[])
+    exec(compile(module, "no-device.md", "exec"), {})
