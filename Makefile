@@ -69,7 +69,7 @@ build:
 	@touch $(STAMP) $(STAMP)-test
 
 # The core's own tests in C++, under sanitizers and without Python: all of them, or one as
-# of CORE_TEST=law/skin_forces_test. Only what was edited is compiled again, into the
+# of CORE_TEST=tracker/supported_facets_test. Only what was edited is compiled again, into the
 # folder of tests/core/test_cpp.py, by whose settings it is configured.
 CORE_TESTS := build/core_tests
 CORE_TEST ?=

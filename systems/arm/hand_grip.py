@@ -1,4 +1,4 @@
-"""Named grips: impedances of a hand that holds loosely or firmly."""
+"""How firmly a simulated hand holds: named grips."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Input ports for the motions of a scene's objects, read at every tick."""
+"""How the objects of a scene move, for systems that ask for it at every tick."""
 
 from __future__ import annotations
 

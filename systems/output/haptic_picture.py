@@ -1,4 +1,4 @@
-"""Draws the haptic loop in Meshcat."""
+"""What the haptic loop looks like in Meshcat."""
 
 from __future__ import annotations
 

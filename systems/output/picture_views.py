@@ -1,4 +1,4 @@
-"""The parts of a loop's picture that can be shown or hidden."""
+"""What of a loop's picture can be shown or hidden."""
 
 from __future__ import annotations
 
