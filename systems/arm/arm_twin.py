@@ -1,4 +1,4 @@
-"""Imperfections of a real arm for a simulated one, and the systems that add them."""
+"""What a simulated arm has of a real one's faults, and the systems that give it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The path on which a simulated hand wants to move the tool."""
+"""Where a simulated hand wants the tool to go."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Turns a wrench on the handle into motor torques, within the motors' limits."""
+"""What an arm's motors make of a wrench: their torques, up to what they can give."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Makes the LCM command of a haptic device from a vector."""
+"""What a haptic device is asked for over LCM, from a vector."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Splits the LCM status of a haptic device into vectors."""
+"""What a haptic device told over LCM, as vectors."""
 
 from __future__ import annotations
 

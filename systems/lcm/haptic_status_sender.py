@@ -1,4 +1,4 @@
-"""Makes the LCM status of a haptic device from vectors."""
+"""What a haptic device tells over LCM, from vectors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A linear model of the wrench on the handle, for a servo between two ticks."""
+"""How the wrench on the handle changes as the handle moves on."""
 
 from __future__ import annotations
 
