@@ -9,7 +9,7 @@ CORE := $(wildcard drake_haptics/core/*/* drake_haptics/include/*/*) drake_hapti
 # All C and C++ but the programs that time other libraries.
 FORMATTED = $(shell find drake_haptics/core drake_haptics/include examples tests -name '*.c' -o -name '*.cc' -o -name '*.h')
 
-.PHONY: demo tutorials test test-newest lint unit docs format build fuzz clean
+.PHONY: demo tutorials test test-newest lint unit docs format build core-tests fuzz clean
 .DEFAULT_GOAL := demo
 
 demo: $(STAMP)
@@ -67,6 +67,23 @@ build:
 	$(BIN)/pip install --quiet --no-build-isolation --no-deps -e .
 	$(BIN)/python -m nanobind.stubgen -q -m drake_haptics._core -o drake_haptics/_core.pyi
 	@touch $(STAMP) $(STAMP)-test
+
+# The core's own tests in C++, under sanitizers and without Python: all of them, or one as
+# of CORE_TEST=tracker/supported_facets_test. Only what was edited is compiled again, into the
+# folder of tests/core/test_cpp.py, by whose settings it is configured.
+CORE_TESTS := build/core_tests
+CORE_TEST ?=
+core-tests: $(CORE_TESTS)/build.ninja
+	$(BIN)/cmake --build $(CORE_TESTS) --target $(or $(notdir $(CORE_TEST)),core_tests)
+	$(BIN)/ctest --test-dir $(CORE_TESTS) --output-on-failure --no-tests=error \
+	  $(if $(CORE_TEST),--tests-regex '^$(notdir $(CORE_TEST))$$',--label-exclude threads)
+
+$(CORE_TESTS)/build.ninja:
+	@test -e $(STAMP)-test || $(MAKE) $(STAMP)-test
+	$(BIN)/cmake -S drake_haptics/core -B $(CORE_TESTS) -G Ninja \
+	  -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja -DCMAKE_BUILD_TYPE=None \
+	  -DDRAKE_HAPTICS_TESTS=ON -DDRAKE_HAPTICS_BINDINGS=OFF \
+	  -DCMAKE_PREFIX_PATH=$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
 
 $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || { \

@@ -1,4 +1,4 @@
-"""How stiff the hand may feel a wall: linearize at a contact, design a coupling.
+"""Designs a coupling: linearizes the loop at a contact, and compares two couplings.
 
     python examples/design_a_coupling.py
 

@@ -1,4 +1,4 @@
-"""A device of one's own in a diagram of one's own: read, write, close.
+"""A device of your own in a diagram of your own: read, write, close.
 
     python examples/device_of_your_own.py
 

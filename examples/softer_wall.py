@@ -1,4 +1,4 @@
-"""What the hand feels when the contact gets softer: a scene changed from Python.
+"""Makes a scene's contact softer, and prints largest force and penetration.
 
     python examples/softer_wall.py
 

@@ -16,6 +16,8 @@ var Scorer = (() => {
   // What people call it who do not know what pages and sections call it.
   const ABOUT = {
     "accuracy": "how exact error budget",
+    "api-stability": "version compatible breaking deprecated",
+    "architecture": "source folder layout contribute",
     "bridge-a-device": "own device arm vendor SDK driver motor",
     "citing": "reference paper author bibtex",
     "comparison": "alternative versus limits",

@@ -1,4 +1,4 @@
-"""Tabulates how much the wrench changes in steps of a micrometre, and why it jumps.
+"""Tabulates how much the wrench changes in steps of a micrometer, and why it jumps.
 
 python docs/generate/continuity_table.py --scenes box --steps 20000
 python docs/generate/continuity_table.py --jobs 3 --write
@@ -27,10 +27,10 @@ TITLES = ("scene", "method", "force", "99.9 %", "torque", "99.9 %", f"over {JUMP
 TITLES += (*CAUSES, "of the largest", "chain alone")
 
 _TEXT = """\
-# How much the wrench changes in a micrometre
+# How much the wrench changes in a micrometer
 
 The wrench should be a Lipschitz function of the pose: in a hand, a force that jumps is
-a knock. Here tools take {steps:,} random steps of about a micrometre in contact with
+a knock. Here tools take {steps:,} random steps of about a micrometer in contact with
 solids, around {episodes} random poses each, nowhere deeper than what carries
 {force:g} N. This page is written by
 

@@ -136,7 +136,7 @@ def _make_jump_row() -> list[str]:
     }
     chain = max(float(row["chain alone"]) for row in rows if row["method"] == "shared")
     return [
-        "the force jumps in a micrometre",
+        "the force jumps in a micrometer",
         f"{steps:,} steps in each of {len(over['shared'])} scenes",
         f"{share['shared']} of the steps change it by over 10 times what their spring"
         f" explains; of a change of contacts the chain makes at most {chain:g} times",

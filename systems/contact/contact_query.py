@@ -81,9 +81,9 @@ class ContactQuery(DifferentiableSystem):
 
     The search starts from its last answer in the same Context (paper, 5.2), and first
     from the abstract parameter `hint` (index 0): what a query of another Context knew.
-    Without one it starts anew, and can find another way out of a deep penetration; so
-    call `prepare_conversion` before the parameters are copied. Objects with a pose of
-    their own are placed once for each Context.
+    Without one it starts from nothing, and can find another way out of a deep
+    penetration; so call `prepare_conversion` before the parameters are copied. Objects
+    with a pose of their own are placed once for each Context.
 
     Under AutoDiffXd `contacts` is a `drake_haptics._core.AutoDiffContactSet`: the
     features stay. There every answer starts from the hint, and is a function of the

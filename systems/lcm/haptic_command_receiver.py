@@ -134,7 +134,7 @@ class HapticCommandReceiver(LeafSystem):
         memory = value.get_value()
         gate, command = memory.gate, self._command.Eval(context)
         # The subscriber shows a message until the next one comes, and at first an empty
-        # one. A session of more bits than a gate knows is none, either.
+        # one. Nor is one whose session has more bits than a gate knows.
         if command is not memory.seen and 0 < command.session <= _UINT32:
             gate.receive(now_ns, _pack(command))
         F_BH = gate.step(now_ns, self._X_BH.Eval(context), self._V_BH.Eval(context))

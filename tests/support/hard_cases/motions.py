@@ -121,7 +121,7 @@ def grazing() -> Iterator[Passage]:
                 yield moved(A, cube(), poses)
 
 
-@hard_case("micrometre jitter")
+@hard_case("micrometer jitter")
 def jitter() -> Iterator[Passage]:
     """A resting body shakes by micrometres in place and microradians in turn."""
     rng = np.random.default_rng(11)
