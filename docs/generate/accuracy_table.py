@@ -19,7 +19,7 @@ from pathlib import Path
 
 from page_stamp import amend_page, write_page
 
-from drake_haptics.cli.progress_bar import progress_bar
+from drake_haptics.cli.console import progress_bar
 from drake_haptics.evaluation.accuracy.budget import (
     BudgetChoice,
     choose_setting,

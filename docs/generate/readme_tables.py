@@ -19,7 +19,7 @@ from page_stamp import describe_commit, make_stamp
 
 from drake_haptics import BuildHapticDiagram, find_scene, list_scenes, load_scene, run
 from drake_haptics.common.real_time import TickClock
-from drake_haptics.evaluation.measuring.machine import describe_machine
+from drake_haptics.evaluation.measuring.timing import describe_machine
 from drake_haptics.loop.builder import HapticDiagram
 
 ROOT = Path(__file__).parents[2]

@@ -35,12 +35,12 @@ from drake_haptics.common.one_line import one_line
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import Coupling, HandPath, Scene, Waypoint
-from drake_haptics.simulation.live_scene import write_live_values
-from drake_haptics.systems.arm.arm_inverse_kinematics import (
+from drake_haptics.simulation.live_values import write_live_values
+from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
+from drake_haptics.systems.arm.simulated_arm import (
     UnreachableError,
     solve_arm_positions,
 )
-from drake_haptics.systems.arm.hand_grip import HAND_GRIPS
 
 # Springs of rotation cannot be turned further, rad: beyond half a turn they pull back.
 _LARGEST_TWIST = 2.5

@@ -30,31 +30,24 @@ from drake_haptics.cli.options import (
     write_json,
 )
 from drake_haptics.common.errors import UserError
-from drake_haptics.evaluation.accuracy.add_peers import add_peers
-from drake_haptics.evaluation.accuracy.budget import RUNS, BudgetChoice, choose_setting
-from drake_haptics.evaluation.accuracy.budget_words import (
+from drake_haptics.evaluation.accuracy.budget import (
+    RUNS,
+    BudgetChoice,
+    choose_setting,
     describe_file,
     describe_help,
     describe_outcome,
     describe_sacrifices,
     to_budget_data,
 )
+from drake_haptics.evaluation.accuracy.costs import measure_p99
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
-from drake_haptics.evaluation.accuracy.fresh_run import measure_p99
 from drake_haptics.evaluation.accuracy.knobs import list_settings
-from drake_haptics.evaluation.accuracy.one_setting import apply_checked, parse_setting
 from drake_haptics.evaluation.accuracy.page import write_accuracy_page
-from drake_haptics.evaluation.accuracy.setting import Setting
-from drake_haptics.evaluation.accuracy.study import run_accuracy_study
-from drake_haptics.evaluation.accuracy.table import (
+from drake_haptics.evaluation.accuracy.peers.run import add_peers
+from drake_haptics.evaluation.accuracy.report import (
     MODEL_MARK,
     SCENE_MARK,
-    get_columns,
-    group_rows,
-    make_cells,
-    make_label,
-)
-from drake_haptics.evaluation.accuracy.words import (
     describe_knees,
     describe_machine,
     describe_missing,
@@ -62,9 +55,19 @@ from drake_haptics.evaluation.accuracy.words import (
     describe_peers,
     describe_reference,
     describe_verdict,
+    get_columns,
+    group_rows,
+    make_cells,
+    make_label,
     name_setting,
 )
-from drake_haptics.report.paths import check_page_path
+from drake_haptics.evaluation.accuracy.setting import (
+    Setting,
+    apply_checked,
+    parse_setting,
+)
+from drake_haptics.evaluation.accuracy.study import run_accuracy_study
+from drake_haptics.report.page import check_page_path
 from drake_haptics.scene.scene_file import write_scene
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError

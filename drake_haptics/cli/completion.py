@@ -73,8 +73,8 @@ def complete_knob(
     _: click.Context, __: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Completes KEY=VALUE where one key is that of all objects."""
-    from drake_haptics.scene.keys import list_keys
     from drake_haptics.scene.schema import EnvironmentObject, Scene
+    from drake_haptics.scene.settings import list_keys
 
     each = list_keys(EnvironmentObject, "environment.")
     return _complete_value([*list_keys(Scene), *each], incomplete)

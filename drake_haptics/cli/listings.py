@@ -17,7 +17,7 @@ from drake_haptics.scene.device_preset import (
     load_device_preset,
 )
 from drake_haptics.scene.library import list_scenes
-from drake_haptics.scene.loading import load_scene
+from drake_haptics.scene.scene_file import load_scene
 
 
 @click.command(cls=TaughtCommand, lesson=lessons.SCENES)

@@ -199,7 +199,7 @@ def replay(
     """
     # Only now what loads Drake: help and the other commands do without.
     from drake_haptics.scene.library import find_scene
-    from drake_haptics.scene.loading import load_scene
+    from drake_haptics.scene.scene_file import load_scene
     from drake_haptics.simulation.replay_log import load_log_scene
     from drake_haptics.simulation.replay_log import replay as replay_log
 

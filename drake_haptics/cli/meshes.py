@@ -20,13 +20,13 @@ from drake_haptics.cli.options import (
     unit_options,
     write_json,
 )
+from drake_haptics.geometry.decomposition.approximate import check_error
 from drake_haptics.geometry.decomposition.decompose import (
     METHODS,
     Decomposition,
     Method,
 )
 from drake_haptics.geometry.decomposition.decompose import decompose as decompose_mesh
-from drake_haptics.geometry.decomposition.merge import check_error
 from drake_haptics.geometry.mesh.mesh import Mesh, MeshError
 from drake_haptics.geometry.mesh.report import Severity, length
 

@@ -206,7 +206,7 @@ def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
         UserError: A setting is not possible, see `set_values`.
     """
     from drake_haptics.scene.library import find_scene
-    from drake_haptics.scene.loading import load_scene
+    from drake_haptics.scene.scene_file import load_scene
 
     return set_values(load_scene(find_scene(scene)), settings)
 

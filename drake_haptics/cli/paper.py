@@ -26,8 +26,12 @@ from drake_haptics.evaluation.paper.evaluation import (
     Part,
     evaluate_paper,
 )
-from drake_haptics.evaluation.paper.page import summarize, write_paper_page
-from drake_haptics.evaluation.paper.report import describe_machine_line, make_sections
+from drake_haptics.evaluation.paper.report import (
+    describe_machine_line,
+    make_sections,
+    summarize,
+    write_paper_page,
+)
 from drake_haptics.report.page import check_page_path
 
 _STYLES = {

@@ -28,10 +28,9 @@ from drake_haptics.common.errors import SceneError, UserError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.scene_file import write_scene
 from drake_haptics.scene.schema import Scene
-from drake_haptics.simulation.explain import Part
-from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
-from drake_haptics.visualization.meshcat import open_meshcat, set_stage
-from drake_haptics.visualization.recording import write_recording
+from drake_haptics.simulation.profiling import Part
+from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
+from drake_haptics.visualization.meshcat import open_meshcat, set_stage, write_recording
 from drake_haptics.web.link import open_page_port
 
 

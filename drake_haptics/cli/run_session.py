@@ -29,20 +29,18 @@ from drake_haptics.cockpit.holding import (
     TakenDevice,
     take_device,
 )
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceBackend, DeviceError
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.open_device import NoPageError, open_device
-from drake_haptics.loop.tick_log import make_log_header
+from drake_haptics.loop.outputs import make_log_header
 from drake_haptics.scene.schema import Scene
-from drake_haptics.scene.skin import calc_skin_speed
-from drake_haptics.scene.validation import SceneWarning
-from drake_haptics.simulation.callback_timer import CallbackTimer
+from drake_haptics.scene.validation import SceneWarning, calc_skin_speed
 from drake_haptics.simulation.device_monitor import DeviceWatch
-from drake_haptics.simulation.explain import Part, explain_tick
+from drake_haptics.simulation.profiling import CallbackTimer, Part, explain_tick
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
+from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 # Of what a person may have typed at once.

@@ -15,7 +15,7 @@ from rich.table import Table
 from drake_haptics.cli.live_line import LiveLine
 from drake_haptics.cockpit.holding import TakenDevice
 from drake_haptics.common.one_line import count
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceReading,

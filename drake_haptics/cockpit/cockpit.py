@@ -22,15 +22,15 @@ from drake_haptics.cockpit.scene_changes import (
 )
 from drake_haptics.cockpit.steering import PagePicture, Steering
 from drake_haptics.common.colors import make_legend
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceReading, GateState
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.device_placement import DeviceSite
 from drake_haptics.simulation.device_monitor import DriverSilence
-from drake_haptics.simulation.live_key import LiveKey
+from drake_haptics.simulation.live_values import LiveKey
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
-from drake_haptics.systems.output.picture_views import PICTURE_VIEWS
+from drake_haptics.systems.output.haptic_picture import PICTURE_VIEWS
 from drake_haptics.visualization.meshcat import CAMERAS
 from drake_haptics.web.live_page import LivePage, Outlook
 from drake_haptics.web.messages import ACTIVE, SIMULATED, WAITING

@@ -19,17 +19,16 @@ from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.scene_changes import CouplingAdvice, SceneChanges
 from drake_haptics.cockpit.steering import Change, PagePicture
 from drake_haptics.common.errors import UserError
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.schema import Scene
 from drake_haptics.scene.validation import SceneWarning
-from drake_haptics.simulation.release_diagram import retire
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.simulation.transfer_state import carry_on, find_handle
-from drake_haptics.systems.output.picture_views import SHOWN_AT_FIRST
+from drake_haptics.simulation.transfer_state import carry_on, find_handle, retire
+from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.web.live_page import LivePage, look_from_the_front
 
 

@@ -31,7 +31,7 @@ from drake_haptics.scene.schema import (
     Shading,
 )
 from drake_haptics.scene.validation import SceneWarning
-from drake_haptics.simulation.live_key import LiveKey, effect_keys, live_keys
+from drake_haptics.simulation.live_values import LiveKey, effect_keys, live_keys
 
 SCENE_VERBS = ("set", "choose", "effect", "reset")
 CLUSTERING = "contact.clustering"

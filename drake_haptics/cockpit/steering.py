@@ -19,9 +19,12 @@ from drake_haptics.cockpit.scene_changes import (
 )
 from drake_haptics.common.errors import UserError
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.simulation.live_ramp import LiveGlide
-from drake_haptics.simulation.live_scene import is_live_change, put_live_values
-from drake_haptics.systems.output.picture_views import PICTURE_VIEWS, check_view
+from drake_haptics.simulation.live_values import (
+    LiveGlide,
+    is_live_change,
+    put_live_values,
+)
+from drake_haptics.systems.output.haptic_picture import PICTURE_VIEWS, check_view
 from drake_haptics.visualization.meshcat import aim_camera, find_framed_points
 from drake_haptics.web.messages import REFUSED
 

@@ -18,8 +18,7 @@ from drake_haptics.scene.schema import EnvironmentObject, Scene, Tool
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.output.haptic_visualizer import HapticVisualizer
 from drake_haptics.systems.output.tick_log_sink import TickLogSink
-from drake_haptics.tick_log.mesh_digest import hash_file
-from drake_haptics.tick_log.tick_log_header import TickLogHeader
+from drake_haptics.tick_log.log_format import TickLogHeader, hash_file
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 

@@ -11,7 +11,7 @@ from fake_device import ScriptedDevice, make_reading
 from rich.console import Console
 
 from drake_haptics.cli.status_line import StatusLine, make_summary
-from drake_haptics.cockpit.taken_device import TakenDevice
+from drake_haptics.cockpit.holding import TakenDevice
 from drake_haptics.common.real_time import TickClock
 from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.loop.builder import BuildHapticDiagram

@@ -6,7 +6,7 @@ import yaml
 from drake_haptics.cockpit.scene_changes import EFFECTS, ChangeError, SceneChanges
 from drake_haptics.scene.library import find_scene, list_scenes
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.web.changes_yaml import write_changes
+from drake_haptics.web.process import write_changes
 
 EVERYTHING = [
     {"do": "set", "key": "coupling.stiffness_N_per_m", "to": 1000},

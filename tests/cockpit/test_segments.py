@@ -30,7 +30,7 @@ from drake_haptics.scene.validation import SceneError
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.transfer_state import find_handle
 from drake_haptics.visualization.meshcat import open_meshcat
-from drake_haptics.web.telemetry import GATES
+from drake_haptics.web.messages import GATES
 
 RETAKE = {"do": "handle", "to": "device"}
 TURN = {"do": "turn", "by": [0.3, 0.0, 0.0]}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from drake_haptics.device import followed_handle, gamepad, meshcat_device
+from drake_haptics.device import followed_handle, meshcat_device
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "no-device.md").read_text(encoding="utf-8")
@@ -27,7 +27,7 @@ def test_every_slider_is_listed_with_its_keys():
         f"{followed_handle._MAX_SPEED_M_PER_S:g} m/s",
         f"{followed_handle._MAX_TURN_RAD_PER_S:g} rad/s",
         f"{2e3 / followed_handle._RATE_PER_S:g} ms behind",
-        f"{100 * gamepad._DEADZONE:g} % of its middle",
+        f"{100 * meshcat_device._DEADZONE:g} % of its middle",
         f"{meshcat_device._STICK_TURN_DEG_PER_S:g}° in a",
     ],
 )

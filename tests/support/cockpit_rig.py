@@ -5,16 +5,15 @@ from types import SimpleNamespace
 from box_scenes import TOOL_HALF_HEIGHT
 
 from drake_haptics.cockpit.cockpit import Cockpit
-from drake_haptics.cockpit.coupling_advice import CouplingAdvice
+from drake_haptics.cockpit.cockpit_run import Segments
 from drake_haptics.cockpit.holding import Holding
-from drake_haptics.cockpit.page_picture import PagePicture
-from drake_haptics.cockpit.scene_changes import SceneChanges
-from drake_haptics.cockpit.segments import Segments
+from drake_haptics.cockpit.scene_changes import CouplingAdvice, SceneChanges
+from drake_haptics.cockpit.steering import PagePicture
 from drake_haptics.common.real_time import TickClock
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
-from drake_haptics.web.camera import look_from_the_front
+from drake_haptics.web.live_page import look_from_the_front
 
 # Waypoints over a plate, of a path that presses it.
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)

@@ -19,14 +19,13 @@ import numpy as np
 from drake_haptics.analysis.held_scene import build_quietly
 from drake_haptics.common.errors import UserError
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.common.tick_clock import TickClock
+from drake_haptics.common.real_time import TickClock
 from drake_haptics.evaluation.accuracy.native_part import NativePart
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.measuring.timing import CallTimer, TickTimes, typical
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.simulated_device import make_hand_path
-from drake_haptics.scene.loading import load_scene
-from drake_haptics.scene.scene_file import write_scene
+from drake_haptics.scene.scene_file import load_scene, write_scene
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.systems.contact.contact_query import DepthSearch

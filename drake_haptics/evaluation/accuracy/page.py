@@ -38,7 +38,7 @@ from drake_haptics.evaluation.accuracy.report import (
     make_label,
 )
 from drake_haptics.evaluation.accuracy.setting import format_setting
-from drake_haptics.report.paths import check_page_path
+from drake_haptics.report.page import check_page_path
 
 _DPI = 110
 _PEER_COLUMNS = (

@@ -12,8 +12,8 @@ from dataclasses import asdict, dataclass, field, is_dataclass
 from typing import Any, get_args, get_type_hints
 
 from drake_haptics.common.errors import UserError
-from drake_haptics.scene.keys import list_keys
 from drake_haptics.scene.schema import EnvironmentObject, Scene
+from drake_haptics.scene.settings import list_keys
 from drake_haptics.scene.validation import check_values
 from drake_haptics.scene.yaml_loading import check_keys
 

@@ -38,7 +38,7 @@ from drake_haptics.evaluation.benchmark.scenes import SceneProblem, scene_makers
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
 from drake_haptics.evaluation.measuring.plain_data import read_figures, replace_numbers
 from drake_haptics.evaluation.measuring.timing import describe_machine, name_machine
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 PARTS = ("pairs", "python", "scenes", "loop")
 # Called with what is done next and the share of the part that is done.

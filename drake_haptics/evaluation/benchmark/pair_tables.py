@@ -9,7 +9,7 @@ import numpy as np
 
 from drake_haptics.evaluation.benchmark.pair_runs import PairFigures
 from drake_haptics.evaluation.benchmark.python_pairs import PythonFigures
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 Column = Callable[[PairFigures], float]
 

@@ -30,7 +30,7 @@ from drake_haptics.evaluation.measuring.timing import (
     take_turns,
     typical,
 )
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 NAME = "drake_haptics"
 COAL = "coal, dynamic AABB tree"

@@ -14,7 +14,7 @@ from drake_haptics import _core
 from drake_haptics._core import SceneTracker
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.geometry.decomposition.decompose import Decomposition
-from drake_haptics.geometry.mesh.mass_properties import calc_mass_properties
+from drake_haptics.geometry.mesh.mesh import calc_mass_properties
 from drake_haptics.loop.builder import AddHapticLoop, HapticDiagram
 from drake_haptics.scene.schema import Contact, Coupling, Scene
 from drake_haptics.systems.arm.hand_path import HandPath

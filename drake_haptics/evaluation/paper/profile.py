@@ -13,7 +13,7 @@ from pydrake.systems.framework import Context
 from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.evaluation.paper.exploration import PERIOD_S, Scenario, build_loop
 from drake_haptics.evaluation.paper.fits import PowerFit, fit_power
-from drake_haptics.simulation.callback_timer import CallbackTimer
+from drake_haptics.simulation.profiling import CallbackTimer
 from drake_haptics.simulation.run import run
 
 _WARM_UP_TICKS = 20

@@ -29,8 +29,7 @@ from drake_haptics.evaluation.accuracy.truth import (
     shift_wrench,
 )
 from drake_haptics.evaluation.measuring.timing import TickTimes
-from drake_haptics.scene.effects import Effects
-from drake_haptics.scene.schema import Scene
+from drake_haptics.scene.schema import Effects, Scene
 
 _SAME_LAW = "of the same pieces, this package's law"
 

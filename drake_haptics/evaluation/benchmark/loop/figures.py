@@ -8,7 +8,7 @@ from dataclasses import astuple, dataclass
 import numpy as np
 
 from drake_haptics.evaluation.measuring.timing import TickTimes
-from drake_haptics.report.table import Table
+from drake_haptics.report.page import Table
 
 PACED = "drake_haptics, whole tick, paced"
 OURS = "drake_haptics, whole tick"
