@@ -1,8 +1,8 @@
 """The LCM types of the .lcm files in this folder, as immutable values.
 
 They are what Python's `lcm` package and `lcm-gen` would generate, which Drake's wheel
-does not contain: the bytes are the same (tests/device/lcm/test_lcm_types.py). The .lcm files
-describe each member; other languages get their types by `lcm-gen`.
+does not contain: the bytes are the same (tests/device/lcm/test_lcm_types.py). The .lcm
+files describe each member; other languages get their types by `lcm-gen`.
 """
 
 from __future__ import annotations
