@@ -12,11 +12,11 @@ from ._core import FeatureKind as FeatureKind
 from ._core import PairTrajectory as PairTrajectory
 from ._core import SceneTracker as SceneTracker
 from .authoring.scene_from_meshes import make_scene_for_meshes as make_scene_for_meshes
+from .common.errors import HapticsError as HapticsError
 from .common.errors import MeshError as MeshError
 from .common.errors import SceneError as SceneError
-from .common.errors import UserError as UserError
 from .common.files import get_include as get_include
-from .common.real_time import TickClock as TickClock
+from .common.real_time import RealTimePacer as RealTimePacer
 from .device.backend import DeviceBackend as DeviceBackend
 from .device.backend import DeviceCommand as DeviceCommand
 from .device.backend import DeviceError as DeviceError
@@ -37,20 +37,29 @@ from .rendering.add_haptic_rendering import (
     AddAppliedSpatialForce as AddAppliedSpatialForce,
 )
 from .rendering.add_haptic_rendering import AddHapticRendering as AddHapticRendering
+from .rendering.config import (
+    ApplyHapticRenderingConfig as ApplyHapticRenderingConfig,
+)
+from .rendering.config import HapticRenderingConfig as HapticRenderingConfig
+from .rendering.config import (
+    load_haptic_rendering_config as load_haptic_rendering_config,
+)
 from .rendering.haptic_rendering import HapticRendering as HapticRendering
 from .scene.library import find_mesh as find_mesh
 from .scene.library import find_scene as find_scene
 from .scene.library import list_meshes as list_meshes
 from .scene.library import list_scenes as list_scenes
 from .scene.scene_file import load_scene as load_scene
-from .scene.schema import Braking as Braking
-from .scene.schema import Coupling as Coupling
+from .scene.schema import BrakingParameters as BrakingParameters
+from .scene.schema import ContactParameters as ContactParameters
+from .scene.schema import CouplingParameters as CouplingParameters
 from .scene.schema import Effects as Effects
-from .scene.schema import Friction as Friction
-from .scene.schema import Gravity as Gravity
+from .scene.schema import FrictionParameters as FrictionParameters
+from .scene.schema import GravityParameters as GravityParameters
 from .scene.schema import Material as Material
+from .scene.schema import Pose as Pose
 from .scene.schema import Scene as Scene
-from .scene.schema import Shading as Shading
+from .scene.schema import ShadingParameters as ShadingParameters
 from .simulation.energy import EnergyLedger as EnergyLedger
 from .simulation.live_values import live_keys as live_keys
 from .simulation.live_values import write_live_values as write_live_values
@@ -61,7 +70,7 @@ from .simulation.run import RunError as RunError
 from .simulation.run import make_simulator as make_simulator
 from .simulation.run import run as run
 from .simulation.statistics import RunStatistics as RunStatistics
-from .simulation.transfer_state import carry_on as carry_on
+from .simulation.transfer_state import transfer_context as transfer_context
 from .tick_log.tick_log import read_tick_log as read_tick_log
 from .tick_log.tick_recorder import TickRecorder as TickRecorder
 

@@ -115,7 +115,7 @@ class ConvexPolytope:
 
     def __copy__(self) -> object: ...
 
-class Decomposition:
+class ConvexPieces:
     """A mesh and the convex pieces that stand for its surface. Immutable."""
 
     @property
@@ -138,7 +138,7 @@ class Decomposition:
 
     def __repr__(self) -> str: ...
 
-def decompose_surface(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], progress: Callable[[float], bool] | None = None) -> Decomposition:
+def decompose_surface(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], progress: Callable[[float], bool] | None = None) -> ConvexPieces:
     """
     Convex surface decomposition (paper, section 5.3.1). A solid that differs from its hull by noise alone is one piece; pieces leave the solid by no more than 1e-6 of the mesh's size.
 
@@ -153,7 +153,7 @@ def decompose_surface(vertices: Annotated[NDArray[numpy.float64], dict(shape=(No
         RuntimeError: `progress` returned False.
     """
 
-def assemble_surface_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], piece_of_triangle: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Decomposition:
+def assemble_surface_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], piece_of_triangle: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> ConvexPieces:
     """
     The result of decompose_surface from its labels, without the search.
 
@@ -166,7 +166,7 @@ def assemble_surface_pieces(vertices: Annotated[NDArray[numpy.float64], dict(sha
         ValueError: bad indices, values or labels.
     """
 
-def adopt_convex_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], pieces: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)]], tolerance: float) -> Decomposition:
+def adopt_convex_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], pieces: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)]], tolerance: float) -> ConvexPieces:
     """
     Pieces made elsewhere. Facets on the mesh are original, all others virtual.
 
@@ -193,7 +193,7 @@ class MergedPieces:
 
 def merge_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], piece_of_triangle: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], error: float, progress: Callable[[float], bool] | None = None) -> MergedPieces:
     """
-    Joins neighbouring pieces of an exact decomposition, the cheapest first, while hulls depart from the mesh by no more than an error.
+    Joins neighboring pieces of an exact decomposition, the cheapest first, while hulls depart from the mesh by no more than an error.
 
     Args:
         vertices: (n, 3) positions, m.
@@ -208,7 +208,7 @@ def merge_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3
         RuntimeError: `progress` returned False.
     """
 
-def assemble_merged_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], piece_of_triangle: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], group_of_piece: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], error: float) -> Decomposition:
+def assemble_merged_pieces(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], solid: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], piece_of_triangle: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], group_of_piece: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], error: float) -> ConvexPieces:
     """
     The pieces of groups that merge_pieces found.
 
@@ -748,20 +748,20 @@ class SceneTracker:
             IndexError: no such object.
         """
 
-    def query(self, X_WTool: drake_haptics.common.pose_like.PoseLike, tolerance: float | None = None) -> ContactSet:
+    def query(self, X_WT: drake_haptics.common.pose_like.PoseLike, tolerance: float | None = None) -> ContactSet:
         """
-        `ContactSet` of the tool at the pose X_WTool. With a `tolerance` (m) smaller than the tracker's only of contacts up to that, for less work; the next query may ask for another.
+        `ContactSet` of the tool at the pose X_WT. With a `tolerance` (m) smaller than the tracker's only of contacts up to that, for less work; the next query may ask for another.
 
         Raises:
             ValueError: the pose is not finite or not rigid, or the tolerance not within 0 and the tracker's.
         """
 
-    def query_trajectory(self, X_WTool: drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory:
+    def query_trajectory(self, X_WT: drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory:
         """
         What k single queries would give, in one call without the GIL; the objects rest.
 
         Args:
-            X_WTool: (k, 4, 4) or (k, 7) poses of the tool in turn.
+            X_WT: (k, 4, 4) or (k, 7) poses of the tool in turn.
 
         Raises:
             ValueError: a pose is not finite or not rigid; nothing was asked then.
@@ -796,12 +796,12 @@ class SceneTracker:
 
     def __copy__(self) -> SceneTracker: ...
 
-class ContactCarrier:
+class ContactExtrapolation:
     """
-    Carries contacts along with the bodies: features stay, witness points stay on their bodies, and the normal on the one whose facet it is of (contact_advance.h). Immutable.
+    Carries contacts along with the bodies: features stay, witness points stay on their bodies, and the normal on the one whose facet it is of (contact_extrapolator.h). Immutable.
     """
 
-    def __init__(self, tool: Decomposition, objects: Sequence[Decomposition], X_WO: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')] | None]) -> None:
+    def __init__(self, tool: ConvexPieces, objects: Sequence[ConvexPieces], X_WO: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')] | None]) -> None:
         """
         Carries contacts of `tool` with `objects`, those of the query.
 
@@ -1001,7 +1001,7 @@ class PenaltyWrench:
         """
 
     @property
-    def F_Tool_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+    def F_To_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """(6,) wrench on the tool at To, [N·m; N]."""
 
     @property
@@ -1016,19 +1016,19 @@ class PenaltyWrench:
 
     def __copy__(self) -> object: ...
 
-def penalty_wrench_model(clusters: ClusterSet, X_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, materials: ContactMaterials) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
+def penalty_wrench_model(clusters: ClusterSet, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, materials: ContactMaterials) -> Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]:
     """
     The `wrench_model` (78,) of `penalty_force` of the same, for a tick that asks for nothing else.
     """
 
 @overload
-def penalty_force(clusters: ClusterSet, X_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, materials: ContactMaterials) -> PenaltyWrench:
+def penalty_force(clusters: ClusterSet, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, materials: ContactMaterials) -> PenaltyWrench:
     """
     Penalty wrenches of the clusters (paper, Eq. 6 to 10): k times the compression along the normal, plus damping while approaching; never a pull. What it takes depends on the clusters, not on how many objects there are.
 
     Args:
-        X_WTool: (7,) pose of the tool [qw qx qy qz x y z], m.
-        V_WTool: (6,) its spatial velocity [rad/s; m/s].
+        X_WT: (7,) pose of the tool [qw qx qy qz x y z], m.
+        V_WT: (6,) its spatial velocity [rad/s; m/s].
         objects: where they are.
         materials: one for each of them.
 
@@ -1038,7 +1038,7 @@ def penalty_force(clusters: ClusterSet, X_WTool: Annotated[NDArray[numpy.float64
     """
 
 @overload
-def penalty_force(clusters: ClusterSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> PenaltyWrench:
+def penalty_force(clusters: ClusterSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], p_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> PenaltyWrench:
     """
     The same for what is asked once, from the arguments of `ObjectFrames` and `ContactMaterials`; p_WTo (3,) is the tool's origin, m.
 
@@ -1048,7 +1048,7 @@ def penalty_force(clusters: ClusterSet, p_WTo: Annotated[NDArray[numpy.float64],
     """
 
 @overload
-def penalty_force(clusters: AutoDiffClusterSet, p_WTo: AutoDiffVector, V_WTool: AutoDiffVector, p_WO: AutoDiffVector, V_WO: AutoDiffVector, stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> AutoDiffPenaltyWrench:
+def penalty_force(clusters: AutoDiffClusterSet, p_WTo: AutoDiffVector, V_WT: AutoDiffVector, p_WO: AutoDiffVector, V_WO: AutoDiffVector, stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> AutoDiffPenaltyWrench:
     """
     The same with derivatives; p_WO (3 m,) and V_WO (6 m,) have one object after another.
     """
@@ -1089,20 +1089,20 @@ class CouplingGains:
     def __repr__(self) -> str: ...
 
 @overload
-def coupling_wrench(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], gains: CouplingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
+def coupling_wrench(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], gains: CouplingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
     """
     Wrenches of the virtual coupling between handle H and tool.
 
     Args:
-        q_WH, q_HT, q_WTool: (7,) poses [qw qx qy qz x y z]: handle, the tool's place in it, tool.
-        V_WH, V_WTool: (6,) spatial velocities [rad/s; m/s].
+        q_WH, q_HT, q_WT: (7,) poses [qw qx qy qz x y z]: handle, the tool's place in it, tool.
+        V_WH, V_WT: (6,) spatial velocities [rad/s; m/s].
 
     Returns:
         (84,): wrench model on the tool at To (78), then the reaction on the handle at Ho in W (6).
     """
 
 @overload
-def coupling_wrench(q_WH: AutoDiffVector, V_WH: AutoDiffVector, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WTool: AutoDiffVector, V_WTool: AutoDiffVector, gains: CouplingGains) -> AutoDiffVector:
+def coupling_wrench(q_WH: AutoDiffVector, V_WH: AutoDiffVector, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WT: AutoDiffVector, V_WT: AutoDiffVector, gains: CouplingGains) -> AutoDiffVector:
     """The same with derivatives."""
 
 @overload
@@ -1111,7 +1111,7 @@ def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=
     `coupling_wrench` of one vector, as a multiplexer joins it: an array that crosses takes as long as the law.
 
     Args:
-        joined: (32,) [q_WH; V_WH; q_WTool; V_WTool; gains], the gains (6) in the order of `CouplingGains`.
+        joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) in the order of `CouplingGains`.
         q_HT: (7,) the tool's place in the handle.
 
     Raises:
@@ -1138,7 +1138,7 @@ class RigidToolDynamics:
 
     def __init__(self, mass_kg: float, p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], I_TTcm_T: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order='F')]) -> None:
         """
-        Tool of `mass_kg`, centre of mass (3,) m and rotational inertia about it (3, 3) kg·m², both in the tool's frame.
+        Tool of `mass_kg`, center of mass (3,) m and rotational inertia about it (3, 3) kg·m², both in the tool's frame.
 
         Raises:
             ValueError: not a physical inertia.
@@ -1150,7 +1150,7 @@ class RigidToolDynamics:
 
     @property
     def p_TTcm(self) -> Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]:
-        """Centre of mass (3,) in the tool's frame, m."""
+        """Center of mass (3,) in the tool's frame, m."""
 
     @overload
     def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], wrench_models: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]], h: float) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
@@ -1172,11 +1172,11 @@ class WrenchJacobian:
     """
 
     @property
-    def by_X_WTool(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
+    def by_X_WT(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
         """(6, 6)."""
 
     @property
-    def by_V_WTool(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
+    def by_V_WT(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
         """(6, 6)."""
 
     @property
@@ -1187,7 +1187,7 @@ class WrenchJacobian:
     def by_V_WO(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
         """(6 m, 6): (6, 6) for each object, one below the other."""
 
-def wrench_jacobian(contacts: ContactSet, clusters: ClusterSet, tolerance: float, tool: Decomposition, X_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: Sequence[Decomposition], X_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> WrenchJacobian:
+def wrench_jacobian(contacts: ContactSet, clusters: ClusterSet, tolerance: float, tool: ConvexPieces, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: Sequence[ConvexPieces], X_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> WrenchJacobian:
     """
     Exact derivatives of `penalty_force` through the whole chain from the poses on: contacts, clusters, forces. Features stay as they are, and which contacts are together or push (wrench_jacobian.h).
 
@@ -1196,8 +1196,8 @@ def wrench_jacobian(contacts: ContactSet, clusters: ClusterSet, tolerance: float
         clusters: of them, by `cluster_contacts` or `share_stiffness`.
         tolerance: what the clusters were made with, m.
         tool, objects: the bodies of the query.
-        X_WTool, X_WO: (7,) and (m, 7) poses [qw qx qy qz x y z].
-        V_WTool, V_WO: (6,) and (m, 6) spatial velocities [rad/s; m/s].
+        X_WT, X_WO: (7,) and (m, 7) poses [qw qx qy qz x y z].
+        V_WT, V_WO: (6,) and (m, 6) spatial velocities [rad/s; m/s].
         stiffness, damping: (m,) k and k_v of each object, N/m and N·s/m.
 
     Raises:
@@ -1260,7 +1260,7 @@ class AutoDiffContactSet:
 
     def __copy__(self) -> object: ...
 
-def differentiate_contacts(contacts: ContactSet, tolerance: float, tool: Decomposition, X_WTool: AutoDiffVector, objects: Sequence[Decomposition], X_WO: Sequence[AutoDiffVector]) -> AutoDiffContactSet:
+def differentiate_contacts(contacts: ContactSet, tolerance: float, tool: ConvexPieces, X_WT: AutoDiffVector, objects: Sequence[ConvexPieces], X_WO: Sequence[AutoDiffVector]) -> AutoDiffContactSet:
     """
     The answer of a query with its derivatives, while features stay (query_gradient.h).
 
@@ -1268,7 +1268,7 @@ def differentiate_contacts(contacts: ContactSet, tolerance: float, tool: Decompo
         contacts: as the query gave them at these poses, not shaded.
         tolerance: of the query, m.
         tool, objects: the bodies of the query.
-        X_WTool: (7,) pose [qw qx qy qz x y z].
+        X_WT: (7,) pose [qw qx qy qz x y z].
         X_WO: a (7,) pose for each object.
 
     Raises:
@@ -1337,7 +1337,7 @@ class AutoDiffPenaltyWrench:
         """(78,) wrench on the tool at To with its linear model."""
 
     @property
-    def F_Tool_W(self) -> AutoDiffVector:
+    def F_To_W(self) -> AutoDiffVector:
         """(6,) wrench on the tool at To, [N·m; N]."""
 
     @property
@@ -1375,7 +1375,7 @@ class SurfaceShading:
     Pieces that were not made from triangles (methods "hull" and "coacd") keep the normals of their facets.
     """
 
-    def __init__(self, decomposition: Decomposition, crease_angle: float) -> None:
+    def __init__(self, decomposition: ConvexPieces, crease_angle: float) -> None:
         """
         Finds the normals once; `crease_angle` in rad, 0 for facets as they are.
 
@@ -1397,13 +1397,13 @@ class ContactShading:
         """
 
     @overload
-    def shade(self, contacts: ContactSet, q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')]) -> ContactSet:
+    def shade(self, contacts: ContactSet, q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')]) -> ContactSet:
         """
         The contacts with shaded normals; all else is as it was.
 
         Args:
             contacts: `ContactSet` of a query at these poses.
-            q_WTool: (7,) pose of the tool [qw qx qy qz x y z].
+            q_WT: (7,) pose of the tool [qw qx qy qz x y z].
             q_WO: (m, 7) poses of the objects.
 
         Raises:
@@ -1412,7 +1412,7 @@ class ContactShading:
         """
 
     @overload
-    def shade(self, contacts: AutoDiffContactSet, q_WTool: AutoDiffVector, q_WO: AutoDiffVector) -> AutoDiffContactSet:
+    def shade(self, contacts: AutoDiffContactSet, q_WT: AutoDiffVector, q_WO: AutoDiffVector) -> AutoDiffContactSet:
         """The same with derivatives; q_WO (7 m,) has one object after another."""
 
 class FrictionStep:
@@ -1489,7 +1489,7 @@ class AutoDiffFrictionStep:
 
 class StickSlipModel:
     """
-    Stick-slip friction after Hayward and Armstrong (2000) of a tool on objects, at the representative contacts of clusters. Immutable: its state, (n,), goes in and comes out. It is [X_WTool (7); X_WO (7) of each object that moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z (3), load, grip], the poses and the contacts of the last tick. A slot without a load is empty.
+    Stick-slip friction after Hayward and Armstrong (2000) of a tool on objects, at the representative contacts of clusters. Immutable: its state, (n,), goes in and comes out. It is [X_WT (7); X_WO (7) of each object that moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z (3), load, grip], the poses and the contacts of the last tick. A slot without a load is empty.
     """
 
     def __init__(self, coefficient: Sequence[float], moves: Sequence[bool], static_ratio: float, break_away_m: float, reach_m: float) -> None:
@@ -1510,7 +1510,7 @@ class StickSlipModel:
         """n."""
 
     @overload
-    def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], clusters: ClusterSet, contact_wrench: PenaltyWrench, q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> FrictionStep:
+    def step(self, state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], clusters: ClusterSet, contact_wrench: PenaltyWrench, q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> FrictionStep:
         """
         Friction now, and the state for the next tick.
 
@@ -1518,7 +1518,7 @@ class StickSlipModel:
             state: (n,) from the last tick; zeros before the first.
             clusters: of now.
             contact_wrench: their normal forces are the norms of its `f_cluster_W`.
-            q_WTool: (7,) pose of the tool.
+            q_WT: (7,) pose of the tool.
             q_WO: (7 j,) poses of the j objects that move, one after the other.
 
         Raises:
@@ -1526,9 +1526,9 @@ class StickSlipModel:
         """
 
     @overload
-    def step(self, state: AutoDiffVector, clusters: AutoDiffClusterSet, contact_wrench: AutoDiffPenaltyWrench, q_WTool: AutoDiffVector, q_WO: AutoDiffVector) -> AutoDiffFrictionStep:
+    def step(self, state: AutoDiffVector, clusters: AutoDiffClusterSet, contact_wrench: AutoDiffPenaltyWrench, q_WT: AutoDiffVector, q_WO: AutoDiffVector) -> AutoDiffFrictionStep:
         """
-        The same with derivatives: those of each contact as it sticks or slides, and with the neighbours it has.
+        The same with derivatives: those of each contact as it sticks or slides, and with the neighbors it has.
         """
 
 class BrakingGains:
@@ -1545,13 +1545,13 @@ class BrakingGains:
         """
 
 @overload
-def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WTool: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, gains: BrakingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
+def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: ObjectFrames, gains: BrakingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]:
     """
     Braking of the approach of surfaces that do not touch yet (McNeely, Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s w v along its normal, v the speed of approach, w = 4 (d/D)(1 − d/D), s its share among contacts with like normals (braking.h). Never a pull.
 
     Args:
         p_WTo: (3,) tool's origin, m.
-        V_WTool: (6,) its spatial velocity [rad/s; m/s].
+        V_WT: (6,) its spatial velocity [rad/s; m/s].
         objects: where they are.
 
     Returns:
@@ -1562,7 +1562,7 @@ def pre_contact_braking(contacts: ContactSet, p_WTo: Annotated[NDArray[numpy.flo
     """
 
 @overload
-def pre_contact_braking(contacts: AutoDiffContactSet, p_WTo: AutoDiffVector, V_WTool: AutoDiffVector, p_WO: AutoDiffVector, V_WO: AutoDiffVector, gains: BrakingGains) -> AutoDiffVector:
+def pre_contact_braking(contacts: AutoDiffContactSet, p_WTo: AutoDiffVector, V_WT: AutoDiffVector, p_WO: AutoDiffVector, V_WO: AutoDiffVector, gains: BrakingGains) -> AutoDiffVector:
     """
     The same with derivatives; p_WO (3 m,) and V_WO (6 m,) have one object after another.
     """
@@ -1570,11 +1570,11 @@ def pre_contact_braking(contacts: AutoDiffContactSet, p_WTo: AutoDiffVector, V_W
 @overload
 def tool_weight(q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
     """
-    Weight of the tool, a force at its centre of mass.
+    Weight of the tool, a force at its center of mass.
 
     Args:
         q_WT: (7,) pose [qw qx qy qz x y z].
-        p_TTcm: (3,) centre of mass in the tool's frame, m.
+        p_TTcm: (3,) center of mass in the tool's frame, m.
         weight_W: (3,) mass times gravity, N.
 
     Returns:
@@ -1601,23 +1601,23 @@ class PassivityBounds:
         """
 
 @overload
-def passivity_control(state: Annotated[NDArray[numpy.float64], dict(shape=(8), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], F_asked: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], bounds: PassivityBounds) -> Annotated[NDArray[numpy.float64], dict(shape=(14), order='C')]:
+def passivity_control(state: Annotated[NDArray[numpy.float64], dict(shape=(8), order='C')], F_Ho_W_rendered: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], F_Ho_W_desired: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], bounds: PassivityBounds) -> Annotated[NDArray[numpy.float64], dict(shape=(14), order='C')]:
     """
     Passivity observer and controller (Hannaford and Ryu 2002) of one tick.
 
     Args:
         state: (8,) balance of the last tick, J, and the handle's pose then.
-        F_applied: (6,) wrench on the handle at Ho in W that was held since, [N·m; N].
-        F_asked: (6,) wrench asked for now.
+        F_Ho_W_rendered: (6,) wrench on the handle at Ho in W that was held since, [N·m; N].
+        F_Ho_W_desired: (6,) wrench asked for now.
         q_WH: (7,) pose now, [qw qx qy qz x y z].
         V_WH: (6,) spatial velocity now, [rad/s; m/s].
 
     Returns:
-        (14,) wrench to show (6), F_asked itself where the balance is not below 0; the next state (8), balance now, J, and pose now.
+        (14,) wrench to show (6), F_Ho_W_desired itself where the balance is not below 0; the next state (8), balance now, J, and pose now.
     """
 
 @overload
-def passivity_control(state: AutoDiffVector, F_applied: AutoDiffVector, F_asked: AutoDiffVector, q_WH: AutoDiffVector, V_WH: AutoDiffVector, bounds: PassivityBounds) -> AutoDiffVector:
+def passivity_control(state: AutoDiffVector, F_Ho_W_rendered: AutoDiffVector, F_Ho_W_desired: AutoDiffVector, q_WH: AutoDiffVector, V_WH: AutoDiffVector, bounds: PassivityBounds) -> AutoDiffVector:
     """The same with derivatives."""
 
 class FrameChange:
@@ -1665,7 +1665,7 @@ class PosePath:
         Returns the pose (7,) and the spatial velocity (6,) at its origin, [rad/s; m/s].
         """
 
-class HeldArm:
+class ArmDynamics:
     """
     A chain of six revolute joints and a hand that draws its handle H along a path. States are (12,): angles, rad, and speeds, rad/s. All methods raise FloatingPointError where a state is not finite.
     """
@@ -1689,13 +1689,13 @@ class HeldArm:
         """The same with derivatives."""
 
     @overload
-    def calc_joint_torques(self, time_s: float, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+    def calc_joint_torques(self, time_s: float, state: Annotated[NDArray[numpy.float64], dict(shape=(12), order='C')], F_Ho_W_rendered: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """
         Joint torques (6,), N·m, of the hand and of a wrench (6,) on the handle at its origin in the world, [N·m; N].
         """
 
     @overload
-    def calc_joint_torques(self, time_s: AutoDiffVector, state: AutoDiffVector, F_applied: AutoDiffVector) -> AutoDiffVector:
+    def calc_joint_torques(self, time_s: AutoDiffVector, state: AutoDiffVector, F_Ho_W_rendered: AutoDiffVector) -> AutoDiffVector:
         """The same with derivatives; `time_s` is (1,)."""
 
 class EnergyAccount:
@@ -1765,14 +1765,14 @@ class EnergyLedger:
             gains: of the coupling from now on.
         """
 
-    def add(self, tool_state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], F_applied: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], coupling: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], wrench_models: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]], stored_J: Sequence[float]) -> None:
+    def add(self, tool_state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')], q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], F_Ho_W_rendered: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], coupling: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], wrench_models: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]], stored_J: Sequence[float]) -> None:
         """
         Books the tick between the call before and this one; the first call only says what is stored. All is read at one instant, after one step of the tool and before the next. A tick with an energy that is not finite is left out.
 
         Args:
             tool_state: (13,) = [pose (7), m; spatial velocity (6), rad/s and m/s].
             q_WH: (7,) pose of the handle.
-            F_applied: (6,) wrench that was held on the handle up to now, at Ho in W, N·m and N.
+            F_Ho_W_rendered: (6,) wrench that was held on the handle up to now, at Ho in W, N·m and N.
             coupling: (78,) wrench model of the coupling on the tool.
             wrench_models: (78,) of each source.
             stored_J: elastic or potential energy of each source.
@@ -1800,13 +1800,13 @@ def contact_energy(clusters: ClusterSet, stiffness: Sequence[float], tolerance: 
         IndexError: a cluster names an object that has none.
     """
 
-def weight_energy(q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
+def weight_energy(q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], p_TTcm: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')], weight_W: Annotated[NDArray[numpy.float64], dict(shape=(3), order='C')]) -> float:
     """
-    Potential energy of the tool's weight, J, zero with its centre of mass at the world's origin.
+    Potential energy of the tool's weight, J, zero with its center of mass at the world's origin.
 
     Args:
-        q_WTool: (7,) its pose.
-        p_TTcm: (3,) centre of mass in its frame, m.
+        q_WT: (7,) its pose.
+        p_TTcm: (3,) center of mass in its frame, m.
         weight_W: (3,) mass times gravity, N.
     """
 
@@ -1841,7 +1841,7 @@ class DeviceStatePacket:
         """(6,) spatial velocity [ω; v], rad/s and m/s."""
 
     @property
-    def F_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+    def F_Ho_B(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """(6,) wrench shown [τ; f] at Ho, N·m and N."""
 
     @property
@@ -1892,7 +1892,7 @@ class DeviceCommandPacket:
         """Of sending, host's clock."""
 
     @property
-    def F_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+    def F_Ho_B(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """(6,) wrench to show [τ; f] at Ho in B, N·m and N."""
 
     @property
@@ -1907,7 +1907,7 @@ class DeviceCommandPacket:
     def enable(self) -> bool:
         """Whether force is to be shown."""
 
-def pack_state(*, sequence: int, time_ns: int, X_BH: object, V_BH: object, F_BH: object, boot: int, session: int, command_sequence: int, buttons: int, rejected: int, max_force_N: float, max_torque_Nm: float, gate: int, fault: int) -> bytes:
+def pack_state(*, sequence: int, time_ns: int, X_BH: object, V_BH: object, F_Ho_B: object, boot: int, session: int, command_sequence: int, buttons: int, rejected: int, max_force_N: float, max_torque_Nm: float, gate: int, fault: int) -> bytes:
     """
     The 208 bytes of a state packet; the arguments are the attributes of `DeviceStatePacket`.
 
@@ -1923,7 +1923,7 @@ def unpack_state(packet: bytes) -> DeviceStatePacket:
         ValueError: it is damaged or none; says which check failed.
     """
 
-def pack_command(*, session: int, sequence: int, time_ns: int, F_BH: object, state_sequence: int, ttl_us: int, enable: bool) -> bytes:
+def pack_command(*, session: int, sequence: int, time_ns: int, F_Ho_B: object, state_sequence: int, ttl_us: int, enable: bool) -> bytes:
     """
     The 88 bytes of a command packet; the arguments are the attributes of `DeviceCommandPacket`.
 
@@ -2010,11 +2010,11 @@ class DeviceGate:
         """Of the newest command that was accepted."""
 
     @property
-    def command_F_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+    def command_F_Ho_B(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """(6,) the newest wrench to show, within the limits, N·m and N."""
 
     @property
-    def F_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+    def F_Ho_B(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """(6,) the wrench that is shown, N·m and N."""
 
     @property
@@ -2084,7 +2084,7 @@ class HandleState:
         """(6,) velocity [ω; v], rad/s and m/s."""
 
     @property
-    def F_BH(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+    def F_Ho_B(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """(6,) wrench that the device showed, [τ; f], N·m and N."""
 
     @property
@@ -2209,7 +2209,7 @@ class UdpServo:
     def read(self) -> HandleState | None:
         """Returns the newest `HandleState`; None before the first."""
 
-    def publish(self, F_BH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], X_BH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_BH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], K_B: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')] | None = None, B_B: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')] | None = None) -> None:
+    def publish(self, F_Ho_B: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], X_BH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_BH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], K_B: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')] | None = None, B_B: Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')] | None = None) -> None:
         """
         Shows a local wrench from now on, as `ServoLaw.adopt` does; the first one enables the device.
         """
@@ -2236,12 +2236,12 @@ class UdpServo:
     def local_port(self) -> int:
         """Our own UDP port."""
 
-def handle_slopes(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WTool: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], coupling_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], contact_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]:
+def handle_slopes(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], coupling_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')], contact_model: Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]:
     """
     How the wrench on a handle changes with the handle's motion, the tool following at rest between coupling and contact (springs in series; Guyan, AIAA Journal 3(2), 1965).
 
     Args:
-        q_WH, q_WTool: (7,) poses [qw qx qy qz x y z] of handle and tool.
+        q_WH, q_WT: (7,) poses [qw qx qy qz x y z] of handle and tool.
         coupling_model: (78,) [F; K; B] of the coupling on the tool, at To in W.
         contact_model: (78,) the sum of all others.
 
@@ -2249,7 +2249,7 @@ def handle_slopes(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order=
         (72,): K then B by rows, at Ho in W; symmetric, no negative eigenvalue. The wrench is F − K δ − B ΔV.
     """
 
-def run_tool_loop(tool: Decomposition, objects: Sequence[Decomposition], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')], tolerance: float, dynamics: RigidToolDynamics, gains: CouplingGains, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], stiffness: float, damping: float, h: float, handle: Annotated[NDArray[numpy.float64], dict(shape=(None, 13), order='C')], start: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, 13), order='C')], Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]]:
+def run_tool_loop(tool: ConvexPieces, objects: Sequence[ConvexPieces], q_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')], tolerance: float, dynamics: RigidToolDynamics, gains: CouplingGains, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], stiffness: float, damping: float, h: float, handle: Annotated[NDArray[numpy.float64], dict(shape=(None, 13), order='C')], start: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, 13), order='C')], Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]]:
     """
     What a haptic loop without effects computes, tick after tick, without Drake and without the GIL: query, shared stiffness, penalty force, coupling, and the tool's implicit step.
 

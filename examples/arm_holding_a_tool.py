@@ -20,7 +20,7 @@ from pydrake.visualization import AddDefaultVisualization
 
 from drake_haptics import AddHapticRendering, find_mesh
 from drake_haptics.analysis import find_equilibrium, find_modes, linearize_sampled
-from drake_haptics.scene.schema import Contact
+from drake_haptics.scene.schema import ContactParameters
 
 # A ring that is fixed, and an arm whose two links turn about z; it moves a pen along z.
 MODEL = f"""
@@ -56,7 +56,7 @@ plant, scene_graph = AddMultibodyPlant(config, builder)
 Parser(plant).AddModelsFromString(MODEL, "xml")
 plant.Finalize()
 rendering = AddHapticRendering(
-    builder, plant, scene_graph, "pen", contact=Contact(stiffness_N_per_m=5e3)
+    builder, plant, scene_graph, "pen", contact=ContactParameters(stiffness_N_per_m=5e3)
 )
 controller = builder.AddSystem(
     JointStiffnessController(plant, kp=[20.0, 10.0, 200.0], kd=[2.0, 1.0, 5.0])
@@ -87,8 +87,8 @@ for name, change in [
     # Print where it comes to rest, and how it would come back to it.
     rest = find_equilibrium(diagram, root).context
     context = rendering.GetMyContextFromRoot(rest)
-    x, y, z = 1e3 * rendering.GetOutputPort("X_WTool").Eval(context)[4:]
-    force_N = np.linalg.norm(rendering.GetOutputPort("F_Tool_W").Eval(context)[3:])
+    x, y, z = 1e3 * rendering.GetOutputPort("X_WT").Eval(context)[4:]
+    force_N = np.linalg.norm(rendering.GetOutputPort("F_To_W").Eval(context)[3:])
     print(
         f"{name}: tip at ({x:.2f}, {y:.2f}, {z:.2f}) mm, pushed with {force_N:.2f} N."
     )

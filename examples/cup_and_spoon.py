@@ -11,20 +11,20 @@ from contextlib import suppress
 
 from drake_haptics import (
     BuildHapticDiagram,
+    RealTimePacer,
     RunStatistics,
-    TickClock,
     find_scene,
     load_scene,
     run,
 )
-from drake_haptics.visualization.meshcat import open_meshcat, set_stage
+from drake_haptics.visualization.meshcat import configure_camera, start_meshcat
 
-meshcat = open_meshcat()
+meshcat = start_meshcat()
 haptic = BuildHapticDiagram(load_scene(find_scene("cup_spoon")), meshcat=meshcat)
-set_stage(meshcat, haptic)
+configure_camera(meshcat, haptic)
 print(f"Open {meshcat.web_url()}; Ctrl-C ends.")
 duration_s = float(sys.argv[1]) if len(sys.argv) > 1 else None
-clock = TickClock(haptic.period_s)
+clock = RealTimePacer(haptic.period_s)
 statistics = RunStatistics(haptic.period_s, pace=clock)
 with suppress(KeyboardInterrupt):
     run(haptic, duration_s, pace=clock, statistics=statistics)

@@ -9,7 +9,7 @@ designed for device and rate alone.
 
 from drake_haptics import find_scene, load_scene
 from drake_haptics.analysis import (
-    analyse_held_scene,
+    analyze_held_scene,
     find_modes,
     hold_scene,
     suggest_coupling,
@@ -24,7 +24,7 @@ design = suggest_coupling(scene.device.preset, scene.device.rate_hz)
 print(design.describe(), "\n")
 
 for name, coupling in [("the scene's", scene.coupling), ("designed", design.coupling)]:
-    loop = analyse_held_scene(held, coupling)
+    loop = analyze_held_scene(held, coupling)
     slowest = find_modes(loop.linearization)[0]
     print(
         f"{name} coupling, {coupling.stiffness_N_per_m:.0f} N/m and"

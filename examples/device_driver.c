@@ -87,13 +87,13 @@ static int read_handle(const handle* device, dh_state* state) {
 
 /* VENDOR: set force and torque, N and N m, on the handle. Here the wrench moves
  * the handle against the spring and damper of a hand for one period. */
-static void show_wrench(handle* device, const double F_BH[6]) {
+static void show_wrench(handle* device, const double F_Ho_B[6]) {
   const double mass_kg = 0.2, spring_N_per_m = 300, damping_Ns_per_m = 5;
   int i;
   for (i = 0; i < 3; ++i) {
     const double hand_N =
         -spring_N_per_m * device->p[i] - damping_Ns_per_m * device->v[i];
-    device->v[i] += PERIOD_S * (F_BH[3 + i] + hand_N) / mass_kg;
+    device->v[i] += PERIOD_S * (F_Ho_B[3 + i] + hand_N) / mass_kg;
     device->p[i] += PERIOD_S * device->v[i];
   }
 }
@@ -179,7 +179,7 @@ static uint32_t draw_boot_number(void) {
 static void serve(int fd, handle* device, dh_gate* gate) {
   struct sockaddr_in host;
   dh_state state;
-  double F_BH[6];
+  double F_Ho_B[6];
   uint64_t next_ns = clock_ns();
   memset(&host, 0, sizeof host);
   memset(&state, 0, sizeof state);
@@ -188,13 +188,13 @@ static void serve(int fd, handle* device, dh_gate* gate) {
     wait_for_tick(&next_ns);
     receive_commands(fd, gate, &host);
     if (!read_handle(device, &state)) dh_gate_fail(gate);
-    dh_gate_step(gate, clock_ns(), state.X_BH, state.V_BH, F_BH);
-    show_wrench(device, F_BH);
+    dh_gate_step(gate, clock_ns(), state.X_BH, state.V_BH, F_Ho_B);
+    show_wrench(device, F_Ho_B);
     send_state(fd, gate, &host, &state);
   }
   /* However it ends, it ends at zero force, and the host is told. */
   dh_gate_fail(gate);
-  show_wrench(device, gate->F_BH);
+  show_wrench(device, gate->F_Ho_B);
   send_state(fd, gate, &host, &state);
 }
 

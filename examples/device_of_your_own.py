@@ -14,7 +14,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics import (
     AddHapticLoop,
-    Coupling,
+    CouplingParameters,
     DeviceBackend,
     DeviceCommand,
     DeviceReading,
@@ -24,7 +24,7 @@ from drake_haptics import (
     make_device_port,
 )
 from drake_haptics.geometry import make_tool_dynamics
-from drake_haptics.scene.schema import Contact
+from drake_haptics.scene.schema import ContactParameters
 from drake_haptics.systems import ContactObject
 
 PERIOD_S = 1e-3
@@ -37,7 +37,7 @@ class WoodOnASpring(DeviceBackend):
     def __init__(self, start_m: float, goal_m: float):
         self._goal_m = goal_m
         self._z_m, self._v_m_per_s, self._reads = start_m, 0.0, 0
-        self._F_BH = np.zeros(6)
+        self._F_Ho_B = np.zeros(6)
 
     @property
     def height_m(self) -> float:
@@ -47,7 +47,7 @@ class WoodOnASpring(DeviceBackend):
     def read(self) -> DeviceReading:
         """Returns where the handle is. Yours asks its driver."""
         spring_N = SPRING_N_PER_M * (self._goal_m - self._z_m)
-        force_N = spring_N - DAMPER_NS_PER_M * self._v_m_per_s + self._F_BH[5]
+        force_N = spring_N - DAMPER_NS_PER_M * self._v_m_per_s + self._F_Ho_B[5]
         self._v_m_per_s += PERIOD_S * force_N / MASS_KG
         self._z_m += PERIOD_S * self._v_m_per_s
         self._reads += 1
@@ -56,16 +56,16 @@ class WoodOnASpring(DeviceBackend):
             time_s=PERIOD_S * self._reads,
             X_BH=np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, self._z_m]),
             V_BH=np.array([0.0, 0.0, 0.0, 0.0, 0.0, self._v_m_per_s]),
-            F_BH=self._F_BH,
+            F_Ho_B=self._F_Ho_B,
         )
 
     def write(self, command: DeviceCommand) -> None:
         """Shows a wrench from now on. Yours tells its driver, at once."""
-        self._F_BH = command.F_BH
+        self._F_Ho_B = command.F_Ho_B
 
     def close(self) -> None:
         """Ends at zero force."""
-        self._F_BH = np.zeros(6)
+        self._F_Ho_B = np.zeros(6)
 
 
 peg = decompose(load_mesh(find_mesh("peg")))
@@ -82,8 +82,8 @@ with WoodOnASpring(start_m=top_m + 0.01, goal_m=top_m - 0.01) as wood:
         tool=peg.core,
         tool_dynamics=make_tool_dynamics(peg.mesh, 0.05),
         objects=[ContactObject("block", block.core, RigidTransform())],
-        contact=Contact(),
-        coupling=Coupling(),
+        contact=ContactParameters(),
+        coupling=CouplingParameters(),
         X_HT=RigidTransform(),
         X_WT=X_WH,
         period_s=PERIOD_S,
@@ -91,4 +91,4 @@ with WoodOnASpring(start_m=top_m + 0.01, goal_m=top_m - 0.01) as wood:
     # Of a real device also: simulator.set_target_realtime_rate(1.0)
     Simulator(builder.Build()).AdvanceTo(2.0)
     print(f"handle {1e3 * (wood.height_m - top_m):.2f} mm from the block's top,")
-    print(f"pushed out with {wood.read().F_BH[5]:.3f} N")
+    print(f"pushed out with {wood.read().F_Ho_B[5]:.3f} N")

@@ -5,8 +5,8 @@
 The peg of `torus_peg`, made rigid and held with two fingers, leans on the hole. Each
 point of the map over stiffness and damping of the coupling is computed in one of
 several processes and kept in FILE. Interrupt it and start it again: what is done is
-not done again. Pass `executor=distributed.Client(...).get_executor()` to `z_width`,
-and the same study runs on a Dask cluster (docs/studies.md).
+not done again. Pass `executor=distributed.Client(...).get_executor()` to
+`calc_z_width`, and the same study runs on a Dask cluster (docs/studies.md).
 """
 
 import sys
@@ -15,7 +15,12 @@ from pathlib import Path
 import numpy as np
 
 from drake_haptics import find_scene, load_scene
-from drake_haptics.analysis import CouplingGrowth, StudyProgress, hold_scene, z_width
+from drake_haptics.analysis import (
+    CouplingGrowth,
+    StudyProgress,
+    calc_z_width,
+    hold_scene,
+)
 
 
 def main(store: Path) -> None:
@@ -26,7 +31,7 @@ def main(store: Path) -> None:
     time_s = hold_scene(scene).time_s
     print(f"The hand stops at {time_s:.3f} s. Results are kept in {store}")
     with StudyProgress("stiffness and damping") as progress:
-        width = z_width(
+        width = calc_z_width(
             CouplingGrowth(scene, time_s),
             stiffness=np.geomspace(2e3, 3.2e4, 9),
             damping=[0.0, 2.0, 4.0],

@@ -10,9 +10,9 @@ from .arm.joint_encoder import JointEncoder as JointEncoder
 from .arm.joint_friction import JointFriction as JointFriction
 from .arm.motor_torque import MotorTorque as MotorTorque
 from .arm.simulated_arm import SimulatedArm as SimulatedArm
-from .contact.contact_advance import ContactAdvance as ContactAdvance
 from .contact.contact_clustering import ClusteringRule as ClusteringRule
 from .contact.contact_clustering import ContactClustering as ContactClustering
+from .contact.contact_extrapolator import ContactExtrapolator as ContactExtrapolator
 from .contact.contact_query import ContactObject as ContactObject
 from .contact.contact_query import ContactQuery as ContactQuery
 from .contact.force_shading import ForceShading as ForceShading
@@ -22,12 +22,12 @@ from .contact.load_shedding import TickEnd as TickEnd
 from .contact.load_shedding import TickMeter as TickMeter
 from .contact.penalty_force import ContactGains as ContactGains
 from .contact.penalty_force import PenaltyForce as PenaltyForce
-from .contact.pose_sample import PoseSample as PoseSample
+from .contact.pose_sampler import PoseSampler as PoseSampler
 from .contact.pre_contact_braking import PreContactBraking as PreContactBraking
 from .contact.stick_slip_friction import StickSlipFriction as StickSlipFriction
 from .device.device_io import DeviceIo as DeviceIo
-from .device.display_force_hold import DisplayForceHold as DisplayForceHold
 from .device.haptic_device import HapticDevice as HapticDevice
+from .device.rendered_force_hold import RenderedForceHold as RenderedForceHold
 from .device.replayed_handle import ReplayedHandle as ReplayedHandle
 from .framework.differentiable_system import (
     DifferentiableSystem as DifferentiableSystem,

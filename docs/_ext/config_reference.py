@@ -38,7 +38,7 @@ class ConfigFile:
 
     Attributes:
         schema: The dataclass that it is loaded into.
-        load: Loads one, or raises UserError.
+        load: Loads one, or raises HapticsError.
         example: One with every key, from the folder of the pages.
         find_live: Returns the keys of a loaded one that can be changed while it runs.
         is_indexed: Whether its keys are in the index; two kinds have some in common.

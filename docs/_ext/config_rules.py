@@ -14,7 +14,7 @@ from typing import Any
 
 import yaml
 
-from drake_haptics import UserError
+from drake_haptics import HapticsError
 
 # Values that many keys refuse, by the type of the value in the example.
 _WRONG: dict[type, list[Any]] = {
@@ -31,7 +31,7 @@ def find_rules(load: Callable[[Path], Any], example: Path) -> dict[str, str]:
     """Returns what the values of an example's keys must be, by path.
 
     Args:
-        load: Loads a file, or raises UserError.
+        load: Loads a file, or raises HapticsError.
         example: A file that can be loaded, with all keys of interest.
 
     Returns:
@@ -94,6 +94,6 @@ def _try(load: Callable[[Path], Any], example: Path, data: Any) -> str:
         file.write_text(yaml.safe_dump(data), encoding="utf-8")
         try:
             load(file)
-        except UserError as error:
+        except HapticsError as error:
             return str(error).removeprefix(f"{file}: ")
     return ""

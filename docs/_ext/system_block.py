@@ -7,9 +7,9 @@ The block is Drake's own, YAML under a directive, so that pydrake's tools draw i
         name: VirtualCoupling
         input_ports:
         - X_WH
-        - relief (with load shedding)
+        - load_shedding (with load shedding)
         output_ports:
-        - F_display
+        - F_Ho_W_commanded
 
 What is in parentheses says when a port is there; `<...>` stands for a part of its name.
 """

@@ -22,7 +22,7 @@ from effect_child import CORE_CALLS, EFFECTS, TICKS, WARM_UP, make_scene
 from effect_rows import make_rows
 from page_stamp import amend_page, write_page
 
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.evaluation.measuring.valgrind import count_instructions
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import make_simulator
@@ -96,7 +96,7 @@ def time_loops(effects: Sequence[str]) -> dict[str, float]:
         for effect, haptic in haptics.items():
             simulator = make_simulator(haptic)
             simulator.AdvanceTo(WARM_UP * haptic.period_s)
-            pace = TickClock(haptic.period_s)
+            pace = RealTimePacer(haptic.period_s)
             times = []
             for tick in range(WARM_UP + 1, WARM_UP + TICKS):
                 pace.wait()

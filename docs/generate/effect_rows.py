@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import (
-    Braking,
-    Contact,
-    Device,
-    Friction,
-    Gravity,
-    Passivity,
-    Shading,
+    BrakingParameters,
+    ContactParameters,
+    DeviceParameters,
+    FrictionParameters,
+    GravityParameters,
+    PassivityParameters,
+    ShadingParameters,
 )
 
 
@@ -44,9 +44,13 @@ class EffectRow:
 
 def make_rows() -> list[EffectRow]:
     """Returns all rows: first what is always there, then the effects of a scene."""
-    contact, device = Contact(), load_device_preset(Device().preset)
-    shading, friction, braking = Shading(), Friction(), Braking()
-    gravity, passivity = Gravity(), Passivity()
+    contact, device = ContactParameters(), load_device_preset(DeviceParameters().preset)
+    shading, friction, braking = (
+        ShadingParameters(),
+        FrictionParameters(),
+        BrakingParameters(),
+    )
+    gravity, passivity = GravityParameters(), PassivityParameters()
     return [
         EffectRow(
             "near-contact elastic force",

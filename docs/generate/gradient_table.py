@@ -59,7 +59,7 @@ class Pair:
     """
 
     name: str
-    make: Callable[[], tuple[_core.Decomposition, _core.Decomposition]]
+    make: Callable[[], tuple[_core.ConvexPieces, _core.ConvexPieces]]
     touch: Callable[..., np.ndarray] = touching_pose
     moves: bool = False
 
@@ -95,7 +95,7 @@ def shipped(tool: str, solid: str) -> Callable[[], tuple]:
     )
 
 
-def box_and_cut_plate() -> tuple[_core.Decomposition, _core.Decomposition]:
+def box_and_cut_plate() -> tuple[_core.ConvexPieces, _core.ConvexPieces]:
     """A box, and a plate whose top, z = 0, is cut into 50 pieces."""
     mesh = cell_mesh(product(range(10), range(5), (0,)), 0.01)
     corners = mesh.vertices[mesh.triangles]

@@ -40,19 +40,19 @@ def measure(problem: SceneProblem, share: float, cell: float) -> list[float]:
     for i, X_WO in enumerate(problem.X_WO):
         tracker.set_object_pose(i, X_WO)
     p_WO = problem.X_WO[:, :3, 3].copy()
-    V_WO, V_WTool = np.zeros((len(p_WO), 6)), np.zeros(6)
+    V_WO, V_WT = np.zeros((len(p_WO), 6)), np.zeros(6)
     gains = np.full(len(p_WO), 2000.0), np.full(len(p_WO), 4.0)
     cell_m = cell * float(np.linalg.norm(problem.tool.mesh.report.extent))
     reach_m = share * problem.tolerance_m
     rows = []
     for _ in range(REPEATS):
         tracker.reset()
-        for X_WTool in problem.motions[0]:
-            contacts = tracker.query(X_WTool, reach_m)
+        for X_WT in problem.motions[0]:
+            contacts = tracker.query(X_WT, reach_m)
             start_s = time.perf_counter()
             pushing = thin_contacts(contacts, cell_m) if cell_m else contacts
             clusters = share_stiffness(pushing, reach_m)
-            penalty_force(clusters, X_WTool[:3, 3].copy(), V_WTool, p_WO, V_WO, *gains)
+            penalty_force(clusters, X_WT[:3, 3].copy(), V_WT, p_WO, V_WO, *gains)
             rest_s = time.perf_counter() - start_s
             rows.append((len(contacts), len(clusters), contacts.query_seconds, rest_s))
     ticks = np.array(rows).reshape(REPEATS, -1, 4)

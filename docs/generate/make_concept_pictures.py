@@ -171,7 +171,7 @@ def draw_near(axes: np.ndarray) -> None:
             np.zeros(1),
         )
         distances.append(1e3 * distance)
-        forces.append(wrench.F_Tool_W[5])
+        forces.append(wrench.F_To_W[5])
     distances, forces = np.array(distances), np.array(forces)
     ax = axes[0]
     for part, color, label in (
@@ -204,7 +204,7 @@ def draw_clusters(axes: np.ndarray) -> None:
 
         def note(root, coupling=coupling, rows=rows):
             context = coupling.GetMyContextFromRoot(root)
-            force = coupling.get_display_wrench_output_port().Eval(context)[3:]
+            force = coupling.GetOutputPort("F_Ho_W_commanded").Eval(context)[3:]
             rows.append((root.get_time(), np.linalg.norm(force)))
 
         run(haptic, 2.6, on_tick=note)

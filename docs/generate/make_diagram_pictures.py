@@ -40,7 +40,7 @@ def make_graph(scene: str) -> str:
 
 
 def set_looks(graph: str) -> str:
-    """Returns a graph of Drake's with short names, colours, and in two rows.
+    """Returns a graph of Drake's with short names, colors, and in two rows.
 
     Edges are blue for motions, green for contacts and orange for wrenches. Those of
     the tool do not count for the order from left to right: its motion goes to all

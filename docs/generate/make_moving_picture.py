@@ -116,7 +116,7 @@ def _save(pictures: list[Image.Image]) -> None:
     """Writes the pictures as one, in a form that code hosts and browsers show.
 
     WebP without loss keeps text sharp, and takes hardly more than one with loss whose
-    text is not; a GIF would have 256 colours.
+    text is not; a GIF would have 256 colors.
     """
     pictures[0].save(
         _FILE,

@@ -35,7 +35,7 @@ _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "paper.md"
 BEGIN = "<!-- figures: written by docs/generate/paper_table.py -->\n"
 END = "<!-- end of figures -->\n"
-_DPI, _COLOURS = 80, 128
+_DPI, _COLORS = 80, 128
 # Heads of columns, and words of sentences, in which times are.
 _TIMED_COLUMN = re.compile(r"µs|seconds|Hz|under 1 ms|^(query|force|whole tick)$")
 _TIMED_SENTENCE = re.compile(r"µs|time (?:that )?grows|takes .* % more")
@@ -111,7 +111,7 @@ def write_pictures(evaluation: PaperEvaluation) -> None:
     for section in make_sections(evaluation):
         for picture in section.pictures:
             image = Image.open(io.BytesIO(render(picture, _DPI))).convert("RGB")
-            small = image.quantize(_COLOURS, dither=Image.Dither.NONE)
+            small = image.quantize(_COLORS, dither=Image.Dither.NONE)
             small.save(_DOCS / file_of(picture), optimize=True)
 
 

@@ -147,7 +147,7 @@ TITLES = ["solid", "motion", "gains", *(c.title for c in COLUMNS)]
 
 
 @cache
-def _solid(name: str) -> tuple[Mesh, Surface, _core.Decomposition]:
+def _solid(name: str) -> tuple[Mesh, Surface, _core.ConvexPieces]:
     path = find_mesh(name)
     if path is None:
         raise FileNotFoundError(f"the mesh {name} is not beside the repository")

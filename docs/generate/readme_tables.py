@@ -18,7 +18,7 @@ from boundary_table import to_markdown
 from page_stamp import describe_commit, make_stamp
 
 from drake_haptics import BuildHapticDiagram, find_scene, list_scenes, load_scene, run
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.evaluation.measuring.timing import describe_machine
 from drake_haptics.loop.builder import HapticDiagram
 
@@ -73,7 +73,7 @@ def make_scenes() -> str:
     for name in SCENES:
         print(name, file=sys.stderr)
         haptic = BuildHapticDiagram(load_scene(find_scene(name)))
-        pace = TickClock(haptic.period_s)
+        pace = RealTimePacer(haptic.period_s)
         figures = run(haptic, DURATION_S, pace=pace).to_dict()
         unpaced = run(haptic, DURATION_S).to_dict()
         times = [

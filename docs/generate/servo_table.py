@@ -60,8 +60,8 @@ def part_rows() -> Iterator[list[str]]:
             scheme.name,
             f"{K}",
             f"{1e3 * stall_s:.0f} ms" if stall_s else "none",
-            _millimetres(np.ptp(last)),
-            _millimetres(np.abs(run.x_m).max()),
+            _millimeters(np.ptp(last)),
+            _millimeters(np.abs(run.x_m).max()),
         ]
 
 
@@ -75,10 +75,10 @@ def stall_rows() -> Iterator[list[str]]:
 
 def _cell(scheme: Scheme, K: float, hand: tuple[float, float, float] | None) -> str:
     run = simulate(scheme, K, 100, 0.121, hand=hand)
-    return f"{_millimetres(run.calc_buzz())}, {run.calc_stale_force():.1f} N"
+    return f"{_millimeters(run.calc_buzz())}, {run.calc_stale_force():.1f} N"
 
 
-def _millimetres(length_m: float) -> str:
+def _millimeters(length_m: float) -> str:
     if length_m < BUZZ_M:
         return "still"
     # What is wilder has no figure that means anything.

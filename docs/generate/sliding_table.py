@@ -60,7 +60,7 @@ Tolerance {tolerance:g} mm, stiffness {stiffness:g} N/m, 0.1 m/s.
 
 def row(
     name: str,
-    solid: _core.Decomposition,
+    solid: _core.ConvexPieces,
     path_at: Callable[[float], np.ndarray],
     tool: str,
     height_m: float,

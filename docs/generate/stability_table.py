@@ -14,7 +14,7 @@ from pathlib import Path
 from boundary_table import to_markdown
 from page_stamp import write_page
 
-from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
+from drake_haptics.analysis.scene_stability import SceneStability, analyze_scene
 from drake_haptics.analysis.stability_page import describe_delay
 from drake_haptics.analysis.stiffness_limits import format_limit
 from drake_haptics.scene.library import find_scene
@@ -110,10 +110,10 @@ def with_tables(page: str, results: Results) -> str:
     return page
 
 
-def analyse(name: str, map_size: int = 0) -> SceneStability:
+def analyze(name: str, map_size: int = 0) -> SceneStability:
     """Returns the stability of a shipped scene at its firmest contact."""
     print(name, file=sys.stderr)
-    return analyse_scene(load_scene(find_scene(name)), map_size=map_size)
+    return analyze_scene(load_scene(find_scene(name)), map_size=map_size)
 
 
 def main() -> None:
@@ -126,7 +126,7 @@ def main() -> None:
     )
     write = parser.parse_args().write
     results = {
-        name: analyse(name, _MAP_SIZE if write and name == DRAWN else 0)
+        name: analyze(name, _MAP_SIZE if write and name == DRAWN else 0)
         for name in SCENES
     }
     page = with_tables(PAGE.read_text(encoding="utf-8"), results)

@@ -5,17 +5,17 @@ from __future__ import annotations
 from symptom_run import Case
 
 from drake_haptics.scene.schema import (
-    Encoder,
-    ForceDelay,
-    Friction,
-    Gravity,
-    HandPath,
-    Shading,
+    EncoderParameters,
+    ForceDelayParameters,
+    FrictionParameters,
+    GravityParameters,
+    HandPathParameters,
+    ShadingParameters,
     Waypoint,
 )
 
 _SPOON = [0.0, -68.0, 0.0]
-_THROUGH_WALL = HandPath(
+_THROUGH_WALL = HandPathParameters(
     waypoints=[
         Waypoint(0.0, [-0.004, 0.0, 0.034], _SPOON),
         Waypoint(0.6, [-0.020, 0.0, 0.016], _SPOON),
@@ -44,7 +44,7 @@ CASES = (
         "buzzing",
         "cup_spoon",
         _RIPPLE,
-        {"device.twin.delay": ForceDelay(20)},
+        {"device.twin.delay": ForceDelayParameters(20)},
         {COUPLING: 300.0},
         given=_STIFF,
         motion=_STOPS,
@@ -55,11 +55,11 @@ CASES = (
         "cup_spoon",
         _RIPPLE,
         {
-            "device.twin.encoder": Encoder([1e-3] * 6, velocity_window=1),
+            "device.twin.encoder": EncoderParameters([1e-3] * 6, velocity_window=1),
             "coupling.damping_Ns_per_m": 10.0,
         },
         {
-            "device.twin.encoder": Encoder([1e-3] * 6, velocity_window=8),
+            "device.twin.encoder": EncoderParameters([1e-3] * 6, velocity_window=8),
             "coupling.damping_Ns_per_m": 2.0,
         },
         motion=_STOPS,
@@ -119,7 +119,7 @@ CASES = (
         "sphere_pen",
         _JUMP,
         {"environment.max_triangles": 60},
-        {"effects.shading": Shading(60.0)},
+        {"effects.shading": ShadingParameters(60.0)},
         duration_s=4.0,
     ),
     Case(
@@ -172,7 +172,7 @@ CASES = (
         "far",
         "sphere_pen",
         "tool behind a hand at rest, mm",
-        {"effects.gravity": Gravity(), "tool.mass_kg": 0.1, COUPLING: 100.0},
+        {"effects.gravity": GravityParameters(), "tool.mass_kg": 0.1, COUPLING: 100.0},
         {COUPLING: 2000.0},
         motion=_STOPS,
         stop_s=0.0,
@@ -182,7 +182,7 @@ CASES = (
         "torus_peg",
         "way of the tool under a hand at rest, mm",
         {},
-        {"effects.friction": Friction(0.3)},
+        {"effects.friction": FrictionParameters(0.3)},
         motion=_STOPS,
         stop_s=1.05,
         duration_s=4.0,

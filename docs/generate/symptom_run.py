@@ -13,7 +13,7 @@ from pydrake.systems.framework import Context, OutputPort
 
 from drake_haptics import BuildHapticDiagram, find_scene, load_scene, run
 from drake_haptics.common.pose_vector import vector_to_pose
-from drake_haptics.scene.schema import HandPath, Scene
+from drake_haptics.scene.schema import HandPathParameters, Scene
 
 # The end of a run, in which a hand that has stopped is at rest.
 _END_S = 0.3
@@ -99,7 +99,7 @@ class Case:
     given: Mapping[str, Any] = field(default_factory=dict)
     motion: str = ""
     stop_s: float | None = None
-    path: HandPath | None = None
+    path: HandPathParameters | None = None
     duration_s: float = 2.0
 
     def make_scene(self, *, cured: bool) -> Scene:
@@ -110,7 +110,7 @@ class Case:
         if self.stop_s is not None:
             points = scene.hand.path.waypoints
             kept = [point for point in points if point.time_s <= self.stop_s]
-            scene.hand.path = HandPath(periodic=False, waypoints=kept)
+            scene.hand.path = HandPathParameters(periodic=False, waypoints=kept)
         changes = {**self.given, **self.provoked, **(self.cure if cured else {})}
         for key, value in changes.items():
             set_key(scene, key, value)
@@ -144,9 +144,9 @@ def record(scene: Scene, duration_s: float) -> Ticks:
     loop = haptic.loop
     X_HT = scene.tool.grasp.to_rigid_transform()
     coupling = loop.virtual_coupling
-    eval_handle = partial(_eval, loop.device.get_handle_pose_output_port())
-    eval_tool = partial(_eval, loop.haptic_tool.get_pose_output_port())
-    eval_wrench = partial(_eval, coupling.get_display_wrench_output_port())
+    eval_handle = partial(_eval, loop.device.GetOutputPort("X_WH"))
+    eval_tool = partial(_eval, loop.haptic_tool.GetOutputPort("X_WT"))
+    eval_wrench = partial(_eval, coupling.GetOutputPort("F_Ho_W_commanded"))
     eval_contacts = partial(_eval, loop.found_contacts)
     rows = []
 

@@ -21,7 +21,7 @@ from symptom_cases import CASES
 from symptom_run import Case
 
 from drake_haptics.scene.scene_file import write_scene
-from drake_haptics.scene.schema import Encoder
+from drake_haptics.scene.schema import EncoderParameters
 from drake_haptics.scene.validation import SceneWarning
 
 PAGE = Path(__file__).parents[2] / "docs" / "troubleshooting.md"
@@ -43,7 +43,7 @@ def _describe_value(value: Any) -> str:
     if isinstance(value, float | int | str):
         text = f"{value:g}" if isinstance(value, float) else str(value)
         return text.replace("e+0", "e")
-    if isinstance(value, Encoder):
+    if isinstance(value, EncoderParameters):
         return f"{{velocity_window: {value.velocity_window}}}, steps of 1 mrad"
     return "{" + ", ".join(f"{k}: {_describe_value(v)}" for k, v in _plain(value)) + "}"
 

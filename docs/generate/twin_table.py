@@ -20,20 +20,20 @@ from pydrake.multibody.tree import JacobianWrtVariable
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 from pydrake.systems.framework import Context
 
-from drake_haptics.analysis.held_scene import build_quietly, stop_hand
+from drake_haptics.analysis.held_scene import build_without_scene_warnings, stop_hand
 from drake_haptics.analysis.sampled_linearization import linearize_sampled
 from drake_haptics.analysis.stability_limit import calc_growth, find_stability_limit
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
-    Encoder,
-    ForceDelay,
-    HandPath,
-    JointFriction,
-    Saturation,
+    DeviceImperfections,
+    EncoderParameters,
+    ForceDelayParameters,
+    HandPathParameters,
+    JointFrictionParameters,
+    SaturationParameters,
     Scene,
-    Twin,
 )
 
 PAGE = Path(__file__).parents[2] / "docs" / "device-twin.md"
@@ -47,17 +47,26 @@ HEAD = [
     "left at 800 N/m, µm",
 ]
 TWINS = {
-    "none": Twin(),
-    "delay of 1": Twin(delay=ForceDelay(1)),
-    "delay of 2": Twin(delay=ForceDelay(2)),
-    "saturation": Twin(saturation=Saturation()),
-    "encoder, window of 1": Twin(encoder=Encoder(velocity_window=1)),
-    "encoder, window of 4": Twin(encoder=Encoder()),
-    "encoder, window of 16": Twin(encoder=Encoder(velocity_window=16)),
-    "friction": Twin(friction=JointFriction()),
-    "encoder of 4 and friction": Twin(encoder=Encoder(), friction=JointFriction()),
-    "all, with a delay of 1": Twin(
-        Encoder(), JointFriction(), ForceDelay(1), Saturation()
+    "none": DeviceImperfections(),
+    "delay of 1": DeviceImperfections(delay=ForceDelayParameters(1)),
+    "delay of 2": DeviceImperfections(delay=ForceDelayParameters(2)),
+    "saturation": DeviceImperfections(saturation=SaturationParameters()),
+    "encoder, window of 1": DeviceImperfections(
+        encoder=EncoderParameters(velocity_window=1)
+    ),
+    "encoder, window of 4": DeviceImperfections(encoder=EncoderParameters()),
+    "encoder, window of 16": DeviceImperfections(
+        encoder=EncoderParameters(velocity_window=16)
+    ),
+    "friction": DeviceImperfections(friction=JointFrictionParameters()),
+    "encoder of 4 and friction": DeviceImperfections(
+        encoder=EncoderParameters(), friction=JointFrictionParameters()
+    ),
+    "all, with a delay of 1": DeviceImperfections(
+        EncoderParameters(),
+        JointFrictionParameters(),
+        ForceDelayParameters(1),
+        SaturationParameters(),
     ),
 }
 _SCENE, _HELD_AT_S = "cup_spoon", 1.724
@@ -74,7 +83,7 @@ _CLOSE = 1.01
 _STEPS_PER_TICK = 2
 
 
-def make_scene(twin: Twin, stiffness: float) -> Scene:
+def make_scene(twin: DeviceImperfections, stiffness: float) -> Scene:
     """Returns the scene, its hand and its tool standing still."""
     scene = stop_hand(load_scene(find_scene(_SCENE)), _HELD_AT_S)
     place = replace(scene.hand.path.waypoints[-1], time_s=0.0)
@@ -83,24 +92,24 @@ def make_scene(twin: Twin, stiffness: float) -> Scene:
         tool=replace(scene.tool, mass_kg=_IMMOVABLE_KG),
         coupling=replace(scene.coupling, stiffness_N_per_m=stiffness),
         device=replace(scene.device, twin=twin),
-        hand=replace(scene.hand, path=HandPath(waypoints=[place])),
+        hand=replace(scene.hand, path=HandPathParameters(waypoints=[place])),
     )
 
 
-def find_eigenvalue_limit(twin: Twin) -> float:
+def find_eigenvalue_limit(twin: DeviceImperfections) -> float:
     """Returns the stiffness at which an eigenvalue reaches 1, NaN without any."""
     if twin.encoder is not None or twin.friction is not None:
         return math.nan
 
     def growth(stiffness: float) -> float:
-        diagram = build_quietly(make_scene(twin, stiffness)).diagram
+        diagram = build_without_scene_warnings(make_scene(twin, stiffness)).diagram
         linear = linearize_sampled(diagram, diagram.CreateDefaultContext())
         return calc_growth(linear.eigenvalues())
 
     return find_stability_limit(growth, 5e3, lowest=100.0, highest=1e6).value
 
 
-def find_simulated_limit(twin: Twin) -> float:
+def find_simulated_limit(twin: DeviceImperfections) -> float:
     """Returns the stiffness up to which a knock dies out, N/m."""
     low, high = 100.0, 1e5
     while high > _CLOSE * low:
@@ -112,9 +121,9 @@ def find_simulated_limit(twin: Twin) -> float:
     return math.sqrt(low * high)
 
 
-def measure_swing(twin: Twin, stiffness: float) -> float:
+def measure_swing(twin: DeviceImperfections, stiffness: float) -> float:
     """Returns how far the handle still moves some time after a knock, m."""
-    haptic = build_quietly(make_scene(twin, stiffness))
+    haptic = build_without_scene_warnings(make_scene(twin, stiffness))
     simulator = Simulator(haptic.diagram)
     step_s = haptic.period_s / _STEPS_PER_TICK
     ResetIntegratorFromFlags(simulator, "runge_kutta3", step_s)

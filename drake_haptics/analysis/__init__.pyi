@@ -16,7 +16,7 @@ from .felt_impedance import FeltImpedance as FeltImpedance
 from .felt_impedance import calc_felt_impedance as calc_felt_impedance
 from .held_loop import CouplingGrowth as CouplingGrowth
 from .held_loop import HeldLoop as HeldLoop
-from .held_loop import analyse_held_scene as analyse_held_scene
+from .held_loop import analyze_held_scene as analyze_held_scene
 from .held_scene import HeldScene as HeldScene
 from .held_scene import find_firmest_contact as find_firmest_contact
 from .held_scene import hold_scene as hold_scene
@@ -29,7 +29,7 @@ from .modes import Mode as Mode
 from .modes import ModeKind as ModeKind
 from .modes import find_modes as find_modes
 from .multirate import Monodromy as Monodromy
-from .multirate import monodromy as monodromy
+from .multirate import calc_monodromy as calc_monodromy
 from .passivity import Passivity as Passivity
 from .passivity import calc_passivity as calc_passivity
 from .passivity import make_spring_damper as make_spring_damper
@@ -41,7 +41,7 @@ from .sampled_wall import calc_gain_margin as calc_gain_margin
 from .sampled_wall import calc_largest_delay as calc_largest_delay
 from .sampled_wall import calc_largest_stiffness as calc_largest_stiffness
 from .scene_stability import SceneStability as SceneStability
-from .scene_stability import analyse_scene as analyse_scene
+from .scene_stability import analyze_scene as analyze_scene
 from .stability_limit import StabilityLimit as StabilityLimit
 from .stability_limit import calc_growth as calc_growth
 from .stability_limit import find_stability_limit as find_stability_limit
@@ -54,4 +54,4 @@ from .wall_bounds import calc_delay_bounds as calc_delay_bounds
 from .wall_bounds import calc_quantization_bounds as calc_quantization_bounds
 from .z_width_map import HeldBounds as HeldBounds
 from .z_width_map import ZWidth as ZWidth
-from .z_width_map import z_width as z_width
+from .z_width_map import calc_z_width as calc_z_width

@@ -25,7 +25,7 @@ from drake_haptics.bounds.sampled_spring import (
 )
 from drake_haptics.common.one_line import one_line
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
-from drake_haptics.scene.schema import Coupling
+from drake_haptics.scene.schema import CouplingParameters
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS, HandGrip
 from drake_haptics.systems.arm.simulated_arm import make_arm_plant
 
@@ -109,7 +109,7 @@ class CouplingDesign:
         rotation: Design in N·m/rad and N·m·s/rad; None for a device without torque.
     """
 
-    coupling: Coupling
+    coupling: CouplingParameters
     period_s: float
     delay_s: float
     margin: float
@@ -250,7 +250,7 @@ def suggest_coupling(
             hand,
         )
     return CouplingDesign(
-        coupling=Coupling(
+        coupling=CouplingParameters(
             translation.stiffness,
             translation.damping,
             rotation.stiffness if rotation else 0.0,

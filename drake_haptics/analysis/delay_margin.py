@@ -97,5 +97,5 @@ def find_shown_wrench(names: tuple[str, ...]) -> np.ndarray:
     delayed = [i for i, name in enumerate(names) if "force_delay" in name]
     if delayed:
         return np.array(delayed[-6:])
-    hold = [i for i, name in enumerate(names) if "display_force_hold" in name]
+    hold = [i for i, name in enumerate(names) if "rendered_force_hold" in name]
     return np.array(hold[:6])

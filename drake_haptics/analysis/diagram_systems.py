@@ -158,7 +158,7 @@ def _shift_quaternions(plant: MultibodyPlant, start: int) -> list[tuple[int, ...
     return [tuple(range(first, first + 4)) for first in sorted(starts)]
 
 
-class AutoDiffTwin:
+class AutoDiffClone:
     """A system converted to AutoDiffXd once, following contexts of the original.
 
     Attributes:

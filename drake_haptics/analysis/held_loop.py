@@ -17,7 +17,7 @@ from pydrake.systems.framework import Context
 from drake_haptics.analysis.equilibrium import find_equilibrium
 from drake_haptics.analysis.held_scene import (
     HeldScene,
-    build_quietly,
+    build_without_scene_warnings,
     hold_scene,
     to_scene_pose,
 )
@@ -34,7 +34,12 @@ from drake_haptics.analysis.stability_limit import (
 from drake_haptics.common.one_line import one_line
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.scene.schema import Coupling, HandPath, Scene, Waypoint
+from drake_haptics.scene.schema import (
+    CouplingParameters,
+    HandPathParameters,
+    Scene,
+    Waypoint,
+)
 from drake_haptics.simulation.live_values import write_live_values
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.arm.simulated_arm import (
@@ -54,11 +59,11 @@ class _Aim:
 
     X_WH: RigidTransform
     X_WP: RigidTransform
-    F_display: np.ndarray
+    F_Ho_W_commanded: np.ndarray
 
 
-def build_aimed(
-    held: HeldScene, coupling: Coupling | None = None
+def build_with_same_load(
+    held: HeldScene, coupling: CouplingParameters | None = None
 ) -> tuple[HapticDiagram, Context]:
     """Builds a held scene with other gains, the tool pressed as before.
 
@@ -81,11 +86,11 @@ def build_aimed(
     coupling = coupling or held.scene.coupling
     aim = _aim(held, coupling)
     at = to_scene_pose(aim.X_WP)
-    path = HandPath(waypoints=[Waypoint(0.0, at.position_m, at.rpy_deg)])
+    path = HandPathParameters(waypoints=[Waypoint(0.0, at.position_m, at.rpy_deg)])
     scene = replace(
         held.scene, coupling=coupling, hand=replace(held.scene.hand, path=path)
     )
-    haptic = build_quietly(scene)
+    haptic = build_without_scene_warnings(scene)
     context = haptic.diagram.CreateDefaultContext()
     context.SetTimeStateAndParametersFrom(held.context)
     # These are parameters too.
@@ -94,9 +99,9 @@ def build_aimed(
     return haptic, context
 
 
-def _aim(held: HeldScene, coupling: Coupling) -> _Aim:
+def _aim(held: HeldScene, coupling: CouplingParameters) -> _Aim:
     """Solves the springs of coupling and hand for the load on the tool."""
-    torque, force = held.F_Tool_W[:3], held.F_Tool_W[3:]
+    torque, force = held.F_To_W[:3], held.F_To_W[3:]
     X_HT = held.scene.tool.grasp.to_rigid_transform()
     X_Wheld = _stretch(
         held.X_WT,
@@ -163,8 +168,8 @@ def _set_handle(haptic: HapticDiagram, scene: Scene, root: Context, aim: _Aim) -
         raise ValueError(f"to press as before: {error}") from error
     plant.SetPositions(context, q)
     plant.SetVelocities(context, np.zeros(len(q)))
-    hold = device.GetSubsystemByName("display_force_hold")
-    shown = np.append(aim.F_display, 0.0)
+    hold = device.GetSubsystemByName("rendered_force_hold")
+    shown = np.append(aim.F_Ho_W_commanded, 0.0)
     hold.GetMyMutableContextFromRoot(root).SetDiscreteState(shown)
 
 
@@ -224,7 +229,9 @@ class HeldLoop:
 
 
 @on_one_blas_thread
-def analyse_held_scene(held: HeldScene, coupling: Coupling | None = None) -> HeldLoop:
+def analyze_held_scene(
+    held: HeldScene, coupling: CouplingParameters | None = None
+) -> HeldLoop:
     """Linearizes the loop of a held scene where its tool is pressed as it was held.
 
     Args:
@@ -234,12 +241,14 @@ def analyse_held_scene(held: HeldScene, coupling: Coupling | None = None) -> Hel
     Raises:
         ValueError: There is no equilibrium near the place, or no derivative.
     """
-    haptic, context = build_aimed(held, coupling)
+    haptic, context = build_with_same_load(held, coupling)
     context = find_equilibrium(haptic.diagram, context).context
     return HeldLoop(haptic, context, linearize_sampled(haptic.diagram, context))
 
 
-def replace_gains(coupling: Coupling, stiffness: float, damping: float) -> Coupling:
+def replace_gains(
+    coupling: CouplingParameters, stiffness: float, damping: float
+) -> CouplingParameters:
     """Returns a coupling with other gains of translation, N/m and N·s/m."""
     return replace(coupling, stiffness_N_per_m=stiffness, damping_Ns_per_m=damping)
 
@@ -248,7 +257,7 @@ def replace_gains(coupling: Coupling, stiffness: float, damping: float) -> Coupl
 class CouplingGrowth:
     """Tells for a stiffness and a damping of the coupling how a held scene's loop does.
 
-    For a `z_width`: it can be pickled, and each process holds the scene once.
+    For a `calc_z_width`: it can be pickled, and each process holds the scene once.
 
     Attributes:
         scene: The scene.
@@ -272,7 +281,7 @@ class CouplingGrowth:
         """
         held = _hold_once(self.scene, self.time_s)
         coupling = replace_gains(self.scene.coupling, stiffness, damping)
-        return {"spectral_radius": analyse_held_scene(held, coupling).growth}
+        return {"spectral_radius": analyze_held_scene(held, coupling).growth}
 
 
 # One scene at a time: a diagram that Python systems are part of is never freed.

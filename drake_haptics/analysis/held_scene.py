@@ -18,7 +18,13 @@ from drake_haptics.common.one_line import one_line
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.simulated_device import make_hand_path, place_base
-from drake_haptics.scene.schema import Coupling, HandPath, Pose, Scene, Waypoint
+from drake_haptics.scene.schema import (
+    CouplingParameters,
+    HandPathParameters,
+    Pose,
+    Scene,
+    Waypoint,
+)
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.run import RunError, make_simulator, run
 
@@ -44,7 +50,7 @@ class HeldScene:
         time_s: When the hand stops, s.
         context: Root context of the scene's diagram, at rest.
         X_WT: Pose of the tool at rest.
-        F_Tool_W: What the coupling does to the tool there (6,), [N·m; N], at its origin
+        F_To_W: What the coupling does to the tool there (6,), [N·m; N], at its origin
             in the world.
         restless_s: Times of firmer contacts, s, at which the tool did not come to rest.
     """
@@ -53,7 +59,7 @@ class HeldScene:
     time_s: float
     context: Context
     X_WT: RigidTransform
-    F_Tool_W: np.ndarray
+    F_To_W: np.ndarray
     restless_s: tuple[float, ...] = ()
 
     __repr__ = one_line
@@ -63,7 +69,7 @@ class HeldScene:
 
         A wall that does not give way is the worst that a device can feel. The coupling
         still draws the handle to where the tool is; the tool is too heavy to follow,
-        and its weight, if the scene has one, is not felt. `analyse_held_scene` gives
+        and its weight, if the scene has one, is not felt. `analyze_held_scene` gives
         the loop.
         """
         scene = replace(
@@ -99,7 +105,8 @@ def hold_scene(
 
     The way there is simulated as in a run, so that the tool touches from where it
     came. Where the scene's own coupling does not settle, softer ones are tried for
-    the way; `drake_haptics.analysis.held_loop.build_aimed` gives it its own again.
+    the way; `drake_haptics.analysis.held_loop.build_with_same_load` gives it its own
+    again.
 
     Args:
         scene: The scene to hold.
@@ -116,7 +123,7 @@ def hold_scene(
     """
     report = progress or (lambda what, share: None)
     # An equilibrium could not be found, and why is not seen in a search that fails.
-    check_conversion(build_quietly(scene).diagram)
+    check_conversion(build_without_scene_warnings(scene).diagram)
     report("looking for the firmest contact", 0.0)
     places = _find_firm_places(scene) if time_s is None else [time_s]
     coupling = scene.coupling
@@ -138,13 +145,13 @@ def hold_scene(
 
 def _find_firm_places(scene: Scene) -> list[float]:
     """Returns times at which the tool is pressed, the firmest first."""
-    haptic = build_quietly(scene)
-    F_Tool_W = haptic.diagram.GetOutputPort("F_Tool_W")
+    haptic = build_without_scene_warnings(scene)
+    F_To_W = haptic.diagram.GetOutputPort("F_To_W")
     contacts = haptic.diagram.GetOutputPort("contacts")
     pressed: list[tuple[float, float]] = []
 
     def note(root: Context) -> None:
-        firmness = float(np.linalg.norm(F_Tool_W.Eval(root)[3:]))
+        firmness = float(np.linalg.norm(F_To_W.Eval(root)[3:]))
         if firmness == 0.0:
             firmness = -contacts.Eval(root).least_distance
         pressed.append((firmness, root.get_time()))
@@ -197,7 +204,9 @@ def stop_hand(scene: Scene, time_s: float) -> Scene:
             # How fast a simulation runs here must not change what it finds.
             tick_budget_us=None,
         ),
-        hand=replace(scene.hand, path=HandPath(periodic=False, waypoints=waypoints)),
+        hand=replace(
+            scene.hand, path=HandPathParameters(periodic=False, waypoints=waypoints)
+        ),
     )
 
 
@@ -205,7 +214,7 @@ def _settle(
     scene: Scene, until_s: float
 ) -> tuple[Context, RigidTransform, np.ndarray] | None:
     """Returns where a scene's tool rests, or None where it does not in the end."""
-    haptic = build_quietly(scene)
+    haptic = build_without_scene_warnings(scene)
     simulator = make_simulator(haptic)
     try:
         simulator.AdvanceTo(until_s)
@@ -213,7 +222,7 @@ def _settle(
         return None
     coupling = haptic.loop.virtual_coupling
     context = simulator.get_context()
-    velocity = haptic.diagram.GetOutputPort("V_WTool").Eval(context)
+    velocity = haptic.diagram.GetOutputPort("V_WT").Eval(context)
     # NaN is not below either.
     if not np.abs(velocity).max() < _SETTLED_SPEED:
         return None
@@ -221,26 +230,26 @@ def _settle(
         context = find_equilibrium(haptic.diagram, context).context
     except ValueError:
         return None
-    pose = haptic.diagram.GetOutputPort("X_WTool").Eval(context)
-    model = coupling.get_wrench_model_output_port().Eval(
+    pose = haptic.diagram.GetOutputPort("X_WT").Eval(context)
+    model = coupling.GetOutputPort("wrench_model").Eval(
         coupling.GetMyContextFromRoot(context)
     )
     return context, vector_to_pose(pose), np.array(model[:6])
 
 
-def _soften(coupling: Coupling) -> Coupling:
+def _soften(coupling: CouplingParameters) -> CouplingParameters:
     """Returns softer gains: none above the defaults, or else half of all.
 
     The defaults are stable on the shipped device.
     """
-    gains, defaults = asdict(coupling), asdict(Coupling())
+    gains, defaults = asdict(coupling), asdict(CouplingParameters())
     softer = {name: min(gain, defaults[name]) for name, gain in gains.items()}
     if softer == gains:
         softer = {name: gain / 2.0 for name, gain in gains.items()}
-    return Coupling(**softer)
+    return CouplingParameters(**softer)
 
 
-def build_quietly(scene: Scene) -> HapticDiagram:
+def build_without_scene_warnings(scene: Scene) -> HapticDiagram:
     """Builds a scene; whether its coupling is stable is what is looked for."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SceneWarning)

@@ -35,7 +35,7 @@ def plot_poles(linear: PeriodMap, axes: Axes | None = None) -> Axes:
     frequency cross them. Both are labeled: ζ, and Hz.
 
     Args:
-        linear: The map from `linearize_sampled` or `monodromy`.
+        linear: The map from `linearize_sampled` or `calc_monodromy`.
         axes: The axes to draw on. Defaults to new ones.
 
     Returns:

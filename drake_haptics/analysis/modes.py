@@ -267,7 +267,7 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
     """Returns the modes of a linear map over a period.
 
     Args:
-        linear: The map from `linearize_sampled` or `monodromy`.
+        linear: The map from `linearize_sampled` or `calc_monodromy`.
 
     Returns:
         Motions first, the fastest growing or slowest dying before the others; then
@@ -275,7 +275,7 @@ def find_modes(linear: PeriodMap) -> tuple[Mode, ...]:
         is one mode.
     """
     require_kinds(
-        "linearize_sampled and monodromy make one", linear=(linear, PeriodMap)
+        "linearize_sampled and calc_monodromy make one", linear=(linear, PeriodMap)
     )
     basis, lengths = _split_quaternions(linear)
     values, left, right = eig(basis.T @ linear.A @ basis, left=True, right=True)

@@ -24,7 +24,7 @@ from drake_haptics.analysis.derivative_check import (
     move_beside,
 )
 from drake_haptics.analysis.diagram_systems import (
-    AutoDiffTwin,
+    AutoDiffClone,
     Timing,
     find_state_layout,
     find_timings,
@@ -131,7 +131,7 @@ class Monodromy(PeriodMap):
 
 @explain_drake_errors("simulating one hyperperiod with derivatives")
 @on_one_blas_thread
-def monodromy(
+def calc_monodromy(
     diagram: System,
     context: Context,
     hyperperiod_s: float | None = None,
@@ -178,7 +178,7 @@ def monodromy(
         raise ValueError("the system has no state: there is nothing to linearize")
     layout = find_state_layout(diagram)
 
-    twin = AutoDiffTwin(diagram)
+    twin = AutoDiffClone(diagram)
 
     def differentiate(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Returns the state after a hyperperiod, and its derivative."""

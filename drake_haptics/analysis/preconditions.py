@@ -117,13 +117,13 @@ def find_period(timings: Sequence[Timing], period_s: float | None) -> float:
     if len({timing.period_s for timing in timings}) > 1:
         raise ValueError(
             f"several periods, {_list_timings(timings)}: one linear map over one"
-            " period cannot hold them; use monodromy over their common period"
+            " period cannot hold them; use calc_monodromy over their common period"
         )
     late = [timing for timing in timings if timing.offset_s != 0.0]
     if late:
         raise ValueError(
             f"updates with an offset, {_list_timings(late)}: set the offset to 0, or"
-            " use monodromy"
+            " use calc_monodromy"
         )
     found = timings[0].period_s
     if period_s is not None and not math.isclose(period_s, found, rel_tol=1e-9):
@@ -196,7 +196,7 @@ def _list_timings(timings: Sequence[Timing]) -> str:
     )
 
 
-# What Drake says (1.51 to 1.58), and what it means for somebody who analyses a diagram.
+# What Drake says (1.51 to 1.58), and what it means for somebody who analyzes a diagram.
 _REASONS = (
     (
         "has_only_continuous_state",
@@ -210,7 +210,7 @@ _REASONS = (
     ),
     (
         "more than one periodic timing",
-        "the diagram updates at several rates: use monodromy",
+        "the diagram updates at several rates: use calc_monodromy",
     ),
     (
         "no periodic discrete update events",

@@ -107,9 +107,9 @@ def linearize_sampled(
 
     Raises:
         ValueError: The state is no equilibrium (see `find_equilibrium`); there are
-            several periods (see `monodromy`), offsets, abstract states, unrestricted
-            or per-step updates; a system does not convert, or loses derivatives; a
-            port is not there, abstract or open; Drake refuses otherwise.
+            several periods (see `calc_monodromy`), offsets, abstract states,
+            unrestricted or per-step updates; a system does not convert, or loses
+            derivatives; a port is not there, abstract or open; Drake refuses otherwise.
     """
     check_system_and_context(diagram, context)
     if not 0.0 < tolerance < 1.0:

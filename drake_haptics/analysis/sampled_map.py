@@ -16,7 +16,7 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics.analysis.diagram_systems import (
-    AutoDiffTwin,
+    AutoDiffClone,
     Timing,
     calc_path,
     walk_leaves,
@@ -96,7 +96,7 @@ class SampledMap:
         ]
         self._input = None if input_port is None else int(input_port.get_index())
         self._output = None if output_port is None else int(output_port.get_index())
-        self._twin: AutoDiffTwin | None = None
+        self._twin: AutoDiffClone | None = None
         self.num_continuous = self.context.num_continuous_states()
         self.x = get_state(self.context)
         self.u = np.zeros(0)
@@ -132,7 +132,7 @@ class SampledMap:
         seed = InitializeAutoDiff(np.concatenate([x, u])).ravel()
         seed_held = InitializeAutoDiff(np.concatenate([held, u])).ravel()
         n = len(x)
-        twin = self._twin = self._twin or AutoDiffTwin(self._system)
+        twin = self._twin = self._twin or AutoDiffClone(self._system)
         self._set(self._system, self.context, x, u)
         twin.follow(self.context)
         found = self._calc(twin.system, twin.context, seed[:n], seed_held[:n], seed[n:])

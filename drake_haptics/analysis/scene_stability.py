@@ -17,7 +17,7 @@ from drake_haptics.analysis.felt_impedance import calc_felt_impedance
 from drake_haptics.analysis.held_loop import (
     CouplingGrowth,
     HeldLoop,
-    analyse_held_scene,
+    analyze_held_scene,
 )
 from drake_haptics.analysis.held_scene import HeldScene, hold_scene
 from drake_haptics.analysis.modes import Mode, find_modes
@@ -30,7 +30,7 @@ from drake_haptics.analysis.stiffness_limits import (
     find_stiffness_limits,
     none_unless_finite,
 )
-from drake_haptics.analysis.z_width_map import HeldBounds, ZWidth, z_width
+from drake_haptics.analysis.z_width_map import HeldBounds, ZWidth, calc_z_width
 from drake_haptics.bounds.coupling import HeldHandle
 from drake_haptics.bounds.held_handle import calc_scene_handle, check_scene_coupling
 from drake_haptics.common.one_line import one_line
@@ -148,7 +148,7 @@ class SceneStability:
         }
 
 
-def analyse_scene(
+def analyze_scene(
     scene: Scene,
     time_s: float | None = None,
     *,
@@ -180,7 +180,7 @@ def analyse_scene(
     began_s = time.perf_counter()
     held = hold_scene(scene, time_s, progress=progress)
     held_s = time.perf_counter()
-    loop = analyse_held_scene(held)
+    loop = analyze_held_scene(held)
     point_s = time.perf_counter() - held_s
     felt = calc_felt_impedance(loop)
     passivity = calc_passivity(felt, felt.period_s)
@@ -193,7 +193,7 @@ def analyse_scene(
             # On all cores, each of which holds the scene first.
             map_s = held_s - began_s + map_size**2 * point_s / (os.cpu_count() or 1)
             what += f", about {map_s:.0f} s"
-        map_ = z_width(
+        map_ = calc_z_width(
             CouplingGrowth(scene, held.time_s),
             *_choose_grid(held.scene, limits, map_size),
             executor=executor,
@@ -266,5 +266,5 @@ def _read_contact(loop: HeldLoop) -> tuple[int, float]:
     clustering = parts.contact_clustering
     rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
     pushing = contacts.distance < rule.tolerance_m
-    wrench = diagram.GetOutputPort("F_Tool_W").Eval(root)
+    wrench = diagram.GetOutputPort("F_To_W").Eval(root)
     return int(pushing.sum()), float(np.linalg.norm(wrench[3:]))

@@ -27,7 +27,7 @@ def write_stability_page(stability: SceneStability, name: str, path: Path) -> No
     """Writes the page as one HTML file, and its picture beside it as PNG.
 
     Args:
-        stability: The result of `analyse_scene`.
+        stability: The result of `analyze_scene`.
         name: Name of the scene.
         path: Path of the HTML file; the picture has the suffix `.png` instead.
 

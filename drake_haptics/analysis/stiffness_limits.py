@@ -9,7 +9,11 @@ from typing import Any, Literal
 
 from scipy.optimize import brentq
 
-from drake_haptics.analysis.held_loop import HeldLoop, analyse_held_scene, build_aimed
+from drake_haptics.analysis.held_loop import (
+    HeldLoop,
+    analyze_held_scene,
+    build_with_same_load,
+)
 from drake_haptics.analysis.held_scene import HeldScene
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.modes import describe_motion, find_modes
@@ -18,7 +22,7 @@ from drake_haptics.analysis.stability_limit import find_stability_limit
 from drake_haptics.bounds.coupling import HeldHandle
 from drake_haptics.bounds.held_handle import calc_force_delay, calc_scene_handle
 from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
-from drake_haptics.scene.schema import Coupling
+from drake_haptics.scene.schema import CouplingParameters
 
 Kind = Literal["translation", "rotation"]
 Against = Literal["this contact", "a rigid wall"]
@@ -116,17 +120,17 @@ def find_stiffness_limits(
         held = held.against_rigid_wall()
     done = 0
 
-    def analyse(value: float) -> HeldLoop:
+    def analyze(value: float) -> HeldLoop:
         nonlocal done
         done += 1
         report(1.0 - 0.9**done)
-        return analyse_held_scene(held, _replace(held, stiffness_name, value))
+        return analyze_held_scene(held, _replace(held, stiffness_name, value))
 
     reasons: dict[float, str] = {}
 
     def growth(value: float) -> float:
         try:
-            return analyse(value).growth
+            return analyze(value).growth
         except ValueError as error:
             reasons[value] = str(error)
             return math.nan
@@ -138,12 +142,12 @@ def find_stiffness_limits(
     simulated, words = math.nan, "nothing in the range that was searched"
     if found.is_crossing:
         simulated = _find_simulated(
-            lambda value: analyse(value).measure_growth(), limit
+            lambda value: analyze(value).measure_growth(), limit
         )
-        words = describe_motion(find_modes(analyse(limit).linearization)[0])
+        words = describe_motion(find_modes(analyze(limit).linearization)[0])
     elif reasons:
         words = f"beyond it nothing can be told: {reasons[min(reasons)]}"
-    haptic, context = build_aimed(held)
+    haptic, context = build_with_same_load(held)
     handle = calc_scene_handle(held.scene, haptic.loop.device, context)
     wall = _make_wall(held, kind, handle, damping)
     report(1.0)
@@ -175,7 +179,7 @@ def _find_simulated(growth: Callable[[float], float], near: float) -> float:
         return math.nan
 
 
-def _replace(held: HeldScene, name: str, value: float) -> Coupling:
+def _replace(held: HeldScene, name: str, value: float) -> CouplingParameters:
     return replace(held.scene.coupling, **{name: value})
 
 

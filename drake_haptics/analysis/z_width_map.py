@@ -300,7 +300,7 @@ class ZWidth:
         )
 
 
-def z_width(
+def calc_z_width(
     evaluate: Callable[[float, float], Mapping[str, float]],
     stiffness: Sequence[float] | np.ndarray,
     damping: Sequence[float] | np.ndarray,

@@ -20,7 +20,7 @@ from drake_haptics.geometry.mesh.placement import (
 )
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.mesh.topology import winding_numbers
-from drake_haptics.geometry.mesh.units import METRES_PER_UNIT, guess_unit
+from drake_haptics.geometry.mesh.units import METERS_PER_UNIT, guess_unit
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.simulated_device import make_hand_path
@@ -34,7 +34,7 @@ _PLACES = 100
 _VERTICES = 16
 
 
-def question_scene(haptic: HapticDiagram) -> list[str]:
+def check_plausibility(haptic: HapticDiagram) -> list[str]:
     """Returns what is probably not meant in a scene, in sentences.
 
     Args:
@@ -80,7 +80,7 @@ def _question_size(
     unit = guess_unit(extent_m / item.scale, SMALLEST_USUAL_EXTENT_M, largest_m)
     if unit is None:
         return f"{size}; is its scale ({item.scale:g}) right?"
-    factor = METRES_PER_UNIT[unit]
+    factor = METERS_PER_UNIT[unit]
     return f"{size}; if the file is in {unit}: {key}.scale: {factor:g}"
 
 
@@ -250,10 +250,10 @@ def _calc_depths(haptic: HapticDiagram, X_WT: RigidTransform) -> list[float]:
     """
     query = haptic.loop.contact_query
     context = query.CreateDefaultContext()
-    query.get_tool_pose_input_port().FixValue(context, pose_to_vector(X_WT))
-    if query.HasInputPort("relief"):
-        query.get_relief_input_port().FixValue(context, np.ones(3))
-    contacts = query.get_contacts_output_port().Eval(context)
+    query.GetInputPort("X_WT").FixValue(context, pose_to_vector(X_WT))
+    if query.HasInputPort("load_shedding"):
+        query.GetInputPort("load_shedding").FixValue(context, np.ones(3))
+    contacts = query.GetOutputPort("contacts").Eval(context)
     depths_m = np.zeros(len(haptic.environment))
     np.maximum.at(depths_m, contacts.object_index, -contacts.distance)
     return depths_m.tolist()

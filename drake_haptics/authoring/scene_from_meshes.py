@@ -12,12 +12,12 @@ from drake_haptics.common.files import resolve_package_url
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
 from drake_haptics.geometry.mesh.placement import TouchMap, center, find_origin_beside
 from drake_haptics.geometry.mesh.report import length
-from drake_haptics.geometry.mesh.units import METRES_PER_UNIT, guess_unit
+from drake_haptics.geometry.mesh.units import METERS_PER_UNIT, guess_unit
 from drake_haptics.scene.schema import (
-    Contact,
+    ContactParameters,
     EnvironmentObject,
-    Hand,
-    HandPath,
+    HandParameters,
+    HandPathParameters,
     Pose,
     Scene,
     Tool,
@@ -27,7 +27,7 @@ from drake_haptics.systems.arm.hand_impedance import NOMINAL_GRIP
 
 _PRESS_N = 2.0
 _LARGEST_TOOL_M = 1.0
-# Beyond, coordinates are too coarse for contacts of micrometres.
+# Beyond, coordinates are too coarse for contacts of micrometers.
 _LARGEST_ENVIRONMENT_M = 1e3
 _SMALLEST_EXTENT_M = 2e-3
 # The path keeps well inside a workspace of 12 cm radius.
@@ -38,7 +38,7 @@ _LARGEST_RISE_M = 0.03
 _CIRCLE_POINTS = 16
 _APPROACH_S = 1.5
 _CIRCLE_STEP_S = 0.4
-# What nobody feels is left out of a scene that people read: a nanometre, a microsecond.
+# What nobody feels is left out of a scene that people read: a nanometer, a microsecond.
 _DECIMALS_M = 9
 _DECIMALS_S = 6
 
@@ -60,8 +60,8 @@ def make_scene_for_meshes(
     Args:
         tool_path: Mesh of the tool.
         environment_path: Mesh of what it meets.
-        tool_scale: Metres per unit of the tool's file.
-        environment_scale: Metres per unit of the environment's file.
+        tool_scale: Meters per unit of the tool's file.
+        environment_scale: Meters per unit of the environment's file.
 
     Raises:
         SceneError: The tool does not fit into the device's workspace.
@@ -88,7 +88,8 @@ def make_scene_for_meshes(
     grip_point = tip.copy()
     grip_point[2] = (tool.vertices[:, 2].min() + tool.vertices[:, 2].max()) / 2.0
     tolerance = min(
-        Contact().tolerance_m, 0.02 * min(map(_calc_diagonal, (tool, environment)))
+        ContactParameters().tolerance_m,
+        0.02 * min(map(_calc_diagonal, (tool, environment))),
     )
     return Scene(
         description=f"{tool_path.name} scrapes {environment_path.name}",
@@ -105,8 +106,8 @@ def make_scene_for_meshes(
                 scale=environment_scale,
             )
         ],
-        contact=Contact(tolerance_m=float(f"{tolerance:.2g}")),
-        hand=Hand(grip="nominal", path=_make_path(tool, environment, tip)),
+        contact=ContactParameters(tolerance_m=float(f"{tolerance:.2g}")),
+        hand=HandParameters(grip="nominal", path=_make_path(tool, environment, tip)),
     )
 
 
@@ -121,7 +122,7 @@ def _check_extent(
     hint = (
         ""
         if unit is None
-        else f". If {path.name} is in {unit}: {name}_scale={METRES_PER_UNIT[unit]:g}"
+        else f". If {path.name} is in {unit}: {name}_scale={METERS_PER_UNIT[unit]:g}"
     )
     raise SceneError(
         f"the {name} {path.name} is {length(extent)} long, and must be between"
@@ -153,7 +154,7 @@ def _find_place(environment: Mesh) -> np.ndarray:
     return centroid[distance.argmin(), :2]
 
 
-def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPath:
+def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPathParameters:
     """Returns a path that comes down, goes round pressing, and goes up again."""
     place = _find_place(environment) - tip[:2]
     radius = min(_LARGEST_CIRCLE_M, 0.2 * min(environment.report.extent[:2]))
@@ -181,7 +182,7 @@ def _make_path(tool: Mesh, environment: Mesh, tip: np.ndarray) -> HandPath:
     ]
     end = round(float(times[-1]) + _APPROACH_S, _DECIMALS_S)
     start = _round_position(above)
-    return HandPath(
+    return HandPathParameters(
         periodic=True,
         waypoints=[
             Waypoint(0.0, start),

@@ -20,7 +20,7 @@ _EFFECTS = {
 }
 
 
-def find_tick_relief(parts: Iterable[Part], scene: Scene) -> str | None:
+def suggest_speedup(parts: Iterable[Part], scene: Scene) -> str | None:
     """Returns which key helps most where the ticks of a run take too long.
 
     Args:

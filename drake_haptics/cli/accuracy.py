@@ -18,7 +18,7 @@ from drake_haptics.cli import lessons
 from drake_haptics.cli.completion import complete_knob, complete_scene
 from drake_haptics.cli.console import make_console, progress_bar
 from drake_haptics.cli.endings import ExitCode, naming
-from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     FiniteRange,
     json_option,
@@ -29,7 +29,7 @@ from drake_haptics.cli.options import (
     write_call,
     write_json,
 )
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.accuracy.budget import (
     RUNS,
     BudgetChoice,
@@ -132,7 +132,7 @@ _FILE: dict[str, Any] = {
 }
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.ACCURACY)
+@click.command(cls=CommandWithExamples, lesson=lessons.ACCURACY)
 @click.argument("scene", default="cup_spoon", shell_complete=complete_scene)
 @click.option(
     "--quick",
@@ -249,7 +249,7 @@ def _errors_in_a_line() -> Iterator[None]:
     try:
         yield
     except (ValueError, RunError, StudyError) as error:
-        raise UserError(str(error)) from error
+        raise HapticsError(str(error)) from error
 
 
 def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None:
@@ -263,10 +263,10 @@ def _find_settings(scene: Scene, words: tuple[str, ...]) -> list[Setting] | None
 
 
 def _require_measured(study: AccuracyStudy, settings: list[Setting]) -> None:
-    """Raises UserError where the one requested setting could not be measured."""
+    """Raises HapticsError where the one requested setting could not be measured."""
     for row in study.rows:
-        if row.setting in settings and row.why_not:
-            raise UserError(f"--only: {name_setting(row)}: {row.why_not}")
+        if row.setting in settings and row.failure_reason:
+            raise HapticsError(f"--only: {name_setting(row)}: {row.failure_reason}")
 
 
 def _show_study(study: AccuracyStudy, page: Path | None, json_file: str | None) -> None:

@@ -9,7 +9,7 @@ from rich.table import Table as RichTable
 
 from drake_haptics.cli import lessons
 from drake_haptics.cli.console import make_console, progress_bar
-from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import json_option, meshes_option, write_json
 from drake_haptics.evaluation.benchmark.benchmark import (
     PARTS,
@@ -23,7 +23,7 @@ from drake_haptics.evaluation.benchmark.benchmark import (
 )
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.BENCH)
+@click.command(cls=CommandWithExamples, lesson=lessons.BENCH)
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
 @click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
 @meshes_option("Take the scenes' meshes from here where it has them")

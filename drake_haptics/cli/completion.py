@@ -10,9 +10,9 @@ import click
 from click.shell_completion import CompletionItem, get_completion_class
 
 from drake_haptics.cli import lessons
-from drake_haptics.cli.lessons import TaughtCommand
-from drake_haptics.common.errors import UserError
-from drake_haptics.geometry.mesh.units import METRES_PER_UNIT
+from drake_haptics.cli.lessons import CommandWithExamples
+from drake_haptics.common.errors import HapticsError
+from drake_haptics.geometry.mesh.units import METERS_PER_UNIT
 
 _ADDRESSES = {
     "udp://127.0.0.1:7400": "a driver, as `drake-haptics device` is one",
@@ -57,7 +57,7 @@ def complete_unit(
     _: click.Context, __: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Completes length units."""
-    return _complete(METRES_PER_UNIT, incomplete)
+    return _complete(METERS_PER_UNIT, incomplete)
 
 
 def complete_setting(
@@ -107,7 +107,7 @@ _HOW = {
 }
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.COMPLETION)
+@click.command(cls=CommandWithExamples, lesson=lessons.COMPLETION)
 @click.argument("shell", type=click.Choice(list(_HOW)), required=False)
 def completion(shell: str | None) -> None:
     """Print what lets the Tab key complete commands, options and scenes.
@@ -118,7 +118,7 @@ def completion(shell: str | None) -> None:
     shell = shell or Path(os.environ.get("SHELL", "")).name
     kind = get_completion_class(shell)
     if shell not in _HOW or kind is None:
-        raise UserError(f"no completion for '{shell}': name {', '.join(_HOW)}")
+        raise HapticsError(f"no completion for '{shell}': name {', '.join(_HOW)}")
     root = click.get_current_context().find_root().command
     script = kind(root, {}, _PROGRAM, "_DRAKE_HAPTICS_COMPLETE").source()
     click.echo(f"# For good, {_HOW[shell]}")

@@ -17,7 +17,7 @@ from typing import Any
 
 import click
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 
 
 class ExitCode(IntEnum):
@@ -107,7 +107,7 @@ def _describe(error: BaseException) -> click.ClickException:
     if isinstance(error, KeyboardInterrupt):
         # Work that is kept says how to go on.
         return _Interrupted(str(error) or "Stopped.")
-    if isinstance(error, UserError):
+    if isinstance(error, HapticsError):
         return click.ClickException(str(error))
     if isinstance(error, OSError) and error.errno is not None:
         return click.ClickException(_describe_refusal(error))
@@ -160,12 +160,12 @@ def naming(option: str) -> Iterator[None]:
         option: The option as the user gives it, or several.
 
     Raises:
-        UserError: The library raised one, whose words name no option.
+        HapticsError: The library raised one, whose words name no option.
     """
     try:
         yield
-    except UserError as error:
-        raise UserError(f"{option}: {error}") from error
+    except HapticsError as error:
+        raise HapticsError(f"{option}: {error}") from error
 
 
 @contextmanager

@@ -42,7 +42,7 @@ class Lesson:
                     formatter.write_text(text)
 
 
-class TaughtCommand(click.Command):
+class CommandWithExamples(click.Command):
     """A command whose `--help` ends with a lesson.
 
     Args:

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from drake_haptics.cli import lessons
 from drake_haptics.cli.console import make_console
-from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import json_option, write_json
 from drake_haptics.scene.device_preset import (
     DevicePreset,
@@ -20,7 +20,7 @@ from drake_haptics.scene.library import list_scenes
 from drake_haptics.scene.scene_file import load_scene
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.SCENES)
+@click.command(cls=CommandWithExamples, lesson=lessons.SCENES)
 def scenes() -> None:
     """List the scenes that are included."""
     table = Table(box=None, header_style="bold", pad_edge=False)
@@ -37,7 +37,7 @@ def scenes() -> None:
 _WIDTH = 80
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.DEVICES)
+@click.command(cls=CommandWithExamples, lesson=lessons.DEVICES)
 @json_option
 def devices(json_file: str | None) -> None:
     """List the devices whose limits are included.

@@ -14,7 +14,7 @@ from drake_haptics.cli import lessons
 from drake_haptics.cli.completion import complete_scene
 from drake_haptics.cli.console import make_console, progress_bar
 from drake_haptics.cli.endings import ExitCode
-from drake_haptics.cli.lessons import LazyGroup, Lesson, TaughtCommand
+from drake_haptics.cli.lessons import CommandWithExamples, LazyGroup, Lesson
 from drake_haptics.cli.options import (
     json_option,
     require_folder,
@@ -23,7 +23,7 @@ from drake_haptics.cli.options import (
     set_values,
     write_json,
 )
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.one_line import count
 from drake_haptics.tick_log.csv_export import write_csv
 from drake_haptics.tick_log.log_diff import LogDiff, compare_logs
@@ -122,7 +122,7 @@ def print_diff(diff: LogDiff, period_s: float) -> None:
         console.print(f"Equal to the last bit: {', '.join(equal)}", style="dim")
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.LOG_INFO)
+@click.command(cls=CommandWithExamples, lesson=lessons.LOG_INFO)
 @click.argument("file", type=click.Path(path_type=Path))
 @json_option
 def info(file: Path, json_file: str | None) -> None:
@@ -172,7 +172,7 @@ def _print_summary(file: Path, summary: LogSummary) -> None:
         console.print("complete", style="dim")
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.LOG_REPLAY)
+@click.command(cls=CommandWithExamples, lesson=lessons.LOG_REPLAY)
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("scene", required=False, shell_complete=complete_scene)
 @set_option
@@ -207,7 +207,9 @@ def replay(
         log = read_tick_log(file, show)
     warn_of_gaps(file, log.describe_gaps())
     if out is not None and out.exists() and os.path.samefile(out, file):
-        raise UserError(f"--log: {out} is the log that is replayed; give another file")
+        raise HapticsError(
+            f"--log: {out} is the log that is replayed; give another file"
+        )
     if scene is None:
         for mesh in find_changed_meshes(log.header):
             click.secho(
@@ -234,7 +236,7 @@ def replay(
         click.echo(f"Wrote {out}.")
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.LOG_DIFF)
+@click.command(cls=CommandWithExamples, lesson=lessons.LOG_DIFF)
 @click.argument("a", type=click.Path(path_type=Path))
 @click.argument("b", type=click.Path(path_type=Path))
 @click.option(
@@ -266,7 +268,7 @@ def diff(
         try:
             plot_diff(*logs, names=(a.name, b.name), path=plot)
         except ValueError as error:  # The ending stands for no kind of picture.
-            raise UserError(f"--plot: {error}") from error
+            raise HapticsError(f"--plot: {error}") from error
     if json_file is not None:
         write_json(difference.to_dict(), json_file)
     if json_file != "-":
@@ -277,7 +279,7 @@ def diff(
         ctx.exit(ExitCode.NO)
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.LOG_CSV)
+@click.command(cls=CommandWithExamples, lesson=lessons.LOG_CSV)
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
     "--out",
@@ -296,7 +298,7 @@ def csv(file: Path, out: str | None) -> None:
         out = f"{file.stem}.csv"
         require_writable(Path(out), "--out")
     if os.path.exists(out) and os.path.exists(file) and os.path.samefile(out, file):
-        raise UserError(f"--out: {out} is the log itself; give another file")
+        raise HapticsError(f"--out: {out} is the log itself; give another file")
     reader = TickLogReader(file)
     try:
         with (

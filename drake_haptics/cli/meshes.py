@@ -10,7 +10,7 @@ import click
 from drake_haptics.cli import lessons
 from drake_haptics.cli.console import describe_page, make_console, progress_bar
 from drake_haptics.cli.endings import naming
-from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     FiniteRange,
     json_option,
@@ -31,7 +31,7 @@ from drake_haptics.geometry.mesh.mesh import Mesh, MeshError
 from drake_haptics.geometry.mesh.report import Severity, length
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.CHECK)
+@click.command(cls=CommandWithExamples, lesson=lessons.CHECK)
 @click.argument("mesh", type=click.Path())
 @unit_options
 @max_triangles_option
@@ -57,7 +57,7 @@ def check(
         raise MeshError(report.refusal)
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.DECOMPOSE)
+@click.command(cls=CommandWithExamples, lesson=lessons.DECOMPOSE)
 @click.argument("mesh", type=click.Path())
 @unit_options
 @max_triangles_option

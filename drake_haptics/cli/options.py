@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from drake_haptics.cli.completion import complete_setting, complete_unit
-from drake_haptics.common.errors import SceneError, UserError
+from drake_haptics.common.errors import HapticsError, SceneError
 from drake_haptics.geometry.mesh.decimation import decimate
 from drake_haptics.geometry.mesh.mesh import Mesh, load_mesh
-from drake_haptics.geometry.mesh.units import METRES_PER_UNIT
+from drake_haptics.geometry.mesh.units import METERS_PER_UNIT
 
 if TYPE_CHECKING:
     from drake_haptics.scene.schema import Scene
@@ -63,7 +63,7 @@ def unit_option(what: str) -> Callable[[_Function], _Function]:
         "--unit",
         metavar="UNIT",
         shell_complete=complete_unit,
-        help=f"Length unit of {what}: {', '.join(METRES_PER_UNIT)}.  [default: m]",
+        help=f"Length unit of {what}: {', '.join(METERS_PER_UNIT)}.  [default: m]",
     )
 
 
@@ -117,7 +117,7 @@ def require_folder(
     """Returns the file of an option, so that no result is computed for nowhere.
 
     Raises:
-        UserError: The file cannot be written, see `require_writable`.
+        HapticsError: The file cannot be written, see `require_writable`.
     """
     if file is not None and str(file) != "-":
         require_writable(Path(file), option.opts[0])
@@ -132,13 +132,13 @@ def require_writable(path: Path, option: str) -> None:
         option: The option that names it.
 
     Raises:
-        UserError: There is no such folder, or nothing can be written there.
+        HapticsError: There is no such folder, or nothing can be written there.
     """
     folder = path.absolute().parent
     if not folder.is_dir():
-        raise UserError(f"{option}: there is no folder {path.parent}")
+        raise HapticsError(f"{option}: there is no folder {path.parent}")
     if reason := _try_to_open(path):
-        raise UserError(
+        raise HapticsError(
             f"{option}: {path} cannot be written ({reason}); name a file in a folder of"
             " yours"
         )
@@ -203,7 +203,7 @@ def load_set_scene(scene: str, settings: Sequence[str]) -> Scene:
 
     Raises:
         SceneError: There is no such scene, or it cannot be used.
-        UserError: A setting is not possible, see `set_values`.
+        HapticsError: A setting is not possible, see `set_values`.
     """
     from drake_haptics.scene.library import find_scene
     from drake_haptics.scene.scene_file import load_scene
@@ -215,7 +215,7 @@ def set_values(scene: Scene, settings: Sequence[str]) -> Scene:
     """Returns a scene with what --set changes; the same one where that is nothing.
 
     Raises:
-        UserError: It is no key, or an impossible value.
+        HapticsError: It is no key, or an impossible value.
     """
     from drake_haptics.scene.settings import change_scene
 
@@ -224,7 +224,7 @@ def set_values(scene: Scene, settings: Sequence[str]) -> Scene:
     try:
         return change_scene(scene, settings)
     except SceneError as error:
-        raise UserError(f"--set {error}") from error
+        raise HapticsError(f"--set {error}") from error
 
 
 def write_call(command: str, scene: str, settings: Sequence[str]) -> str:

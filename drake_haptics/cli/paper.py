@@ -11,7 +11,7 @@ from rich.table import Table as RichTable
 
 from drake_haptics.cli import lessons
 from drake_haptics.cli.console import make_console, progress_bar
-from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     json_option,
     meshes_option,
@@ -44,7 +44,7 @@ _STYLES = {
 _ANY_WIDTH = 1000
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.PAPER)
+@click.command(cls=CommandWithExamples, lesson=lessons.PAPER)
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
 @click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
 @meshes_option("Measure these meshes too, as many as there are")

@@ -9,20 +9,20 @@ import click
 
 from drake_haptics.cli import lessons
 from drake_haptics.cli.completion import complete_address, complete_file, complete_scene
-from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     FiniteRange,
     require_folder,
     set_option,
     unit_option,
 )
-from drake_haptics.common.errors import UserError
-from drake_haptics.geometry.mesh.units import metres_per_unit
+from drake_haptics.common.errors import HapticsError
+from drake_haptics.geometry.mesh.units import meters_per_unit
 
 _EXPLAINED_S = 2.0
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.RUN)
+@click.command(cls=CommandWithExamples, lesson=lessons.RUN)
 @click.argument("scene", required=False, shell_complete=complete_scene)
 @click.option(
     "--tool",
@@ -150,7 +150,7 @@ def run(
         raise click.UsageError("give either SCENE or --tool and --environment")
     if write_scene is not None and _is_same(scene, write_scene):
         # Its comments would be gone.
-        raise UserError(
+        raise HapticsError(
             f"--write-scene: {write_scene} is the scene that runs; give another file"
         )
     if explain:
@@ -163,8 +163,8 @@ def run(
             scene,
             tool,
             environment,
-            tool_scale or metres_per_unit(unit, None),
-            environment_scale or metres_per_unit(unit, None),
+            tool_scale or meters_per_unit(unit, None),
+            environment_scale or meters_per_unit(unit, None),
             settings,
         ),
         device=device,

@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from drake_haptics.authoring.scene_from_meshes import make_scene_for_meshes
-from drake_haptics.authoring.speedup import find_tick_relief
+from drake_haptics.authoring.speedup import suggest_speedup
 from drake_haptics.cli.console import describe_page, make_console
 from drake_haptics.cli.endings import ExitCode, lasting_interrupt, naming
 from drake_haptics.cli.options import (
@@ -24,13 +24,17 @@ from drake_haptics.cli.options import (
 )
 from drake_haptics.cli.run_session import PageOptions, run_session
 from drake_haptics.cli.status_line import describe_fault, make_summary
-from drake_haptics.common.errors import SceneError, UserError
+from drake_haptics.common.errors import HapticsError, SceneError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.scene_file import write_scene
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.profiling import Part
 from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
-from drake_haptics.visualization.meshcat import open_meshcat, set_stage, write_recording
+from drake_haptics.visualization.meshcat import (
+    configure_camera,
+    start_meshcat,
+    write_recording,
+)
 from drake_haptics.web.link import open_page_port
 
 
@@ -83,7 +87,7 @@ def choose_scene(
     """Returns the scene that the arguments of `run` name, and a name for it.
 
     Raises:
-        UserError: There is no such scene, or --set cannot change it so.
+        HapticsError: There is no such scene, or --set cannot change it so.
     """
     if scene is not None:
         return load_set_scene(scene, settings), Path(scene).stem
@@ -112,7 +116,7 @@ def _refuse_settings_of_meshes(settings: Sequence[str]) -> None:
     for setting in settings:
         key = setting.partition("=")[0]
         if option := _MESH_OPTIONS.get(key):
-            raise UserError(
+            raise HapticsError(
                 f"--set {key}: give {option} instead; the hand's path is made for it"
             )
 
@@ -135,25 +139,27 @@ def run_scene(
     """Runs a scene as the options of `run` say, and prints what came of it.
 
     Raises:
-        UserError: Two files are one.
+        HapticsError: Two files are one.
         click.ClickException: The simulation became unstable, or the device is at fault
             at the end.
     """
     written = (record, log, scene_file, json_file)
     files = [Path(file).absolute() for file in written if file]
     if len(set(files)) < len(files):
-        raise UserError(
+        raise HapticsError(
             "--record, --log, --write-scene and --json: each needs a file of its own"
         )
     if log is not None and device == f"replay:{log}":
-        raise UserError(f"--log: {log} is the log that is replayed; give another file")
+        raise HapticsError(
+            f"--log: {log} is the log that is replayed; give another file"
+        )
     console = make_console(stderr=json_file == "-")
     page = None
     if not headless:
         locked = _explain_lock({"--record": record, "--log": log, "--json": json_file})
         views = SHOWN_AT_FIRST | {"pieces"} if pieces else SHOWN_AT_FIRST
         page = PageOptions(_open_page(port), name, locked, views)
-    meshcat = None if headless and record is None else open_meshcat()
+    meshcat = None if headless and record is None else start_meshcat()
     # Also while the report is written: a second Ctrl-C must not lose it.
     with lasting_interrupt() as check_interrupt:
         session = run_session(
@@ -178,7 +184,7 @@ def run_scene(
             console.print(make_parts_table(session.parts))
             speed = session.figures["skin_speed_m_per_s"]
             console.print(describe_skin(speed), soft_wrap=True, markup=False)
-            relief = find_tick_relief(session.parts, session.scene)
+            relief = suggest_speedup(session.parts, session.scene)
             if relief is not None:
                 console.print(relief, soft_wrap=True, markup=False)
         if record is not None:
@@ -230,7 +236,7 @@ def _prepare(
 ) -> None:
     """Sets the stage and says where it is to be seen."""
     if meshcat is not None:
-        set_stage(meshcat, haptic)
+        configure_camera(meshcat, haptic)
     visualizer = haptic.visualizer
     if visualizer is not None and pieces:
         visualizer.Show("pieces", True)

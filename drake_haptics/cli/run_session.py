@@ -18,7 +18,7 @@ from pydrake.systems.framework import Context
 from rich.console import Console
 from rich.progress import Progress, TaskID
 
-from drake_haptics.authoring.plausibility import question_scene
+from drake_haptics.authoring.plausibility import check_plausibility
 from drake_haptics.cli.endings import warn
 from drake_haptics.cli.live_line import ChangeLog
 from drake_haptics.cli.options import name_scale_options
@@ -26,10 +26,10 @@ from drake_haptics.cli.status_line import StatusLine, describe_held
 from drake_haptics.cockpit.cockpit_run import CockpitRun
 from drake_haptics.cockpit.holding import (
     ForceOnRequest,
-    TakenDevice,
+    SoftStartDevice,
     take_device,
 )
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import DeviceBackend, DeviceError
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.open_device import NoPageError, open_device
@@ -81,7 +81,7 @@ def build_scene(
     # Only now, when the bar is gone.
     for warning in caught:
         warn(str(warning.message))
-    for question in question_scene(haptic):
+    for question in check_plausibility(haptic):
         warn(name_scale_options(question))
     return haptic
 
@@ -208,7 +208,7 @@ def run_session(
             haptic = build_scene(console, scene, meshcat, backend, recorder)
         prepare(haptic, None if cockpit is None else cockpit.url)
         is_paced = cockpit is not None or backend is not None
-        pace = TickClock(haptic.period_s) if is_paced else None
+        pace = RealTimePacer(haptic.period_s) if is_paced else None
         status = StatusLine(console, haptic, pace)
         stack.enter_context(status)
         onlookers = _Onlookers(check_interrupt, status, timer)
@@ -304,7 +304,7 @@ class _Onlookers:
             if haptic.backend is not None:
                 self._watch = DeviceWatch(haptic.backend, is_enter_pressed)
         waiting = None
-        if isinstance(haptic.backend, TakenDevice):
+        if isinstance(haptic.backend, SoftStartDevice):
             waiting = ForceOnRequest(haptic.backend, is_enter_pressed)
         looking = (self._status, self._watch, waiting, self._timer)
         self._ends = [part.end_tick for part in looking if part is not None]

@@ -8,7 +8,7 @@ import click
 from rich.table import Table
 
 from drake_haptics.analysis.jobs.study import StudyError
-from drake_haptics.analysis.scene_stability import SceneStability, analyse_scene
+from drake_haptics.analysis.scene_stability import SceneStability, analyze_scene
 from drake_haptics.analysis.stability_page import (
     describe_delay,
     describe_restless,
@@ -20,7 +20,7 @@ from drake_haptics.analysis.stiffness_limits import format_limit
 from drake_haptics.cli import lessons
 from drake_haptics.cli.completion import complete_scene
 from drake_haptics.cli.console import make_console, progress_bar
-from drake_haptics.cli.lessons import TaughtCommand
+from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     FiniteRange,
     json_option,
@@ -30,12 +30,12 @@ from drake_haptics.cli.options import (
     set_option,
     write_json,
 )
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.report.page import check_page_path
 from drake_haptics.simulation.run import RunError
 
 
-@click.command(cls=TaughtCommand, lesson=lessons.STABILITY)
+@click.command(cls=CommandWithExamples, lesson=lessons.STABILITY)
 @click.argument("scene", shell_complete=complete_scene)
 @click.option(
     "--at",
@@ -95,14 +95,14 @@ def stability(
     try:
         check_page_path(path)
         with progress_bar() as show:
-            result = analyse_scene(
+            result = analyze_scene(
                 chosen, time_s, map_size=map_size, store=store, progress=show
             )
     except (ValueError, RunError, StudyError) as error:
         words = str(error)
         if words.startswith("time_s "):  # of the function, as which --at is given
             words = f"--at {words.removeprefix('time_s ')}"
-        raise UserError(words) from error
+        raise HapticsError(words) from error
     write_stability_page(result, Path(scene).stem, path)
     if json_file is not None:
         write_json(result.to_dict(), json_file)

@@ -13,9 +13,9 @@ from rich.console import Console
 from rich.table import Table
 
 from drake_haptics.cli.live_line import LiveLine
-from drake_haptics.cockpit.holding import TakenDevice
+from drake_haptics.cockpit.holding import SoftStartDevice
 from drake_haptics.common.one_line import count
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceReading,
@@ -24,7 +24,7 @@ from drake_haptics.device.backend import (
 )
 from drake_haptics.device.driver import DeviceDriver
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.simulation.device_monitor import SILENT_S, DriverSilence
+from drake_haptics.simulation.device_monitor import SILENT_S, SilenceMonitor
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
 
 _STYLES = {
@@ -58,7 +58,7 @@ def describe_held(backend: DeviceBackend | None, reading: DeviceReading | None) 
         backend: The device that is held.
         reading: Its newest reading.
     """
-    waits = isinstance(backend, TakenDevice) and backend.waits
+    waits = isinstance(backend, SoftStartDevice) and backend.waits
     if waits and reading is not None and reading.gate == GateState.IDLE:
         return (
             "[yellow]WAITING: lead the handle to where the tool can follow;"
@@ -125,7 +125,7 @@ class StatusLine(LiveLine):
         self,
         console: Console,
         haptic: HapticDiagram,
-        pace: TickClock | None = None,
+        pace: RealTimePacer | None = None,
         clock: Callable[[], float] = time.perf_counter,
     ):
         super().__init__(console, self._make_run_line, clock)
@@ -133,7 +133,7 @@ class StatusLine(LiveLine):
         self._pace = pace
         self._context: Context | None = None
         self._before_s = 0.0
-        self._silence = DriverSilence()
+        self._silence = SilenceMonitor()
 
     def follow(self, haptic: HapticDiagram) -> None:
         """Tells from now on of another diagram, with which the run goes on."""
@@ -203,13 +203,13 @@ class StatusLine(LiveLine):
         found = loop.found_contacts
         contacts = found.Eval(found.get_system().GetMyContextFromRoot(context))
         clustering = loop.contact_clustering.GetMyContextFromRoot(context)
-        clusters = loop.contact_clustering.get_clusters_output_port().Eval(clustering)
+        clusters = loop.contact_clustering.GetOutputPort("clusters").Eval(clustering)
         device = loop.device.GetMyContextFromRoot(context)
-        F_applied = loop.device.get_applied_wrench_output_port().Eval(device)
+        F_Ho_W_rendered = loop.device.GetOutputPort("F_Ho_W_rendered").Eval(device)
         deepest_mm = 1e3 * max(0.0, -contacts.distance.min(initial=0.0))
         return (
-            f"[bold]{np.linalg.norm(F_applied[3:]):4.1f} N[/]"
-            f" {1e3 * np.linalg.norm(F_applied[:3]):4.0f} mN·m",
+            f"[bold]{np.linalg.norm(F_Ho_W_rendered[3:]):4.1f} N[/]"
+            f" {1e3 * np.linalg.norm(F_Ho_W_rendered[:3]):4.0f} mN·m",
             f"{deepest_mm:4.2f} mm deep",
             f"{count(len(contacts), 'contact')}, {count(len(clusters), 'cluster')}",
         )
@@ -348,8 +348,8 @@ class DriverStatusLine(LiveLine):
         return " · ".join(
             [
                 describe_gate(reading, DRIVER_REMEDY),
-                f"[bold]{math.hypot(*reading.F_BH[3:]):4.1f} N[/]"
-                f" {1e3 * math.hypot(*reading.F_BH[:3]):4.0f} mN·m",
+                f"[bold]{math.hypot(*reading.F_Ho_B[3:]):4.1f} N[/]"
+                f" {1e3 * math.hypot(*reading.F_Ho_B[:3]):4.0f} mN·m",
                 f"{math.hypot(*reading.V_BH[3:]):.2f} m/s",
                 f"{rate:.0f} Hz",
                 "late p50/p99/p99.9"

@@ -22,11 +22,11 @@ from drake_haptics.cockpit.scene_changes import (
 )
 from drake_haptics.cockpit.steering import PagePicture, Steering
 from drake_haptics.common.colors import make_legend
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import DeviceReading, GateState
 from drake_haptics.loop.builder import HapticDiagram
-from drake_haptics.loop.device_placement import DeviceSite
-from drake_haptics.simulation.device_monitor import DriverSilence
+from drake_haptics.loop.device_placement import DevicePlacement
+from drake_haptics.simulation.device_monitor import SilenceMonitor
 from drake_haptics.simulation.live_values import LiveKey
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
@@ -44,13 +44,13 @@ _CLUSTERING_HELP = (
 _TELL_PERIOD_S = 0.1
 
 
-def make_greeting(
+def make_setup_message(
     changes: SceneChanges,
     *,
     name: str,
     meshcat_url: str,
     handles: dict[str, str],
-    site: DeviceSite,
+    site: DevicePlacement,
     locked: str,
 ) -> dict[str, Any]:
     """Returns the message `hello`, ready for JSON.
@@ -161,15 +161,15 @@ class Cockpit:
         self._start = ""
         # How many stages of work are left out, and what would help.
         self._shed, self._relief = 0, ""
-        self._silence, self._looked_s = DriverSilence(), monotonic()
+        self._silence, self._looked_s = SilenceMonitor(), monotonic()
 
     def begin(
         self,
         haptic: HapticDiagram,
         statistics: RunStatistics,
-        pace: TickClock,
+        pace: RealTimePacer,
         *,
-        is_anew: bool,
+        is_restart: bool,
     ) -> None:
         """Begins a segment, of a diagram of the scene as it is now.
 
@@ -177,9 +177,9 @@ class Cockpit:
             haptic: The diagram that runs.
             statistics: Statistics of the run.
             pace: Paces the run.
-            is_anew: Whether the tool begins where the handle is.
+            is_restart: Whether the tool begins where the handle is.
         """
-        if is_anew:
+        if is_restart:
             found = question_start(haptic)
             self._start = " ".join(f"{x[0].upper()}{x[1:]}." for x in found)
         self._haptic, self._statistics, self._pace = haptic, statistics, pace
@@ -239,7 +239,7 @@ class Cockpit:
 
     def _greet(self) -> None:
         """Tells the page what there is to see and to change."""
-        greeting = make_greeting(
+        greeting = make_setup_message(
             self._changes,
             name=self._name,
             meshcat_url=self._page.meshcat_url,
@@ -254,7 +254,7 @@ class Cockpit:
         assert self._root is not None
         loop, backend = self._haptic.loop, self._holding.backend
         reading = None if backend is None else backend.read()
-        handle = loop.device.get_handle_pose_output_port()
+        handle = loop.device.GetOutputPort("X_WH")
         X_WH = handle.Eval(loop.device.GetMyContextFromRoot(self._root))
         shed = 0
         if loop.load_shedding is not None:

@@ -18,8 +18,8 @@ from drake_haptics.cockpit.cockpit import Cockpit
 from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.scene_changes import CouplingAdvice, SceneChanges
 from drake_haptics.cockpit.steering import Change, PagePicture
-from drake_haptics.common.errors import UserError
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import DeviceBackend
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
@@ -27,7 +27,11 @@ from drake_haptics.scene.schema import Scene
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.simulation.transfer_state import carry_on, find_handle, retire
+from drake_haptics.simulation.transfer_state import (
+    find_handle,
+    release_diagram,
+    transfer_context,
+)
 from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
 from drake_haptics.web.live_page import LivePage, look_from_the_front
 
@@ -62,7 +66,7 @@ class Segments:
         self,
         duration_s: float | None,
         *,
-        pace: TickClock,
+        pace: RealTimePacer,
         statistics: RunStatistics,
         energy: bool,
         on_begin: Callable[[HapticDiagram], None],
@@ -74,7 +78,7 @@ class Segments:
         while left_s is None or left_s > 0.5 * self._haptic.period_s:
             try:
                 self._cockpit.begin(
-                    self._haptic, statistics, pace, is_anew=self._is_anew
+                    self._haptic, statistics, pace, is_restart=self._is_anew
                 )
                 on_begin(self._haptic)
                 change, last = self._run_one(
@@ -90,7 +94,7 @@ class Segments:
                 old = self._haptic
                 self._haptic, context = self._change(change, last)
                 if self._haptic is not old:
-                    retire(old)
+                    release_diagram(old)
             except KeyboardInterrupt:
                 break
             # Building was no stall of the loop.
@@ -104,7 +108,7 @@ class Segments:
         left_s: float | None,
         context: Context | None,
         *,
-        pace: TickClock,
+        pace: RealTimePacer,
         statistics: RunStatistics,
         energy: bool,
         on_tick: Callable[[Context], None],
@@ -152,18 +156,18 @@ class Segments:
         old, holding = self._haptic, self._holding
         backend = holding.backend
         # A device that says itself where it is begins there again.
-        is_anew = change.restarts and backend is not None and backend.is_placed
+        is_restart = change.restarts and backend is not None and backend.is_placed
         # A hand on a device may press: a tool put into its handle would kick.
-        is_kept = change.handle == holding.name and not is_anew
+        is_kept = change.handle == holding.name and not is_restart
         is_felt = is_kept and holding.is_felt
         goes_on = last is not None and (is_felt or not change.restarts)
         X_WH = find_handle(old, last) if goes_on else None
         self._is_anew = not goes_on
         try:
-            if change.handle != holding.name or is_anew:
+            if change.handle != holding.name or is_restart:
                 holding.take(change.handle, X_WH)
             new = self._build(old, X_WH)
-        except UserError as error:
+        except HapticsError as error:
             if holding.backend is not backend:
                 raise
             self._steering.refuse(str(error))
@@ -172,7 +176,7 @@ class Segments:
             # Effects come and go at once: what is felt of them does not.
             holding.taken.hand_over()
         if goes_on:
-            context = carry_on(old, last, new)
+            context = transfer_context(old, last, new)
             if change.restarts:
                 context.SetTime(0.0)
         else:
@@ -281,7 +285,7 @@ class CockpitRun:
         haptic: HapticDiagram,
         duration_s: float | None,
         *,
-        pace: TickClock,
+        pace: RealTimePacer,
         statistics: RunStatistics,
         energy: bool,
         on_begin: Callable[[HapticDiagram], None],

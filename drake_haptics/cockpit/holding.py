@@ -37,7 +37,7 @@ _GENTLE_S = 0.1
 _RISE_S = 0.2
 
 
-def take_device(device: DeviceBackend, scene: Scene) -> TakenDevice:
+def take_device(device: DeviceBackend, scene: Scene) -> SoftStartDevice:
     """Returns a device as a hand takes it, within the limits of a scene.
 
     Args:
@@ -48,7 +48,7 @@ def take_device(device: DeviceBackend, scene: Scene) -> TakenDevice:
         SceneError: The device has no place, see `find_device_site`.
     """
     site = find_device_site(scene)
-    return TakenDevice(
+    return SoftStartDevice(
         device,
         max_force_N=site.max_force_N,
         max_torque_Nm=site.max_torque_Nm,
@@ -56,7 +56,7 @@ def take_device(device: DeviceBackend, scene: Scene) -> TakenDevice:
     )
 
 
-class TakenDevice(DeviceBackend):
+class SoftStartDevice(DeviceBackend):
     """Shows no force of a device until that has been gentle for a moment.
 
     Whoever takes a handle, or takes it up again after a fault, does not know what the
@@ -127,7 +127,7 @@ class TakenDevice(DeviceBackend):
         """Asks for what is shown of a wrench from now on."""
         if self._share < 1.0:
             command = self._ease(command)
-        self._shown_B = command.F_BH
+        self._shown_B = command.F_Ho_B
         self.device.write(command)
 
     def hand_over(self) -> None:
@@ -160,23 +160,23 @@ class TakenDevice(DeviceBackend):
     def _ease(self, command: DeviceCommand) -> DeviceCommand:
         """Returns the part of a command that is shown."""
         if self.waits:
-            is_gentle = self._is_gentle(command.F_BH)
+            is_gentle = self._is_gentle(command.F_Ho_B)
             self._gentle_ticks = self._gentle_ticks + 1 if is_gentle else 0
             self.waits = self._gentle_ticks < self._most_ticks
         if self.waits:
             return DeviceCommand(np.zeros(6), command.X_BH, command.V_BH)
         self._share = min(1.0, self._share + self._rise)
         share = self._share
-        F_BH = (1.0 - share) * self._before_B + share * np.asarray(command.F_BH)
+        F_Ho_B = (1.0 - share) * self._before_B + share * np.asarray(command.F_Ho_B)
         K_B, B_B = (
             None if part is None else share * np.asarray(part)
             for part in (command.K_B, command.B_B)
         )
-        return DeviceCommand(F_BH, command.X_BH, command.V_BH, K_B, B_B)
+        return DeviceCommand(F_Ho_B, command.X_BH, command.V_BH, K_B, B_B)
 
-    def _is_gentle(self, F_BH: np.ndarray) -> bool:
+    def _is_gentle(self, F_Ho_B: np.ndarray) -> bool:
         """Whether a wrench [τ; f] may set in; one that is not finite may not."""
-        tau_x, tau_y, tau_z, f_x, f_y, f_z = np.asarray(F_BH).tolist()
+        tau_x, tau_y, tau_z, f_x, f_y, f_z = np.asarray(F_Ho_B).tolist()
         torque_Nm, force_N = math.hypot(tau_x, tau_y, tau_z), math.hypot(f_x, f_y, f_z)
         return force_N <= self._gentle_force_N and torque_Nm <= self._gentle_torque_Nm
 
@@ -184,7 +184,7 @@ class TakenDevice(DeviceBackend):
 class ForceOnRequest:
     """Lets the force of a taken device set in where somebody asks for it."""
 
-    def __init__(self, device: TakenDevice, wants_it_now: Callable[[], bool]):
+    def __init__(self, device: SoftStartDevice, wants_it_now: Callable[[], bool]):
         """Looks at nothing yet.
 
         Args:
@@ -262,9 +262,9 @@ class Holding:
         return self.backend if isinstance(self.backend, PageHandle) else None
 
     @property
-    def taken(self) -> TakenDevice | None:
+    def taken(self) -> SoftStartDevice | None:
         """The device in a hand, if one holds the handle."""
-        return self.backend if isinstance(self.backend, TakenDevice) else None
+        return self.backend if isinstance(self.backend, SoftStartDevice) else None
 
     @property
     def is_felt(self) -> bool:

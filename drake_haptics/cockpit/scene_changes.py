@@ -17,18 +17,18 @@ from drake_haptics.bounds.held_handle import (
     calc_scene_handle,
     find_real_bounds,
 )
-from drake_haptics.common.errors import SceneError, UserError
+from drake_haptics.common.errors import HapticsError, SceneError
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import (
-    Braking,
+    BrakingParameters,
     Effects,
-    Friction,
-    Gravity,
+    FrictionParameters,
+    GravityParameters,
     Material,
-    Passivity,
+    PassivityParameters,
     Scene,
-    Shading,
+    ShadingParameters,
 )
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.live_values import LiveKey, effect_keys, live_keys
@@ -37,11 +37,11 @@ SCENE_VERBS = ("set", "choose", "effect", "reset")
 CLUSTERING = "contact.clustering"
 CLUSTERINGS = ("shared", "octree")
 EFFECTS = {
-    "shading": Shading,
-    "friction": Friction,
-    "braking": Braking,
-    "gravity": Gravity,
-    "passivity": Passivity,
+    "shading": ShadingParameters,
+    "friction": FrictionParameters,
+    "braking": BrakingParameters,
+    "gravity": GravityParameters,
+    "passivity": PassivityParameters,
 }
 # What a material says of an effect means nothing without it.
 _OF_MATERIAL = {"shading": "shading", "friction": "friction_coefficient"}
@@ -50,7 +50,7 @@ _CLUSTER_SIZE = "contact.cluster_size_m"
 _CLUSTER_SIZE_M = 5e-3
 
 
-class ChangeError(UserError):
+class ChangeError(HapticsError):
     """A change that cannot be made; says why."""
 
 

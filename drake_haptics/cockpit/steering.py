@@ -17,10 +17,10 @@ from drake_haptics.cockpit.scene_changes import (
     ChangeError,
     SceneChanges,
 )
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.simulation.live_values import (
-    LiveGlide,
+    LiveValueRamp,
     is_live_change,
     put_live_values,
 )
@@ -248,7 +248,7 @@ class Steering:
                     continue
                 if self._is_error_told:
                     self._error = ""
-            except (UserError, ValueError) as error:
+            except (HapticsError, ValueError) as error:
                 self._fail(str(error))
             is_new = True
         if self.changes.scene is not before:
@@ -307,9 +307,9 @@ class Steering:
         """Writes the values as they are now."""
         put_live_values(haptic, root, self._glide.apply(self._running))
 
-    def _make_glide(self) -> LiveGlide:
+    def _make_glide(self) -> LiveValueRamp:
         """Returns values that are where they are to be."""
-        return LiveGlide(1.0 / self.changes.file.device.rate_hz)
+        return LiveValueRamp(1.0 / self.changes.file.device.rate_hz)
 
     def _end(
         self, end_s: float, handle: str | None = None, restarts: bool = False

@@ -1,7 +1,7 @@
 """Errors whose message is meant for the user, as opposed to defects of the program."""
 
 
-class UserError(ValueError):
+class HapticsError(ValueError):
     """Base of all errors whose message is meant for the person at the keyboard.
 
     The command line prints the message alone and exits with status 1; every
@@ -9,13 +9,13 @@ class UserError(ValueError):
     """
 
 
-class MeshError(UserError):
+class MeshError(HapticsError):
     """A mesh that cannot be used; says what is wrong and what to do."""
 
 
-class SceneError(UserError):
+class SceneError(HapticsError):
     """A scene that cannot be used. The message names the key."""
 
 
-class DecompositionFileError(UserError):
+class DecompositionFileError(HapticsError):
     """A stored decomposition that is damaged, foreign or of another version."""

@@ -18,7 +18,7 @@ _MAX_RECORDS = 1 << 16
 _ABOVE_LEAST = 5
 
 
-class TickClock:
+class RealTimePacer:
     """Waits for one tick after the other.
 
     A tick that comes late, because the machine or the work stalled, moves all that
@@ -54,7 +54,7 @@ class TickClock:
 
     def __repr__(self) -> str:
         return (
-            f"TickClock({1e3 * self._period_s:g} ms, {count(self._ticks, 'tick')}, "
+            f"RealTimePacer({1e3 * self._period_s:g} ms, {count(self._ticks, 'tick')}, "
             f"{self._skipped} skipped)"
         )
 

@@ -14,7 +14,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.one_line import count, one_line
 
 _Backend = TypeVar("_Backend", bound="DeviceBackend")
@@ -57,7 +57,7 @@ class DeviceReading:
         time_s: When it was sampled, by the device's own clock, s.
         X_BH: (7,) the handle's pose [qw qx qy qz x y z], unit quaternion, m.
         V_BH: (6,) its spatial velocity [ω; v], rad/s and m/s.
-        F_BH: (6,) the wrench [τ; f] at Ho that the device then showed, N·m and N.
+        F_Ho_B: (6,) the wrench [τ; f] at Ho that the device then showed, N·m and N.
         buttons: Bit i is set while button i is held.
         gate: Whether the device shows force.
         fault: Why not, where it is at fault.
@@ -67,7 +67,7 @@ class DeviceReading:
     time_s: float
     X_BH: NDArray[np.float64]
     V_BH: NDArray[np.float64]
-    F_BH: NDArray[np.float64]
+    F_Ho_B: NDArray[np.float64]
     buttons: int = 0
     gate: GateState = GateState.ACTIVE
     fault: Fault = Fault.NONE
@@ -91,14 +91,14 @@ class DeviceCommand:
     use the slopes shows F.
 
     Attributes:
-        F_BH: (6,) wrench [τ; f] on the handle at Ho, N·m and N.
+        F_Ho_B: (6,) wrench [τ; f] on the handle at Ho, N·m and N.
         X_BH: (7,) pose X₀ [qw qx qy qz x y z], m.
         V_BH: (6,) spatial velocity V₀ [ω; v], rad/s and m/s.
         K_B: (6, 6) stiffness, N·m/rad, N·m/m, N/rad and N/m; None where not known.
         B_B: (6, 6) damping, N·m·s/rad, ..., N·s/m; None where not known.
     """
 
-    F_BH: NDArray[np.float64]
+    F_Ho_B: NDArray[np.float64]
     X_BH: NDArray[np.float64]
     V_BH: NDArray[np.float64]
     K_B: NDArray[np.float64] | None = None
@@ -125,7 +125,7 @@ class LinkStatus:
     lateness_s: tuple[float, float, float] | None = None
 
 
-class DeviceError(UserError):
+class DeviceError(HapticsError):
     """A device that cannot be opened, or has gone; says what to do."""
 
 
@@ -194,7 +194,7 @@ def make_silent(reading: DeviceReading) -> DeviceReading:
     return replace(
         reading,
         V_BH=np.zeros(6),
-        F_BH=np.zeros(6),
+        F_Ho_B=np.zeros(6),
         gate=GateState.FAULT,
         fault=Fault.DEVICE,
     )

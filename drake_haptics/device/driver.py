@@ -15,8 +15,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from drake_haptics import _core
-from drake_haptics.common.errors import UserError
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import DeviceReading, Fault, GateState
 
 Peer = tuple[str, int]
@@ -59,11 +59,11 @@ class DrivenArm(Protocol):
     def start(self) -> None:
         """Called once, before the first tick in which a wrench may be shown."""
 
-    def step(self, F_BH: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def step(self, F_Ho_B: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Shows a wrench for a period.
 
         Args:
-            F_BH: (6,) wrench [τ; f] on the handle at Ho, N·m and N, within limits.
+            F_Ho_B: (6,) wrench [τ; f] on the handle at Ho, N·m and N, within limits.
 
         Returns:
             X_BH (7,) = [qw qx qy qz x y z], m, and V_BH (6,) = [ω; v], rad/s and
@@ -89,7 +89,7 @@ class DeviceDriver:
         clock_ns: Reads a clock that never goes back, nor rests with the machine, ns.
 
     Raises:
-        UserError: The address or port is not available.
+        HapticsError: The address or port is not available.
         ValueError: A limit or the rate is out of range.
     """
 
@@ -113,7 +113,7 @@ class DeviceDriver:
             max_force_N=max_force_N, max_torque_Nm=max_torque_Nm, max_ttl_s=max_ttl_s
         )
         self._rate_hz = rate_hz
-        self._pace = TickClock(1.0 / rate_hz)
+        self._pace = RealTimePacer(1.0 / rate_hz)
         self._largest_late_s = 0.0
         self._clock_ns = clock_ns
         self._start_ns = clock_ns()
@@ -140,7 +140,7 @@ class DeviceDriver:
         return f"udp://{socket.gethostname() if host == '0.0.0.0' else host}:{port}"
 
     @property
-    def pace(self) -> TickClock:
+    def pace(self) -> RealTimePacer:
         """The pacer of the ticks."""
         return self._pace
 
@@ -172,7 +172,7 @@ class DeviceDriver:
         # Collecting garbage over all objects of a simulation takes many ticks.
         gc.collect()
         gc.freeze()
-        self._pace = TickClock(1.0 / self._rate_hz)
+        self._pace = RealTimePacer(1.0 / self._rate_hz)
         end_s = math.inf if duration_s is None else time.monotonic() + duration_s
         try:
             while not self._stops and time.monotonic() < end_s:
@@ -203,30 +203,30 @@ class DeviceDriver:
             self._statistics.note_fault(self._to_s(now_ns), gate.fault)
         if now_ns - self._heard_ns > _FORGETS_AFTER_NS:
             self._peer = None
-        F_BH = gate.step(now_ns, reading.X_BH, reading.V_BH)
-        self._show(F_BH, GateState(gate.state), Fault(gate.fault))
+        F_Ho_B = gate.step(now_ns, reading.X_BH, reading.V_BH)
+        self._show(F_Ho_B, GateState(gate.state), Fault(gate.fault))
 
-    def _show(self, F_BH: np.ndarray, gate: GateState, fault: Fault) -> None:
+    def _show(self, F_Ho_B: np.ndarray, gate: GateState, fault: Fault) -> None:
         """Has the arm show a wrench, books it and tells the host."""
         if gate == GateState.ACTIVE and not self._arm_started:
             self._arm_started = True
             self._arm.start()
-        self._reading = self._move_arm(F_BH, gate, fault)
+        self._reading = self._move_arm(F_Ho_B, gate, fault)
         self._statistics.add_tick(self._reading)
         if self._peer is not None:
             self._socket.send(self._pack(self._reading), self._peer)
 
     def _move_arm(
-        self, F_BH: np.ndarray, gate: GateState, fault: Fault
+        self, F_Ho_B: np.ndarray, gate: GateState, fault: Fault
     ) -> DeviceReading:
         """Returns what the device is after a period under a wrench."""
-        X_BH, V_BH = self._arm.step(F_BH)
+        X_BH, V_BH = self._arm.step(F_Ho_B)
         return DeviceReading(
             sequence=(self._statistics.ticks + 1) % _WRAP,
             time_s=self._to_s(self._clock_ns()),
             X_BH=X_BH,
             V_BH=V_BH,
-            F_BH=F_BH,
+            F_Ho_B=F_Ho_B,
             gate=gate,
             fault=fault,
         )
@@ -243,7 +243,7 @@ class DeviceDriver:
             time_ns=self._clock_ns(),
             X_BH=reading.X_BH,
             V_BH=reading.V_BH,
-            F_BH=reading.F_BH,
+            F_Ho_B=reading.F_Ho_B,
             boot=self._boot,
             session=gate.session,
             command_sequence=gate.command_sequence,
@@ -311,9 +311,9 @@ class DriverStatistics:
         Args:
             reading: Reading of the device, with the wrench that it was made to show.
         """
-        F_BH = reading.F_BH.tolist()
+        F_Ho_B = reading.F_Ho_B.tolist()
         self._ticks += 1
-        torque, force = math.hypot(*F_BH[:3]), math.hypot(*F_BH[3:])
+        torque, force = math.hypot(*F_Ho_B[:3]), math.hypot(*F_Ho_B[3:])
         if not math.isfinite(torque + force):
             self._non_finite += 1
         else:
@@ -372,19 +372,19 @@ class DriverSocket:
         port: To listen at; 0 lets the system choose.
 
     Raises:
-        UserError: The address or port is not available.
+        HapticsError: The address or port is not available.
     """
 
     def __init__(self, host: str, port: int):
         if not host:  # which would be every address that this machine has
-            raise UserError("bind is empty: give an address, such as 127.0.0.1")
+            raise HapticsError("bind is empty: give an address, such as 127.0.0.1")
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         try:
             self._socket.bind((host, port))
         except OSError as error:
             self._socket.close()
-            raise UserError(_explain(error, host, port)) from error
+            raise HapticsError(_explain(error, host, port)) from error
 
     @property
     def address(self) -> Peer:

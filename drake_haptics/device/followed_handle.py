@@ -287,7 +287,7 @@ class FollowedHandle:
         )
         self._sequence = 0
         self._gate = GateState.IDLE
-        self._F_BH = np.zeros(6)
+        self._F_Ho_B = np.zeros(6)
         self._released = False
 
     @property
@@ -296,9 +296,9 @@ class FollowedHandle:
         return self._gate
 
     @property
-    def F_BH(self) -> np.ndarray:
+    def F_Ho_B(self) -> np.ndarray:
         """(6,) the wrench [τ; f] that is shown now, N·m and N."""
-        return self._F_BH
+        return self._F_Ho_B
 
     def set_goal(self, X_BG: np.ndarray, time_s: float) -> None:
         """Sends the handle to a pose (7,) from now on.
@@ -316,14 +316,14 @@ class FollowedHandle:
         if self._released:
             return
         self._gate = GateState.ACTIVE
-        F_BH = np.array(command.F_BH, dtype=float)
-        self._F_BH = F_BH if np.isfinite(F_BH).all() else np.zeros(6)
+        F_Ho_B = np.array(command.F_Ho_B, dtype=float)
+        self._F_Ho_B = F_Ho_B if np.isfinite(F_Ho_B).all() else np.zeros(6)
 
     def release(self) -> None:
         """Shows no force any more."""
         self._released = True
         self._gate = GateState.IDLE
-        self._F_BH = np.zeros(6)
+        self._F_Ho_B = np.zeros(6)
 
     def read(self, time_s: float, buttons: int = 0) -> DeviceReading:
         """Returns the reading of now."""
@@ -334,7 +334,7 @@ class FollowedHandle:
             time_s=time_s,
             X_BH=X_BH,
             V_BH=V_BH,
-            F_BH=self._F_BH,
+            F_Ho_B=self._F_Ho_B,
             buttons=buttons,
             gate=self._gate,
         )

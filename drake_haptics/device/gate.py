@@ -46,14 +46,14 @@ class LocalGate:
         """Why not, where it is at fault."""
         return Fault(int(self._gate.fault))
 
-    def show(self, F_BH: np.ndarray, now_ns: int) -> None:
+    def show(self, F_Ho_B: np.ndarray, now_ns: int) -> None:
         """Asks for a wrench, and enables an idle gate that was released before.
 
         Args:
-            F_BH: (6,) [τ; f], N·m and N; what is not finite is a fault.
+            F_Ho_B: (6,) [τ; f], N·m and N; what is not finite is a fault.
             now_ns: The time, ns; never goes back.
         """
-        self._send(F_BH, now_ns, enable=True)
+        self._send(F_Ho_B, now_ns, enable=True)
 
     def release(self, now_ns: int) -> None:
         """Asks for no force: it ramps out, or a fault is left."""
@@ -76,14 +76,14 @@ class LocalGate:
         """
         return self._gate.step(now_ns, X_BH, V_BH)
 
-    def _send(self, F_BH: np.ndarray, now_ns: int, *, enable: bool) -> None:
+    def _send(self, F_Ho_B: np.ndarray, now_ns: int, *, enable: bool) -> None:
         """Gives the gate a command."""
         self._sequence = (self._sequence + 1) & _UINT32
         packet = _core.pack_command(
             session=self._session,
             sequence=self._sequence,
             time_ns=now_ns,
-            F_BH=F_BH,
+            F_Ho_B=F_Ho_B,
             state_sequence=0,
             ttl_us=self._ttl_us,
             enable=enable,
@@ -96,7 +96,7 @@ class GateStatus:
     """The decision of a gate, as a value that ports can carry.
 
     Attributes:
-        F_BH: (6,) the wrench [τ; f] that is shown, N·m and N.
+        F_Ho_B: (6,) the wrench [τ; f] that is shown, N·m and N.
         session: The run of a host that is served, 0 for none.
         command_sequence: The newest command that was accepted.
         rejected: How many were refused.
@@ -106,7 +106,7 @@ class GateStatus:
         max_torque_Nm: Largest torque, N·m.
     """
 
-    F_BH: np.ndarray = field(default_factory=lambda: np.zeros(6))
+    F_Ho_B: np.ndarray = field(default_factory=lambda: np.zeros(6))
     session: int = 0
     command_sequence: int = 0
     rejected: int = 0

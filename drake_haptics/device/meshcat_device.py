@@ -257,8 +257,8 @@ class MeshcatDevice(DeviceBackend):
 
     def _show_wrench(self) -> None:
         """Writes force and torque on the last button, if they are new."""
-        F_BH = self._handle.F_BH
-        force_N, torque_Nm = np.linalg.norm(F_BH[3:]), np.linalg.norm(F_BH[:3])
+        F_Ho_B = self._handle.F_Ho_B
+        force_N, torque_Nm = np.linalg.norm(F_Ho_B[3:]), np.linalg.norm(F_Ho_B[:3])
         text = f"force {force_N:.1f} N, torque {torque_Nm:.2f} N·m"
         if text != self._readout:
             # A control's name cannot be changed; as the last one it keeps its place.

@@ -95,7 +95,7 @@ class UdpDevice(DeviceBackend):
     def write(self, command: DeviceCommand) -> None:
         """Asks for a wrench from now on; the first call also enables the device."""
         self._servo.publish(
-            command.F_BH, command.X_BH, command.V_BH, command.K_B, command.B_B
+            command.F_Ho_B, command.X_BH, command.V_BH, command.K_B, command.B_B
         )
 
     def recover(self) -> None:
@@ -130,7 +130,7 @@ def _to_reading(state: HandleState, gate: GateState, fault: Fault) -> DeviceRead
         time_s=state.time_s,
         X_BH=state.X_BH,
         V_BH=state.V_BH,
-        F_BH=state.F_BH,
+        F_Ho_B=state.F_Ho_B,
         buttons=state.buttons,
         gate=gate,
         fault=fault,

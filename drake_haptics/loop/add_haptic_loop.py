@@ -18,8 +18,8 @@ from drake_haptics.loop.contact import (
 from drake_haptics.loop.effects import EffectSite, add_effects, find_springs
 from drake_haptics.loop.haptic_loop import BaseSystems, HapticLoop
 from drake_haptics.scene.schema import (
-    Contact,
-    Coupling,
+    ContactParameters,
+    CouplingParameters,
     Effects,
     Material,
 )
@@ -48,11 +48,11 @@ def AddHapticLoop(
     builder: DiagramBuilder,
     *,
     device: HapticDevice,
-    tool: _core.Decomposition,
+    tool: _core.ConvexPieces,
     tool_dynamics: _core.RigidToolDynamics,
     objects: Sequence[ContactObject],
-    contact: Contact,
-    coupling: Coupling,
+    contact: ContactParameters,
+    coupling: CouplingParameters,
     X_HT: RigidTransform,
     X_WT: RigidTransform,
     period_s: float,
@@ -95,11 +95,11 @@ def AddHapticLoop(
     require_kinds(
         builder=(builder, DiagramBuilder),
         device=(device, HapticDevice),
-        tool=(tool, _core.Decomposition),
+        tool=(tool, _core.ConvexPieces),
         tool_dynamics=(tool_dynamics, _core.RigidToolDynamics),
         objects=(objects, Sequence[ContactObject]),
-        contact=(contact, Contact),
-        coupling=(coupling, Coupling),
+        contact=(contact, ContactParameters),
+        coupling=(coupling, CouplingParameters),
         X_HT=(X_HT, RigidTransform),
         X_WT=(X_WT, RigidTransform),
         period_s=(period_s, float),
@@ -133,7 +133,7 @@ def AddHapticLoop(
                 effects,
                 materials,
                 period_s,
-                sheds_load=load_shedding is not None,
+                enable_load_shedding=load_shedding is not None,
             )
         ),
     )
@@ -156,20 +156,20 @@ def AddHapticLoop(
     )
     systems = add_effects(site)
     sources = {
-        "coupling": base.virtual_coupling.get_wrench_model_output_port(),
-        "contact": base.penalty_force.get_wrench_model_output_port(),
+        "coupling": base.virtual_coupling.GetOutputPort("wrench_model"),
+        "contact": base.penalty_force.GetOutputPort("wrench_model"),
         **{
-            name: getattr(systems, name).get_wrench_model_output_port()
+            name: getattr(systems, name).GetOutputPort("wrench_model")
             for name in forces
         },
     }
     for name, source in sources.items():
-        builder.Connect(source, base.haptic_tool.get_wrench_input_port(name))
+        builder.Connect(source, base.haptic_tool.GetInputPort(name))
     if device.wants_slopes:
         _add_handle_model(builder, base, sources)
     loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
-    builder.Connect(loop.contacts, loop.contact_clustering.get_contacts_input_port())
-    builder.Connect(loop.display_wrench, device.get_display_wrench_input_port())
+    builder.Connect(loop.contacts, loop.contact_clustering.GetInputPort("contacts"))
+    builder.Connect(loop.display_wrench, device.GetInputPort("F_Ho_W_commanded"))
     return loop
 
 
@@ -177,31 +177,31 @@ def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
     """Connects the systems of every loop where no effect can come between."""
     device, tool = base.device, base.haptic_tool
     coupling, force = base.virtual_coupling, base.penalty_force
-    X_WTool, V_WTool = tool.get_pose_output_port(), tool.get_velocity_output_port()
+    X_WT, V_WT = tool.GetOutputPort("X_WT"), tool.GetOutputPort("V_WT")
     for output, input in [
-        (device.get_handle_pose_output_port(), coupling.get_handle_pose_input_port()),
+        (device.GetOutputPort("X_WH"), coupling.GetInputPort("X_WH")),
         (
-            device.get_handle_velocity_output_port(),
-            coupling.get_handle_velocity_input_port(),
+            device.GetOutputPort("V_WH"),
+            coupling.GetInputPort("V_WH"),
         ),
-        (X_WTool, coupling.get_tool_pose_input_port()),
-        (V_WTool, coupling.get_tool_velocity_input_port()),
+        (X_WT, coupling.GetInputPort("X_WT")),
+        (V_WT, coupling.GetInputPort("V_WT")),
         (
-            base.contact_clustering.get_clusters_output_port(),
-            force.get_clusters_input_port(),
+            base.contact_clustering.GetOutputPort("clusters"),
+            force.GetInputPort("clusters"),
         ),
-        (X_WTool, force.get_tool_pose_input_port()),
-        (V_WTool, force.get_tool_velocity_input_port()),
+        (X_WT, force.GetInputPort("X_WT")),
+        (V_WT, force.GetInputPort("V_WT")),
     ]:
         builder.Connect(output, input)
-    sources = {"X_WTool": X_WTool}
+    sources = {"X_WT": X_WT}
     if base.load_shedding is not None:
-        sources["relief"] = base.load_shedding.get_relief_output_port()
+        sources["load_shedding"] = base.load_shedding.GetOutputPort("load_shedding")
     for system in (
         base.contact_query,
         base.contact_clustering,
-        base.pose_sample,
-        base.contact_advance,
+        base.pose_sampler,
+        base.contact_extrapolator,
     ):
         if system is not None:
             connect_by_name(builder, system, sources)
@@ -216,17 +216,14 @@ def _add_handle_model(
     )
     for output, input in [
         (
-            base.device.get_handle_pose_output_port(),
-            model.get_handle_pose_input_port(),
+            base.device.GetOutputPort("X_WH"),
+            model.GetInputPort("X_WH"),
         ),
-        (base.haptic_tool.get_pose_output_port(), model.get_tool_pose_input_port()),
-        *(
-            (source, model.get_wrench_input_port(name))
-            for name, source in sources.items()
-        ),
+        (base.haptic_tool.GetOutputPort("X_WT"), model.GetInputPort("X_WT")),
+        *((source, model.GetInputPort(name)) for name, source in sources.items()),
         (
-            model.get_handle_slopes_output_port(),
-            base.device.get_handle_slopes_input_port(),
+            model.GetOutputPort("handle_slopes"),
+            base.device.GetInputPort("handle_slopes"),
         ),
     ]:
         builder.Connect(output, input)
@@ -234,25 +231,25 @@ def _add_handle_model(
 
 def _find_sources(base: BaseSystems) -> dict[str, OutputPort]:
     """Returns what systems of effects ask for, by the names of their inputs."""
-    relief: dict[str, OutputPort] = {}
+    shedding: dict[str, OutputPort] = {}
     if base.load_shedding is not None:
-        relief["relief"] = base.load_shedding.get_relief_output_port()
+        shedding["load_shedding"] = base.load_shedding.GetOutputPort("load_shedding")
     return {
-        **relief,
-        "X_WH": base.device.get_handle_pose_output_port(),
-        "V_WH": base.device.get_handle_velocity_output_port(),
-        "X_WTool": base.haptic_tool.get_pose_output_port(),
-        "V_WTool": base.haptic_tool.get_velocity_output_port(),
-        "F_applied": base.device.get_applied_wrench_output_port(),
-        "F_asked": base.virtual_coupling.get_display_wrench_output_port(),
+        **shedding,
+        "X_WH": base.device.GetOutputPort("X_WH"),
+        "V_WH": base.device.GetOutputPort("V_WH"),
+        "X_WT": base.haptic_tool.GetOutputPort("X_WT"),
+        "V_WT": base.haptic_tool.GetOutputPort("V_WT"),
+        "F_Ho_W_rendered": base.device.GetOutputPort("F_Ho_W_rendered"),
+        "F_Ho_W_desired": base.virtual_coupling.GetOutputPort("F_Ho_W_commanded"),
         "contacts": base.found_contacts,
-        "clusters": base.contact_clustering.get_clusters_output_port(),
-        "contact_wrench": base.penalty_force.get_contact_wrench_output_port(),
+        "clusters": base.contact_clustering.GetOutputPort("clusters"),
+        "contact_wrench": base.penalty_force.GetOutputPort("contact_wrench"),
     }
 
 
 def make_coupling_gains(
-    coupling: Coupling, device: HapticDevice | None
+    coupling: CouplingParameters, device: HapticDevice | None
 ) -> CouplingGains:
     """Returns the gains of a coupling that yields where its device can show no more.
 

@@ -50,7 +50,8 @@ class HapticDiagram:
 
     Attributes:
         diagram: Owns all systems, and has the outputs that `HapticLoop.outputs` lists:
-            `diagram.GetOutputPort("F_applied").Eval(context)`, in its own context.
+            `diagram.GetOutputPort("F_Ho_W_rendered").Eval(context)`, in its own
+            context.
         scene: Scene from which it was built.
         period_s: The tick, s.
         loop: The systems of the loop.

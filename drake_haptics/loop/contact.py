@@ -10,7 +10,7 @@ import numpy as np
 from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 
 from drake_haptics import _core
-from drake_haptics.scene.schema import Contact, Effects, Material
+from drake_haptics.scene.schema import ContactParameters, Effects, Material
 from drake_haptics.scene.validation import check_query_rate
 from drake_haptics.systems.contact.contact_clustering import (
     ClusteringMethod,
@@ -24,8 +24,8 @@ from drake_haptics.systems.contact.contact_query import (
 from drake_haptics.systems.contact.penalty_force import ContactGains, PenaltyForce
 
 if TYPE_CHECKING:
-    from drake_haptics.systems.contact.contact_advance import ContactAdvance
-    from drake_haptics.systems.contact.pose_sample import PoseSample
+    from drake_haptics.systems.contact.contact_extrapolator import ContactExtrapolator
+    from drake_haptics.systems.contact.pose_sampler import PoseSampler
 
 
 @dataclass(frozen=True)
@@ -36,34 +36,34 @@ class ContactSystems:
         contact_query: Finds the contacts.
         contact_clustering: Keeps many contacts from being stiffer than one.
         penalty_force: Answers them.
-        pose_sample: Says where contacts are looked for, if not at every tick.
-        contact_advance: Carries them along then.
+        pose_sampler: Says where contacts are looked for, if not at every tick.
+        contact_extrapolator: Carries them along then.
     """
 
     contact_query: ContactQuery
     contact_clustering: ContactClustering
     penalty_force: PenaltyForce
-    pose_sample: PoseSample | None
-    contact_advance: ContactAdvance | None
+    pose_sampler: PoseSampler | None
+    contact_extrapolator: ContactExtrapolator | None
 
     @property
     def found_contacts(self) -> OutputPort:
         """The contacts where the bodies are now."""
-        if self.contact_advance is not None:
-            return self.contact_advance.get_contacts_output_port()
-        return self.contact_query.get_contacts_output_port()
+        if self.contact_extrapolator is not None:
+            return self.contact_extrapolator.GetOutputPort("contacts")
+        return self.contact_query.GetOutputPort("contacts")
 
 
 def add_contact_systems(
     builder: DiagramBuilder,
-    tool: _core.Decomposition,
+    tool: _core.ConvexPieces,
     objects: Sequence[ContactObject],
-    contact: Contact,
+    contact: ContactParameters,
     effects: Effects,
     materials: Sequence[Material],
     period_s: float,
     *,
-    sheds_load: bool = False,
+    enable_load_shedding: bool = False,
     warns_deep: bool = False,
 ) -> ContactSystems:
     """Adds the systems; their inputs from elsewhere are left to the caller.
@@ -76,7 +76,8 @@ def add_contact_systems(
         effects: Contacts are looked for as far as they need.
         materials: Of each object; gains that one does not give are those of `contact`.
         period_s: The tick, s.
-        sheds_load: Whether query and clustering take the `relief` of a `LoadShedding`.
+        enable_load_shedding: Whether query and clustering take the `load_shedding` of a
+            `LoadShedding`.
         warns_deep: Whether the clustering warns of a deep contact itself.
 
     Raises:
@@ -98,8 +99,8 @@ def add_contact_systems(
             find_query_tolerance(contact, effects),
             cast(DepthSearch, contact.depth),
             contact.max_walk_steps,
-            # Its answer holds for several ticks; `relief` changes in each.
-            sheds_load=sheds_load and contact.query_rate_hz is None,
+            # Its answer holds for several ticks; `load_shedding` changes in each.
+            enable_load_shedding=enable_load_shedding and contact.query_rate_hz is None,
         ),
     )
     sample = advance = None
@@ -116,7 +117,7 @@ def add_contact_systems(
                 cast(ClusteringMethod, contact.clustering),
                 contact.tolerance_m,
                 contact.cluster_size_m,
-                sheds_load=sheds_load,
+                enable_load_shedding=enable_load_shedding,
                 warns_deep=warns_deep,
             ),
         ),
@@ -128,34 +129,38 @@ def add_contact_systems(
                 gains.damping_Ns_per_m.tolist(),
             ),
         ),
-        pose_sample=sample,
-        contact_advance=advance,
+        pose_sampler=sample,
+        contact_extrapolator=advance,
     )
 
 
 def _add_advance(
     builder: DiagramBuilder,
     query: ContactQuery,
-    tool: _core.Decomposition,
+    tool: _core.ConvexPieces,
     objects: Sequence[ContactObject],
     period_s: float,
-) -> tuple[PoseSample, ContactAdvance]:
+) -> tuple[PoseSampler, ContactExtrapolator]:
     """Lets a query look for contacts every so often, and carries them along."""
-    from drake_haptics.systems.contact.contact_advance import ContactAdvance
-    from drake_haptics.systems.contact.pose_sample import PoseSample
+    from drake_haptics.systems.contact.contact_extrapolator import ContactExtrapolator
+    from drake_haptics.systems.contact.pose_sampler import PoseSampler
 
     names = [item.name for item in objects if item.X_WO is None]
-    sample = builder.AddNamedSystem("pose_sample", PoseSample(names, period_s))
-    advance = builder.AddNamedSystem("contact_advance", ContactAdvance(tool, objects))
+    sample = builder.AddNamedSystem("pose_sampler", PoseSampler(names, period_s))
+    advance = builder.AddNamedSystem(
+        "contact_extrapolator", ContactExtrapolator(tool, objects)
+    )
     for port in map(sample.get_output_port, range(sample.num_output_ports())):
         name = port.get_name()
         builder.Connect(port, query.GetInputPort(name))
         builder.Connect(port, advance.GetInputPort(f"found_{name}"))
-    builder.Connect(query.get_contacts_output_port(), advance.get_contacts_input_port())
+    builder.Connect(query.GetOutputPort("contacts"), advance.GetInputPort("contacts"))
     return sample, advance
 
 
-def find_contact_gains(contact: Contact, materials: Sequence[Material]) -> ContactGains:
+def find_contact_gains(
+    contact: ContactParameters, materials: Sequence[Material]
+) -> ContactGains:
     """Returns the gains of each object: its material's, or else the contact's."""
     stiffness = [material.stiffness_N_per_m for material in materials]
     damping = [material.damping_Ns_per_m for material in materials]
@@ -165,7 +170,7 @@ def find_contact_gains(contact: Contact, materials: Sequence[Material]) -> Conta
     )
 
 
-def find_query_tolerance(contact: Contact, effects: Effects) -> float:
+def find_query_tolerance(contact: ContactParameters, effects: Effects) -> float:
     """Returns how far contacts must be looked for, m."""
     if effects.braking is None:
         return contact.tolerance_m

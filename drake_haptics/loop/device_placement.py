@@ -22,7 +22,7 @@ _QUATERNION_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
-class DeviceSite:
+class DevicePlacement:
     """The place at which a scene expects its device and the device's handle.
 
     Attributes:
@@ -42,7 +42,7 @@ class DeviceSite:
     max_torque_Nm: float
 
 
-def find_device_site(scene: Scene) -> DeviceSite:
+def find_device_site(scene: Scene) -> DevicePlacement:
     """Returns where a scene has its device.
 
     Raises:
@@ -53,7 +53,7 @@ def find_device_site(scene: Scene) -> DeviceSite:
     X_TH = scene.tool.grasp.to_rigid_transform().inverse()
     preset = load_device_preset(scene.device.preset)
     force, torque = scene.device.max_force_N, scene.device.max_torque_Nm
-    return DeviceSite(
+    return DevicePlacement(
         X_WB=X_WB,
         X_BH=X_WB.inverse() @ path.start @ X_TH,
         workspace_radius_m=preset.workspace_radius_m,

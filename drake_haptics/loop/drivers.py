@@ -56,11 +56,11 @@ class SimulatedDriverArm:
         simulator.Initialize()
         self._simulator = simulator
         self._context = simulator.get_context()
-        self._F_WH = device.get_display_wrench_input_port().FixValue(
+        self._F_WH = device.GetInputPort("F_Ho_W_commanded").FixValue(
             simulator.get_mutable_context(), np.zeros(6)
         )
-        self._X_WH = device.get_handle_pose_output_port()
-        self._V_WH = device.get_handle_velocity_output_port()
+        self._X_WH = device.GetOutputPort("X_WH")
+        self._V_WH = device.GetOutputPort("V_WH")
         X_BW = place_base(scene, path).inverse()
         self._to_base = FrameChange(pose_to_vector(X_BW))
 
@@ -78,11 +78,11 @@ class SimulatedDriverArm:
         """Lets the hand set out."""
         self._starts = True
 
-    def step(self, F_BH: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def step(self, F_Ho_B: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Moves arm and hand on by one period.
 
         Args:
-            F_BH: (6,) wrench [τ; f] of the motors on the handle, N·m and N.
+            F_Ho_B: (6,) wrench [τ; f] of the motors on the handle, N·m and N.
 
         Returns:
             X_BH (7,) = [qw qx qy qz x y z], m, and V_BH (6,) = [ω; v], rad/s and m/s;
@@ -92,7 +92,7 @@ class SimulatedDriverArm:
             self._ticks += 1
             # The wrench stays as it is over the period, as motors hold it.
             self._F_WH.GetMutableData().get_mutable_value().SetFromVector(
-                self._to_base.change_wrench_back(F_BH)
+                self._to_base.change_wrench_back(F_Ho_B)
             )
             try:
                 self._simulator.AdvanceTo(self._ticks * self._period_s)
@@ -118,7 +118,7 @@ def make_simulated_driver(
 
     Raises:
         SceneError: The scene cannot be simulated.
-        UserError: The address or port is not available.
+        HapticsError: The address or port is not available.
         ValueError: A limit or the rate is out of range.
     """
     if rate_hz is not None:
@@ -181,14 +181,14 @@ def AddLcmDriver(
     )
     X_BH, V_BH = arm.GetOutputPort("X_WH"), arm.GetOutputPort("V_WH")
     for output, input in [
-        (commands.get_output_port(), gate.get_command_input_port()),
-        (X_BH, gate.get_handle_pose_input_port()),
-        (V_BH, gate.get_handle_velocity_input_port()),
-        (gate.get_wrench_output_port(), arm.GetInputPort("F_applied")),
-        (X_BH, sender.get_handle_pose_input_port()),
-        (V_BH, sender.get_handle_velocity_input_port()),
-        (gate.get_gate_status_output_port(), sender.get_gate_status_input_port()),
-        (sender.get_status_output_port(), statuses.get_input_port()),
+        (commands.get_output_port(), gate.GetInputPort("lcmt_haptic_command")),
+        (X_BH, gate.GetInputPort("X_WH")),
+        (V_BH, gate.GetInputPort("V_WH")),
+        (gate.GetOutputPort("F_Ho_B"), arm.GetInputPort("F_Ho_W_rendered")),
+        (X_BH, sender.GetInputPort("X_WH")),
+        (V_BH, sender.GetInputPort("V_WH")),
+        (gate.GetOutputPort("gate_status"), sender.GetInputPort("gate_status")),
+        (sender.GetOutputPort("status"), statuses.get_input_port()),
     ]:
         builder.Connect(output, input)
     return gate

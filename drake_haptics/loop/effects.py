@@ -18,13 +18,13 @@ from drake_haptics.bounds.sampled_spring import calc_returnable_energy
 from drake_haptics.loop.contact import connect_by_name
 from drake_haptics.loop.haptic_loop import EffectSystems
 from drake_haptics.scene.schema import (
-    Braking,
+    BrakingParameters,
     Effects,
-    Friction,
-    Gravity,
+    FrictionParameters,
+    GravityParameters,
     Material,
-    Passivity,
-    Shading,
+    PassivityParameters,
+    ShadingParameters,
 )
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.device.haptic_device import HapticDevice
@@ -55,7 +55,7 @@ class EffectSite:
     effects: Effects
     builder: DiagramBuilder
     sources: Mapping[str, OutputPort]
-    tool: _core.Decomposition
+    tool: _core.ConvexPieces
     tool_mass_kg: float
     p_TTcm: Sequence[float]
     objects: Sequence[ContactObject]
@@ -101,7 +101,7 @@ def add_effects(site: EffectSite) -> EffectSystems:
     return EffectSystems(**systems)
 
 
-def _add_shading(effect: Shading, site: EffectSite) -> System:
+def _add_shading(effect: ShadingParameters, site: EffectSite) -> System:
     from drake_haptics.systems.contact.force_shading import ForceShading
 
     system = ForceShading(
@@ -113,7 +113,7 @@ def _add_shading(effect: Shading, site: EffectSite) -> System:
     return _add(site, "force_shading", system)
 
 
-def _add_friction(effect: Friction, site: EffectSite) -> System:
+def _add_friction(effect: FrictionParameters, site: EffectSite) -> System:
     from drake_haptics.systems.contact.stick_slip_friction import StickSlipFriction
 
     own = [material.friction_coefficient for material in site.materials]
@@ -126,19 +126,19 @@ def _add_friction(effect: Friction, site: EffectSite) -> System:
     return _add(site, "stick_slip_friction", system)
 
 
-def _add_braking(effect: Braking, site: EffectSite) -> System:
+def _add_braking(effect: BrakingParameters, site: EffectSite) -> System:
     from drake_haptics.systems.contact.pre_contact_braking import PreContactBraking
 
     system = PreContactBraking(
         site.objects,
         damping_Ns_per_m=effect.damping_Ns_per_m,
         distance_m=effect.distance_m,
-        sheds_load="relief" in site.sources,
+        enable_load_shedding="load_shedding" in site.sources,
     )
     return _add(site, "pre_contact_braking", system)
 
 
-def _add_gravity(effect: Gravity, site: EffectSite) -> System:
+def _add_gravity(effect: GravityParameters, site: EffectSite) -> System:
     from drake_haptics.systems.tool.tool_gravity import ToolGravity
 
     system = ToolGravity(
@@ -149,7 +149,7 @@ def _add_gravity(effect: Gravity, site: EffectSite) -> System:
     return _add(site, "tool_gravity", system)
 
 
-def _add_passivity(effect: Passivity, site: EffectSite) -> System:
+def _add_passivity(effect: PassivityParameters, site: EffectSite) -> System:
     from drake_haptics.systems.tool.passivity_control import PassivityControl
 
     reserve_J = effect.reserve_J

@@ -79,15 +79,15 @@ class HapticLoop(BaseSystems):
     def contacts(self) -> OutputPort:
         """The contacts that are clustered, shaded if the scene asks for it."""
         if self.effects.shading is not None:
-            return self.effects.shading.get_contacts_output_port()
+            return self.effects.shading.GetOutputPort("contacts")
         return self.found_contacts
 
     @property
     def display_wrench(self) -> OutputPort:
         """The wrench (6) [τ; f] on its handle that the device is asked to show."""
         if self.effects.passivity is not None:
-            return self.effects.passivity.get_display_wrench_output_port()
-        return self.virtual_coupling.get_display_wrench_output_port()
+            return self.effects.passivity.GetOutputPort("F_Ho_W_commanded")
+        return self.virtual_coupling.GetOutputPort("F_Ho_W_commanded")
 
     @property
     def outputs(self) -> dict[str, OutputPort]:
@@ -96,39 +96,39 @@ class HapticLoop(BaseSystems):
         `BuildHapticDiagram` exports each by this name. In your own diagram each
         can be read, logged, connected or exported like any port.
 
-        * `X_WTool` (7) and `V_WTool` (6) are those of `HapticTool`: pose
+        * `X_WT` (7) and `V_WT` (6) are those of `HapticTool`: pose
           [qw qx qy qz x y z], m, and spatial velocity [ω; v], rad/s and m/s, of the
           tool in the world.
-        * `X_WH` (7), `V_WH` (6), `F_applied` (6) and `status` are those of
+        * `X_WH` (7), `V_WH` (6), `F_Ho_W_rendered` (6) and `status` are those of
           `HapticDevice`: handle, wrench that it shows, state of its gate.
-        * `F_display` (6) is the wrench [τ; f] that the device is asked to show on the
-          handle at its origin in the world, N·m and N.
+        * `F_Ho_W_commanded` (6) is the wrench [τ; f] that the device is asked to show
+          on the handle at its origin in the world, N·m and N.
         * `contacts` is a `drake_haptics.ContactSet`, shaded if the effects say so,
           `clusters` a `drake_haptics._core.ClusterSet`.
-        * `contact_wrench` and `F_Tool_W` (6) are those of `PenaltyForce`: contact
+        * `contact_wrench` and `F_To_W` (6) are those of `PenaltyForce`: contact
           alone, on the tool.
         * `friction_force` (with friction) is that of `StickSlipFriction`, `energy_J`
           (with passivity control) that of `PassivityControl`.
         """
         device, tool, force = self.device, self.haptic_tool, self.penalty_force
         outputs = {
-            "X_WTool": tool.get_pose_output_port(),
-            "V_WTool": tool.get_velocity_output_port(),
-            "X_WH": device.get_handle_pose_output_port(),
-            "V_WH": device.get_handle_velocity_output_port(),
-            "F_display": self.display_wrench,
-            "F_applied": device.get_applied_wrench_output_port(),
-            "status": device.get_status_output_port(),
+            "X_WT": tool.GetOutputPort("X_WT"),
+            "V_WT": tool.GetOutputPort("V_WT"),
+            "X_WH": device.GetOutputPort("X_WH"),
+            "V_WH": device.GetOutputPort("V_WH"),
+            "F_Ho_W_commanded": self.display_wrench,
+            "F_Ho_W_rendered": device.GetOutputPort("F_Ho_W_rendered"),
+            "status": device.GetOutputPort("status"),
             "contacts": self.contacts,
-            "clusters": self.contact_clustering.get_clusters_output_port(),
-            "contact_wrench": force.get_contact_wrench_output_port(),
-            "F_Tool_W": force.get_tool_wrench_output_port(),
+            "clusters": self.contact_clustering.GetOutputPort("clusters"),
+            "contact_wrench": force.GetOutputPort("contact_wrench"),
+            "F_To_W": force.GetOutputPort("F_To_W"),
         }
         if self.effects.friction is not None:
-            port = self.effects.friction.get_friction_force_output_port()
+            port = self.effects.friction.GetOutputPort("friction_force")
             outputs["friction_force"] = port
         if self.effects.passivity is not None:
-            outputs["energy_J"] = self.effects.passivity.get_energy_output_port()
+            outputs["energy_J"] = self.effects.passivity.GetOutputPort("energy_J")
         return outputs
 
 
@@ -152,9 +152,9 @@ def ConnectMovingObject(
         ValueError: There is no such object, or it does not move.
     """
     parts = [loop.penalty_force, *vars(loop.effects).values()]
-    if loop.pose_sample is None:
+    if loop.pose_sampler is None:
         parts.append(loop.contact_query)
-    parts += [loop.pose_sample, loop.contact_advance]
+    parts += [loop.pose_sampler, loop.contact_extrapolator]
     systems: list[System] = [part for part in parts if part is not None]
     sources = {f"X_WO_{name}": X_WO, f"V_WO_{name}": V_WO}
     inputs = [

@@ -9,7 +9,7 @@ from urllib.parse import SplitResult, urlsplit
 from pydrake.geometry import Meshcat
 
 from drake_haptics.device.backend import DeviceBackend, DeviceError
-from drake_haptics.loop.device_placement import DeviceSite, find_device_site
+from drake_haptics.loop.device_placement import DevicePlacement, find_device_site
 from drake_haptics.scene.schema import Scene
 
 _HAPLY_PORT = 10001
@@ -20,7 +20,7 @@ class NoPageError(DeviceError):
 
 
 # Opens a device by the parts of its address.
-_Opener = Callable[[SplitResult, DeviceSite, Meshcat | None], DeviceBackend]
+_Opener = Callable[[SplitResult, DevicePlacement, Meshcat | None], DeviceBackend]
 
 
 def open_device(
@@ -64,7 +64,7 @@ def open_device(
 
 
 def _open_udp(
-    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+    parts: SplitResult, site: DevicePlacement, meshcat: Meshcat | None
 ) -> DeviceBackend:
     from drake_haptics.device.udp_device import UdpDevice
 
@@ -77,7 +77,7 @@ def _open_udp(
 
 
 def _open_haply(
-    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+    parts: SplitResult, site: DevicePlacement, meshcat: Meshcat | None
 ) -> DeviceBackend:
     from drake_haptics.device.haply.haply_device import HaplyDevice
 
@@ -86,7 +86,7 @@ def _open_haply(
 
 
 def _open_lcm(
-    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+    parts: SplitResult, site: DevicePlacement, meshcat: Meshcat | None
 ) -> DeviceBackend:
     from drake_haptics.device.lcm.lcm_device import LcmDevice
 
@@ -109,7 +109,7 @@ def _split_host(parts: SplitResult, default_port: int | None) -> tuple[str, int]
 
 
 def _open_meshcat(
-    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+    parts: SplitResult, site: DevicePlacement, meshcat: Meshcat | None
 ) -> DeviceBackend:
     from drake_haptics.device.meshcat_device import MeshcatDevice
 
@@ -122,7 +122,7 @@ def _open_meshcat(
 
 
 def _open_mouse(
-    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+    parts: SplitResult, site: DevicePlacement, meshcat: Meshcat | None
 ) -> DeviceBackend:
     from drake_haptics.web.mouse_device import MouseDevice
 
@@ -145,7 +145,7 @@ def _require_page(parts: SplitResult, meshcat: Meshcat | None) -> Meshcat:
 
 
 def _open_replay(
-    parts: SplitResult, site: DeviceSite, meshcat: Meshcat | None
+    parts: SplitResult, site: DevicePlacement, meshcat: Meshcat | None
 ) -> DeviceBackend:
     from drake_haptics.tick_log.replay_device import ReplayDevice
     from drake_haptics.tick_log.tick_log import read_tick_log

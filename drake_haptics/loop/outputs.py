@@ -26,7 +26,7 @@ def add_picture(
     builder: DiagramBuilder,
     loop: HapticLoop,
     meshcat: Meshcat,
-    tool: _core.Decomposition,
+    tool: _core.ConvexPieces,
     objects: Sequence[ContactObject],
     period_s: float,
 ) -> HapticVisualizer:
@@ -51,39 +51,39 @@ def add_picture(
             max_force_N=loop.device.max_force_N,
             max_torque_Nm=loop.device.max_torque_Nm,
             has_friction=loop.effects.friction is not None,
-            sheds_load=loop.load_shedding is not None,
+            enable_load_shedding=loop.load_shedding is not None,
         ),
     )
     for output, input in [
         (
-            loop.device.get_handle_pose_output_port(),
-            visualizer.get_handle_pose_input_port(),
+            loop.device.GetOutputPort("X_WH"),
+            visualizer.GetInputPort("X_WH"),
         ),
         (
-            loop.haptic_tool.get_pose_output_port(),
-            visualizer.get_tool_pose_input_port(),
+            loop.haptic_tool.GetOutputPort("X_WT"),
+            visualizer.GetInputPort("X_WT"),
         ),
-        (loop.contacts, visualizer.get_contacts_input_port()),
+        (loop.contacts, visualizer.GetInputPort("contacts")),
         (
-            loop.contact_clustering.get_clusters_output_port(),
-            visualizer.get_clusters_input_port(),
+            loop.contact_clustering.GetOutputPort("clusters"),
+            visualizer.GetInputPort("clusters"),
         ),
         (
-            loop.penalty_force.get_contact_wrench_output_port(),
-            visualizer.get_contact_wrench_input_port(),
+            loop.penalty_force.GetOutputPort("contact_wrench"),
+            visualizer.GetInputPort("contact_wrench"),
         ),
-        (loop.display_wrench, visualizer.get_display_wrench_input_port()),
+        (loop.display_wrench, visualizer.GetInputPort("F_Ho_W_commanded")),
     ]:
         builder.Connect(output, input)
     if loop.effects.friction is not None:
         builder.Connect(
-            loop.effects.friction.get_friction_force_output_port(),
-            visualizer.get_friction_force_input_port(),
+            loop.effects.friction.GetOutputPort("friction_force"),
+            visualizer.GetInputPort("friction_force"),
         )
     if loop.load_shedding is not None:
         builder.Connect(
-            loop.load_shedding.get_relief_output_port(),
-            visualizer.get_relief_input_port(),
+            loop.load_shedding.GetOutputPort("load_shedding"),
+            visualizer.GetInputPort("load_shedding"),
         )
     return visualizer
 
@@ -123,15 +123,15 @@ def AddTickLog(
     """
     device, tool = loop.device, loop.haptic_tool
     sources = {
-        "X_WH": device.get_handle_pose_output_port(),
-        "V_WH": device.get_handle_velocity_output_port(),
-        "F_display": loop.display_wrench,
-        "F_applied": device.get_applied_wrench_output_port(),
-        "X_WTool": tool.get_pose_output_port(),
-        "V_WTool": tool.get_velocity_output_port(),
-        "status": device.get_status_output_port(),
+        "X_WH": device.GetOutputPort("X_WH"),
+        "V_WH": device.GetOutputPort("V_WH"),
+        "F_Ho_W_commanded": loop.display_wrench,
+        "F_Ho_W_rendered": device.GetOutputPort("F_Ho_W_rendered"),
+        "X_WT": tool.GetOutputPort("X_WT"),
+        "V_WT": tool.GetOutputPort("V_WT"),
+        "status": device.GetOutputPort("status"),
         "contacts": loop.found_contacts,
-        "clusters": loop.contact_clustering.get_clusters_output_port(),
+        "clusters": loop.contact_clustering.GetOutputPort("clusters"),
     }
     if device.HasOutputPort("reading"):
         sources["reading"] = device.GetOutputPort("reading")

@@ -10,8 +10,12 @@ from pydrake.math import RigidTransform
 from drake_haptics.common.errors import SceneError
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
-from drake_haptics.scene.schema import HandPath as ScenePath
-from drake_haptics.scene.schema import Pose, Scene, Twin
+from drake_haptics.scene.schema import (
+    DeviceImperfections,
+    HandPathParameters,
+    Pose,
+    Scene,
+)
 from drake_haptics.systems.arm.arm_twin import ArmTwin
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.arm.hand_path import HandPath
@@ -22,7 +26,7 @@ from drake_haptics.systems.device.haptic_device import HapticDevice
 _PATH_SAMPLES = 200
 
 
-def make_hand_path(path: ScenePath) -> HandPath:
+def make_hand_path(path: HandPathParameters) -> HandPath:
     """Returns the hand's path for the tool.
 
     Raises:
@@ -137,9 +141,11 @@ def _sample_handle(scene: Scene, path: HandPath) -> tuple[np.ndarray, np.ndarray
     return times, np.array([X_WH.translation() for X_WH in poses])
 
 
-def _make_arm_twin(twin: Twin, preset: DevicePreset, period_s: float) -> ArmTwin | None:
+def _make_arm_twin(
+    twin: DeviceImperfections, preset: DevicePreset, period_s: float
+) -> ArmTwin | None:
     """Returns the parts of a twin with the preset's figures, None if there is none."""
-    if twin == Twin():
+    if twin == DeviceImperfections():
         return None
     motors = preset.motors
     parts: dict[str, Any] = {}

@@ -27,7 +27,12 @@ from drake_haptics.rendering.checks import (
     question_rendered_sizes,
 )
 from drake_haptics.rendering.haptic_rendering import HapticRendering
-from drake_haptics.scene.schema import Contact, Coupling, Effects, Material
+from drake_haptics.scene.schema import (
+    ContactParameters,
+    CouplingParameters,
+    Effects,
+    Material,
+)
 from drake_haptics.scene.validation import SceneWarning, check_rendering
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
@@ -44,10 +49,10 @@ def AddHapticRendering(
     environment: Sequence[RigidBody | str] | None = None,
     role: Role = Role.kProximity,
     chord_error_m: float = 1e-4,
-    contact: Contact | None = None,
+    contact: ContactParameters | None = None,
     materials: Mapping[str, Material] | None = None,
     effects: Effects | None = None,
-    coupling: Coupling | None = None,
+    coupling: CouplingParameters | None = None,
     device: HapticDevice | None = None,
     X_HT: RigidTransform | None = None,
     period_s: float | None = None,
@@ -68,7 +73,7 @@ def AddHapticRendering(
 
     With a coupling, a spring and damper draw the tool to a handle. The handle is that
     of `device`, which goes inside; or, without one, is given by the inputs `X_WH` and
-    `V_WH` of the result, which shows its wrench at the output `F_display`.
+    `V_WH` of the result, which shows its wrench at the output `F_Ho_W_commanded`.
 
     Args:
         builder: Builder of the diagram with the plant; not built yet.
@@ -123,10 +128,10 @@ def AddHapticRendering(
         environment=(environment, Sequence[RigidBody | str] | None),
         role=(role, Role),
         chord_error_m=(chord_error_m, float),
-        contact=(contact, Contact | None),
+        contact=(contact, ContactParameters | None),
         materials=(materials, Mapping[str, Material] | None),
         effects=(effects, Effects | None),
-        coupling=(coupling, Coupling | None),
+        coupling=(coupling, CouplingParameters | None),
         device=(device, HapticDevice | None),
         X_HT=(X_HT, RigidTransform | None),
         period_s=(period_s, float | None),
@@ -138,7 +143,7 @@ def AddHapticRendering(
         raise ValueError(f"period_s must be positive, is {period_s}")
     if not chord_error_m > 0.0:
         raise ValueError(f"chord_error_m must be positive, is {chord_error_m}")
-    contact, effects = contact or Contact(), effects or Effects()
+    contact, effects = contact or ContactParameters(), effects or Effects()
     materials = materials or {}
     check_rendering(contact, materials, effects, coupling)
     inspector = scene_graph.model_inspector()
@@ -175,13 +180,15 @@ def AddHapticRendering(
     )
     builder.AddNamedSystem(name, rendering)
     builder.Connect(
-        plant.get_body_poses_output_port(), rendering.get_body_poses_input_port()
+        plant.get_body_poses_output_port(), rendering.GetInputPort("body_poses")
     )
     builder.Connect(
         plant.get_body_spatial_velocities_output_port(),
-        rendering.get_body_velocities_input_port(),
+        rendering.GetInputPort("body_spatial_velocities"),
     )
-    AddAppliedSpatialForce(builder, plant, rendering.get_applied_force_output_port())
+    AddAppliedSpatialForce(
+        builder, plant, rendering.GetOutputPort("applied_spatial_force")
+    )
     touching = exclude_own_contact(plant, scene_graph, tool, bodies)
     for sentence in [
         *_describe_own_contact(tool, touching),

@@ -39,7 +39,7 @@ class RenderedBody:
 
     name: str
     body: RigidBody
-    pieces: _core.Decomposition
+    pieces: _core.ConvexPieces
     X_WB: RigidTransform | None
 
     @property

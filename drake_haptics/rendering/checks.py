@@ -18,18 +18,18 @@ from drake_haptics.geometry.mesh.checks import (
     question_tolerance,
 )
 from drake_haptics.geometry.mesh.report import length
-from drake_haptics.geometry.mesh.units import METRES_PER_UNIT, guess_unit
+from drake_haptics.geometry.mesh.units import METERS_PER_UNIT, guess_unit
 from drake_haptics.rendering.bodies import RenderedBody
-from drake_haptics.scene.schema import Contact, Coupling, Material
+from drake_haptics.scene.schema import ContactParameters, CouplingParameters, Material
 
 
 def check_rendering_stiffness(
     plant: MultibodyPlant,
     tool: RenderedBody,
     objects: Sequence[RenderedBody],
-    contact: Contact,
+    contact: ContactParameters,
     materials: Sequence[Material],
-    coupling: Coupling | None,
+    coupling: CouplingParameters | None,
 ) -> list[str]:
     """Checks each stiffness by itself on a discrete plant in its default positions.
 
@@ -77,7 +77,7 @@ def _calc_mobility(plant: MultibodyPlant, item: RenderedBody) -> float:
 
 
 def _check_coupling(
-    plant: MultibodyPlant, tool: RenderedBody, coupling: Coupling
+    plant: MultibodyPlant, tool: RenderedBody, coupling: CouplingParameters
 ) -> list[str | None]:
     """Checks translation and rotation of the coupling."""
     mobility = calc_spatial_mobility(plant, tool.body)
@@ -136,7 +136,7 @@ def _question_size(argument: str, item: RenderedBody, largest_m: float) -> str:
     unit = guess_unit(extent_m, SMALLEST_USUAL_EXTENT_M, LARGEST_USUAL_EXTENT_M)
     if unit is None:
         return f"{sentence}; is the scale of its geometry right?"
-    factor = METRES_PER_UNIT[unit]
+    factor = METERS_PER_UNIT[unit]
     return (
         f"{sentence}; if its mesh is in {unit}, give the geometry a scale of {factor:g}"
     )

@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import Diagram, InputPort, OutputPort
+from pydrake.systems.framework import Diagram
 
 from drake_haptics.loop.add_haptic_loop import make_coupling_gains
 from drake_haptics.loop.contact import connect_by_name
 from drake_haptics.rendering.bodies import RenderedBody
 from drake_haptics.rendering.wiring import RenderingWiring
-from drake_haptics.scene.schema import Contact, Coupling, Effects, Material
+from drake_haptics.scene.schema import (
+    ContactParameters,
+    CouplingParameters,
+    Effects,
+    Material,
+)
 from drake_haptics.scene.validation import calc_skin_speed
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
@@ -28,19 +33,19 @@ class HapticRendering(Diagram):
         - X_WH (with a coupling, without a device)
         - V_WH (with a coupling, without a device)
         output_ports:
-        - X_WTool
-        - V_WTool
+        - X_WT
+        - V_WT
         - X_WO_<name of each body that moves>
         - V_WO_<name of each body that moves>
         - contacts
         - clusters
         - contact_wrench
-        - F_Tool_W
+        - F_To_W
         - F_O_W (with bodies that move)
-        - F_display (with a coupling)
+        - F_Ho_W_commanded (with a coupling)
         - X_WH (with a device)
         - V_WH (with a device)
-        - F_applied (with a device)
+        - F_Ho_W_rendered (with a device)
         - status (with a device)
         - friction_force (with friction)
         - energy_J (with passivity control)
@@ -48,16 +53,16 @@ class HapticRendering(Diagram):
 
     * `body_poses`, `body_spatial_velocities` and `applied_spatial_force` belong to the
       plant's ports of these names.
-    * `X_WTool` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
-      frames in the world, m; `V_WTool` and `V_WO_<name>` (6) their spatial velocities
+    * `X_WT` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
+      frames in the world, m; `V_WT` and `V_WO_<name>` (6) their spatial velocities
       [ω; v] at the frame's origin in the world, rad/s and m/s.
     * `contacts` is a `drake_haptics.ContactSet`, shaded if the effects say so,
       `clusters` a `drake_haptics._core.ClusterSet`.
-    * `F_Tool_W` (6) is the wrench [τ; f] of contact on the tool at its origin in the
+    * `F_To_W` (6) is the wrench [τ; f] of contact on the tool at its origin in the
       world, N·m and N, without coupling and effects; `F_O_W` (6 for each body that
       moves) are those on the bodies. `contact_wrench` is that of `PenaltyForce`.
-    * `F_display` (6) is the wrench [τ; f] to show on the handle at its origin in the
-      world, N·m and N; `X_WH`, `V_WH`, `F_applied` and `status` are those of
+    * `F_Ho_W_commanded` (6) is the wrench [τ; f] to show on the handle at its origin in
+      the world, N·m and N; `X_WH`, `V_WH`, `F_Ho_W_rendered` and `status` are those of
       `HapticDevice`, `friction_force` that of `StickSlipFriction`, `energy_J` that of
       `PassivityControl`.
 
@@ -73,10 +78,10 @@ class HapticRendering(Diagram):
         tool: RenderedBody,
         objects: Sequence[RenderedBody],
         *,
-        contact: Contact,
+        contact: ContactParameters,
         materials: Sequence[Material],
         effects: Effects,
-        coupling: Coupling | None,
+        coupling: CouplingParameters | None,
         device: HapticDevice | None,
         X_HT: RigidTransform,
         period_s: float,
@@ -138,22 +143,10 @@ class HapticRendering(Diagram):
         """
         return self._skin_speed_m_per_s
 
-    def get_body_poses_input_port(self) -> InputPort:
-        """Returns the input `body_poses`."""
-        return self.GetInputPort("body_poses")
-
-    def get_body_velocities_input_port(self) -> InputPort:
-        """Returns the input `body_spatial_velocities`."""
-        return self.GetInputPort("body_spatial_velocities")
-
-    def get_applied_force_output_port(self) -> OutputPort:
-        """Returns the output `applied_spatial_force`."""
-        return self.GetOutputPort("applied_spatial_force")
-
 
 def _check_effects(
     effects: Effects,
-    coupling: Coupling | None,
+    coupling: CouplingParameters | None,
     device: HapticDevice | None,
 ) -> None:
     """Refuses what would mean nothing, or something false."""

@@ -12,7 +12,7 @@ from drake_haptics import _core
 from drake_haptics.loop.contact import add_contact_systems, find_contact_gains
 from drake_haptics.loop.effects import EffectSite, add_effects, find_springs
 from drake_haptics.rendering.bodies import RenderedBody
-from drake_haptics.scene.schema import Contact, Effects, Material
+from drake_haptics.scene.schema import ContactParameters, Effects, Material
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.contact.friction_reaction import FrictionReaction
 from drake_haptics.systems.device.haptic_device import HapticDevice
@@ -61,17 +61,17 @@ class RenderingWiring:
     @property
     def sources(self) -> dict[str, OutputPort]:
         """What there is, by the names of the inputs that want it."""
-        asked = {} if self._asked is None else {"F_asked": self._asked}
+        asked = {} if self._asked is None else {"F_Ho_W_desired": self._asked}
         return {
             **self.outputs,
             **asked,
-            **{f"F_Tool_W_{name}": port for name, port in self._on_tool.items()},
+            **{f"F_To_W_{name}": port for name, port in self._on_tool.items()},
             **{f"F_O_W_{name}": port for name, port in self._on_objects.items()},
         }
 
     def add_contact(
         self,
-        contact: Contact,
+        contact: ContactParameters,
         effects: Effects,
         materials: Sequence[Material],
         period_s: float,
@@ -90,15 +90,15 @@ class RenderingWiring:
         force = found.penalty_force
         gains = find_contact_gains(contact, materials)
         self._contact_stiffness = gains.stiffness_N_per_m.tolist()
-        self._on_tool["contact"] = force.get_tool_wrench_output_port()
+        self._on_tool["contact"] = force.GetOutputPort("F_To_W")
         self.outputs |= {
             "contacts": found.found_contacts,
-            "clusters": found.contact_clustering.get_clusters_output_port(),
-            "contact_wrench": force.get_contact_wrench_output_port(),
-            "F_Tool_W": self._on_tool["contact"],
+            "clusters": found.contact_clustering.GetOutputPort("clusters"),
+            "contact_wrench": force.GetOutputPort("contact_wrench"),
+            "F_To_W": self._on_tool["contact"],
         }
         if self._moving:
-            self._on_objects["contact"] = force.get_object_wrenches_output_port()
+            self._on_objects["contact"] = force.GetOutputPort("F_O_W")
             self.outputs["F_O_W"] = self._on_objects["contact"]
 
     def add_coupling(
@@ -111,13 +111,13 @@ class RenderingWiring:
         coupling = self.builder.AddNamedSystem(
             "virtual_coupling", VirtualCoupling(gains, X_HT)
         )
-        self._push_tool("coupling", coupling.get_wrench_model_output_port())
-        self._asked = coupling.get_display_wrench_output_port()
-        self.outputs["F_display"] = self._asked
+        self._push_tool("coupling", coupling.GetOutputPort("wrench_model"))
+        self._asked = coupling.GetOutputPort("F_Ho_W_commanded")
+        self.outputs["F_Ho_W_commanded"] = self._asked
         if device is None:
             for port in (
-                coupling.get_handle_pose_input_port(),
-                coupling.get_handle_velocity_input_port(),
+                coupling.GetInputPort("X_WH"),
+                coupling.GetInputPort("V_WH"),
             ):
                 # Drake names the system whose input nobody has connected; through a
                 # `PassThrough` there would be NaN.
@@ -151,20 +151,20 @@ class RenderingWiring:
         )
         for name in _FORCES:
             if (system := getattr(added, name)) is not None:
-                self._push_tool(name, system.get_wrench_model_output_port())
+                self._push_tool(name, system.GetOutputPort("wrench_model"))
         if added.braking is not None and self._moving:
-            wrenches = added.braking.get_object_wrenches_output_port()
+            wrenches = added.braking.GetOutputPort("F_O_W")
             self._on_objects["braking"] = wrenches
         if added.shading is not None:
-            self.outputs["contacts"] = added.shading.get_contacts_output_port()
+            self.outputs["contacts"] = added.shading.GetOutputPort("contacts")
         if added.friction is not None:
-            friction_force = added.friction.get_friction_force_output_port()
+            friction_force = added.friction.GetOutputPort("friction_force")
             self.outputs["friction_force"] = friction_force
             if self._moving:
                 reaction = self.builder.AddNamedSystem(
                     "friction_reaction", FrictionReaction(self._objects)
                 )
-                wrenches = reaction.get_object_wrenches_output_port()
+                wrenches = reaction.GetOutputPort("F_O_W")
                 self._on_objects["friction"] = wrenches
         if added.passivity is not None:
             self.outputs |= _name_outputs(added.passivity)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,10 @@ def check_page_path(path: Path) -> None:
     """Checks that page and picture are two files.
 
     Raises:
-        UserError: The path has the picture's suffix.
+        HapticsError: The path has the picture's suffix.
     """
     if path.suffix == ".png":
-        raise UserError(
+        raise HapticsError(
             f"the page must not be called {path.name}: its picture will be. Give a"
             " name that ends with .html"
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from pathlib import Path
 
-from drake_haptics.common.errors import MeshError, SceneError, UserError
+from drake_haptics.common.errors import HapticsError, MeshError, SceneError
 from drake_haptics.common.files import describe_missing
 from drake_haptics.models import FOLDER
 
@@ -47,7 +47,7 @@ def find_mesh(name_or_path: str) -> Path:
 
 
 def _find(
-    what: str, name_or_path: str, shipped: dict[str, Path], error: type[UserError]
+    what: str, name_or_path: str, shipped: dict[str, Path], error: type[HapticsError]
 ) -> Path:
     """Returns the file of a shipped name, or the path itself if it is a file."""
     if name_or_path in shipped:

@@ -30,7 +30,7 @@ class Material:
 
 
 @dataclass(slots=True)
-class Shading:
+class ShadingParameters:
     """Force shading: facets feel smooth, edges stay sharp.
 
     Attributes:
@@ -42,7 +42,7 @@ class Shading:
 
 
 @dataclass(slots=True)
-class Friction:
+class FrictionParameters:
     """Stick-slip friction.
 
     Attributes:
@@ -56,7 +56,7 @@ class Friction:
 
 
 @dataclass(slots=True)
-class Braking:
+class BrakingParameters:
     """Viscous braking before contact.
 
     Attributes:
@@ -70,7 +70,7 @@ class Braking:
 
 
 @dataclass(slots=True)
-class Gravity:
+class GravityParameters:
     """The tool's weight.
 
     Attributes:
@@ -83,7 +83,7 @@ class Gravity:
 
 
 @dataclass(slots=True)
-class Passivity:
+class PassivityParameters:
     """Energy-based passivity control between the coupling and the device.
 
     Attributes:
@@ -112,15 +112,15 @@ class Effects:
         passivity: Takes energy that the loop has made.
     """
 
-    shading: Shading | None = None
-    friction: Friction | None = None
-    braking: Braking | None = None
-    gravity: Gravity | None = None
-    passivity: Passivity | None = None
+    shading: ShadingParameters | None = None
+    friction: FrictionParameters | None = None
+    braking: BrakingParameters | None = None
+    gravity: GravityParameters | None = None
+    passivity: PassivityParameters | None = None
 
 
 @dataclass(slots=True)
-class Encoder:
+class EncoderParameters:
     """Encoders on the motors: the loop sees counted angles, not the true ones.
 
     Attributes:
@@ -135,7 +135,7 @@ class Encoder:
 
 
 @dataclass(slots=True)
-class JointFriction:
+class JointFrictionParameters:
     """Dry and viscous friction of the motors, beyond the damping of the model.
 
     Attributes:
@@ -150,7 +150,7 @@ class JointFriction:
 
 
 @dataclass(slots=True)
-class ForceDelay:
+class ForceDelayParameters:
     """A way to the motors that takes whole ticks, on top of the hold.
 
     Attributes:
@@ -161,7 +161,7 @@ class ForceDelay:
 
 
 @dataclass(slots=True)
-class Saturation:
+class SaturationParameters:
     """Motors of limited torque.
 
     Attributes:
@@ -173,7 +173,7 @@ class Saturation:
 
 
 @dataclass(slots=True)
-class Twin:
+class DeviceImperfections:
     """How faithful the simulated device is. A part that is None is not in the diagram.
 
     In a file, a part with the preset's figures is written `encoder: {}`.
@@ -185,10 +185,10 @@ class Twin:
         saturation: No motor gives more than its peak torque.
     """
 
-    encoder: Encoder | None = None
-    friction: JointFriction | None = None
-    delay: ForceDelay | None = None
-    saturation: Saturation | None = None
+    encoder: EncoderParameters | None = None
+    friction: JointFrictionParameters | None = None
+    delay: ForceDelayParameters | None = None
+    saturation: SaturationParameters | None = None
 
 
 @dataclass(slots=True)
@@ -277,7 +277,7 @@ class EnvironmentObject:
 
 
 @dataclass(slots=True)
-class Contact:
+class ContactParameters:
     """How contact is found and answered.
 
     Attributes:
@@ -311,7 +311,7 @@ class Contact:
 
 
 @dataclass(slots=True)
-class Coupling:
+class CouplingParameters:
     """The spring and damper between the handle and the tool.
 
     The device feels at most this stiffness, whatever the contact's. The defaults
@@ -332,7 +332,7 @@ class Coupling:
 
 
 @dataclass(slots=True)
-class Device:
+class DeviceParameters:
     """The device that is held.
 
     Attributes:
@@ -358,7 +358,7 @@ class Device:
     tick_budget_us: float | None = None
     max_force_N: float | None = None
     max_torque_Nm: float | None = None
-    twin: Twin = field(default_factory=Twin)
+    twin: DeviceImperfections = field(default_factory=DeviceImperfections)
 
 
 @dataclass(slots=True)
@@ -377,7 +377,7 @@ class Waypoint:
 
 
 @dataclass(slots=True)
-class HandPath:
+class HandPathParameters:
     """Where the hand wants the tool to go; its spring decides how firmly.
 
     Attributes:
@@ -392,7 +392,7 @@ class HandPath:
 
 
 @dataclass(slots=True)
-class Hand:
+class HandParameters:
     """The simulated hand on a simulated device.
 
     Attributes:
@@ -403,7 +403,7 @@ class Hand:
     """
 
     grip: str = "nominal"
-    path: HandPath = field(default_factory=HandPath)
+    path: HandPathParameters = field(default_factory=HandPathParameters)
 
 
 @dataclass(slots=True)
@@ -424,10 +424,10 @@ class Scene:
     description: str = ""
     tool: Tool = field(default_factory=Tool)
     environment: list[EnvironmentObject] = field(default_factory=list)
-    contact: Contact = field(default_factory=Contact)
-    coupling: Coupling = field(default_factory=Coupling)
-    device: Device = field(default_factory=Device)
-    hand: Hand = field(default_factory=Hand)
+    contact: ContactParameters = field(default_factory=ContactParameters)
+    coupling: CouplingParameters = field(default_factory=CouplingParameters)
+    device: DeviceParameters = field(default_factory=DeviceParameters)
+    hand: HandParameters = field(default_factory=HandParameters)
     effects: Effects = field(default_factory=Effects)
 
     def __repr__(self) -> str:

@@ -11,16 +11,16 @@ from drake_haptics.geometry.decomposition.decompose import METHODS
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.parsing.model_file import is_model_file
 from drake_haptics.scene.schema import (
-    Contact,
-    Coupling,
-    Device,
+    ContactParameters,
+    CouplingParameters,
+    DeviceImperfections,
+    DeviceParameters,
     Effects,
     EnvironmentObject,
-    HandPath,
+    HandPathParameters,
     Material,
     Scene,
     Tool,
-    Twin,
 )
 from drake_haptics.scene.yaml_loading import join_key, make_hint
 
@@ -76,10 +76,10 @@ def check_values(scene: Scene) -> None:
 
 
 def check_rendering(
-    contact: Contact,
+    contact: ContactParameters,
     materials: Mapping[str, Material],
     effects: Effects,
-    coupling: Coupling | None,
+    coupling: CouplingParameters | None,
 ) -> None:
     """Checks the parts of a scene that a body of a plant is rendered with.
 
@@ -128,7 +128,7 @@ def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
     )
 
 
-def _check_contact(contact: Contact) -> None:
+def _check_contact(contact: ContactParameters) -> None:
     """Checks how contact is found and answered."""
     require_all_positive(contact, "contact", ["stiffness_N_per_m", "cluster_size_m"])
     require_none_negative(contact, "contact", ["tolerance_m", "damping_Ns_per_m"])
@@ -181,7 +181,7 @@ def check_query_rate(rate_hz: float, ticks_per_s: float) -> None:
     )
 
 
-def _check_tick_budget(device: Device) -> None:
+def _check_tick_budget(device: DeviceParameters) -> None:
     period_us = 1e6 / device.rate_hz
     require(
         device.tick_budget_us is None or 0.0 < device.tick_budget_us <= period_us,
@@ -228,7 +228,7 @@ def _check_effects(effects: Effects) -> None:
         require_none_negative(passivity, "effects.passivity", keys)
 
 
-def _check_twin(twin: Twin) -> None:
+def _check_twin(twin: DeviceImperfections) -> None:
     """Checks the values of the parts that there are."""
     where = "device.twin"
     if (encoder := twin.encoder) is not None:
@@ -245,7 +245,7 @@ def _check_twin(twin: Twin) -> None:
         )
 
 
-def _check_path(path: HandPath) -> None:
+def _check_path(path: HandPathParameters) -> None:
     """Checks a path's times; its poses are checked where they are made."""
     where = "hand.path.waypoints"
     require(bool(path.waypoints), where, "is empty")
@@ -319,7 +319,7 @@ def require(condition: bool, where: str, complaint: str) -> None:
         raise SceneError(f"{where} {complaint}")
 
 
-def calc_skin_speed(contact: Contact, period_s: float) -> float:
+def calc_skin_speed(contact: ContactParameters, period_s: float) -> float:
     """Returns the speed at which one step crosses the tolerance, m/s.
 
     Args:

@@ -75,7 +75,8 @@ def check_keys(schema: Any, data: Any, where: str = "") -> None:
     """Checks that data, as YAML gives it, has the shape of a schema.
 
     Args:
-        schema: A dataclass, `float`, `int`, `str`, `bool`, `list[...]` or `... | None`.
+        schema: A dataclass, `float`, `int`, `str`, `bool`, `list[...]`,
+            `dict[str, ...]` or `... | None`.
         data: What stands in its place.
         where: Key of the place, for messages.
 
@@ -94,6 +95,11 @@ def check_keys(schema: Any, data: Any, where: str = "") -> None:
             raise SceneError(f"{where}: expected a list, found {reprlib.repr(data)}")
         for i, item in enumerate(data):
             check_keys(arguments[0], item, f"{where}[{i}]")
+    elif typing.get_origin(schema) is dict:
+        if not isinstance(data, dict):
+            raise SceneError(f"{where}: expected keys, found {reprlib.repr(data)}")
+        for key, item in data.items():
+            check_keys(arguments[1], item, join_key(where, str(key)))
     elif dataclasses.is_dataclass(schema):
         _check_mapping(schema, data, where)
     else:

@@ -1,10 +1,10 @@
 """The public names of the simulation, each with the module that defines it."""
 
 from .device_monitor import DeviceWatch as DeviceWatch
-from .device_monitor import DriverSilence as DriverSilence
+from .device_monitor import SilenceMonitor as SilenceMonitor
 from .energy import EnergyLedger as EnergyLedger
-from .live_values import LiveGlide as LiveGlide
 from .live_values import LiveKey as LiveKey
+from .live_values import LiveValueRamp as LiveValueRamp
 from .live_values import is_live_change as is_live_change
 from .live_values import live_keys as live_keys
 from .live_values import put_live_values as put_live_values
@@ -18,5 +18,5 @@ from .run import RunError as RunError
 from .run import make_simulator as make_simulator
 from .run import run as run
 from .statistics import RunStatistics as RunStatistics
-from .transfer_state import carry_on as carry_on
-from .transfer_state import retire as retire
+from .transfer_state import release_diagram as release_diagram
+from .transfer_state import transfer_context as transfer_context

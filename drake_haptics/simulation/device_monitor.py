@@ -17,7 +17,7 @@ from drake_haptics.device.backend import (
 SILENT_S = 1.0
 
 
-class DriverSilence:
+class SilenceMonitor:
     """For how long a device's driver has said nothing new."""
 
     def __init__(self) -> None:
@@ -50,12 +50,12 @@ class DeviceWatch:
 
     Args:
         backend: The device, open.
-        wants_it_back: Says, while the device is at fault, whether to take it up again.
+        should_recover: Says, while the device is at fault, whether to take it up again.
     """
 
-    def __init__(self, backend: DeviceBackend, wants_it_back: Callable[[], bool]):
+    def __init__(self, backend: DeviceBackend, should_recover: Callable[[], bool]):
         self._backend = backend
-        self._wants_it_back = wants_it_back
+        self._wants_it_back = should_recover
         self._fault = Fault.NONE
         self._faults: Counter[str] = Counter()
         self._recoveries = 0
@@ -68,7 +68,7 @@ class DeviceWatch:
         reading = self._backend.read()
         if reading is None:
             return
-        torque, force = reading.F_BH.reshape(2, 3).tolist()
+        torque, force = reading.F_Ho_B.reshape(2, 3).tolist()
         self._max_force_N = max(self._max_force_N, math.hypot(*force))
         self._max_torque_Nm = max(self._max_torque_Nm, math.hypot(*torque))
         fault = reading.fault if reading.gate == GateState.FAULT else Fault.NONE

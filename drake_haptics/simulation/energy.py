@@ -58,8 +58,10 @@ class EnergyLedger:
             list(sources),
         )
         self._tool = loop.haptic_tool.GetMyContextFromRoot(root)
-        self._X_WH = _reader(loop.device.get_handle_pose_output_port(), root)
-        self._F_applied = _reader(loop.device.get_applied_wrench_output_port(), root)
+        self._X_WH = _reader(loop.device.GetOutputPort("X_WH"), root)
+        self._F_Ho_W_rendered = _reader(
+            loop.device.GetOutputPort("F_Ho_W_rendered"), root
+        )
         self._coupling = _reader(coupling, root)
         self._sources = [_reader(port, root) for port in sources.values()]
         stored = _make_stored_readers(loop, root, lambda: self._gains)
@@ -86,7 +88,7 @@ class EnergyLedger:
         self._ledger.add(
             self._tool.get_discrete_state_vector().value(),
             self._X_WH(),
-            self._F_applied(),
+            self._F_Ho_W_rendered(),
             self._coupling(),
             [read() for read in self._sources],
             [read() for read in self._stored],
@@ -157,7 +159,7 @@ def _make_stored_readers(
     loop: HapticLoop, root: Context, get_gains: Callable[[], _Gains]
 ) -> dict[str, Callable[[], float]]:
     """Returns what tells the energy (J) of each source of wrench that stores some."""
-    clusters = _reader(loop.contact_clustering.get_clusters_output_port(), root)
+    clusters = _reader(loop.contact_clustering.GetOutputPort("clusters"), root)
 
     def contact_energy() -> float:
         gains = get_gains()
@@ -166,12 +168,12 @@ def _make_stored_readers(
 
     readers: dict[str, Callable[[], float]] = {"contact": contact_energy}
     if (friction := loop.effects.friction) is not None:
-        friction_force = _reader(friction.get_friction_force_output_port(), root)
+        friction_force = _reader(friction.GetOutputPort("friction_force"), root)
         readers["friction"] = lambda: friction_force().stored_J
     if (gravity := loop.effects.gravity) is not None:
-        X_WTool = _reader(loop.haptic_tool.get_pose_output_port(), root)
+        X_WT = _reader(loop.haptic_tool.GetOutputPort("X_WT"), root)
         weight_W, p_TTcm = gravity.weight_W_N, gravity.p_TTcm
-        readers["gravity"] = lambda: _core.weight_energy(X_WTool(), p_TTcm, weight_W)
+        readers["gravity"] = lambda: _core.weight_energy(X_WT(), p_TTcm, weight_W)
     return readers
 
 

@@ -15,7 +15,7 @@ from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.add_haptic_loop import make_coupling_gains
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.contact import find_contact_gains, find_query_tolerance
-from drake_haptics.scene.schema import Contact, Coupling, Scene
+from drake_haptics.scene.schema import ContactParameters, CouplingParameters, Scene
 from drake_haptics.systems.contact.contact_clustering import (
     ClusteringMethod,
     ClusteringRule,
@@ -122,7 +122,8 @@ def effect_keys(scene: Scene) -> tuple[LiveKey, ...]:
     """Returns the values of the effects that a scene names.
 
     Another value needs another diagram, as an effect that comes or goes does: see
-    `drake_haptics.carry_on`. A coefficient that every material overrides is left out.
+    `drake_haptics.transfer_context`. A coefficient that every material overrides is
+    left out.
     """
     materials = [item.material for item in scene.environment]
     idle = {
@@ -192,7 +193,7 @@ def write_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> Non
     if not is_live_change(haptic.scene, scene):
         raise ValueError(
             "scene differs from what was built in more than its live keys: build its"
-            " diagram and carry on there (drake_haptics.carry_on)"
+            " diagram and carry on there (drake_haptics.transfer_context)"
         )
     put_live_values(haptic, root, scene)
 
@@ -252,7 +253,7 @@ def _list_springs(scene: Scene) -> tuple[float, ...]:
 
 def _without_live_values(scene: Scene) -> Scene:
     """Returns a scene with the default of each live value."""
-    default = Contact()
+    default = ContactParameters()
     contact = replace(
         scene.contact,
         tolerance_m=default.tolerance_m,
@@ -261,10 +262,10 @@ def _without_live_values(scene: Scene) -> Scene:
         clustering=default.clustering,
         cluster_size_m=default.cluster_size_m,
     )
-    return replace(scene, coupling=Coupling(), contact=contact)
+    return replace(scene, coupling=CouplingParameters(), contact=contact)
 
 
-class LiveGlide:
+class LiveValueRamp:
     """Live values on their way.
 
     A gain that rises by a factor makes a force that is held rise by as much: written

@@ -29,15 +29,15 @@ _MOST_TICKS = 1 << 16
 # In the slowest ticks the computer did something else.
 _MIDDLE_HALF = (0.25, 0.75)
 _WHY = {
-    "display_force_hold": "always: limits what the device shows",
+    "rendered_force_hold": "always: limits what the device shows",
     "device_io": "a device: reads the handle, writes the wrench",
     "handle_model": "a device: carries the wrench on between two ticks",
     "simulated_arm": "device.preset, hand: the arm that is held",
     "virtual_coupling": "always: couples the tool to the handle",
     "haptic_tool": "always: moves the tool",
     "contact_query": "always: finds the contacts",
-    "pose_sample": "contact.query_rate_hz: says where contacts are looked for",
-    "contact_advance": "contact.query_rate_hz: carries contacts on between queries",
+    "pose_sampler": "contact.query_rate_hz: says where contacts are looked for",
+    "contact_extrapolator": "contact.query_rate_hz: moves contacts on in between",
     "contact_clustering": "always: contact.clustering",
     "penalty_force": "always: answers the contacts",
     "force_shading": "effects.shading",

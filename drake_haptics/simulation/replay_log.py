@@ -119,7 +119,7 @@ def _run(
     tool = haptic.loop.haptic_tool.GetMyMutableContextFromRoot(
         simulator.get_mutable_context()
     )
-    tool.SetDiscreteState(0, np.concatenate([rows["X_WTool"][0], rows["V_WTool"][0]]))
+    tool.SetDiscreteState(0, np.concatenate([rows["X_WT"][0], rows["V_WT"][0]]))
     end_s = ticks * period_s
 
     def end_tick(context: Context) -> EventStatus:

@@ -16,7 +16,7 @@ from pydrake.systems.analysis import (
 )
 from pydrake.systems.framework import Context, EventStatus
 
-from drake_haptics.common.real_time import TickClock, realtime_priority
+from drake_haptics.common.real_time import RealTimePacer, realtime_priority
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.validation import SceneWarning, question_depth
@@ -59,7 +59,7 @@ def run(
     haptic: HapticDiagram,
     duration_s: float | None = None,
     *,
-    pace: TickClock | None = None,
+    pace: RealTimePacer | None = None,
     energy: bool = False,
     on_tick: Callable[[Context], bool | None] | None = None,
     context: Context | None = None,
@@ -68,8 +68,8 @@ def run(
     """Runs a scene and measures every tick.
 
     A run can be one of several in a row: with the context in which the last one ended,
-    of the same diagram or carried on to another (`drake_haptics.carry_on`), and its
-    statistics.
+    of the same diagram or carried on to another (`drake_haptics.transfer_context`), and
+    its statistics.
 
     Args:
         haptic: Return value of `BuildHapticDiagram`.
@@ -106,7 +106,7 @@ def run(
     require_kinds(_MADE_BY, haptic=(haptic, HapticDiagram))
     require_kinds(
         duration_s=(duration_s, float | None),
-        pace=(pace, TickClock | None),
+        pace=(pace, RealTimePacer | None),
         on_tick=(on_tick, Callable | None),
         statistics=(statistics, RunStatistics | None),
     )
@@ -168,7 +168,7 @@ def _make_monitor(
     haptic: HapticDiagram,
     measure: Callable[[Context, float], None],
     on_tick: Callable[[Context], bool | None] | None,
-    pace: TickClock | None,
+    pace: RealTimePacer | None,
 ) -> Callable[[Context], EventStatus]:
     """Returns what the simulator calls after each tick."""
     start_s = time.perf_counter()
@@ -201,17 +201,17 @@ def _make_measure(
     """Returns what reads a tick's values from the context into both books."""
     loop = haptic.loop
     tool_context = loop.haptic_tool.GetMyContextFromRoot(root)
-    hold = loop.device.GetSubsystemByName("display_force_hold")
+    hold = loop.device.GetSubsystemByName("rendered_force_hold")
     hold_context = hold.GetMyContextFromRoot(root)
     clustering_context = loop.contact_clustering.GetMyContextFromRoot(root)
     contacts_port = loop.found_contacts
     contacts_context = contacts_port.get_system().GetMyContextFromRoot(root)
-    relief_context = (
+    shed_context = (
         None
         if loop.load_shedding is None
         else loop.load_shedding.GetMyContextFromRoot(root)
     )
-    clusters_port = loop.contact_clustering.get_clusters_output_port()
+    clusters_port = loop.contact_clustering.GetOutputPort("clusters")
 
     def measure(context: Context, tick_s: float) -> None:
         shown = hold_context.get_discrete_state_vector().value().tolist()
@@ -235,8 +235,8 @@ def _make_measure(
             contacts.least_distance,
             shown,
         )
-        if relief_context is not None:
-            statistics.add_shed(relief_context.get_discrete_state_vector().value()[0])
+        if shed_context is not None:
+            statistics.add_shed(shed_context.get_discrete_state_vector().value()[0])
         if ledger is not None:
             ledger.add()
 

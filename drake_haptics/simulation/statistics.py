@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TypedDict
 
 import numpy as np
 
 from drake_haptics.common.one_line import count
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.systems.contact.load_shedding import SHED_STAGES
-from drake_haptics.systems.device.display_force_hold import LIMITED, NOT_FINITE
+from drake_haptics.systems.device.rendered_force_hold import LIMITED, NOT_FINITE
 
 # Distributions are those of the latest ticks, so that a demo left running
 # does not fill the memory; largest values and counts are of all ticks.
@@ -21,31 +23,60 @@ _MAX_RECORDS = 1 << 20
 _BLOCK = 1 << 8
 
 
-class Times(TypedDict):
-    """A distribution of times, µs."""
+@dataclass(frozen=True)
+class TimeSummary:
+    """Distribution of clock times.
 
-    median: float
-    p99: float
-    p99_9: float
-    max: float
+    Attributes:
+        median: Median, µs.
+        p99: 99th percentile, µs.
+        p99_9: 99.9th percentile, µs.
+        max: Largest, µs.
+    """
+
+    median: float = 0.0
+    p99: float = 0.0
+    p99_9: float = 0.0
+    max: float = 0.0
+
+    @classmethod
+    def of(cls, seconds: np.ndarray) -> TimeSummary:
+        """Summarizes times of shape (n,) in s; all zero where there are none."""
+        if not len(seconds):
+            return cls()
+        percentiles_us = 1e6 * np.percentile(seconds, [50, 99, 99.9, 100])
+        return cls(*map(float, percentiles_us))
 
 
-class Counts(TypedDict):
-    """A distribution of numbers."""
+@dataclass(frozen=True)
+class CountSummary:
+    """Distribution of numbers of things.
 
-    median: float
-    max: int
+    Attributes:
+        median: Median.
+        max: Largest.
+    """
+
+    median: float = 0.0
+    max: int = 0
+
+    @classmethod
+    def of(cls, counts: np.ndarray) -> CountSummary:
+        """Summarizes numbers of shape (n,); all zero where there are none."""
+        if not len(counts):
+            return cls()
+        return cls(float(np.median(counts)), int(counts.max()))
 
 
 class RunFigures(TypedDict):
-    """What `RunStatistics.to_dict` returns, and says more of."""
+    """Figures of a run as `RunStatistics.to_dict` returns them, by attribute."""
 
     ticks: int
     duration_s: float
-    tick_us: Times
-    contact_query_us: Times
-    contacts: Counts
-    clusters: Counts
+    tick_us: dict[str, float]
+    contact_query_us: dict[str, float]
+    contacts: dict[str, float]
+    clusters: dict[str, float]
     max_force_N: float
     max_torque_Nm: float
     max_penetration_m: float
@@ -60,7 +91,7 @@ class RunFigures(TypedDict):
 class RunStatistics:
     """Times, contacts, loads and energies of a run."""
 
-    def __init__(self, period_s: float, pace: TickClock | None = None):
+    def __init__(self, period_s: float, pace: RealTimePacer | None = None):
         """Starts with no tick.
 
         Args:
@@ -97,10 +128,87 @@ class RunStatistics:
         return self._ticks + len(self._pending)
 
     @property
-    def max_penetration_m(self) -> float:
-        """Depth of the deepest contact so far, m."""
+    def duration_s(self) -> float:
+        """Simulated time of all ticks so far, s."""
+        return self.ticks * self._period_s
+
+    @property
+    def tick_us(self) -> TimeSummary:
+        """Clock time of whole ticks without waiting, µs; of the latest million."""
+        return TimeSummary.of(self._read_records()[0])
+
+    @property
+    def contact_query_us(self) -> TimeSummary:
+        """Clock time of contact queries in the core, µs; of the latest million."""
+        return TimeSummary.of(self._read_records()[1])
+
+    @property
+    def contacts(self) -> CountSummary:
+        """Number of contacts in a tick, before clustering."""
+        return CountSummary.of(self._read_records()[2])
+
+    @property
+    def clusters(self) -> CountSummary:
+        """Number of clusters in a tick."""
+        return CountSummary.of(self._read_records()[3])
+
+    @property
+    def max_force_N(self) -> float:
+        """Largest force on the device so far, N."""
         self._digest()
-        return max(0.0, -self._least_distance_m)
+        return self._max_force_N
+
+    @property
+    def max_torque_Nm(self) -> float:
+        """Largest torque on the device so far, N·m."""
+        self._digest()
+        return self._max_torque_Nm
+
+    @property
+    def max_penetration_m(self) -> float:
+        """Depth of the deepest contact so far, m; zero without one."""
+        return max(0.0, -(self.least_distance_m or 0.0))
+
+    @property
+    def least_distance_m(self) -> float | None:
+        """Distance of the nearest contact so far, m, negative in depth; or None."""
+        self._digest()
+        found = self._least_distance_m
+        return found if math.isfinite(found) else None
+
+    @property
+    def limit_hits(self) -> int:
+        """Number of ticks in which the device's limits cut the wrench."""
+        self._digest()
+        return self._limit_hits
+
+    @property
+    def non_finite_events(self) -> int:
+        """Number of ticks whose wrench was not finite, and was replaced by zero."""
+        self._digest()
+        return self._non_finite_events
+
+    @property
+    def energy_J(self) -> dict[str, dict[str, float]]:
+        """Energy by the name of the part, J, as `EnergyLedger.to_dict`; or empty."""
+        return self._ledger.to_dict() if self._ledger is not None else {}
+
+    @property
+    def shed_ticks(self) -> dict[str, int]:
+        """Numbers of ticks that left out each of `SHED_STAGES`."""
+        return dict(self._shed_ticks)
+
+    @property
+    def lateness_us(self) -> dict[str, float]:
+        """Lateness of a paced run, or empty.
+
+        Keys: `p50`, `p99` and `p99_9`, µs, and `skipped`, the number of ticks lost to
+        stalls.
+        """
+        if self._pace is None:
+            return {}
+        p50, p99, p99_9 = (1e6 * late_s for late_s in self._pace.calc_lateness())
+        return {"p50": p50, "p99": p99, "p99_9": p99_9, "skipped": self._pace.skipped}
 
     def book(self, ledger: EnergyLedger) -> None:
         """Tells from now on of the energy in a ledger, where the run books it."""
@@ -129,7 +237,7 @@ class RunStatistics:
             clusters: After it.
             distance_m: Of the nearest contact, m, negative if it penetrates; infinite
                 if there is none.
-            shown: (7,) state of the `DisplayForceHold`: wrench on the device
+            shown: (7,) state of the `RenderedForceHold`: wrench on the device
                 [τ; f], N·m and N, and status.
         """
         latest = (tick_s, query_s, contacts, clusters, distance_m, *shown)
@@ -163,63 +271,31 @@ class RunStatistics:
         self._limit_hits += int(np.count_nonzero(status == LIMITED))
         self._non_finite_events += int(np.count_nonzero(status == NOT_FINITE))
 
-    def to_dict(self) -> RunFigures:
-        """Returns the figures for a report, ready for JSON.
-
-        Keys: `ticks`, `duration_s` (simulated), `tick_us` and `contact_query_us`
-        (each with `median`, `p99`, `p99_9`, `max`), `contacts` and `clusters` (each
-        with `median`, `max`), `max_force_N`, `max_torque_Nm`, `max_penetration_m`,
-        `least_distance_m` (of the nearest contact, negative in depth; None without
-        one), `limit_hits` and `non_finite_events` (numbers of ticks), `energy_J` (by
-        the name of the part, as `EnergyLedger.to_dict` tells; empty without a ledger),
-        `lateness_us` (of a paced run, `p50`, `p99`, `p99_9` and `skipped`, the number
-        of ticks lost to stalls; else empty), `shed_ticks` (numbers of ticks that left
-        out each of `SHED_STAGES`).
-        """
+    def _read_records(self) -> np.ndarray:
+        """Returns the rows of times and counts of the latest ticks, (4, n)."""
         self._digest()
-        tick_s, query_s, contacts, clusters = self._records[: self._ticks].T
-        nearest_m = self._least_distance_m
+        return self._records[: self._ticks].T
+
+    def to_dict(self) -> RunFigures:
+        """Returns all attributes by name, ready for JSON."""
         return {
-            "ticks": self._ticks,
-            "duration_s": self._ticks * self._period_s,
-            "tick_us": _describe_times(tick_s),
-            "contact_query_us": _describe_times(query_s),
-            "contacts": _describe_counts(contacts),
-            "clusters": _describe_counts(clusters),
-            "max_force_N": self._max_force_N,
-            "max_torque_Nm": self._max_torque_Nm,
+            "ticks": self.ticks,
+            "duration_s": self.duration_s,
+            "tick_us": dataclasses.asdict(self.tick_us),
+            "contact_query_us": dataclasses.asdict(self.contact_query_us),
+            "contacts": dataclasses.asdict(self.contacts),
+            "clusters": dataclasses.asdict(self.clusters),
+            "max_force_N": self.max_force_N,
+            "max_torque_Nm": self.max_torque_Nm,
             "max_penetration_m": self.max_penetration_m,
-            "least_distance_m": nearest_m if math.isfinite(nearest_m) else None,
-            "limit_hits": self._limit_hits,
-            "non_finite_events": self._non_finite_events,
-            "energy_J": self._ledger.to_dict() if self._ledger is not None else {},
-            "shed_ticks": dict(self._shed_ticks),
-            "lateness_us": _describe_lateness(self._pace) if self._pace else {},
+            "least_distance_m": self.least_distance_m,
+            "limit_hits": self.limit_hits,
+            "non_finite_events": self.non_finite_events,
+            "energy_J": self.energy_J,
+            "shed_ticks": self.shed_ticks,
+            "lateness_us": self.lateness_us,
         }
 
 
 def _largest_norm(vectors: np.ndarray) -> float:
     return float(np.linalg.norm(vectors, axis=1).max())
-
-
-def _describe_lateness(pace: TickClock) -> dict[str, float]:
-    p50, p99, p99_9 = (1e6 * late_s for late_s in pace.calc_lateness())
-    return {"p50": p50, "p99": p99, "p99_9": p99_9, "skipped": pace.skipped}
-
-
-def _describe_times(seconds: np.ndarray) -> Times:
-    if not len(seconds):
-        return {"median": 0.0, "p99": 0.0, "p99_9": 0.0, "max": 0.0}
-    median, p99, p99_9, largest = 1e6 * np.percentile(seconds, [50, 99, 99.9, 100])
-    return {
-        "median": float(median),
-        "p99": float(p99),
-        "p99_9": float(p99_9),
-        "max": float(largest),
-    }
-
-
-def _describe_counts(counts: np.ndarray) -> Counts:
-    if not len(counts):
-        return {"median": 0.0, "max": 0}
-    return {"median": float(np.median(counts)), "max": int(counts.max())}

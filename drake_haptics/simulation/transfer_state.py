@@ -18,7 +18,9 @@ from drake_haptics.systems.arm.simulated_arm import (
 )
 
 
-def carry_on(old: HapticDiagram, old_context: Context, new: HapticDiagram) -> Context:
+def transfer_context(
+    old: HapticDiagram, old_context: Context, new: HapticDiagram
+) -> Context:
     """Returns a context of a diagram that goes on where another one is.
 
     Time goes on, and so does the state of every system that both have: the tool, what
@@ -40,7 +42,7 @@ def carry_on(old: HapticDiagram, old_context: Context, new: HapticDiagram) -> Co
         A context of `new`, for `drake_haptics.simulation.run.run`.
     """
     require_kinds(
-        "carry_on(old, old_context, new) is their order",
+        "transfer_context(old, old_context, new) is their order",
         old=(old, HapticDiagram),
         old_context=(old_context, Context),
         new=(new, HapticDiagram),
@@ -80,7 +82,7 @@ def find_handle(haptic: HapticDiagram, root: Context) -> RigidTransform:
         root: Context of its diagram.
     """
     device = haptic.loop.device
-    port = device.get_handle_pose_output_port()
+    port = device.GetOutputPort("X_WH")
     return vector_to_pose(port.Eval(device.GetMyContextFromRoot(root)))
 
 
@@ -173,7 +175,7 @@ def _describe_state(context: Context) -> tuple[object, ...]:
     )
 
 
-def retire(haptic: HapticDiagram) -> None:
+def release_diagram(haptic: HapticDiagram) -> None:
     """Lets a diagram be freed when the last reference to it goes.
 
     pydrake never frees one that has a system in Python: such a system keeps its diagram

@@ -255,9 +255,9 @@ def plot_diff(a: TickLog, b: TickLog, *, names: tuple[str, str], path: Path) -> 
     pair = find_common_rows(a, b)
     for rows, name, color in zip(pair, names, _COLORS, strict=True):
         style = {"color": color, "label": name, "linewidth": 1.0}
-        force.plot(rows["time_s"], _norm(rows["F_display"][:, 3:]), **style)
+        force.plot(rows["time_s"], _norm(rows["F_Ho_W_commanded"][:, 3:]), **style)
         depth.plot(rows["time_s"], 1e3 * np.maximum(0.0, -rows["distance_m"]), **style)
-    p_A, p_B = (rows["X_WTool"][:, 4:] for rows in pair)
+    p_A, p_B = (rows["X_WT"][:, 4:] for rows in pair)
     apart.plot(pair[0]["time_s"], 1e3 * _norm(p_A - p_B), color="black", linewidth=1.0)
     force.set_ylabel("force asked for / N")
     depth.set_ylabel("penetration / mm")

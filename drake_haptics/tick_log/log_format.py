@@ -18,11 +18,11 @@ from typing import BinaryIO
 
 import numpy as np
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.one_line import one_line
 
 
-class TickLogError(UserError):
+class TickLogError(HapticsError):
     """A log that cannot be written, read or replayed; says why and what to do."""
 
 
@@ -170,10 +170,10 @@ REALS: dict[str, tuple[str, ...]] = {
     "distance_m": ("",),
     "X_WH": POSE,
     "V_WH": VELOCITY,
-    "F_display": WRENCH,
-    "F_applied": WRENCH,
-    "X_WTool": POSE,
-    "V_WTool": VELOCITY,
+    "F_Ho_W_commanded": WRENCH,
+    "F_Ho_W_rendered": WRENCH,
+    "X_WT": POSE,
+    "V_WT": VELOCITY,
 }
 # Those that are unsigned integers of 32 bits.
 COUNTS = ("contacts", "clusters", "status", "sequence", "buttons", "gate", "fault")

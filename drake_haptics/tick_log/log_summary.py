@@ -13,7 +13,7 @@ import numpy as np
 from drake_haptics.tick_log.log_format import TickLogHeader, find_changed_meshes
 from drake_haptics.tick_log.tick_log import TickLogReader
 
-# Values of `status` as `DisplayForceHold` has them.
+# Values of `status` as `RenderedForceHold` has them.
 _LIMITED = 1
 
 
@@ -87,7 +87,7 @@ def summarize_log(
         clock_s = np.concatenate([[last_clock_s], rows["clock_s"]])
         last_clock_s = float(clock_s[-1])
         wait_s = max(wait_s, float(np.diff(clock_s).max()))
-        F = rows["F_display"]
+        F = rows["F_Ho_W_commanded"]
         torque = max(torque, _calc_largest_norm(F[:, :3]))
         force = max(force, _calc_largest_norm(F[:, 3:]))
         depth = max(depth, -float(rows["distance_m"].min()))

@@ -68,7 +68,7 @@ class ReplayDevice(DeviceBackend):
             time_s=float(self._times_s[tick]),
             X_BH=self._X_BH[tick],
             V_BH=self._V_BH[tick],
-            F_BH=np.zeros(6),
+            F_Ho_B=np.zeros(6),
             buttons=int(self._buttons[tick]),
             gate=self._gate,
         )

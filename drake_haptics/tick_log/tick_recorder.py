@@ -116,7 +116,7 @@ class TickRecorder:
 
         Args:
             time_s: Time of the simulation, s.
-            signals: (38,) the quantities from `X_WH` to `V_WTool`, as `REALS` has them.
+            signals: (38,) the quantities from `X_WH` to `V_WT`, as `REALS` has them.
             counts: The quantities of `COUNTS`, in [0, 2³²).
             query_s: Duration of the contact query, s.
             distance_m: Distance of the nearest contact, m; infinite without one.

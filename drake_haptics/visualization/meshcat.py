@@ -20,7 +20,7 @@ from drake_haptics.common.colors import (
     make_legend,
     write_css,
 )
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.scene.schema import Pose
 
@@ -40,14 +40,14 @@ _PLAYER = "recording_player.html"
 _TRACES = "/* the traces */"
 
 
-def open_meshcat(port: int | None = None) -> Meshcat:
+def start_meshcat(port: int | None = None) -> Meshcat:
     """Opens a page on this computer.
 
     Args:
         port: TCP port of the page; None takes the first free one from 7000 on.
 
     Raises:
-        UserError: The port is not available.
+        HapticsError: The port is not available.
     """
     # Drake gives no reason where it fails, so ask the system first.
     if port is not None:
@@ -56,17 +56,17 @@ def open_meshcat(port: int | None = None) -> Meshcat:
             try:
                 probe.bind(("localhost", port))
             except (OSError, OverflowError) as error:
-                raise UserError(f"port {port} cannot be used: {error}") from error
+                raise HapticsError(f"port {port} cannot be used: {error}") from error
     try:
         # How fast it runs is told elsewhere.
         return Meshcat(
             MeshcatParams(host="localhost", port=port, show_stats_plot=False)
         )
     except RuntimeError as error:
-        raise UserError(f"Meshcat cannot open a page: {error}") from error
+        raise HapticsError(f"Meshcat cannot open a page: {error}") from error
 
 
-def set_stage(meshcat: Meshcat, haptic: HapticDiagram) -> None:
+def configure_camera(meshcat: Meshcat, haptic: HapticDiagram) -> None:
     """Points the camera at where tool and objects meet, on a plain background."""
     meshcat.SetProperty("/Background", "top_color", list(BACKGROUND_TOP[:3]))
     meshcat.SetProperty("/Background", "bottom_color", list(BACKGROUND_BOTTOM[:3]))

@@ -13,7 +13,7 @@ from time import monotonic
 from typing import Any
 from urllib.parse import urlsplit
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.web.messages import LARGEST_DATAGRAM
 
 _ADDRESS = "127.0.0.1"
@@ -28,7 +28,7 @@ def open_page_port(port: int | None = None) -> socket.socket:
         port: None takes the first free one from `FIRST_PORT` on.
 
     Raises:
-        UserError: The port cannot be used.
+        HapticsError: The port cannot be used.
     """
     for candidate in itertools.count(FIRST_PORT) if port is None else [port]:
         try:
@@ -36,7 +36,7 @@ def open_page_port(port: int | None = None) -> socket.socket:
         except (OSError, OverflowError) as error:
             if port is None and candidate < FIRST_PORT + _MOST_PORTS:
                 continue
-            raise UserError(
+            raise HapticsError(
                 f"port {candidate} cannot be used for the page: {error}. Give another"
                 f" one, or none for the first free one from {FIRST_PORT}"
             ) from error
@@ -69,7 +69,7 @@ class PageLink:
                 it is closed with the link.
 
         Raises:
-            UserError: No port is available.
+            HapticsError: No port is available.
         """
         self._listener = listener or open_page_port()
         self._url = f"http://localhost:{self._listener.getsockname()[1]}/"

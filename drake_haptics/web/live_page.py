@@ -122,7 +122,7 @@ class LivePage:
                 not given.
 
         Raises:
-            UserError: No port is available.
+            HapticsError: No port is available.
         """
         self.camera = PageCamera(meshcat, X_WC)
         # The Meshcat then tells where the camera of this page is.

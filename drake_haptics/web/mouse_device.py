@@ -56,7 +56,7 @@ class MouseDevice(PageHandle):
 
         Raises:
             ValueError: A pose is not finite, or the radius or a limit out of range.
-            UserError: The port is not available.
+            HapticsError: The port is not available.
         """
         super().__init__(X_WB=X_WB, X_BH=X_BH, workspace_radius_m=workspace_radius_m)
         for name, value in [
@@ -102,7 +102,7 @@ class MouseDevice(PageHandle):
     def write(self, command: DeviceCommand) -> None:
         """Shows a wrench on the page from now on."""
         super().write(command)
-        F_W = self._R_WB @ self._handle.F_BH.reshape(2, 3).T
+        F_W = self._R_WB @ self._handle.F_Ho_B.reshape(2, 3).T
         wrench = F_W.T.ravel().tolist()
         self._page.note(
             monotonic() - self._start_s, (*_NO_FIGURES, *wrench, 0.0), NOT_KNOWN

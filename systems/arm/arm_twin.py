@@ -9,7 +9,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import DiagramBuilder, InputPort, OutputPort
 from pydrake.systems.primitives import Adder, ConstantVectorSource
 
-from drake_haptics._core import HeldArm
+from drake_haptics._core import ArmDynamics
 from drake_haptics.systems.arm.force_delay import ForceDelay
 from drake_haptics.systems.arm.hand_impedance import HandImpedance
 from drake_haptics.systems.arm.joint_encoder import JointEncoder
@@ -49,7 +49,7 @@ def add_arm_twin(
     twin: ArmTwin,
     plant: MultibodyPlant,
     hand: HandImpedance,
-    free_arm: HeldArm,
+    free_arm: ArmDynamics,
 ) -> tuple[InputPort, OutputPort, OutputPort]:
     """Adds the parts of a twin that there are, between an arm and its ports.
 
@@ -70,9 +70,9 @@ def add_arm_twin(
     """
     S = twin.joint_per_motor
     arm_state = plant.get_state_output_port()
-    wrench = hand.get_applied_wrench_input_port()
-    forces = [hand.get_generalized_force_output_port()]
-    handle_state = hand.get_handle_state_output_port()
+    wrench = hand.GetInputPort("F_Ho_W_rendered")
+    forces = [hand.GetOutputPort("generalized_force")]
+    handle_state = hand.GetOutputPort("handle_state")
     if twin.peak_torque_Nm is not None:
         motors = builder.AddNamedSystem(
             "motor_torque", MotorTorque(free_arm, S, twin.peak_torque_Nm)
@@ -81,7 +81,7 @@ def add_arm_twin(
         # The hand no longer passes the wrench on.
         nothing = builder.AddNamedSystem("no_wrench", ConstantVectorSource(np.zeros(6)))
         builder.Connect(nothing.get_output_port(), wrench)
-        wrench = motors.GetInputPort("F_applied")
+        wrench = motors.GetInputPort("F_Ho_W_rendered")
         forces.append(motors.get_output_port())
     if twin.coulomb_Nm is not None:
         viscous = twin.viscous_Nms_per_rad
@@ -115,8 +115,8 @@ def add_arm_twin(
                 twin.velocity_window,
             ),
         )
-        builder.Connect(arm_state, encoder.get_arm_state_input_port())
-        handle_state = encoder.get_handle_state_output_port()
+        builder.Connect(arm_state, encoder.GetInputPort("arm_state"))
+        handle_state = encoder.GetOutputPort("handle_state")
     return wrench, _add(builder, forces), handle_state
 
 

@@ -18,7 +18,7 @@ class ForceDelay(Diagram):
 
         name: ForceDelay
         input_ports:
-        - F_applied
+        - F_Ho_W_rendered
         output_ports:
         - F_delayed
 
@@ -49,7 +49,7 @@ class ForceDelay(Diagram):
             builder.AddNamedSystem(f"hold_{i}", ZeroOrderHold(period_s, 6))
             for i in range(samples)
         ]
-        builder.ExportInput(holds[0].get_input_port(), "F_applied")
+        builder.ExportInput(holds[0].get_input_port(), "F_Ho_W_rendered")
         for before, hold in pairwise(holds):
             builder.Connect(before.get_output_port(), hold.get_input_port())
         builder.ExportOutput(holds[-1].get_output_port(), "F_delayed")

@@ -8,9 +8,9 @@ import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable, RigidBody
-from pydrake.systems.framework import BasicVector, Context, InputPort, OutputPort
+from pydrake.systems.framework import BasicVector, Context
 
-from drake_haptics._core import AutoDiffVector, CouplingGains, HeldArm
+from drake_haptics._core import ArmDynamics, AutoDiffVector, CouplingGains
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.framework.differentiable_system import (
@@ -75,7 +75,7 @@ class HandImpedance(DifferentiableSystem):
 
     It draws the handle to X_WP X_PH, with P the frame of the path, and passes on
     the wrench that the device's motors show. Both act in continuous time as
-    generalized forces, τ = Jᵀ (F_hand + F_applied), which is one call of the core
+    generalized forces, τ = Jᵀ (F_hand + F_Ho_W_rendered), which is one call of the core
     and one vector port, where applied spatial forces would be many.
 
     .. pydrake_system::
@@ -83,14 +83,14 @@ class HandImpedance(DifferentiableSystem):
         name: HandImpedance
         input_ports:
         - arm_state
-        - F_applied
+        - F_Ho_W_rendered
         output_ports:
         - generalized_force
         - handle_state
 
     * `arm_state` is [q; v] of the arm's plant.
-    * `F_applied` (6) is the wrench [τ; f] on the handle at its origin in the world,
-      N·m and N.
+    * `F_Ho_W_rendered` (6) is the wrench [τ; f] on the handle at its origin in the
+      world, N·m and N.
     * `generalized_force` is for the plant, N·m.
     * `handle_state` (13) is [X_WH; V_WH]: the handle's pose [qw qx qy qz x y z], m,
       and its spatial velocity [ω; v], rad/s and m/s, in the world.
@@ -121,42 +121,26 @@ class HandImpedance(DifferentiableSystem):
         super().__init__()
         self._arm = make_held_arm(plant, handle, path, X_PH, gains)
         self._arm_state = self.DeclareVectorInputPort("arm_state", 2 * _NUM_JOINTS)
-        self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
+        self._F_Ho_W_rendered = self.DeclareVectorInputPort("F_Ho_W_rendered", 6)
         self._eval_arm_state = self._arm_state.Eval
-        self._eval_F_applied = self._F_applied.Eval
+        self._eval_F_Ho_W_rendered = self._F_Ho_W_rendered.Eval
         from_arm = {self._arm_state.ticket()}
-        self._generalized_force = self.DeclareVectorOutputPort(
+        self.DeclareVectorOutputPort(
             "generalized_force",
             _NUM_JOINTS,
             self._calc_generalized_force,
-            from_arm | {self._F_applied.ticket(), self.time_ticket()},
+            from_arm | {self._F_Ho_W_rendered.ticket(), self.time_ticket()},
         )
-        self._handle_state = self.DeclareVectorOutputPort(
+        self.DeclareVectorOutputPort(
             "handle_state", 13, self._calc_handle_state, from_arm
         )
-
-    def get_arm_state_input_port(self) -> InputPort:
-        """Returns the input `arm_state`."""
-        return self._arm_state
-
-    def get_applied_wrench_input_port(self) -> InputPort:
-        """Returns the input `F_applied`."""
-        return self._F_applied
-
-    def get_generalized_force_output_port(self) -> OutputPort:
-        """Returns the output `generalized_force`."""
-        return self._generalized_force
-
-    def get_handle_state_output_port(self) -> OutputPort:
-        """Returns the output `handle_state`."""
-        return self._handle_state
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
         output.set_value(
             self._arm.calc_joint_torques(
                 context.get_time(),
                 self._eval_arm_state(context),
-                self._eval_F_applied(context),
+                self._eval_F_Ho_W_rendered(context),
             )
         )
 
@@ -167,7 +151,9 @@ class HandImpedance(DifferentiableSystem):
         """Returns an output with its derivatives."""
         if port == "handle_state":
             return self._arm.calc_handle_state(at["arm_state"])
-        return self._arm.calc_joint_torques(at.time_s, at["arm_state"], at["F_applied"])
+        return self._arm.calc_joint_torques(
+            at.time_s, at["arm_state"], at["F_Ho_W_rendered"]
+        )
 
 
 def make_held_arm(
@@ -176,7 +162,7 @@ def make_held_arm(
     path: HandPath,
     X_PH: RigidTransform,
     gains: CouplingGains | None,
-) -> HeldArm:
+) -> ArmDynamics:
     """Reads an arm's kinematics off its plant and holds them against it.
 
     Args:
@@ -206,7 +192,7 @@ def make_held_arm(
         return plant.EvalBodyPoseInWorld(context, handle), J_WH
 
     X_WH, J_WH = kinematics(np.zeros(2 * _NUM_JOINTS))
-    arm = HeldArm(
+    arm = ArmDynamics(
         J_WH,
         pose_to_vector(X_WH),
         path.core,

@@ -7,13 +7,11 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import (
     Context,
     DiscreteValues,
-    InputPort,
     LeafSystem,
-    OutputPort,
     State,
 )
 
-from drake_haptics._core import HeldArm
+from drake_haptics._core import ArmDynamics
 
 
 class JointEncoder(LeafSystem):
@@ -47,7 +45,7 @@ class JointEncoder(LeafSystem):
     def __init__(
         self,
         plant: MultibodyPlant,
-        arm: HeldArm,
+        arm: ArmDynamics,
         period_s: float,
         joint_per_motor: np.ndarray,
         step_rad: np.ndarray,
@@ -90,14 +88,6 @@ class JointEncoder(LeafSystem):
         self.DeclareInitializationDiscreteUpdateEvent(self._fill)
         self.DeclarePeriodicUnrestrictedUpdateEvent(period_s, 0.0, self._sample)
         self.DeclareStateOutputPort("handle_state", self._handle)
-
-    def get_arm_state_input_port(self) -> InputPort:
-        """Returns the input `arm_state`."""
-        return self.get_input_port()
-
-    def get_handle_state_output_port(self) -> OutputPort:
-        """Returns the output `handle_state`."""
-        return self.get_output_port()
 
     def _count(self, q: np.ndarray) -> np.ndarray:
         """Returns the motors' angles (6,) as their encoders count them."""

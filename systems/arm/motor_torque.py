@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context
 
-from drake_haptics._core import AutoDiffVector, HeldArm
+from drake_haptics._core import ArmDynamics, AutoDiffVector
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -15,23 +15,23 @@ from drake_haptics.systems.framework.differentiable_system import (
 class MotorTorque(DifferentiableSystem):
     """Jacobian-transpose actuation by motors of limited torque.
 
-    τ_motor = clamp(Sᵀ J_WHᵀ F_applied), each motor by itself as its amplifier does,
-    with q = S q_motor; the joints get τ = S⁻ᵀ τ_motor. A wrench that no motor must be
-    limited for arrives as it is. Else what arrives is J_WH⁻ᵀ S⁻ᵀ τ_motor, which has
-    another direction than the wrench that was asked for.
+    τ_motor = clamp(Sᵀ J_WHᵀ F_Ho_W_rendered), where each amplifier clamps its own motor
+    and q = S q_motor; the joints get τ = S⁻ᵀ τ_motor. A wrench that no motor must be
+    limited for arrives as it is. Otherwise J_WH⁻ᵀ S⁻ᵀ τ_motor arrives, which has
+    another direction than the wrench that was commanded.
 
     .. pydrake_system::
 
         name: MotorTorque
         input_ports:
         - arm_state
-        - F_applied
+        - F_Ho_W_rendered
         output_ports:
         - generalized_force
 
     * `arm_state` (12) is [q; v] of the arm's plant, rad and rad/s.
-    * `F_applied` (6) is the wrench [τ; f] on the handle at its origin in the world,
-      N·m and N.
+    * `F_Ho_W_rendered` (6) is the wrench [τ; f] on the handle at its origin in the
+      world, N·m and N.
     * `generalized_force` (6) is for the plant, N·m.
 
     Its derivative is that of the motors that are not at their limit; one at its limit
@@ -39,7 +39,7 @@ class MotorTorque(DifferentiableSystem):
     """
 
     def __init__(
-        self, arm: HeldArm, joint_per_motor: np.ndarray, peak_torque_Nm: np.ndarray
+        self, arm: ArmDynamics, joint_per_motor: np.ndarray, peak_torque_Nm: np.ndarray
     ):
         """Constructs the system.
 
@@ -59,18 +59,18 @@ class MotorTorque(DifferentiableSystem):
         self._to_joints = np.linalg.inv(self._to_motors)
         self._peak_torque_Nm = np.array(peak_torque_Nm, dtype=float)
         self._arm_state = self.DeclareVectorInputPort("arm_state", 12)
-        self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
+        self._F_Ho_W_rendered = self.DeclareVectorInputPort("F_Ho_W_rendered", 6)
         self.DeclareVectorOutputPort(
             "generalized_force",
             6,
             self._calc_generalized_force,
-            {self._arm_state.ticket(), self._F_applied.ticket()},
+            {self._arm_state.ticket(), self._F_Ho_W_rendered.ticket()},
         )
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
         # The time is the hand's, and there is none.
         torque = self._arm.calc_joint_torques(
-            0.0, self._arm_state.Eval(context), self._F_applied.Eval(context)
+            0.0, self._arm_state.Eval(context), self._F_Ho_W_rendered.Eval(context)
         )
         output.SetFromVector(self._to_joints @ self._limit(self._to_motors @ torque))
 
@@ -83,7 +83,7 @@ class MotorTorque(DifferentiableSystem):
         torque = self._arm.calc_joint_torques(
             AutoDiffVector(np.zeros(1), np.zeros((1, at.num_derivatives))),
             at["arm_state"],
-            at["F_applied"],
+            at["F_Ho_W_rendered"],
         )
         asked = self._to_motors @ torque.value
         slope = self._to_motors @ torque.gradient

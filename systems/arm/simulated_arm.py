@@ -102,12 +102,12 @@ class SimulatedArm(Diagram):
 
         name: SimulatedArm
         input_ports:
-        - F_applied
+        - F_Ho_W_rendered
         output_ports:
         - X_WH
         - V_WH
 
-    `F_applied` is that of `HandImpedance`.
+    `F_Ho_W_rendered` is that of `HandImpedance`.
 
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
@@ -156,18 +156,18 @@ class SimulatedArm(Diagram):
             ),
         )
         builder.Connect(
-            plant.get_state_output_port(), hand_impedance.get_arm_state_input_port()
+            plant.get_state_output_port(), hand_impedance.GetInputPort("arm_state")
         )
-        wrench = hand_impedance.get_applied_wrench_input_port()
-        force = hand_impedance.get_generalized_force_output_port()
-        handle_state = hand_impedance.get_handle_state_output_port()
+        wrench = hand_impedance.GetInputPort("F_Ho_W_rendered")
+        force = hand_impedance.GetOutputPort("generalized_force")
+        handle_state = hand_impedance.GetOutputPort("handle_state")
         if twin is not None:
             free_arm = make_held_arm(plant, handle, path, X_PH, None)
             wrench, force, handle_state = add_arm_twin(
                 builder, twin, plant, hand_impedance, free_arm
             )
         builder.Connect(force, plant.get_applied_generalized_force_input_port())
-        builder.ExportInput(wrench, "F_applied")
+        builder.ExportInput(wrench, "F_Ho_W_rendered")
         export_parts(builder, handle_state, {"X_WH": 7, "V_WH": 6})
         builder.BuildInto(self)
 

@@ -9,7 +9,7 @@ from typing import Literal, get_args, overload
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import Context, InputPort, OutputPort
+from pydrake.systems.framework import Context
 
 from drake_haptics._core import (
     AutoDiffClusterSet,
@@ -82,13 +82,13 @@ class ContactClustering(DifferentiableSystem):
         name: ContactClustering
         input_ports:
         - contacts
-        - relief (with load shedding)
+        - load_shedding (with load shedding)
         output_ports:
         - clusters
 
     `contacts` is a `drake_haptics.ContactSet`, `clusters` a
     `drake_haptics._core.ClusterSet`; both are immutable and in the world frame.
-    `relief` is that of `LoadShedding`: contacts push only below its share of the
+    `load_shedding` is that of `LoadShedding`: contacts push only below its share of the
     tolerance, and those that are nearer than its cell to a deeper one along the same
     direction are left out.
     Under AutoDiffXd they are an `AutoDiffContactSet` and an `AutoDiffClusterSet` of
@@ -104,7 +104,7 @@ class ContactClustering(DifferentiableSystem):
         tolerance_m: float,
         delta_m: float | None = None,
         *,
-        sheds_load: bool = False,
+        enable_load_shedding: bool = False,
         warns_deep: bool = False,
     ):
         """Constructs the system.
@@ -115,7 +115,8 @@ class ContactClustering(DifferentiableSystem):
             method: "shared" or "octree".
             tolerance_m: The distance t below which contacts push, m.
             delta_m: Cluster size δ of the octree, m.
-            sheds_load: Whether the loop sheds load, and there is a port for that.
+            enable_load_shedding: Whether the loop sheds load, and there is a port for
+                that.
             warns_deep: Whether the first contact that is deeper than ten tolerances
                 is warned of, where `run` does not: it waits for the end, since to
                 write may keep a loop waiting that a hand holds.
@@ -130,11 +131,15 @@ class ContactClustering(DifferentiableSystem):
         self._rule = self.DeclareAbstractParameter(Value[object](rule))
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
         self._eval_contacts = self._contacts.Eval
-        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
+        self._load_shedding = (
+            self.DeclareVectorInputPort("load_shedding", 3)
+            if enable_load_shedding
+            else None
+        )
         self._clusters = self.DeclareAbstractOutputPort(
             "clusters",
             Value[object],
-            self._calc_clusters if self._relief is None else self._calc_fewer,
+            self._calc_clusters if self._load_shedding is None else self._calc_fewer,
             {self.all_input_ports_ticket(), self.pa_ticket()},
         )
 
@@ -165,24 +170,12 @@ class ContactClustering(DifferentiableSystem):
             raise TypeError(f"rule must be a ClusteringRule, is {type(rule).__name__}")
         context.get_mutable_abstract_parameter(self._rule).set_value(rule)
 
-    def get_contacts_input_port(self) -> InputPort:
-        """Returns the input `contacts`."""
-        return self._contacts
-
-    def get_relief_input_port(self) -> InputPort:
-        """Returns the input `relief`, with load shedding."""
-        return self.GetInputPort("relief")
-
-    def get_clusters_output_port(self) -> OutputPort:
-        """Returns the output `clusters`."""
-        return self._clusters
-
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffClusterSet:
         """Returns the clusters with their derivatives."""
         rule: ClusteringRule = at.parameters[self._rule]
-        if self._relief is None:
+        if self._load_shedding is None:
             return _cluster(at["contacts"], rule.tolerance_m, rule.delta_m)
-        return _cluster_fewer(at["contacts"], rule, at["relief"].value)
+        return _cluster_fewer(at["contacts"], rule, at["load_shedding"].value)
 
     def _calc_clusters(self, context: Context, clusters: AbstractValue) -> None:
         rule = context.get_abstract_parameter(self._rule).get_value()
@@ -199,33 +192,35 @@ class ContactClustering(DifferentiableSystem):
             warnings.warn(question, SceneWarning, stacklevel=1)
 
     def _calc_fewer(self, context: Context, clusters: AbstractValue) -> None:
-        assert self._relief is not None
+        assert self._load_shedding is not None
         clusters.set_value(
             _cluster_fewer(
                 self._contacts.Eval(context),
                 self.get_rule(context),
-                self._relief.Eval(context),
+                self._load_shedding.Eval(context),
             )
         )
 
 
 @overload
 def _cluster_fewer(
-    contacts: ContactSet, rule: ClusteringRule, relief: np.ndarray
+    contacts: ContactSet, rule: ClusteringRule, load_shedding: np.ndarray
 ) -> ClusterSet: ...
 
 
 @overload
 def _cluster_fewer(
-    contacts: AutoDiffContactSet, rule: ClusteringRule, relief: np.ndarray
+    contacts: AutoDiffContactSet, rule: ClusteringRule, load_shedding: np.ndarray
 ) -> AutoDiffClusterSet: ...
 
 
 def _cluster_fewer(
-    contacts: ContactSet | AutoDiffContactSet, rule: ClusteringRule, relief: np.ndarray
+    contacts: ContactSet | AutoDiffContactSet,
+    rule: ClusteringRule,
+    load_shedding: np.ndarray,
 ) -> ClusterSet | AutoDiffClusterSet:
     """Applies a rule where the loop sheds load."""
-    _, reach_share, cell_m = relief
+    _, reach_share, cell_m = load_shedding
     if cell_m > 0.0:
         contacts = thin_contacts(contacts, cell_m)
     return _cluster(contacts, reach_share * rule.tolerance_m, rule.delta_m)

@@ -16,14 +16,13 @@ from pydrake.systems.framework import (
     Context,
     InputPort,
     LeafSystem,
-    OutputPort,
     ValueProducer,
 )
 
 from drake_haptics._core import (
     AutoDiffContactSet,
     AutoDiffVector,
-    Decomposition,
+    ConvexPieces,
     ObjectFrames,
     SceneTracker,
     differentiate_contacts,
@@ -51,7 +50,7 @@ class ContactObject:
     """
 
     name: str
-    decomposition: Decomposition
+    decomposition: ConvexPieces
     X_WO: RigidTransform | None = None
 
 
@@ -66,14 +65,14 @@ class ContactQuery(DifferentiableSystem):
 
         name: ContactQuery
         input_ports:
-        - X_WTool
+        - X_WT
         - X_WO_<name of each object that moves>
-        - relief (with load shedding)
+        - load_shedding (with load shedding)
         output_ports:
         - contacts
 
-    `X_WTool` and `X_WO_<name>` are poses [qw qx qy qz x y z] in the world, m.
-    `contacts` is a `drake_haptics.ContactSet`, immutable. `relief` is that of
+    `X_WT` and `X_WO_<name>` are poses [qw qx qy qz x y z] in the world, m.
+    `contacts` is a `drake_haptics.ContactSet`, immutable. `load_shedding` is that of
     `LoadShedding`: contacts are looked for only up to its share of the tolerance.
 
     The tolerance is an abstract parameter of the Context (index 1), a float; see
@@ -92,13 +91,13 @@ class ContactQuery(DifferentiableSystem):
 
     def __init__(
         self,
-        tool: Decomposition,
+        tool: ConvexPieces,
         objects: Sequence[ContactObject],
         tolerance_m: float,
         depth: DepthSearch = "tracked",
         max_walk_steps: int = 1024,
         *,
-        sheds_load: bool = False,
+        enable_load_shedding: bool = False,
     ):
         """Constructs the system.
 
@@ -110,7 +109,8 @@ class ContactQuery(DifferentiableSystem):
             depth: Of two pieces in overlap: that walked to from the last answer, or
                 the least one of all; see `drake_haptics.SceneTracker`.
             max_walk_steps: Bound on the steps of such a walk, at least 1.
-            sheds_load: Whether the loop sheds load, and there is a port for that.
+            enable_load_shedding: Whether the loop sheds load, and there is a port for
+                that.
 
         Raises:
             ValueError: The tolerance is negative or not finite, there is no object, a
@@ -130,14 +130,18 @@ class ContactQuery(DifferentiableSystem):
         self._objects = tuple(objects)
         self._depth: DepthSearch = depth
         self._max_walk_steps = max_walk_steps
-        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
-        self._eval_X_WTool = self._X_WTool.Eval
+        self._X_WT = self.DeclareVectorInputPort("X_WT", 7)
+        self._eval_X_WT = self._X_WT.Eval
         self._X_WO = {
             i: self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
             for i, item in enumerate(objects)
             if item.X_WO is None
         }
-        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
+        self._load_shedding = (
+            self.DeclareVectorInputPort("load_shedding", 3)
+            if enable_load_shedding
+            else None
+        )
         self._hint = self.DeclareAbstractParameter(Value[object](_NOTHING))
         self._tolerance = self.DeclareAbstractParameter(Value[object](tolerance_m))
         from_tolerance = self.abstract_parameter_ticket(
@@ -159,22 +163,6 @@ class ContactQuery(DifferentiableSystem):
             self._calc_contacts,
             {self.all_input_ports_ticket(), from_tolerance},
         )
-
-    def get_tool_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WTool`."""
-        return self._X_WTool
-
-    def get_object_pose_input_port(self, name: str) -> InputPort:
-        """Returns the input `X_WO_<name>` of an object that moves."""
-        return self.GetInputPort(f"X_WO_{name}")
-
-    def get_relief_input_port(self) -> InputPort:
-        """Returns the input `relief`, with load shedding."""
-        return self.GetInputPort("relief")
-
-    def get_contacts_output_port(self) -> OutputPort:
-        """Returns the output `contacts`."""
-        return self._contacts
 
     def get_tolerance(self, context: Context) -> float:
         """Returns the distance up to which pairs are contacts, m.
@@ -247,13 +235,13 @@ class ContactQuery(DifferentiableSystem):
         ]
         for i in self._X_WO:
             tracker.set_object_pose(i, X_WO[i].value)
-        if self._relief is not None:
-            reach_m *= at["relief"].value[1]
+        if self._load_shedding is not None:
+            reach_m *= at["load_shedding"].value[1]
         return differentiate_contacts(
-            tracker.query(at["X_WTool"].value, reach_m),
+            tracker.query(at["X_WT"].value, reach_m),
             reach_m,
             self._tool,
-            at["X_WTool"],
+            at["X_WT"],
             [item.decomposition for item in self._objects],
             X_WO,
         )
@@ -289,12 +277,12 @@ class ContactQuery(DifferentiableSystem):
         tracker: SceneTracker = self._eval_tracker(context)
         for i, port in self._X_WO.items():
             tracker.set_object_pose(i, port.Eval(context))
-        X_WTool = self._eval_X_WTool(context)
-        if self._relief is None:
-            contacts.set_value(tracker.query(X_WTool))
+        X_WT = self._eval_X_WT(context)
+        if self._load_shedding is None:
+            contacts.set_value(tracker.query(X_WT))
             return
-        reach_m = self.get_tolerance(context) * self._relief.Eval(context)[1]
-        contacts.set_value(tracker.query(X_WTool, reach_m))
+        reach_m = self.get_tolerance(context) * self._load_shedding.Eval(context)[1]
+        contacts.set_value(tracker.query(X_WT, reach_m))
 
 
 def _check_tolerance(tolerance_m: float) -> None:

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 from pydrake.common.value import AbstractValue, Value
-from pydrake.systems.framework import Context, InputPort, OutputPort
+from pydrake.systems.framework import Context
 
 from drake_haptics._core import (
     AutoDiffContactSet,
     AutoDiffVector,
     ContactShading,
-    Decomposition,
+    ConvexPieces,
     SurfaceShading,
 )
 from drake_haptics.common.pose_vector import pose_to_vector
@@ -36,7 +36,7 @@ class ForceShading(DifferentiableSystem):
         name: ForceShading
         input_ports:
         - contacts
-        - X_WTool
+        - X_WT
         - X_WO_<name of each object that moves>
         output_ports:
         - contacts
@@ -56,7 +56,7 @@ class ForceShading(DifferentiableSystem):
 
     def __init__(
         self,
-        tool: Decomposition,
+        tool: ConvexPieces,
         objects: Sequence[ContactObject],
         *,
         crease_angle_deg: float,
@@ -94,7 +94,7 @@ class ForceShading(DifferentiableSystem):
             ],
         )
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
-        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._X_WT = self.DeclareVectorInputPort("X_WT", 7)
         self._X_WO = {
             i: self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
             for i, item in enumerate(objects)
@@ -105,28 +105,12 @@ class ForceShading(DifferentiableSystem):
         for i, item in enumerate(objects):
             if item.X_WO is not None:
                 self._q_WO[i] = pose_to_vector(item.X_WO)
-        self._shaded_contacts = self.DeclareAbstractOutputPort(
+        self.DeclareAbstractOutputPort(
             "contacts",
             Value[object],
             self._calc_contacts,
             {self.all_input_ports_ticket()},
         )
-
-    def get_contacts_input_port(self) -> InputPort:
-        """Returns the input `contacts`."""
-        return self._contacts
-
-    def get_tool_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WTool`."""
-        return self._X_WTool
-
-    def get_object_pose_input_port(self, name: str) -> InputPort:
-        """Returns the input `X_WO_<name>` of an object that moves."""
-        return self.GetInputPort(f"X_WO_{name}")
-
-    def get_contacts_output_port(self) -> OutputPort:
-        """Returns the output `contacts`."""
-        return self._shaded_contacts
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffContactSet:
         """Returns the shaded contacts with their derivatives."""
@@ -137,7 +121,7 @@ class ForceShading(DifferentiableSystem):
             q_WO[i], by_q_WO[i] = X_WO.value, X_WO.gradient
         return self._shading.shade(
             at["contacts"],
-            at["X_WTool"],
+            at["X_WT"],
             AutoDiffVector(
                 q_WO.ravel(), by_q_WO.reshape(q_WO.size, at.num_derivatives)
             ),
@@ -151,6 +135,6 @@ class ForceShading(DifferentiableSystem):
                 q_WO[i] = port.Eval(context)
         contacts.set_value(
             self._shading.shade(
-                self._contacts.Eval(context), self._X_WTool.Eval(context), q_WO
+                self._contacts.Eval(context), self._X_WT.Eval(context), q_WO
             )
         )

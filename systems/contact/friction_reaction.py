@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from pydrake.common.value import Value
-from pydrake.systems.framework import BasicVector, Context, OutputPort
+from pydrake.systems.framework import BasicVector, Context
 
 from drake_haptics._core import AutoDiffVector
 from drake_haptics.systems.contact.contact_query import ContactObject
@@ -61,10 +61,6 @@ class FrictionReaction(DifferentiableSystem):
             self._calc_F_O_W,
             {self.all_input_ports_ticket()},
         )
-
-    def get_object_wrenches_output_port(self) -> OutputPort:
-        """Returns the output `F_O_W`."""
-        return self.get_output_port()
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrenches with their derivatives."""

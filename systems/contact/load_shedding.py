@@ -11,7 +11,6 @@ from pydrake.systems.framework import (
     Context,
     DiscreteValues,
     EventStatus,
-    OutputPort,
 )
 
 from drake_haptics._core import AutoDiffVector
@@ -107,11 +106,11 @@ class LoadShedding(DifferentiableSystem):
 
         name: LoadShedding
         output_ports:
-        - relief
+        - load_shedding
 
-    `relief` (3) is [shed, reach share, cell]: how much is dropped, 0 (nothing) to 3
-    (all stages), the share of the distances that is left, 1 to 1/4, and the size of
-    the cell, m, 0 while all clusters count. It is the state, one discrete group,
+    `load_shedding` (3) is [shed, reach share, cell]: how much is dropped, 0 (nothing)
+    to 3 (all stages), the share of the distances that is left, 1 to 1/4, and the size
+    of the cell, m, 0 while all clusters count. It is the state, one discrete group,
     updated every period from 0 s on.
 
     The time of the last tick is an input that no Context has: it is read once per tick.
@@ -144,12 +143,8 @@ class LoadShedding(DifferentiableSystem):
         self._budget_s = budget_s
         self._largest_cell_m = largest_cell_m
         state = self.DeclareDiscreteState(self._describe(0.0))
-        self._relief = self.DeclareStateOutputPort("relief", state)
+        self._load_shedding = self.DeclareStateOutputPort("load_shedding", state)
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
-
-    def get_relief_output_port(self) -> OutputPort:
-        """Returns the output `relief`."""
-        return self._relief
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         shed = float(context.get_discrete_state_vector().value()[0])
@@ -165,7 +160,7 @@ class LoadShedding(DifferentiableSystem):
         return shed
 
     def _describe(self, shed: float) -> np.ndarray:
-        """Returns `relief`."""
+        """Returns `load_shedding`."""
         thinned = min(max(shed - 1.0, 0.0), 1.0)
         coarsened = max(shed - 2.0, 0.0)
         return np.array(

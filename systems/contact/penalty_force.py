@@ -12,8 +12,6 @@ from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import (
     BasicVector,
     Context,
-    InputPort,
-    OutputPort,
 )
 
 from drake_haptics._core import (
@@ -93,24 +91,24 @@ class PenaltyForce(DifferentiableSystem):
         name: PenaltyForce
         input_ports:
         - clusters
-        - X_WTool
-        - V_WTool
+        - X_WT
+        - V_WT
         - X_WO_<name of each object that moves>
         - V_WO_<name of each object that moves>
         output_ports:
         - wrench_model
-        - F_Tool_W
+        - F_To_W
         - F_O_W (with objects that move)
         - contact_wrench
 
-    Poses are [qw qx qy qz x y z], m. `V_WTool` and `V_WO_<name>` are spatial
+    Poses are [qw qx qy qz x y z], m. `V_WT` and `V_WO_<name>` are spatial
     velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
 
     * `clusters` is a `drake_haptics._core.ClusterSet`.
     * `wrench_model` (78) is [F; K; B]: the wrench on the tool at its origin in the
       world, N·m and N, and its 6 x 6 stiffness and damping, row-major, with
       F(δ, V + dV) ≈ F - K δ - B dV, δ = [rotation vector; translation] of the tool.
-    * `F_Tool_W` (6) is its F, [τ; f].
+    * `F_To_W` (6) is its F, [τ; f].
     * `F_O_W` (6 for each object that moves) are the wrenches [τ; f] on those objects,
       each at its origin in the world, N·m and N.
     * `contact_wrench` is the `drake_haptics._core.PenaltyWrench` with the force of
@@ -147,19 +145,17 @@ class PenaltyForce(DifferentiableSystem):
         self._check_number(gains)
         self._gains = self.DeclareAbstractParameter(Value[object](gains))
         self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())
-        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
-        self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
+        self._X_WT = self.DeclareVectorInputPort("X_WT", 7)
+        self._V_WT = self.DeclareVectorInputPort("V_WT", 6)
         self._eval_clusters = self._clusters.Eval
-        self._eval_X_WTool = self._X_WTool.Eval
-        self._eval_V_WTool = self._V_WTool.Eval
+        self._eval_X_WT = self._X_WT.Eval
+        self._eval_V_WT = self._V_WT.Eval
         self._motions = ObjectMotions(self, objects)
         from_inputs = {self.all_input_ports_ticket(), self.pa_ticket()}
         self._wrench_model = self.DeclareVectorOutputPort(
             "wrench_model", 78, self._calc_wrench_model, from_inputs
         )
-        self._F_Tool_W = self.DeclareVectorOutputPort(
-            "F_Tool_W", 6, self._calc_F_Tool_W, from_inputs
-        )
+        self.DeclareVectorOutputPort("F_To_W", 6, self._calc_F_To_W, from_inputs)
         self._moving = [i for i, item in enumerate(objects) if item.X_WO is None]
         if self._moving:
             self.DeclareVectorOutputPort(
@@ -204,53 +200,17 @@ class PenaltyForce(DifferentiableSystem):
         self._check_number(gains)
         context.get_mutable_abstract_parameter(self._gains).set_value(gains)
 
-    def get_clusters_input_port(self) -> InputPort:
-        """Returns the input `clusters`."""
-        return self._clusters
-
-    def get_tool_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WTool`."""
-        return self._X_WTool
-
-    def get_tool_velocity_input_port(self) -> InputPort:
-        """Returns the input `V_WTool`."""
-        return self._V_WTool
-
-    def get_object_pose_input_port(self, name: str) -> InputPort:
-        """Returns the input `X_WO_<name>` of an object that moves."""
-        return self.GetInputPort(f"X_WO_{name}")
-
-    def get_object_velocity_input_port(self, name: str) -> InputPort:
-        """Returns the input `V_WO_<name>` of an object that moves."""
-        return self.GetInputPort(f"V_WO_{name}")
-
-    def get_wrench_model_output_port(self) -> OutputPort:
-        """Returns the output `wrench_model`."""
-        return self._wrench_model
-
-    def get_tool_wrench_output_port(self) -> OutputPort:
-        """Returns the output `F_Tool_W`."""
-        return self._F_Tool_W
-
-    def get_object_wrenches_output_port(self) -> OutputPort:
-        """Returns the output `F_O_W`; there is none if no object moves."""
-        return self.GetOutputPort("F_O_W")
-
-    def get_contact_wrench_output_port(self) -> OutputPort:
-        """Returns the output `contact_wrench`."""
-        return self._contact_wrench
-
     def differentiate(
         self, port: str, at: AutoDiffPoint
     ) -> AutoDiffVector | AutoDiffPenaltyWrench:
         """Returns a wrench, or all that is known of them, with derivatives."""
-        X_WTool = at["X_WTool"]
+        X_WT = at["X_WT"]
         p_WO, V_WO = self._motions.differentiate(at)
         gains: ContactGains = at.parameters[self._gains]
         wrench = penalty_force(
             at["clusters"],
-            AutoDiffVector(X_WTool.value[4:], X_WTool.gradient[4:]),
-            at["V_WTool"],
+            AutoDiffVector(X_WT.value[4:], X_WT.gradient[4:]),
+            at["V_WT"],
             p_WO,
             V_WO,
             gains.stiffness_N_per_m,
@@ -262,14 +222,14 @@ class PenaltyForce(DifferentiableSystem):
             F = wrench.F_objects_W
             rows = [6 * i + k for i in self._moving for k in range(6)]
             return AutoDiffVector(F.value[rows], F.gradient[rows])
-        return wrench.F_Tool_W if port == "F_Tool_W" else wrench.wrench_model
+        return wrench.F_To_W if port == "F_To_W" else wrench.wrench_model
 
     def _read(self, context: Context) -> tuple[Any, ...]:
         """Returns what the law is a function of."""
         return (
             self._eval_clusters(context),
-            self._eval_X_WTool(context),
-            self._eval_V_WTool(context),
+            self._eval_X_WT(context),
+            self._eval_V_WT(context),
             self._motions.read(context),
             context.get_abstract_parameter(self._gains).get_value().materials,
         )
@@ -290,8 +250,8 @@ class PenaltyForce(DifferentiableSystem):
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
         output.set_value(penalty_wrench_model(*self._read(context)))
 
-    def _calc_F_Tool_W(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._eval_wrench(context).F_Tool_W)
+    def _calc_F_To_W(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._eval_wrench(context).F_To_W)
 
     def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
         wrench = self._eval_wrench(context)

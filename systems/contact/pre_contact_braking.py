@@ -9,8 +9,6 @@ from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import (
     BasicVector,
     Context,
-    InputPort,
-    OutputPort,
     ValueProducer,
 )
 
@@ -41,19 +39,19 @@ class PreContactBraking(DifferentiableSystem):
         name: PreContactBraking
         input_ports:
         - contacts
-        - X_WTool
-        - V_WTool
+        - X_WT
+        - V_WT
         - X_WO_<name of each object that moves>
         - V_WO_<name of each object that moves>
-        - relief (with load shedding)
+        - load_shedding (with load shedding)
         output_ports:
         - wrench_model
         - F_O_W (with objects that move)
 
     `contacts` is a `drake_haptics.ContactSet`; contacts must have been looked for up
-    to D at least. Poses are [qw qx qy qz x y z], m. `V_WTool` and `V_WO_<name>` are
+    to D at least. Poses are [qw qx qy qz x y z], m. `V_WT` and `V_WO_<name>` are
     spatial velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
-    `relief` is that of `LoadShedding`: D is as much less as it says.
+    `load_shedding` is that of `LoadShedding`: D is as much less as it says.
 
     `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
     documents it. K is zero: the braking changes with the pose only as the speed does.
@@ -72,7 +70,7 @@ class PreContactBraking(DifferentiableSystem):
         *,
         damping_Ns_per_m: float,
         distance_m: float,
-        sheds_load: bool = False,
+        enable_load_shedding: bool = False,
     ):
         """Constructs the system.
 
@@ -80,7 +78,8 @@ class PreContactBraking(DifferentiableSystem):
             objects: Those of the `ContactQuery`, in the same order.
             damping_Ns_per_m: b, the damping half-way to the surface, N·s/m.
             distance_m: D, where braking begins, m.
-            sheds_load: Whether the loop sheds load, and there is a port for that.
+            enable_load_shedding: Whether the loop sheds load, and there is a port for
+                that.
 
         Raises:
             ValueError: The damping is negative, the distance not positive, or one of
@@ -91,10 +90,14 @@ class PreContactBraking(DifferentiableSystem):
         self._damping_Ns_per_m = damping_Ns_per_m
         self._distance_m = distance_m
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
-        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
-        self._V_WTool = self.DeclareVectorInputPort("V_WTool", 6)
+        self._X_WT = self.DeclareVectorInputPort("X_WT", 7)
+        self._V_WT = self.DeclareVectorInputPort("V_WT", 6)
         self._motions = ObjectMotions(self, objects)
-        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
+        self._load_shedding = (
+            self.DeclareVectorInputPort("load_shedding", 3)
+            if enable_load_shedding
+            else None
+        )
         from_inputs = {self.all_input_ports_ticket()}
         self._wrench_model = self.DeclareVectorOutputPort(
             "wrench_model", 78, self._calc_wrench_model, from_inputs
@@ -121,49 +124,17 @@ class PreContactBraking(DifferentiableSystem):
             )
             self._eval_wrenches = shared.Eval
 
-    def get_contacts_input_port(self) -> InputPort:
-        """Returns the input `contacts`."""
-        return self._contacts
-
-    def get_tool_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WTool`."""
-        return self._X_WTool
-
-    def get_tool_velocity_input_port(self) -> InputPort:
-        """Returns the input `V_WTool`."""
-        return self._V_WTool
-
-    def get_object_pose_input_port(self, name: str) -> InputPort:
-        """Returns the input `X_WO_<name>` of an object that moves."""
-        return self.GetInputPort(f"X_WO_{name}")
-
-    def get_object_velocity_input_port(self, name: str) -> InputPort:
-        """Returns the input `V_WO_<name>` of an object that moves."""
-        return self.GetInputPort(f"V_WO_{name}")
-
-    def get_relief_input_port(self) -> InputPort:
-        """Returns the input `relief`, with load shedding."""
-        return self.GetInputPort("relief")
-
-    def get_wrench_model_output_port(self) -> OutputPort:
-        """Returns the output `wrench_model`."""
-        return self._wrench_model
-
-    def get_object_wrenches_output_port(self) -> OutputPort:
-        """Returns the output `F_O_W`; there is none if no object moves."""
-        return self.GetOutputPort("F_O_W")
-
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrench model, or the reaction, with its derivatives."""
-        X_WTool = at["X_WTool"]
+        X_WT = at["X_WT"]
         wrenches = pre_contact_braking(
             at["contacts"],
-            AutoDiffVector(X_WTool.value[4:], X_WTool.gradient[4:]),
-            at["V_WTool"],
+            AutoDiffVector(X_WT.value[4:], X_WT.gradient[4:]),
+            at["V_WT"],
             *self._motions.differentiate(at),
             self._gains
-            if self._relief is None
-            else self._relieve(float(at["relief"].value[1])),
+            if self._load_shedding is None
+            else self._relieve(float(at["load_shedding"].value[1])),
         )
         rows = self._moving if port == "F_O_W" else slice(78)
         return AutoDiffVector(wrenches.value[rows], wrenches.gradient[rows])
@@ -172,12 +143,12 @@ class PreContactBraking(DifferentiableSystem):
         """Returns the wrench model (78,) and the wrench (6) on each object."""
         return pre_contact_braking(
             self._contacts.Eval(context),
-            self._X_WTool.Eval(context)[4:],
-            self._V_WTool.Eval(context),
+            self._X_WT.Eval(context)[4:],
+            self._V_WT.Eval(context),
             self._motions.read(context),
             self._gains
-            if self._relief is None
-            else self._relieve(self._relief.Eval(context)[1]),
+            if self._load_shedding is None
+            else self._relieve(self._load_shedding.Eval(context)[1]),
         )
 
     def _relieve(self, reach_share: float) -> BrakingGains:

@@ -10,8 +10,6 @@ from pydrake.systems.framework import (
     BasicVector,
     Context,
     DiscreteValues,
-    InputPort,
-    OutputPort,
     ValueProducer,
 )
 
@@ -47,7 +45,7 @@ class StickSlipFriction(DifferentiableSystem):
         input_ports:
         - clusters
         - contact_wrench
-        - X_WTool
+        - X_WT
         - X_WO_<name of each object that moves>
         output_ports:
         - wrench_model
@@ -64,7 +62,7 @@ class StickSlipFriction(DifferentiableSystem):
       tool at each cluster, whether it slides, and the elastic energy.
 
     The outputs are a function of the inputs now and of the state, without a sample of
-    delay. The state is one discrete group, [X_WTool (7); X_WO (7) of each object that
+    delay. The state is one discrete group, [X_WT (7); X_WO (7) of each object that
     moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z_W (3), load (N), grip]: the
     poses and the strongest contacts of the last tick, updated every period from 0 s
     on. A slot without a load is empty.
@@ -118,7 +116,7 @@ class StickSlipFriction(DifferentiableSystem):
         self._contact_wrench = self.DeclareAbstractInputPort(
             "contact_wrench", Value[object]()
         )
-        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._X_WT = self.DeclareVectorInputPort("X_WT", 7)
         self._X_WO = [
             self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
             for item in objects
@@ -143,30 +141,6 @@ class StickSlipFriction(DifferentiableSystem):
         )
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
-    def get_clusters_input_port(self) -> InputPort:
-        """Returns the input `clusters`."""
-        return self._clusters
-
-    def get_contact_wrench_input_port(self) -> InputPort:
-        """Returns the input `contact_wrench`."""
-        return self._contact_wrench
-
-    def get_tool_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WTool`."""
-        return self._X_WTool
-
-    def get_object_pose_input_port(self, name: str) -> InputPort:
-        """Returns the input `X_WO_<name>` of an object that moves."""
-        return self.GetInputPort(f"X_WO_{name}")
-
-    def get_wrench_model_output_port(self) -> OutputPort:
-        """Returns the output `wrench_model`."""
-        return self._wrench_model
-
-    def get_friction_force_output_port(self) -> OutputPort:
-        """Returns the output `friction_force`."""
-        return self._friction_force
-
     def differentiate(
         self, port: str, at: AutoDiffPoint
     ) -> AutoDiffVector | AutoDiffFrictionStep:
@@ -187,7 +161,7 @@ class StickSlipFriction(DifferentiableSystem):
             ),
         )
         return self._model.step(
-            at.state, at["clusters"], at["contact_wrench"], at["X_WTool"], q_WO
+            at.state, at["clusters"], at["contact_wrench"], at["X_WT"], q_WO
         )
 
     def _calc_step(self, context: Context, step: AbstractValue) -> None:
@@ -197,7 +171,7 @@ class StickSlipFriction(DifferentiableSystem):
                 context.get_discrete_state_vector().value(),
                 self._clusters.Eval(context),
                 self._contact_wrench.Eval(context),
-                self._X_WTool.Eval(context),
+                self._X_WT.Eval(context),
                 np.concatenate(poses) if poses else _NOTHING_MOVES,
             )
         )

@@ -34,15 +34,15 @@ class DeviceIo(Diagram):
 
         name: DeviceIo
         input_ports:
-        - F_applied
+        - F_Ho_W_rendered
         - handle_slopes
         output_ports:
         - X_WH
         - V_WH
         - reading
 
-    * `F_applied` (6) is the wrench [τ; f] on the handle at its origin in the world,
-      N·m and N.
+    * `F_Ho_W_rendered` (6) is the wrench [τ; f] on the handle at its origin in the
+      world, N·m and N.
     * `handle_slopes` (72) is [K; B] of that wrench as `HandleModel` documents it; may
       be left unconnected.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
@@ -79,7 +79,7 @@ class DeviceIo(Diagram):
         exchange = builder.AddNamedSystem(
             "exchange", _Exchange(backend, _Frame(X_WB), period_s, first_reading)
         )
-        for name in ("F_applied", "handle_slopes"):
+        for name in ("F_Ho_W_rendered", "handle_slopes"):
             builder.ExportInput(exchange.GetInputPort(name), name)
         export_parts(
             builder, exchange.GetOutputPort("handle_state"), {"X_WH": 7, "V_WH": 6}
@@ -122,7 +122,7 @@ class _Exchange(LeafSystem):
         super().__init__()
         self._backend = backend
         self._frame = frame
-        self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
+        self._F_Ho_W_rendered = self.DeclareVectorInputPort("F_Ho_W_rendered", 6)
         self._slopes = self.DeclareVectorInputPort("handle_slopes", 72)
         handle_state = self.DeclareDiscreteState(frame.to_world(first_reading))
         self._reading = self.DeclareAbstractState(Value[object](first_reading))
@@ -148,6 +148,6 @@ class _Exchange(LeafSystem):
         slopes = self._slopes.Eval(context) if self._slopes.HasValue(context) else None
         reading = context.get_abstract_state(int(self._reading)).get_value()
         self._backend.write(
-            self._frame.to_base(self._F_applied.Eval(context), slopes, reading)
+            self._frame.to_base(self._F_Ho_W_rendered.Eval(context), slopes, reading)
         )
         return EventStatus.Succeeded()

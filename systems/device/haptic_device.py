@@ -5,12 +5,10 @@ from __future__ import annotations
 from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
-    InputPort,
-    OutputPort,
     System,
 )
 
-from drake_haptics.systems.device.display_force_hold import DisplayForceHold
+from drake_haptics.systems.device.rendered_force_hold import RenderedForceHold
 
 
 class HapticDevice(Diagram):
@@ -20,24 +18,25 @@ class HapticDevice(Diagram):
 
         name: HapticDevice
         input_ports:
-        - F_display
+        - F_Ho_W_commanded
         - handle_slopes (if the backend has it)
         output_ports:
         - X_WH
         - V_WH
-        - F_applied
+        - F_Ho_W_rendered
         - status
         - reading (if the backend has it)
 
-    * `F_display` (6) is the wrench [τ; f] to show at the handle's origin, in the
+    * `F_Ho_W_commanded` (6) is the wrench [τ; f] to show at the handle's origin, in the
       world, N·m and N.
     * `handle_slopes` (72) is that of `DeviceIo`.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
-    * `F_applied` and `status` are those of the `DisplayForceHold` before the device.
+    * `F_Ho_W_rendered` and `status` are those of the `RenderedForceHold` before the
+      device.
     * `reading` is that of `DeviceIo`.
 
-    A backend is a system with the input `F_applied` and the outputs `X_WH` and
+    A backend is a system with the input `F_Ho_W_rendered` and the outputs `X_WH` and
     `V_WH`, neither of which depends directly on the input: a `SimulatedArm`, or a
     `DeviceIo` for any other device.
     """
@@ -66,21 +65,22 @@ class HapticDevice(Diagram):
         self._max_torque_Nm = max_torque_Nm
         builder = DiagramBuilder()
         hold = builder.AddNamedSystem(
-            "display_force_hold",
-            DisplayForceHold(period_s, max_force_N, max_torque_Nm),
+            "rendered_force_hold",
+            RenderedForceHold(period_s, max_force_N, max_torque_Nm),
         )
         builder.AddSystem(backend)
         builder.Connect(
-            hold.get_applied_wrench_output_port(), backend.GetInputPort("F_applied")
+            hold.GetOutputPort("F_Ho_W_rendered"),
+            backend.GetInputPort("F_Ho_W_rendered"),
         )
-        builder.ExportInput(hold.get_display_wrench_input_port(), "F_display")
+        builder.ExportInput(hold.GetInputPort("F_Ho_W_commanded"), "F_Ho_W_commanded")
         self._wants_slopes = backend.HasInputPort("handle_slopes")
         if self._wants_slopes:
             builder.ExportInput(backend.GetInputPort("handle_slopes"), "handle_slopes")
         builder.ExportOutput(backend.GetOutputPort("X_WH"), "X_WH")
         builder.ExportOutput(backend.GetOutputPort("V_WH"), "V_WH")
-        builder.ExportOutput(hold.get_applied_wrench_output_port(), "F_applied")
-        builder.ExportOutput(hold.get_status_output_port(), "status")
+        builder.ExportOutput(hold.GetOutputPort("F_Ho_W_rendered"), "F_Ho_W_rendered")
+        builder.ExportOutput(hold.GetOutputPort("status"), "status")
         if backend.HasOutputPort("reading"):
             builder.ExportOutput(backend.GetOutputPort("reading"), "reading")
         builder.BuildInto(self)
@@ -99,27 +99,3 @@ class HapticDevice(Diagram):
     def wants_slopes(self) -> bool:
         """Whether there is a backend that can use `handle_slopes`."""
         return self._wants_slopes
-
-    def get_display_wrench_input_port(self) -> InputPort:
-        """Returns the input `F_display`."""
-        return self.GetInputPort("F_display")
-
-    def get_handle_slopes_input_port(self) -> InputPort:
-        """Returns the input `handle_slopes`; there must be one."""
-        return self.GetInputPort("handle_slopes")
-
-    def get_handle_pose_output_port(self) -> OutputPort:
-        """Returns the output `X_WH`."""
-        return self.GetOutputPort("X_WH")
-
-    def get_handle_velocity_output_port(self) -> OutputPort:
-        """Returns the output `V_WH`."""
-        return self.GetOutputPort("V_WH")
-
-    def get_applied_wrench_output_port(self) -> OutputPort:
-        """Returns the output `F_applied`."""
-        return self.GetOutputPort("F_applied")
-
-    def get_status_output_port(self) -> OutputPort:
-        """Returns the output `status`."""
-        return self.GetOutputPort("status")

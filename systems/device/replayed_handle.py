@@ -21,12 +21,12 @@ class ReplayedHandle(Diagram):
 
         name: ReplayedHandle
         input_ports:
-        - F_applied
+        - F_Ho_W_rendered
         output_ports:
         - X_WH
         - V_WH
 
-    * `F_applied` (6) is not used: a recorded hand does not yield.
+    * `F_Ho_W_rendered` (6) is not used: a recorded hand does not yield.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m.
     * `V_WH` (6) is its spatial velocity [ω; v] in the world, rad/s and m/s.
 
@@ -57,7 +57,7 @@ class ReplayedHandle(Diagram):
         builder = DiagramBuilder()
         states = np.hstack([X_WH, V_WH])
         motion = builder.AddNamedSystem("motion", _RecordedMotion(states, period_s))
-        builder.ExportInput(motion.get_input_port(), "F_applied")
+        builder.ExportInput(motion.get_input_port(), "F_Ho_W_rendered")
         export_parts(builder, motion.get_output_port(), {"X_WH": 7, "V_WH": 6})
         builder.BuildInto(self)
 
@@ -69,7 +69,7 @@ class _RecordedMotion(LeafSystem):
         super().__init__()
         self._states = states
         self._period_s = period_s
-        self.DeclareVectorInputPort("F_applied", 6)
+        self.DeclareVectorInputPort("F_Ho_W_rendered", 6)
         self.DeclareVectorOutputPort(
             "handle_state", 13, self._calc_handle_state, {self.time_ticket()}
         )

@@ -10,9 +10,7 @@ from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import (
     BasicVector,
     Context,
-    InputPort,
     LeafSystem,
-    OutputPort,
     State,
 )
 
@@ -52,12 +50,12 @@ class HapticCommandReceiver(LeafSystem):
         - X_BH
         - V_BH
         output_ports:
-        - F_BH
+        - F_Ho_B
         - gate_status
 
     * `X_BH` (7) is the handle's pose [qw qx qy qz x y z] in the device's base, m.
     * `V_BH` (6) is its spatial velocity [ω; v] there, rad/s and m/s.
-    * `F_BH` (6) is the wrench [τ; f] to show on the handle at Ho, N·m and N.
+    * `F_Ho_B` (6) is the wrench [τ; f] to show on the handle at Ho, N·m and N.
     * `gate_status` (abstract) is the `GateStatus`.
 
     The state is the gate, moved on every period from 0 s on by an unrestricted update;
@@ -99,7 +97,9 @@ class HapticCommandReceiver(LeafSystem):
             Value[object](_Memory(gate, self._idle, lcmt_haptic_command()))
         )
         from_state = {self.abstract_state_ticket(self._memory)}
-        self._F_BH = self.DeclareVectorOutputPort("F_BH", 6, self._calc_F, from_state)
+        self._F_Ho_B = self.DeclareVectorOutputPort(
+            "F_Ho_B", 6, self._calc_F, from_state
+        )
         self._gate_status = self.DeclareAbstractOutputPort(
             "gate_status",
             lambda: Value[object](GateStatus()),
@@ -107,26 +107,6 @@ class HapticCommandReceiver(LeafSystem):
             from_state,
         )
         self.DeclarePeriodicUnrestrictedUpdateEvent(period_s, 0.0, self._update)
-
-    def get_command_input_port(self) -> InputPort:
-        """Returns the input `lcmt_haptic_command`."""
-        return self._command
-
-    def get_handle_pose_input_port(self) -> InputPort:
-        """Returns the input `X_BH`."""
-        return self._X_BH
-
-    def get_handle_velocity_input_port(self) -> InputPort:
-        """Returns the input `V_BH`."""
-        return self._V_BH
-
-    def get_wrench_output_port(self) -> OutputPort:
-        """Returns the output `F_BH`."""
-        return self._F_BH
-
-    def get_gate_status_output_port(self) -> OutputPort:
-        """Returns the output `gate_status`."""
-        return self._gate_status
 
     def _update(self, context: Context, state: State) -> None:
         now_ns = round(1e9 * context.get_time())
@@ -137,10 +117,10 @@ class HapticCommandReceiver(LeafSystem):
         # one. Nor is one whose session has more bits than a gate knows.
         if command is not memory.seen and 0 < command.session <= _UINT32:
             gate.receive(now_ns, _pack(command))
-        F_BH = gate.step(now_ns, self._X_BH.Eval(context), self._V_BH.Eval(context))
+        F_Ho_B = gate.step(now_ns, self._X_BH.Eval(context), self._V_BH.Eval(context))
         status = replace(
             self._idle,
-            F_BH=F_BH,
+            F_Ho_B=F_Ho_B,
             session=gate.session,
             command_sequence=gate.command_sequence,
             rejected=gate.rejected,
@@ -150,7 +130,7 @@ class HapticCommandReceiver(LeafSystem):
         value.set_value(_Memory(gate, status, command))
 
     def _calc_F(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._get_status(context).F_BH)
+        output.SetFromVector(self._get_status(context).F_Ho_B)
 
     def _calc_gate_status(self, context: Context, output: AbstractValue) -> None:
         output.set_value(self._get_status(context))
@@ -166,7 +146,7 @@ def _pack(command: lcmt_haptic_command) -> bytes:
         session=command.session,
         sequence=command.sequence & _UINT32,
         time_ns=0,
-        F_BH=np.array(command.wrench),
+        F_Ho_B=np.array(command.wrench),
         state_sequence=0,
         ttl_us=max(command.time_to_live, 0),
         enable=command.enable,

@@ -7,9 +7,7 @@ import secrets
 from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import (
     Context,
-    InputPort,
     LeafSystem,
-    OutputPort,
 )
 
 from drake_haptics.device.lcm.haptic_messages import lcmt_haptic_command
@@ -26,13 +24,13 @@ class HapticCommandSender(LeafSystem):
 
         name: HapticCommandSender
         input_ports:
-        - F_BH
+        - F_Ho_B
         - enable
         output_ports:
         - lcmt_haptic_command
 
-    * `F_BH` (6) is the wrench [τ; f] to show on the handle at Ho in the device's base,
-      N·m and N.
+    * `F_Ho_B` (6) is the wrench [τ; f] to show on the handle at Ho in the device's
+      base, N·m and N.
     * `enable` (1) asks for force where above one half; always where not connected. A
       device leaves a fault when it is asked for none, and then for some again.
 
@@ -62,25 +60,13 @@ class HapticCommandSender(LeafSystem):
         self._period_s = period_s
         self._time_to_live = round(1e6 * ttl_s)
         self._session = secrets.randbelow(2**32 - 1) + 1
-        self._F_BH = self.DeclareVectorInputPort("F_BH", 6)
+        self._F_Ho_B = self.DeclareVectorInputPort("F_Ho_B", 6)
         self._enable = self.DeclareVectorInputPort("enable", 1)
         self._message = self.DeclareAbstractOutputPort(
             "lcmt_haptic_command",
             lambda: Value[object](lcmt_haptic_command()),
             self._calc_message,
         )
-
-    def get_wrench_input_port(self) -> InputPort:
-        """Returns the input `F_BH`."""
-        return self._F_BH
-
-    def get_enable_input_port(self) -> InputPort:
-        """Returns the input `enable`."""
-        return self._enable
-
-    def get_command_output_port(self) -> OutputPort:
-        """Returns the output `lcmt_haptic_command`."""
-        return self._message
 
     def _calc_message(self, context: Context, output: AbstractValue) -> None:
         enable = context.get_time() >= _RELEASED_UNTIL_S
@@ -93,6 +79,6 @@ class HapticCommandSender(LeafSystem):
                 sequence=1 + round(context.get_time() / self._period_s),
                 time_to_live=self._time_to_live,
                 enable=enable,
-                wrench=tuple(self._F_BH.Eval(context).tolist()),
+                wrench=tuple(self._F_Ho_B.Eval(context).tolist()),
             )
         )

@@ -8,9 +8,7 @@ from pydrake.common.value import Value
 from pydrake.systems.framework import (
     BasicVector,
     Context,
-    InputPort,
     LeafSystem,
-    OutputPort,
 )
 
 from drake_haptics.device.lcm.haptic_messages import find_flaw, lcmt_haptic_status
@@ -30,13 +28,13 @@ class HapticStatusReceiver(LeafSystem):
         output_ports:
         - X_BH
         - V_BH
-        - F_BH
+        - F_Ho_B
         - gate
         - fault
 
     * `X_BH` (7) is the handle's pose [qw qx qy qz x y z] in the device's base, m.
     * `V_BH` (6) is its spatial velocity [ω; v] there, rad/s and m/s.
-    * `F_BH` (6) is the wrench [τ; f] that the device shows at Ho, N·m and N.
+    * `F_Ho_B` (6) is the wrench [τ; f] that the device shows at Ho, N·m and N.
     * `gate` (1) and `fault` (1) are a `GateState` and a `Fault`.
 
     Before the first message the handle rests at the identity and the gate is idle. A
@@ -52,37 +50,13 @@ class HapticStatusReceiver(LeafSystem):
         for name, field, size in [
             ("X_BH", "pose", 7),
             ("V_BH", "velocity", 6),
-            ("F_BH", "wrench", 6),
+            ("F_Ho_B", "wrench", 6),
             ("gate", "gate", 1),
             ("fault", "fault", 1),
         ]:
             self.DeclareVectorOutputPort(
                 name, size, self._make_calc(field), {self._status.ticket()}
             )
-
-    def get_status_input_port(self) -> InputPort:
-        """Returns the input `lcmt_haptic_status`."""
-        return self._status
-
-    def get_handle_pose_output_port(self) -> OutputPort:
-        """Returns the output `X_BH`."""
-        return self.GetOutputPort("X_BH")
-
-    def get_handle_velocity_output_port(self) -> OutputPort:
-        """Returns the output `V_BH`."""
-        return self.GetOutputPort("V_BH")
-
-    def get_shown_wrench_output_port(self) -> OutputPort:
-        """Returns the output `F_BH`."""
-        return self.GetOutputPort("F_BH")
-
-    def get_gate_output_port(self) -> OutputPort:
-        """Returns the output `gate`."""
-        return self.GetOutputPort("gate")
-
-    def get_fault_output_port(self) -> OutputPort:
-        """Returns the output `fault`."""
-        return self.GetOutputPort("fault")
 
     def _make_calc(self, field: str) -> Callable[[Context, BasicVector], None]:
         """Returns what calculates the port of a field."""

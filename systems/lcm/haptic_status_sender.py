@@ -7,9 +7,7 @@ import secrets
 from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import (
     Context,
-    InputPort,
     LeafSystem,
-    OutputPort,
 )
 
 from drake_haptics.device.gate import GateStatus
@@ -66,26 +64,6 @@ class HapticStatusSender(LeafSystem):
             self._calc_message,
         )
 
-    def get_handle_pose_input_port(self) -> InputPort:
-        """Returns the input `X_BH`."""
-        return self._X_BH
-
-    def get_handle_velocity_input_port(self) -> InputPort:
-        """Returns the input `V_BH`."""
-        return self._V_BH
-
-    def get_gate_status_input_port(self) -> InputPort:
-        """Returns the input `gate_status`."""
-        return self._gate_status
-
-    def get_buttons_input_port(self) -> InputPort:
-        """Returns the input `buttons`."""
-        return self._buttons
-
-    def get_status_output_port(self) -> OutputPort:
-        """Returns the output `lcmt_haptic_status`."""
-        return self._message
-
     def _calc_message(self, context: Context, output: AbstractValue) -> None:
         gate = self._gate_status.Eval(context)
         buttons = 0.0
@@ -100,7 +78,7 @@ class HapticStatusSender(LeafSystem):
                 command_sequence=gate.command_sequence,
                 pose=tuple(self._X_BH.Eval(context).tolist()),
                 velocity=tuple(self._V_BH.Eval(context).tolist()),
-                wrench=tuple(gate.F_BH.tolist()),
+                wrench=tuple(gate.F_Ho_B.tolist()),
                 max_force=gate.max_force_N,
                 max_torque=gate.max_torque_Nm,
                 buttons=int(buttons),

@@ -9,7 +9,7 @@ import numpy as np
 from pydrake.geometry import Cylinder, Meshcat, Rgba, Sphere
 from pydrake.math import RigidTransform, RotationMatrix
 
-from drake_haptics._core import ClusterSet, ContactSet, Decomposition, FrictionStep
+from drake_haptics._core import ClusterSet, ContactSet, ConvexPieces, FrictionStep
 from drake_haptics.common import colors
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.output.meshcat_shapes import (
@@ -79,7 +79,7 @@ class HapticPicture:
     def __init__(
         self,
         meshcat: Meshcat,
-        tool: Decomposition,
+        tool: ConvexPieces,
         objects: Sequence[ContactObject],
         X_HT: RigidTransform,
         *,
@@ -202,16 +202,16 @@ class HapticPicture:
         self._meshcat.SetTransform(f"{_ROOT}/objects/{name}", X_WO, time_s)
 
     def place_tool(
-        self, X_WH: RigidTransform, X_WTool: RigidTransform, time_s: float
+        self, X_WH: RigidTransform, X_WT: RigidTransform, time_s: float
     ) -> Iterator[None]:
         """Places the tool, its ghost in the handle, and the line that couples them."""
-        self._meshcat.SetTransform(f"{_ROOT}/tool", X_WTool, time_s)
+        self._meshcat.SetTransform(f"{_ROOT}/tool", X_WT, time_s)
         yield
         self._meshcat.SetTransform(f"{_ROOT}/handle", X_WH @ self._X_HT, time_s)
         self._meshcat.SetTransform(f"{_ROOT}/grip", X_WH, time_s)
         yield
         p_WH = X_WH.translation()
-        line = X_WTool @ self._p_TH - p_WH
+        line = X_WT @ self._p_TH - p_WH
         length = float(np.linalg.norm(line))
         if length > _NO_LENGTH_M:
             X_WLine = RigidTransform(
@@ -332,7 +332,7 @@ class HapticPicture:
         scale = np.divide(share, size, out=np.zeros_like(size), where=size > _NO_SIZE)
         return self._size_m * scale * v_W
 
-    def _send_mesh(self, name: str, mesh: Decomposition, rgba: Rgba) -> None:
+    def _send_mesh(self, name: str, mesh: ConvexPieces, rgba: Rgba) -> None:
         """Sends the surface of a decomposition."""
         self._meshcat.SetTriangleMesh(
             f"{_ROOT}/{name}",

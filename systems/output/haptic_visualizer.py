@@ -10,12 +10,12 @@ import numpy as np
 from pydrake.common.value import Value
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
-from pydrake.systems.framework import Context, InputPort
+from pydrake.systems.framework import Context
 
 from drake_haptics._core import (
     ClusterSet,
     ContactSet,
-    Decomposition,
+    ConvexPieces,
     FrictionStep,
     PenaltyWrench,
 )
@@ -53,19 +53,20 @@ class HapticVisualizer(DifferentiableSystem):
         name: HapticVisualizer
         input_ports:
         - X_WH
-        - X_WTool
+        - X_WT
         - contacts
         - clusters
         - contact_wrench
-        - F_display
+        - F_Ho_W_commanded
         - friction_force (with friction)
-        - relief (with load shedding)
+        - load_shedding (with load shedding)
         - X_WO_<name of each object that moves>
 
-    Poses are [qw qx qy qz x y z], m. `F_display` is the wrench [τ; f] on the handle
-    at Ho in the world, N·m and N. `contacts`, `clusters` and `contact_wrench` are the
-    outputs of `ContactQuery`, `ContactClustering` and `PenaltyForce`; `friction_force`
-    is that of `StickSlipFriction`, `relief` that of `LoadShedding`.
+    Poses are [qw qx qy qz x y z], m. `F_Ho_W_commanded` is the wrench [τ; f] on the
+    handle at Ho in the world, N·m and N. `contacts`, `clusters` and `contact_wrench`
+    are the outputs of `ContactQuery`, `ContactClustering` and `PenaltyForce`;
+    `friction_force` is that of `StickSlipFriction`, `load_shedding` that of
+    `LoadShedding`.
 
     It draws about 32 times per simulated second, at ticks of the loop, while a browser
     is connected. So that drawing delays no tick, a frame is drawn in slices
@@ -79,7 +80,7 @@ class HapticVisualizer(DifferentiableSystem):
     def __init__(
         self,
         meshcat: Meshcat,
-        tool: Decomposition,
+        tool: ConvexPieces,
         objects: Sequence[ContactObject],
         X_HT: RigidTransform,
         tick_s: float,
@@ -87,7 +88,7 @@ class HapticVisualizer(DifferentiableSystem):
         max_force_N: float,
         max_torque_Nm: float,
         has_friction: bool = False,
-        sheds_load: bool = False,
+        enable_load_shedding: bool = False,
     ):
         """Constructs the system and sends the geometry.
 
@@ -100,7 +101,8 @@ class HapticVisualizer(DifferentiableSystem):
             max_force_N: The device's largest force, N.
             max_torque_Nm: The device's largest torque, N·m.
             has_friction: Whether there is friction to draw, and a port for it.
-            sheds_load: Whether the loop sheds load, and there is a port for that.
+            enable_load_shedding: Whether the loop sheds load, and there is a port for
+                that.
         """
         super().__init__()
         # A power of two of ticks is exact: a frame is never a round-off away from a
@@ -126,19 +128,23 @@ class HapticVisualizer(DifferentiableSystem):
         self._frame_start_s = 0.0
         self._taken_s = 0.0
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
-        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._X_WT = self.DeclareVectorInputPort("X_WT", 7)
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
         self._clusters = self.DeclareAbstractInputPort("clusters", Value[object]())
         self._contact_wrench = self.DeclareAbstractInputPort(
             "contact_wrench", Value[object]()
         )
-        self._F_display = self.DeclareVectorInputPort("F_display", 6)
+        self._F_Ho_W_commanded = self.DeclareVectorInputPort("F_Ho_W_commanded", 6)
         self._friction_force = (
             self.DeclareAbstractInputPort("friction_force", Value[object]())
             if has_friction
             else None
         )
-        self._relief = self.DeclareVectorInputPort("relief", 3) if sheds_load else None
+        self._load_shedding = (
+            self.DeclareVectorInputPort("load_shedding", 3)
+            if enable_load_shedding
+            else None
+        )
         self._X_WO = {
             item.name: self.DeclareVectorInputPort(f"X_WO_{item.name}", 7)
             for item in objects
@@ -148,42 +154,6 @@ class HapticVisualizer(DifferentiableSystem):
         self._slices = round(self._period_s / self._slice_period_s)
         self.DeclarePeriodicPublishEvent(self._slice_period_s, 0.0, self._publish_slice)
         self.DeclareForcedPublishEvent(self._publish)
-
-    def get_handle_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WH`."""
-        return self._X_WH
-
-    def get_tool_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WTool`."""
-        return self._X_WTool
-
-    def get_contacts_input_port(self) -> InputPort:
-        """Returns the input `contacts`."""
-        return self._contacts
-
-    def get_clusters_input_port(self) -> InputPort:
-        """Returns the input `clusters`."""
-        return self._clusters
-
-    def get_contact_wrench_input_port(self) -> InputPort:
-        """Returns the input `contact_wrench`."""
-        return self._contact_wrench
-
-    def get_display_wrench_input_port(self) -> InputPort:
-        """Returns the input `F_display`."""
-        return self._F_display
-
-    def get_friction_force_input_port(self) -> InputPort:
-        """Returns the input `friction_force`, with friction."""
-        return self.GetInputPort("friction_force")
-
-    def get_relief_input_port(self) -> InputPort:
-        """Returns the input `relief`, with load shedding."""
-        return self.GetInputPort("relief")
-
-    def get_object_pose_input_port(self, name: str) -> InputPort:
-        """Returns the input `X_WO_<name>` of an object that moves."""
-        return self.GetInputPort(f"X_WO_{name}")
 
     def Show(self, view: str, visible: bool) -> None:
         """Shows or hides a view from the next frame on.
@@ -233,7 +203,7 @@ class HapticVisualizer(DifferentiableSystem):
     def _publish_slice(self, context: Context) -> None:
         """Goes on with a frame, or begins one where that is due."""
         if self._recording:
-            tau_x, tau_y, tau_z, *f_W = self._F_display.Eval(context).tolist()
+            tau_x, tau_y, tau_z, *f_W = self._F_Ho_W_commanded.Eval(context).tolist()
             sizes = math.hypot(*f_W), math.hypot(tau_x, tau_y, tau_z)
             self._recorded_sizes.append((context.get_time(), *sizes))
             if self._is_due(context.get_time()):
@@ -246,7 +216,10 @@ class HapticVisualizer(DifferentiableSystem):
 
     def _must_save(self, context: Context) -> bool:
         """Whether the loop has no time for drawing."""
-        return self._relief is not None and self._relief.Eval(context)[0] > 0.0
+        return (
+            self._load_shedding is not None
+            and self._load_shedding.Eval(context)[0] > 0.0
+        )
 
     def _is_due(self, time_s: float) -> bool:
         """Whether a frame belongs to this slice."""
@@ -290,9 +263,9 @@ class HapticVisualizer(DifferentiableSystem):
         return self._steps(
             context.get_time(),
             vector_to_pose(self._X_WH.Eval(context)),
-            vector_to_pose(self._X_WTool.Eval(context)),
+            vector_to_pose(self._X_WT.Eval(context)),
             {n: vector_to_pose(port.Eval(context)) for n, port in self._X_WO.items()},
-            self._F_display.Eval(context),
+            self._F_Ho_W_commanded.Eval(context),
             self._contacts.Eval(context),
             self._clusters.Eval(context),
             self._contact_wrench.Eval(context),
@@ -305,7 +278,7 @@ class HapticVisualizer(DifferentiableSystem):
         self,
         time_s: float,
         X_WH: RigidTransform,
-        X_WTool: RigidTransform,
+        X_WT: RigidTransform,
         X_WO: dict[str, RigidTransform],
         F_H_W: np.ndarray,
         contacts: ContactSet,
@@ -316,7 +289,7 @@ class HapticVisualizer(DifferentiableSystem):
         """Sends what is drawn, a little at each step."""
         picture = self._picture
         yield from picture.draw_views()
-        yield from picture.place_tool(X_WH, X_WTool, time_s)
+        yield from picture.place_tool(X_WH, X_WT, time_s)
         for name, X in X_WO.items():
             picture.place_object(name, X, time_s)
             yield

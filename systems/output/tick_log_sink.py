@@ -29,10 +29,10 @@ class TickLogSink(Diagram):
         input_ports:
         - X_WH
         - V_WH
-        - F_display
-        - F_applied
-        - X_WTool
-        - V_WTool
+        - F_Ho_W_commanded
+        - F_Ho_W_rendered
+        - X_WT
+        - V_WT
         - status
         - contacts
         - clusters

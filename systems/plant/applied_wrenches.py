@@ -38,12 +38,12 @@ def AppliedWrenches_(T: type) -> type:
 
             name: AppliedWrenches
             input_ports:
-            - F_Tool_W_<name of each wrench on the tool>
+            - F_To_W_<name of each wrench on the tool>
             - F_O_W_<name of each set of wrenches on the objects>
             output_ports:
             - applied_spatial_force
 
-        * `F_Tool_W_<name>` (6) is a wrench [τ; f] on the tool at its origin in the
+        * `F_To_W_<name>` (6) is a wrench [τ; f] on the tool at its origin in the
           world, N·m and N.
         * `F_O_W_<name>` (6 for each object) are such wrenches on the objects, in
           their order.
@@ -74,7 +74,7 @@ def AppliedWrenches_(T: type) -> type:
             self._bodies = [tool, *objects]
             self._names = (tuple(tool_wrenches), tuple(object_wrenches))
             self._on_tool = [
-                self.DeclareVectorInputPort(f"F_Tool_W_{name}", 6)
+                self.DeclareVectorInputPort(f"F_To_W_{name}", 6)
                 for name in tool_wrenches
             ]
             self._on_objects = [

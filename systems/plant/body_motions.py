@@ -14,9 +14,7 @@ from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
-    InputPort,
     LeafSystem_,
-    OutputPort,
 )
 from pydrake.systems.scalar_conversion import TemplateSystem
 
@@ -33,16 +31,16 @@ class BodyMotions(Diagram):
         - body_poses
         - body_spatial_velocities
         output_ports:
-        - X_WTool
-        - V_WTool
+        - X_WT
+        - V_WT
         - X_WO_<name of each object>
         - V_WO_<name of each object>
 
     The inputs are the lists of a `MultibodyPlant`'s ports of these names.
 
-    * `X_WTool` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
+    * `X_WT` and `X_WO_<name>` (7) are poses [qw qx qy qz x y z] of the bodies'
       frames in the world, m.
-    * `V_WTool` and `V_WO_<name>` (6) are their spatial velocities [ω; v] at the
+    * `V_WT` and `V_WO_<name>` (6) are their spatial velocities [ω; v] at the
       frame's origin in the world, rad/s and m/s.
 
     It has no state, and converts to AutoDiffXd.
@@ -62,35 +60,11 @@ class BodyMotions(Diagram):
         )
         for port in map(vector.get_input_port, range(2)):
             builder.ExportInput(port, port.get_name())
-        sizes = {"X_WTool": 7, "V_WTool": 6}
+        sizes = {"X_WT": 7, "V_WT": 6}
         for name in objects:
             sizes |= {f"X_WO_{name}": 7, f"V_WO_{name}": 6}
         export_parts(builder, vector.get_output_port(), sizes)
         builder.BuildInto(self)
-
-    def get_body_poses_input_port(self) -> InputPort:
-        """Returns the input `body_poses`."""
-        return self.GetInputPort("body_poses")
-
-    def get_body_velocities_input_port(self) -> InputPort:
-        """Returns the input `body_spatial_velocities`."""
-        return self.GetInputPort("body_spatial_velocities")
-
-    def get_pose_output_port(self) -> OutputPort:
-        """Returns the output `X_WTool`."""
-        return self.GetOutputPort("X_WTool")
-
-    def get_velocity_output_port(self) -> OutputPort:
-        """Returns the output `V_WTool`."""
-        return self.GetOutputPort("V_WTool")
-
-    def get_object_pose_output_port(self, name: str) -> OutputPort:
-        """Returns the output `X_WO_<name>`."""
-        return self.GetOutputPort(f"X_WO_{name}")
-
-    def get_object_velocity_output_port(self, name: str) -> OutputPort:
-        """Returns the output `V_WO_<name>`."""
-        return self.GetOutputPort(f"V_WO_{name}")
 
 
 @TemplateSystem.define("_BodyMotionsVector_", T_list=(float, AutoDiffXd))

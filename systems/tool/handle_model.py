@@ -8,9 +8,7 @@ import numpy as np
 from pydrake.systems.framework import (
     BasicVector,
     Context,
-    InputPort,
     LeafSystem,
-    OutputPort,
 )
 
 from drake_haptics._core import handle_slopes
@@ -28,13 +26,13 @@ class HandleModel(LeafSystem):
         name: HandleModel
         input_ports:
         - X_WH
-        - X_WTool
+        - X_WT
         - coupling
         - <name of each other wrench>
         output_ports:
         - handle_slopes
 
-    * `X_WH` and `X_WTool` (7) are the poses [qw qx qy qz x y z] of the handle and the
+    * `X_WH` and `X_WT` (7) are the poses [qw qx qy qz x y z] of the handle and the
       tool in the world, m.
     * `coupling` and each other wrench (78) are wrench models [F; K; B] on the tool,
       as `PenaltyForce` documents them.
@@ -51,7 +49,7 @@ class HandleModel(LeafSystem):
         """
         super().__init__()
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
-        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._X_WT = self.DeclareVectorInputPort("X_WT", 7)
         self._coupling = self.DeclareVectorInputPort("coupling", 78)
         self._wrenches = [
             self.DeclareVectorInputPort(name, 78) for name in wrench_names
@@ -60,28 +58,12 @@ class HandleModel(LeafSystem):
             "handle_slopes", 72, self._calc, {self.all_input_ports_ticket()}
         )
 
-    def get_handle_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WH`."""
-        return self._X_WH
-
-    def get_tool_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WTool`."""
-        return self._X_WTool
-
-    def get_wrench_input_port(self, name: str) -> InputPort:
-        """Returns the input of a wrench model."""
-        return self.GetInputPort(name)
-
-    def get_handle_slopes_output_port(self) -> OutputPort:
-        """Returns the output `handle_slopes`."""
-        return self.get_output_port()
-
     def _calc(self, context: Context, output: BasicVector) -> None:
         others = sum((port.Eval(context) for port in self._wrenches), np.zeros(78))
         output.SetFromVector(
             handle_slopes(
                 self._X_WH.Eval(context),
-                self._X_WTool.Eval(context),
+                self._X_WT.Eval(context),
                 self._coupling.Eval(context),
                 others,
             )

@@ -11,8 +11,6 @@ from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
     DiscreteValues,
-    InputPort,
-    OutputPort,
 )
 
 from drake_haptics._core import AutoDiffVector, RigidToolDynamics
@@ -37,17 +35,17 @@ class HapticTool(Diagram):
         input_ports:
         - <name of each wrench>
         output_ports:
-        - X_WTool
-        - V_WTool
+        - X_WT
+        - V_WT
 
     Each input is a wrench model (78) as `PenaltyForce` documents it; one that is
     not connected counts as zero.
 
-    * `X_WTool` (7) is the pose [qw qx qy qz x y z] in the world, m.
-    * `V_WTool` (6) is the spatial velocity [ω; v] of the tool's origin in the
+    * `X_WT` (7) is the pose [qw qx qy qz x y z] in the world, m.
+    * `V_WT` (6) is the spatial velocity [ω; v] of the tool's origin in the
       world, rad/s and m/s.
 
-    The state is one discrete group (13), [X_WTool; V_WTool], updated every period
+    The state is one discrete group (13), [X_WT; V_WT], updated every period
     from 0 s on.
     """
 
@@ -80,7 +78,7 @@ class HapticTool(Diagram):
         )
         for name in wrench_names:
             builder.ExportInput(step.GetInputPort(name), name)
-        export_parts(builder, step.get_output_port(), {"X_WTool": 7, "V_WTool": 6})
+        export_parts(builder, step.get_output_port(), {"X_WT": 7, "V_WT": 6})
         builder.BuildInto(self)
 
     @property
@@ -92,18 +90,6 @@ class HapticTool(Diagram):
     def period_s(self) -> float:
         """The tick, s."""
         return self._period_s
-
-    def get_wrench_input_port(self, name: str) -> InputPort:
-        """Returns the input of a wrench."""
-        return self.GetInputPort(name)
-
-    def get_pose_output_port(self) -> OutputPort:
-        """Returns the output `X_WTool`."""
-        return self.GetOutputPort("X_WTool")
-
-    def get_velocity_output_port(self) -> OutputPort:
-        """Returns the output `V_WTool`."""
-        return self.GetOutputPort("V_WTool")
 
 
 _STATE_NAMES = "qw qx qy qz x y z wx wy wz vx vy vz".split()

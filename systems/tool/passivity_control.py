@@ -9,8 +9,6 @@ from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
     DiscreteValues,
-    InputPort,
-    OutputPort,
 )
 from pydrake.systems.primitives import Demultiplexer
 
@@ -34,7 +32,7 @@ class PassivityControl(Diagram):
     that dissipates the excess within a tick at the measured twist, up to a largest
     one (Hannaford and Ryu 2002; in six axes Preusche et al. 2003). What is left is
     carried over. The controller never adds power to the handle, and where the
-    balance is not negative `F_display` is `F_asked` bit for bit.
+    balance is not negative `F_Ho_W_commanded` is `F_Ho_W_desired` bit for bit.
 
     A long contact that dissipates would fill the balance without end, and the
     controller would come late. Therefore the balance is kept at `reserve_J` at most,
@@ -45,23 +43,23 @@ class PassivityControl(Diagram):
 
         name: PassivityControl
         input_ports:
-        - F_asked
-        - F_applied
+        - F_Ho_W_desired
+        - F_Ho_W_rendered
         - X_WH
         - V_WH
         output_ports:
-        - F_display
+        - F_Ho_W_commanded
         - energy_J
 
     Wrenches are [τ; f] on the handle at its origin in the world, N·m and N.
 
-    * `F_asked` is what the coupling would show.
-    * `F_applied` is the `HapticDevice`'s: what has been held, after its limits, since
-      the last tick.
+    * `F_Ho_W_desired` is what the coupling would show.
+    * `F_Ho_W_rendered` is the `HapticDevice`'s: what has been held, after its limits,
+      since the last tick.
     * `X_WH` (7) is the handle's pose [qw qx qy qz x y z] in the world, m, and `V_WH`
       its spatial velocity [ω; v], rad/s and m/s.
-    * `F_display` depends directly on all inputs: there is no delay. The device's hold
-      samples it.
+    * `F_Ho_W_commanded` depends directly on all inputs: there is no delay. The device's
+      hold samples it.
     * `energy_J` (1) is the balance, J.
 
     The state is one discrete group (8), [balance; X_WH at the last tick], updated
@@ -108,7 +106,7 @@ class PassivityControl(Diagram):
             )
         parts = builder.AddNamedSystem("parts", Demultiplexer([6, 1, 7]))
         builder.Connect(port.get_output_port(), parts.get_input_port(0))
-        builder.ExportOutput(parts.get_output_port(0), "F_display")
+        builder.ExportOutput(parts.get_output_port(0), "F_Ho_W_commanded")
         builder.ExportOutput(parts.get_output_port(1), "energy_J")
         builder.BuildInto(self)
 
@@ -123,30 +121,6 @@ class PassivityControl(Diagram):
         """
         self._port.begin(self.GetMutableSubsystemContext(self._port, context))
 
-    def get_asked_wrench_input_port(self) -> InputPort:
-        """Returns the input `F_asked`."""
-        return self.GetInputPort("F_asked")
-
-    def get_applied_wrench_input_port(self) -> InputPort:
-        """Returns the input `F_applied`."""
-        return self.GetInputPort("F_applied")
-
-    def get_handle_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WH`."""
-        return self.GetInputPort("X_WH")
-
-    def get_handle_velocity_input_port(self) -> InputPort:
-        """Returns the input `V_WH`."""
-        return self.GetInputPort("V_WH")
-
-    def get_display_wrench_output_port(self) -> OutputPort:
-        """Returns the output `F_display`."""
-        return self.GetOutputPort("F_display")
-
-    def get_energy_output_port(self) -> OutputPort:
-        """Returns the output `energy_J`."""
-        return self.GetOutputPort("energy_J")
-
 
 class _ObservedPort(DifferentiableSystem):
     """The state of a `PassivityControl`, and both outputs from one call of the core."""
@@ -154,8 +128,8 @@ class _ObservedPort(DifferentiableSystem):
     def __init__(self, bounds: PassivityBounds, period_s: float):
         super().__init__()
         self._bounds = bounds
-        self._F_asked = self.DeclareVectorInputPort("F_asked", 6)
-        self._F_applied = self.DeclareVectorInputPort("F_applied", 6)
+        self._F_Ho_W_desired = self.DeclareVectorInputPort("F_Ho_W_desired", 6)
+        self._F_Ho_W_rendered = self.DeclareVectorInputPort("F_Ho_W_rendered", 6)
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
         self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
         # At the first tick no wrench has been held: any pose does.
@@ -173,8 +147,8 @@ class _ObservedPort(DifferentiableSystem):
         output.SetFromVector(
             passivity_control(
                 context.get_discrete_state_vector().value(),
-                self._F_applied.Eval(context),
-                self._F_asked.Eval(context),
+                self._F_Ho_W_rendered.Eval(context),
+                self._F_Ho_W_desired.Eval(context),
                 self._X_WH.Eval(context),
                 self._V_WH.Eval(context),
                 self._bounds,
@@ -192,8 +166,8 @@ class _ObservedPort(DifferentiableSystem):
         """Returns what is shown and the state with their derivatives."""
         return passivity_control(
             at.state,
-            at["F_applied"],
-            at["F_asked"],
+            at["F_Ho_W_rendered"],
+            at["F_Ho_W_desired"],
             at["X_WH"],
             at["V_WH"],
             self._bounds,

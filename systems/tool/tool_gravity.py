@@ -8,8 +8,6 @@ import numpy as np
 from pydrake.systems.framework import (
     BasicVector,
     Context,
-    InputPort,
-    OutputPort,
 )
 
 from drake_haptics._core import AutoDiffVector, tool_weight
@@ -28,11 +26,11 @@ class ToolGravity(DifferentiableSystem):
 
         name: ToolGravity
         input_ports:
-        - X_WTool
+        - X_WT
         output_ports:
         - wrench_model
 
-    `X_WTool` (7) is the tool's pose [qw qx qy qz x y z] in the world, m.
+    `X_WT` (7) is the tool's pose [qw qx qy qz x y z] in the world, m.
 
     `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
     documents it. K and B are zero. The torque does change with the rotation, but its
@@ -63,9 +61,9 @@ class ToolGravity(DifferentiableSystem):
             raise ValueError(f"mass_kg must be finite and positive, is {mass_kg}")
         self._p_TTcm = _check_vector("p_TTcm", p_TTcm)
         self._weight_W = mass_kg * _check_vector("gravity_m_per_s2", gravity_m_per_s2)
-        self._X_WTool = self.DeclareVectorInputPort("X_WTool", 7)
+        self._X_WT = self.DeclareVectorInputPort("X_WT", 7)
         self._wrench_model = self.DeclareVectorOutputPort(
-            "wrench_model", 78, self._calc_wrench_model, {self._X_WTool.ticket()}
+            "wrench_model", 78, self._calc_wrench_model, {self._X_WT.ticket()}
         )
 
     @property
@@ -78,24 +76,16 @@ class ToolGravity(DifferentiableSystem):
         """(3,) the center of mass in the tool's frame, m."""
         return self._p_TTcm
 
-    def get_tool_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WTool`."""
-        return self._X_WTool
-
-    def get_wrench_model_output_port(self) -> OutputPort:
-        """Returns the output `wrench_model`."""
-        return self._wrench_model
-
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
         wrench_model = np.zeros(78)
         wrench_model[:6] = tool_weight(
-            self._X_WTool.Eval(context), self._p_TTcm, self._weight_W
+            self._X_WT.Eval(context), self._p_TTcm, self._weight_W
         )
         output.SetFromVector(wrench_model)
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the wrench model with its derivatives."""
-        weight = tool_weight(at["X_WTool"], self._p_TTcm, self._weight_W)
+        weight = tool_weight(at["X_WT"], self._p_TTcm, self._weight_W)
         return AutoDiffVector(
             np.concatenate([weight.value, np.zeros(72)]),
             np.vstack([weight.gradient, np.zeros((72, at.num_derivatives))]),

@@ -9,8 +9,6 @@ from pydrake.systems.framework import (
     Context,
     Diagram,
     DiagramBuilder,
-    InputPort,
-    OutputPort,
 )
 from pydrake.systems.primitives import ConstantVectorSource
 
@@ -40,20 +38,20 @@ class VirtualCoupling(Diagram):
         input_ports:
         - X_WH
         - V_WH
-        - X_WTool
-        - V_WTool
+        - X_WT
+        - V_WT
         output_ports:
         - wrench_model
-        - F_display
+        - F_Ho_W_commanded
 
-    `X_WH` and `X_WTool` are poses [qw qx qy qz x y z] of the handle and the tool in
-    the world, m; `V_WH` and `V_WTool` their spatial velocities [ω; v] at the
+    `X_WH` and `X_WT` are poses [qw qx qy qz x y z] of the handle and the tool in
+    the world, m; `V_WH` and `V_WT` their spatial velocities [ω; v] at the
     frame's origin, rad/s and m/s.
 
     * `wrench_model` (78) is [F; K; B] on the tool at its origin, as `PenaltyForce`
       documents it.
-    * `F_display` (6) is the wrench [τ; f] on the handle at its origin in the world,
-      N·m and N.
+    * `F_Ho_W_commanded` (6) is the wrench [τ; f] on the handle at its origin in the
+      world, N·m and N.
 
     The gains are a numeric parameter (6) of the Context, in the order of
     `drake_haptics._core.CouplingGains`; see `set_gains`. Outputs have no derivatives
@@ -83,7 +81,9 @@ class VirtualCoupling(Diagram):
             self._gains.get_output_port(),
         )
         export_parts(
-            builder, spring.get_output_port(), {"wrench_model": 78, "F_display": 6}
+            builder,
+            spring.get_output_port(),
+            {"wrench_model": 78, "F_Ho_W_commanded": 6},
         )
         builder.BuildInto(self)
 
@@ -116,33 +116,9 @@ class VirtualCoupling(Diagram):
         """Pose of the tool in the handle at which the spring rests."""
         return self._X_HT
 
-    def get_handle_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WH`."""
-        return self.GetInputPort("X_WH")
-
-    def get_handle_velocity_input_port(self) -> InputPort:
-        """Returns the input `V_WH`."""
-        return self.GetInputPort("V_WH")
-
-    def get_tool_pose_input_port(self) -> InputPort:
-        """Returns the input `X_WTool`."""
-        return self.GetInputPort("X_WTool")
-
-    def get_tool_velocity_input_port(self) -> InputPort:
-        """Returns the input `V_WTool`."""
-        return self.GetInputPort("V_WTool")
-
-    def get_wrench_model_output_port(self) -> OutputPort:
-        """Returns the output `wrench_model`."""
-        return self.GetOutputPort("wrench_model")
-
-    def get_display_wrench_output_port(self) -> OutputPort:
-        """Returns the output `F_display`."""
-        return self.GetOutputPort("F_display")
-
 
 # What the spring and damper are given, with the gains after it.
-_MOTIONS = {"X_WH": 7, "V_WH": 6, "X_WTool": 7, "V_WTool": 6}
+_MOTIONS = {"X_WH": 7, "V_WH": 6, "X_WT": 7, "V_WT": 6}
 
 
 def _to_vector(gains: CouplingGains) -> np.ndarray:

@@ -46,8 +46,8 @@ def test_the_page_is_readable(tmp_path, width, is_phone):
         assert browser.evaluate(
             "getComputedStyle(document.querySelector('td.bar.time')).backgroundSize"
         ).startswith("77.4%")
-        colours = browser.screenshot().reshape(-1, 3)
-        assert len(np.unique(colours, axis=0)) > 50
+        colors = browser.screenshot().reshape(-1, 3)
+        assert len(np.unique(colors, axis=0)) > 50
         # A shadow at the side says that there is more, and goes where there is not.
         assert (measure_right_edge(browser, 0) < 200.0) == is_phone
         assert measure_right_edge(browser, 9999) > 235.0

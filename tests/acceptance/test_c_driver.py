@@ -108,13 +108,13 @@ def test_it_says_nothing_before_it_is_spoken_to(host):
 def test_force_follows_the_command_and_moves_the_handle(host):
     state = host.enable(1.5)
     assert state.session == host.session
-    assert state.F_BH == (0.0, 0.0, 0.0, 0.0, 0.0, 1.5)
+    assert state.F_Ho_B == (0.0, 0.0, 0.0, 0.0, 0.0, 1.5)
     z = 1.5 / HAND_N_PER_M
     still = host.exchange(
         lambda s: abs(s.X_BH[6] - z) < 1e-5 and abs(s.V_BH[5]) < 1e-4, force_z=1.5
     )
     assert still.X_BH[:4] == (1.0, 0.0, 0.0, 0.0)
-    back = host.exchange(lambda s: s.F_BH[5] == -1.0, force_z=-1.0)
+    back = host.exchange(lambda s: s.F_Ho_B[5] == -1.0, force_z=-1.0)
     assert back.gate == ACTIVE
 
 
@@ -124,7 +124,7 @@ def test_force_is_held_to_the_limit_and_torque_to_none(host):
         lambda s: s.force_N > 1.1, wrench=(1.0, 1.0, 1.0, 30.0, 0.0, 40.0)
     )
     expected = (MAX_FORCE_N * 0.6, 0.0, MAX_FORCE_N * 0.8)
-    assert state.F_BH[3:] == pytest.approx(expected)
+    assert state.F_Ho_B[3:] == pytest.approx(expected)
     assert state.torque_Nm == 0.0
 
 

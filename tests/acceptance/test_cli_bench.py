@@ -49,4 +49,4 @@ def test_an_unknown_part_is_a_wrong_call():
 def test_a_folder_without_any_of_the_meshes_is_told_at_once(tmp_path):
     result = CliRunner().invoke(main, ["bench", "--meshes", str(tmp_path)])
     assert result.exit_code == 1 and result.stdout == ""
-    assert f"Error: the folder {tmp_path} has none of cup_500.obj" in result.stderr
+    assert f"Error: the folder {tmp_path} has none of torus_2000.obj" in result.stderr

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from drake_haptics.cli import main
 from drake_haptics.cli import meshes as command
 from drake_haptics.cli.endings import ExitCode
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "command-line.md"
 
@@ -32,7 +32,7 @@ def end_with(monkeypatch):
 
 
 ENDS = [
-    (UserError("the mesh has no triangles"), 1, "Error: the mesh has no triangles"),
+    (HapticsError("the mesh has no triangles"), 1, "Error: the mesh has no triangles"),
     (
         OSError(errno.EACCES, "Permission denied", "x.obj"),
         1,
@@ -56,7 +56,7 @@ def test_every_end_is_a_line_and_a_code(end_with, error, code, words):
     assert words in line and result.stdout == ""
 
 
-@pytest.mark.parametrize("error", [UserError("no"), ZeroDivisionError("0")])
+@pytest.mark.parametrize("error", [HapticsError("no"), ZeroDivisionError("0")])
 @pytest.mark.parametrize("how", ["option", "variable"])
 def test_debug_shows_where_it_came_from(end_with, monkeypatch, error, how):
     if how == "variable":
@@ -87,7 +87,7 @@ def test_warnings_and_logs_are_a_line_each(monkeypatch):
         for _ in range(2):
             logging.getLogger("drake").warning("slow %s", "mesh")
         logging.getLogger("drake").info("Meshcat listening")
-        raise UserError("enough")
+        raise HapticsError("enough")
 
     monkeypatch.setattr(command, "read_mesh", complain)
     before = (warnings.showwarning, list(logging.root.handlers))

@@ -94,7 +94,7 @@ def test_one_triangle_and_a_missing_material_will_do(folder):
     assert "one solid" in result.stdout
 
 
-def test_millimetres_are_asked_for_by_every_command(folder):
+def test_millimeters_are_asked_for_by_every_command(folder):
     big = trimesh.creation.box([200.0, 150.0, 100.0])
     big.export("big.obj")
     for command in ("check", "decompose"):

@@ -78,8 +78,8 @@ def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("examples")
     SHAPES["cup"]().write_obj(folder / "cup.obj", "cup")
     for shape, name in (("pen", "pen.stl"), ("cup", "mug.stl")):
-        metres = SHAPES[shape]()
-        trimesh.Trimesh(1e3 * metres.vertices, metres.triangles).export(folder / name)
+        meters = SHAPES[shape]()
+        trimesh.Trimesh(1e3 * meters.vertices, meters.triangles).export(folder / name)
     trimesh.creation.box([50.0, 20.0, 10.0]).export(folder / "my_mesh.stl")
     return folder
 

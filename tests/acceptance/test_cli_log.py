@@ -79,7 +79,7 @@ def test_a_replay_with_another_stiffness_is_compared_and_drawn(log, tmp_path):
         "The scenes differ:\n  contact.stiffness_N_per_m: 2000.0, 500.0\n"
         in answer.output
     )
-    assert "X_WTool position" in answer.output
+    assert "X_WT position" in answer.output
     answer = invoke("log", "diff", log, again, "--plot", picture)
     assert answer.output.endswith(f"\nWrote {picture}.\n")
     answer = invoke("log", "diff", log, again, "--plot", picture, "--json", "-")
@@ -88,7 +88,7 @@ def test_a_replay_with_another_stiffness_is_compared_and_drawn(log, tmp_path):
     assert not data["is_bit_equal"]
     by_name = {quantity["name"]: quantity for quantity in data["quantities"]}
     assert by_name["X_WH position"]["differing"] == 0
-    assert by_name["X_WTool position"]["largest"] > 1e-4
+    assert by_name["X_WT position"]["largest"] > 1e-4
     assert matplotlib.image.imread(picture).std() > 0.05
 
 
@@ -110,8 +110,8 @@ def test_csv_has_every_tick(log, tmp_path):
     lines = list(csv.DictReader(io.StringIO(text)))
     rows = read_tick_log(log).rows
     assert len(lines) == len(rows) == 1500
-    column = [float(line["F_display_fz_N"]) for line in lines]
-    assert column == rows["F_display"][:, 5].tolist()
+    column = [float(line["F_Ho_W_commanded_fz_N"]) for line in lines]
+    assert column == rows["F_Ho_W_commanded"][:, 5].tolist()
     assert invoke("log", "csv", log, "--out", "-").output == text
 
 

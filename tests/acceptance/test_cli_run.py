@@ -107,7 +107,7 @@ def test_ones_own_meshes(tmp_path):
 
 
 def test_scale_is_applied(tmp_path):
-    # The same run in millimetres.
+    # The same run in millimeters.
     largest = []
     for factor, options in [
         (1, []),
@@ -226,7 +226,7 @@ def test_a_recording_is_one_file_and_does_not_name_a_server(tmp_path):
     assert 'src="http' not in page and "<script src=" not in page
 
 
-def test_pieces_are_coloured_in_a_recording(tmp_path):
+def test_pieces_are_colored_in_a_recording(tmp_path):
     sizes = []
     for option in ([], ["--pieces"]):
         file = tmp_path / "out.html"

@@ -85,11 +85,11 @@ def test_the_other_end_of_a_device_is_told_the_same_scene(invoke):
 def test_stability_is_that_of_the_changed_scene(invoke, monkeypatch):
     asked = []
 
-    def analyse(scene, *_, **__):
+    def analyze(scene, *_, **__):
         asked.append(scene)
         raise ValueError("enough")
 
-    monkeypatch.setattr(stability, "analyse_scene", analyse)
+    monkeypatch.setattr(stability, "analyze_scene", analyze)
     assert invoke("stability", "sphere_pen", *SOFT).exit_code == 1
     assert asked[0].contact.stiffness_N_per_m == 400.0
 

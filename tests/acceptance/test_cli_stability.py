@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from held_samples import analyse_sample, make_limits
+from held_samples import analyze_sample, make_limits
 
 from drake_haptics.analysis import scene_stability
 from drake_haptics.cli import main
@@ -34,11 +34,11 @@ def sample(monkeypatch):
     """Takes the place of the analysis, and notes what it was asked."""
     asked = []
 
-    def analyse(scene, time_s, **settings):
+    def analyze(scene, time_s, **settings):
         asked.append((scene, time_s, settings))
-        return analyse_sample()
+        return analyze_sample()
 
-    monkeypatch.setattr(command, "analyse_scene", analyse)
+    monkeypatch.setattr(command, "analyze_scene", analyze)
     return asked
 
 
@@ -132,7 +132,7 @@ def test_what_goes_wrong_is_told_in_a_line(invoke, monkeypatch, error, code, wor
     def fail(*_, **__):
         raise error
 
-    monkeypatch.setattr(command, "analyse_scene", fail)
+    monkeypatch.setattr(command, "analyze_scene", fail)
     result = invoke("hammer_block")
     assert result.exit_code == code
     (line,) = result.stderr.splitlines()

@@ -19,8 +19,8 @@ import trimesh
 
 COMMAND = str(Path(sys.executable).with_name("drake-haptics"))
 WIDTH = 72
-# ESC [ ... m with a colour in it, as against bold and dim.
-COLOUR = re.compile(r"\x1b\[(?:\d+;)*(?:3[0-7]|9[0-7])(?:;\d+)*m")
+# ESC [ ... m with a color in it, as against bold and dim.
+COLOR = re.compile(r"\x1b\[(?:\d+;)*(?:3[0-7]|9[0-7])(?:;\d+)*m")
 RUN = ["run", "sphere_pen", "--headless"]
 
 
@@ -107,17 +107,17 @@ def test_no_line_is_wider_than_the_terminal(shown):
     assert max(map(len, re.split(r"[\r\n]+", plain))) <= WIDTH
 
 
-def test_colours_are_for_terminals_without_no_color(tmp_path):
+def test_colors_are_for_terminals_without_no_color(tmp_path):
     box = trimesh.creation.box([0.1, 0.1, 0.1])
     box.update_faces([True] * 11 + [False])
     box.export(tmp_path / "open.stl")
-    coloured, _ = in_terminal("check", str(tmp_path / "open.stl"))
-    assert COLOUR.search(coloured)
+    colored, _ = in_terminal("check", str(tmp_path / "open.stl"))
+    assert COLOR.search(colored)
     plain, code = in_terminal("check", str(tmp_path / "open.stl"), NO_COLOR="1")
-    assert code == 0 and "holes" in plain and not COLOUR.search(plain)
+    assert code == 0 and "holes" in plain and not COLOR.search(plain)
 
 
-def test_a_pipe_gets_whole_lines_and_neither_colours_nor_noise(tmp_path):
+def test_a_pipe_gets_whole_lines_and_neither_colors_nor_noise(tmp_path):
     page, figures = tmp_path / "a[b].html", tmp_path / "f.json"
     result = in_pipe(*RUN, "--duration", "0.5", "--record", page, "--json", figures)
     assert (result.returncode, result.stderr) == (0, "")

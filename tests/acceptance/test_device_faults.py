@@ -138,7 +138,7 @@ def test_a_command_that_is_no_number_ends_force_at_once(link, host, number, axis
     assert state.fault == "NOT_FINITE"
     first = next(i for i, s in enumerate(link.states) if s.fault == "NOT_FINITE")
     assert link.states[first].force_N == 0.0
-    assert all(map(math.isfinite, link.states[first].F_BH))
+    assert all(map(math.isfinite, link.states[first].F_Ho_B))
 
 
 @pytest.mark.parametrize("size", [50.0, 1e308])
@@ -146,7 +146,7 @@ def test_a_command_over_the_limits_is_shown_at_the_limits(link, host, size):
     host.enable(1.0)
     wrench = (size, size, 0.0, 0.0, -size, 0.0)
     state = host.exchange(lambda state: state.force_N > 8.4999999, wrench=wrench)
-    assert state.F_BH == pytest.approx(
+    assert state.F_Ho_B == pytest.approx(
         (0.188 / math.sqrt(2), 0.188 / math.sqrt(2), 0.0, 0.0, -8.5, 0.0)
     )
 
@@ -162,7 +162,7 @@ def test_a_stranger_neither_moves_nor_stops_nor_hears_the_device(device, link, h
             lambda state: state.rejected >= before.rejected + 100, force_z=2.0
         )
         assert state.gate == ACTIVE and state.session == host.session
-        assert state.F_BH[5] == pytest.approx(2.0)
+        assert state.F_Ho_B[5] == pytest.approx(2.0)
         assert stranger.receive(0.2) is None
     finally:
         stranger.close()
@@ -178,7 +178,7 @@ def test_an_old_command_is_refused(link, host):
     refused = before.rejected + 3
     state = host.exchange(lambda state: state.rejected >= refused, force_z=2.0)
     assert state.gate == ACTIVE
-    assert state.F_BH[5] == pytest.approx(2.0)
+    assert state.F_Ho_B[5] == pytest.approx(2.0)
 
 
 def test_sequence_numbers_wrap(link, host):
@@ -206,8 +206,8 @@ def test_damaged_commands_are_refused(link, host):
         lambda state: state.rejected >= before + len(damaged), force_z=2.0
     )
     assert state.gate == ACTIVE
-    assert state.F_BH[5] == pytest.approx(2.0)
-    assert all(s.F_BH[5] >= 0.0 for s in link.states)
+    assert state.F_Ho_B[5] == pytest.approx(2.0)
+    assert all(s.F_Ho_B[5] >= 0.0 for s in link.states)
 
 
 def test_duplicates_and_reordering_leave_the_newest_command(link, host):
@@ -219,7 +219,7 @@ def test_duplicates_and_reordering_leave_the_newest_command(link, host):
     states = link.states[seen:]
     accepted = [state.command_sequence for state in states]
     assert accepted == sorted(accepted)
-    assert all(s.gate == ACTIVE and s.F_BH[5] == pytest.approx(2.0) for s in states)
+    assert all(s.gate == ACTIVE and s.F_Ho_B[5] == pytest.approx(2.0) for s in states)
     assert states[-1].rejected > states[0].rejected
 
 
@@ -259,7 +259,7 @@ def test_a_flood_leaves_the_driver_its_ticks(device, link, host, kind):
     # However slow the machine: no tick was spent on more packets than a tick may take.
     assert ticks >= refused / 64
     assert ticks > 50
-    assert all(s.F_BH[5] >= 0.0 for s in link.states)
+    assert all(s.F_Ho_B[5] >= 0.0 for s in link.states)
 
 
 def test_a_paused_driver_shows_nothing_of_what_queued_up(device, link, host):
@@ -274,7 +274,7 @@ def test_a_paused_driver_shows_nothing_of_what_queued_up(device, link, host):
         os.kill(device.pid, signal.SIGCONT)
     stale = link.wait_for(lambda state: state.gate == FAULT)
     assert stale.fault == "STALE"
-    assert all(s.F_BH[5] >= 0.0 for s in link.states[seen:])
+    assert all(s.F_Ho_B[5] >= 0.0 for s in link.states[seen:])
 
 
 @pytest.mark.parametrize(

@@ -55,8 +55,8 @@ def press(device):
     if reading is not None:
         if reading.fault is Fault.STALE:
             device.recover()
-        F_BH = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
-        device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
+        F_Ho_B = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+        device.write(DeviceCommand(F_Ho_B, reading.X_BH, reading.V_BH))
 
 
 def wait_until(condition, act, bound_s=180.0):
@@ -99,12 +99,12 @@ def test_host_paused_and_device_killed(url, start_device):
             )
 
         def is_felt():
-            return is_in(GateState.ACTIVE) and device.read().F_BH[5] > 0.99
+            return is_in(GateState.ACTIVE) and device.read().F_Ho_B[5] > 0.99
 
         wait_until(is_felt, lambda: press(device))
         # The host pauses: it only listens.
         wait_until(lambda: is_in(GateState.FAULT, Fault.STALE), lambda: None)
-        assert not device.read().F_BH.any()
+        assert not device.read().F_Ho_B.any()
         wait_until(is_felt, lambda: press(device))
         # The device is killed and another one started.
         process.send_signal(signal.SIGKILL)
@@ -116,10 +116,10 @@ def test_host_paused_and_device_killed(url, start_device):
             lambda: device.read().sequence > last.sequence + 100, lambda: press(device)
         )
         assert is_in(GateState.FAULT, Fault.DEVICE)
-        assert not device.read().F_BH.any()
+        assert not device.read().F_Ho_B.any()
         device.recover()
         wait_until(is_felt, lambda: press(device))
-        assert np.linalg.norm(device.read().F_BH[3:]) <= 1.0 + 1e-9
+        assert np.linalg.norm(device.read().F_Ho_B[3:]) <= 1.0 + 1e-9
 
 
 def test_figures_of_the_page():

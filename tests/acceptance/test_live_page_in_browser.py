@@ -9,7 +9,7 @@ from pydrake.geometry import Rgba
 from visualizer_rig import MAX_TORQUE_NM, X_WH, make_context, make_mesh, make_visualizer
 
 from drake_haptics.systems.output.meshcat_shapes import ArrowPool
-from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.visualization.meshcat import start_meshcat
 
 LENGTH_M = 0.02
 # Length of the column of the world matrix along the arrow: its scale on the page.
@@ -27,7 +27,7 @@ def test_arrows_keep_their_size_however_they_move(early):
     executable = find_browser()
     if executable is None:
         pytest.skip("no Chromium on the PATH")
-    meshcat = open_meshcat()
+    meshcat = start_meshcat()
     pool = ArrowPool(meshcat, "/arrows", 1, [Rgba(1, 0, 0)])
 
     def draw(x):
@@ -76,7 +76,7 @@ def test_the_torques_arrow_is_along_its_axis_and_as_long_as_its_share():
     executable = find_browser()
     if executable is None:
         pytest.skip("no Chromium on the PATH")
-    meshcat = open_meshcat()
+    meshcat = start_meshcat()
     visualizer = make_visualizer(meshcat)
     size_m = np.linalg.norm(np.ptp(make_mesh().vertices, axis=0))
     # three.js's world has y up: its axes are Drake's x, z, -y.

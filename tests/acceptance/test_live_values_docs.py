@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from drake_haptics.scene.schema import Contact
+from drake_haptics.scene.schema import ContactParameters
 from drake_haptics.systems.contact.contact_clustering import ContactClustering
 from drake_haptics.systems.contact.contact_query import ContactQuery
 from drake_haptics.systems.contact.penalty_force import PenaltyForce
@@ -38,7 +38,7 @@ def test_the_cube_rests_where_its_weight_says(printed):
     for k, line in zip((1e3, 2e3, 4e3), printed[1], strict=True):
         found = re.fullmatch(r"(\d+) N/m: ([\d.]+) mm above the floor", line)
         assert float(found[1]) == k
-        rest_mm = 1e3 * (Contact().tolerance_m - 0.2 * 9.81 / k)
+        rest_mm = 1e3 * (ContactParameters().tolerance_m - 0.2 * 9.81 / k)
         assert float(found[2]) == pytest.approx(rest_mm, abs=6e-3)
         assert f"{rest_mm:.2f}" in TEXT
 

@@ -11,7 +11,7 @@ from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.device.backend import DeviceCommand
-from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.visualization.meshcat import start_meshcat
 from drake_haptics.web.mouse_device import MouseDevice
 
 BOUND_S = 180.0
@@ -46,8 +46,8 @@ class Hand:
         """One turn of the loop; returns X_WH."""
         reading = self.device.read()
         R_BW = X_WB.rotation().inverse()
-        F_BH = np.concatenate([R_BW @ F_W[:3], R_BW @ F_W[3:]])
-        self.device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
+        F_Ho_B = np.concatenate([R_BW @ F_W[:3], R_BW @ F_W[3:]])
+        self.device.write(DeviceCommand(F_Ho_B, reading.X_BH, reading.V_BH))
         self.rests = np.abs(reading.V_BH).max() < 1e-7
         return X_WB @ vector_to_pose(reading.X_BH)
 
@@ -125,7 +125,7 @@ def hand():
     executable = find_browser()
     if executable is None:
         pytest.skip("no Chromium on the PATH")
-    meshcat = open_meshcat()
+    meshcat = start_meshcat()
     meshcat.SetObject("/box", Box(0.1, 0.1, 0.1), Rgba(0.2, 0.7, 0.3))
     meshcat.SetCameraPose(CAMERA_M, np.zeros(3))
     with (
@@ -189,7 +189,7 @@ def test_the_ring_marks_the_handle_in_meshcats_own_picture(hand):
 
 
 def magenta(picture):
-    """Where a picture is of the ball's colour."""
+    """Where a picture is of the ball's color."""
     red, green, blue = picture.astype(int).transpose(2, 0, 1)
     return (np.minimum(red, blue) - green) > 100
 

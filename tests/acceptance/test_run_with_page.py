@@ -13,7 +13,7 @@ import numpy as np
 import websocket
 
 from drake_haptics import find_scene, load_scene
-from drake_haptics.scene.schema import Gravity
+from drake_haptics.scene.schema import GravityParameters
 
 BOUND_S = 180.0
 PROGRAM = "from drake_haptics.cli import main; main()"
@@ -117,7 +117,7 @@ def test_a_run_is_changed_while_it_goes_on(tmp_path):
     scene = load_scene(find_scene("cup_spoon"))
     scene.contact.stiffness_N_per_m = 3000.0
     scene.coupling.stiffness_N_per_m = 400.0
-    scene.effects.gravity = Gravity()
+    scene.effects.gravity = GravityParameters()
     kept = load_scene(mine)
     for part in ("contact", "coupling", "device", "hand", "effects"):
         assert getattr(kept, part) == getattr(scene, part)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from headless_browser import HeadlessBrowser, find_browser
-from held_samples import analyse_sample
+from held_samples import analyze_sample
 
 from drake_haptics.analysis.stability_page import write_stability_page
 
@@ -13,7 +13,7 @@ def test_the_page_is_readable(tmp_path):
     if executable is None:
         pytest.skip("no Chromium on the PATH")
     path = tmp_path / "page.html"
-    write_stability_page(analyse_sample(), "hammer_block", path)
+    write_stability_page(analyze_sample(), "hammer_block", path)
     with HeadlessBrowser(executable) as browser:
         browser.open(path.as_uri())
         assert browser.evaluate("document.title") == "Stability of hammer_block"
@@ -32,7 +32,7 @@ def test_the_page_is_readable(tmp_path):
             "})"
         )
         assert browser.evaluate("document.querySelectorAll('table').length") == 4
-        colours = browser.screenshot().reshape(-1, 3)
+        colors = browser.screenshot().reshape(-1, 3)
         # The verdict's green or yellow, and the picture further down.
-        assert len(np.unique(colours, axis=0)) > 50
+        assert len(np.unique(colors, axis=0)) > 50
         assert browser.errors == []

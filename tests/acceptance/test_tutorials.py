@@ -26,7 +26,7 @@ def read_code_cells(notebook):
 
 
 def read_text(cell):
-    """Returns all that a cell prints, without colours."""
+    """Returns all that a cell prints, without colors."""
     printed = [
         output.text if output.output_type == "stream" else output.data["text/plain"]
         for output in cell.outputs

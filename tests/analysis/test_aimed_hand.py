@@ -8,9 +8,9 @@ from held_samples import hold_with_grip, load_held
 
 from drake_haptics.analysis import held_loop
 from drake_haptics.analysis.equilibrium import find_equilibrium
-from drake_haptics.analysis.held_loop import build_aimed
+from drake_haptics.analysis.held_loop import build_with_same_load
 from drake_haptics.common.pose_vector import vector_to_pose
-from drake_haptics.scene.schema import Coupling
+from drake_haptics.scene.schema import CouplingParameters
 from drake_haptics.scene.validation import SceneError
 from drake_haptics.systems.arm.simulated_arm import UnreachableError
 
@@ -34,23 +34,21 @@ def assert_rests_as_held(held, haptic, context):
     found = find_equilibrium(haptic.diagram, context, tolerance=1e-9)
     assert found.iterations == 0
     tool, force = haptic.loop.haptic_tool, haptic.loop.penalty_force
-    pose = tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(context))
+    pose = tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(context))
     assert vector_to_pose(pose).IsExactlyEqualTo(held.X_WT)
-    pushed = force.get_tool_wrench_output_port().Eval(
-        force.GetMyContextFromRoot(context)
-    )
-    np.testing.assert_allclose(pushed, -held.F_Tool_W, atol=1e-7)
+    pushed = force.GetOutputPort("F_To_W").Eval(force.GetMyContextFromRoot(context))
+    np.testing.assert_allclose(pushed, -held.F_To_W, atol=1e-7)
     coupling = haptic.loop.virtual_coupling
-    model = coupling.get_wrench_model_output_port().Eval(
+    model = coupling.GetOutputPort("wrench_model").Eval(
         coupling.GetMyContextFromRoot(context)
     )
-    np.testing.assert_allclose(model[:6], held.F_Tool_W, atol=1e-9)
+    np.testing.assert_allclose(model[:6], held.F_To_W, atol=1e-9)
 
 
 @pytest.mark.parametrize("gains", GAINS.values(), ids=GAINS.keys())
 def test_any_gains_hold_the_tool_where_it_was(held, gains):
     coupling = replace(held.scene.coupling, **gains)
-    haptic, context = build_aimed(held, coupling)
+    haptic, context = build_with_same_load(held, coupling)
     assert haptic.scene.coupling == coupling
     assert_rests_as_held(held, haptic, context)
 
@@ -58,12 +56,12 @@ def test_any_gains_hold_the_tool_where_it_was(held, gains):
 @pytest.mark.parametrize("grip", ["light", "nominal", "firm"])
 def test_any_hand_holds_the_tool_where_it_was(held, grip):
     other = hold_with_grip(held, grip)
-    assert_rests_as_held(other, *build_aimed(other))
+    assert_rests_as_held(other, *build_with_same_load(other))
 
 
 def test_a_free_arm_has_nothing_to_hold_with(held):
     with pytest.raises(ValueError, match="the hand has no spring to hold the tool"):
-        build_aimed(hold_with_grip(held, "none"))
+        build_with_same_load(hold_with_grip(held, "none"))
 
 
 @pytest.mark.parametrize(
@@ -72,18 +70,18 @@ def test_a_free_arm_has_nothing_to_hold_with(held):
 def test_a_coupling_without_a_spring_has_nothing_to_hold_with(held, name):
     coupling = replace(held.scene.coupling, **{name: 0.0})
     with pytest.raises(ValueError, match="the coupling has no spring to hold the tool"):
-        build_aimed(held, coupling)
+        build_with_same_load(held, coupling)
 
 
 def test_a_spring_that_is_turned_too_far_is_an_error(held):
     coupling = replace(held.scene.coupling, rotational_stiffness_Nm_per_rad=1e-3)
     with pytest.raises(ValueError, match=r"coupling's spring .* more than 2\.5 rad"):
-        build_aimed(held, coupling)
+        build_with_same_load(held, coupling)
 
 
 def test_a_hand_that_would_leave_the_workspace_is_an_error(held):
     with pytest.raises(SceneError, match="workspace"):
-        build_aimed(held, Coupling(stiffness_N_per_m=2.0))
+        build_with_same_load(held, CouplingParameters(stiffness_N_per_m=2.0))
 
 
 def test_an_arm_that_does_not_reach_is_an_error(monkeypatch):
@@ -92,4 +90,4 @@ def test_an_arm_that_does_not_reach_is_an_error(monkeypatch):
 
     monkeypatch.setattr(held_loop, "solve_arm_positions", refuse)
     with pytest.raises(ValueError, match="to press as before: the arm is too short"):
-        build_aimed(load_held("hammer_block"))
+        build_with_same_load(load_held("hammer_block"))

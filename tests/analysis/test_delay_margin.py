@@ -30,7 +30,7 @@ def make_loop(stiffness):
         state_names=(
             "arm/x",
             "arm/v",
-            *(f"device/display_force_hold/sample/xd[{i}]" for i in range(7)),
+            *(f"device/rendered_force_hold/sample/xd[{i}]" for i in range(7)),
         ),
     )
     return SimpleNamespace(linearization=linear)

@@ -61,7 +61,7 @@ def test_two_rates_point_to_monodromy():
     for period in (0.001, 0.002):
         builder.AddSystem(LinearSystem([[0.5]], [[1]], [[1]], [[0]], period))
     diagram = builder.Build()
-    with pytest.raises(ValueError, match="several rates: use monodromy"):
+    with pytest.raises(ValueError, match="several rates: use calc_monodromy"):
         with explain_drake_errors("evaluating"):
             diagram.EvalUniquePeriodicDiscreteUpdate(diagram.CreateDefaultContext())
 

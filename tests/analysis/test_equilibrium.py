@@ -17,10 +17,10 @@ from wall_loop import PERIOD, make_loop
 
 from drake_haptics.analysis import (
     ModeKind,
+    calc_monodromy,
     find_equilibrium,
     find_modes,
     linearize_sampled,
-    monodromy,
 )
 
 RADIUS, MASS, STIFFNESS, DAMPING, GRAVITY = 0.02, 0.1, 2000.0, 20.0, 9.81
@@ -211,7 +211,7 @@ def test_several_rates_have_one_equilibrium():
     context = loop.CreateDefaultContext()
     context.SetContinuousState([0.01, 3.0])
     found = find_equilibrium(loop, context)
-    assert monodromy(loop, found.context).equilibrium_residual < 1e-10
+    assert calc_monodromy(loop, found.context).equilibrium_residual < 1e-10
 
 
 def test_no_fixed_point_says_how_far_it_got():

@@ -9,11 +9,11 @@ from pydrake.math import RotationMatrix
 
 from drake_haptics.analysis.delay_margin import find_shown_wrench
 from drake_haptics.analysis.felt_impedance import calc_felt_impedance
-from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_loop import analyze_held_scene
 from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.analysis.passivity import calc_passivity
 from drake_haptics.common.pose_vector import vector_to_pose
-from drake_haptics.scene.schema import ForceDelay, Twin
+from drake_haptics.scene.schema import DeviceImperfections, ForceDelayParameters
 
 # Ticks in which the tool comes to rest while the handle stands still.
 TICKS = 3000
@@ -23,7 +23,7 @@ STEP = 1e-5
 @pytest.fixture(scope="module")
 def pen():
     """One contact, of a vertex of the pen on the sphere."""
-    return analyse_held_scene(load_held("sphere_pen"))
+    return analyze_held_scene(load_held("sphere_pen"))
 
 
 def calc_at_standstill(felt):
@@ -40,7 +40,7 @@ def make_cross(v):
 def read_torque(loop):
     """Returns the torque that the handle is shown (3,), N·m."""
     names = loop.linearization.state_names
-    shown = [i for i, name in enumerate(names) if "display_force_hold" in name]
+    shown = [i for i, name in enumerate(names) if "rendered_force_hold" in name]
     return loop.linearization.state[shown[:3]]
 
 
@@ -60,7 +60,7 @@ def measure_static_force(loop, joint, offset):
         state.SetAtIndex(joint, q)
         updated = diagram.EvalUniquePeriodicDiscreteUpdate(context)
         context.SetDiscreteState(updated.Clone())
-    hold = loop.haptic.loop.device.GetSubsystemByName("display_force_hold")
+    hold = loop.haptic.loop.device.GetSubsystemByName("rendered_force_hold")
     shown = hold.GetMyContextFromRoot(context).get_discrete_state(0).CopyToVector()
     return read_handle(loop, context), shown[:6]
 
@@ -98,7 +98,7 @@ def test_coupling_and_contact_are_springs_in_series(pen):
     # The pen's origin is at its tip: the contact turns nothing.
     K = pen.haptic.scene.coupling.stiffness_N_per_m
     k = pen.haptic.scene.contact.stiffness_N_per_m
-    force = load_held("sphere_pen").F_Tool_W[3:]
+    force = load_held("sphere_pen").F_To_W[3:]
     normal = force / np.linalg.norm(force)
     found = calc_at_standstill(calc_felt_impedance(pen))[3:, 3:]
     expected = K * k / (K + k) * np.outer(normal, normal)
@@ -107,7 +107,7 @@ def test_coupling_and_contact_are_springs_in_series(pen):
 
 @pytest.mark.parametrize("name", ["sphere_pen", "hammer_block"])
 def test_the_stiffness_is_that_of_the_loops_own_steps(name):
-    loop = analyse_held_scene(load_held(name))
+    loop = analyze_held_scene(load_held(name))
     felt = calc_felt_impedance(loop)
     found = measure_stiffness(loop)
     np.testing.assert_allclose(
@@ -125,7 +125,7 @@ def test_the_stiffness_is_that_of_the_loops_own_steps(name):
 def test_against_a_rigid_tool_half_a_period_of_stiffness_and_damping_are_needed(name):
     held = load_held(name).against_rigid_wall()
     coupling = replace(held.scene.coupling, rotational_stiffness_Nm_per_rad=20.0)
-    loop = analyse_held_scene(held, coupling)
+    loop = analyze_held_scene(held, coupling)
     felt = calc_felt_impedance(loop)
     T = felt.period_s
     (needed,) = calc_passivity(felt, T, [0.5 / T]).required_matrix
@@ -168,9 +168,11 @@ def respond(felt, z):
 @pytest.mark.parametrize("samples", [1, 2])
 def test_a_late_wrench_is_felt_so_many_ticks_later(pen, samples):
     held = load_held("sphere_pen")
-    device = replace(held.scene.device, twin=Twin(delay=ForceDelay(samples)))
+    device = replace(
+        held.scene.device, twin=DeviceImperfections(delay=ForceDelayParameters(samples))
+    )
     late = hold_scene(replace(held.scene, device=device), held.time_s)
-    loop = analyse_held_scene(late)
+    loop = analyze_held_scene(late)
     at_once, later = calc_felt_impedance(pen), calc_felt_impedance(loop)
     for z in np.exp(1j * np.array([0.01, 0.3, 1.0, 2.5])):
         expected = z**-samples * respond(at_once, z)

@@ -10,11 +10,11 @@ from held_samples import load_held
 
 from drake_haptics.analysis.held_loop import (
     CouplingGrowth,
-    analyse_held_scene,
+    analyze_held_scene,
     replace_gains,
 )
 from drake_haptics.analysis.jobs.pool import SerialExecutor
-from drake_haptics.analysis.z_width_map import z_width
+from drake_haptics.analysis.z_width_map import calc_z_width
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 
@@ -33,13 +33,13 @@ def growth():
 @pytest.mark.parametrize("name", ["sphere_pen", "hammer_block"])
 def test_motions_grow_as_fast_in_simulation(name, gains):
     held = load_held(name)
-    loop = analyse_held_scene(held, replace_gains(held.scene.coupling, *gains))
+    loop = analyze_held_scene(held, replace_gains(held.scene.coupling, *gains))
     assert loop.measure_growth() == pytest.approx(loop.growth, abs=1e-4)
 
 
 def test_a_loop_that_is_unstable_grows_in_simulation():
     held = load_held("hammer_block").against_rigid_wall()
-    loop = analyse_held_scene(held, replace_gains(held.scene.coupling, 3e4, 2.0))
+    loop = analyze_held_scene(held, replace_gains(held.scene.coupling, 3e4, 2.0))
     assert loop.growth > 1.001
     assert loop.measure_growth() == pytest.approx(loop.growth, abs=1e-4)
 
@@ -53,7 +53,7 @@ def test_the_growth_of_a_coupling_can_be_pickled(growth):
 def test_it_is_the_growth_of_the_held_loop(growth):
     held = load_held("hammer_block")
     assert held.time_s == pytest.approx(TIME_S, abs=1e-9)
-    expected = analyse_held_scene(held, replace_gains(held.scene.coupling, 2e3, 1.0))
+    expected = analyze_held_scene(held, replace_gains(held.scene.coupling, 2e3, 1.0))
     assert growth(2e3, 1.0)["spectral_radius"] == pytest.approx(
         expected.growth, abs=1e-9
     )
@@ -71,9 +71,9 @@ def test_the_order_of_points_does_not_matter(growth):
 
 def test_a_map_is_the_same_in_any_process(growth):
     grid = {"stiffness": [500.0, 5e3, 5e4], "damping": [0.5, 3.0]}
-    here = z_width(growth, **grid, executor=SerialExecutor())
+    here = calc_z_width(growth, **grid, executor=SerialExecutor())
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-        there = z_width(growth, **grid, executor=pool)
+        there = calc_z_width(growth, **grid, executor=pool)
     np.testing.assert_array_equal(here.spectral_radius, there.spectral_radius)
     assert not here.reasons and np.isfinite(here.spectral_radius).all()
 
@@ -84,4 +84,4 @@ def test_a_device_near_its_limit_is_linearized_all_the_same():
     held = load_held("cup_spoon")
     for stiffness in (3.0e4, 3.003e4, 30065.76, 3.01e4):
         coupling = replace_gains(held.scene.coupling, stiffness, 2.0)
-        assert 0.98 < analyse_held_scene(held, coupling).growth < 1.0
+        assert 0.98 < analyze_held_scene(held, coupling).growth < 1.0

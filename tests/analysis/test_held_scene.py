@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drake_haptics.analysis.held_loop import analyse_held_scene, build_aimed
+from drake_haptics.analysis.held_loop import analyze_held_scene, build_with_same_load
 from drake_haptics.analysis.held_scene import (
-    build_quietly,
+    build_without_scene_warnings,
     find_firmest_contact,
     hold_scene,
     stop_hand,
@@ -16,7 +16,7 @@ from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.loop.simulated_device import make_hand_path, place_base
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import Coupling, Gravity
+from drake_haptics.scene.schema import CouplingParameters, GravityParameters
 
 
 @pytest.fixture(scope="module")
@@ -72,26 +72,24 @@ def test_a_path_in_free_space_has_a_nearest_place(hammer):
 
 
 def test_the_tool_rests_in_contact(held):
-    haptic = build_quietly(held.scene)
+    haptic = build_without_scene_warnings(held.scene)
     tool, force = haptic.loop.haptic_tool, haptic.loop.penalty_force
     context = haptic.diagram.CreateDefaultContext()
     context.SetTimeStateAndParametersFrom(held.context)
-    velocity = tool.get_velocity_output_port().Eval(tool.GetMyContextFromRoot(context))
+    velocity = tool.GetOutputPort("V_WT").Eval(tool.GetMyContextFromRoot(context))
     assert np.abs(velocity).max() < 1e-9
-    pushed = force.get_tool_wrench_output_port().Eval(
-        force.GetMyContextFromRoot(context)
-    )
+    pushed = force.GetOutputPort("F_To_W").Eval(force.GetMyContextFromRoot(context))
     assert np.linalg.norm(pushed[3:]) > 1.0
     # Without gravity on the tool the coupling holds it against the contact alone.
-    np.testing.assert_allclose(held.F_Tool_W, -pushed, atol=1e-6)
-    pose = tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(context))
+    np.testing.assert_allclose(held.F_To_W, -pushed, atol=1e-6)
+    pose = tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(context))
     assert vector_to_pose(pose).IsExactlyEqualTo(held.X_WT)
 
 
 def test_a_scene_with_an_unstable_coupling_is_held_all_the_same(hammer):
-    wild = replace(hammer, coupling=Coupling(stiffness_N_per_m=2e5))
+    wild = replace(hammer, coupling=CouplingParameters(stiffness_N_per_m=2e5))
     held = hold_scene(wild, 0.35)
-    haptic, context = build_aimed(held)
+    haptic, context = build_with_same_load(held)
     assert haptic.scene.coupling == wild.coupling
     state = context.get_continuous_state_vector().CopyToVector()
     assert np.isfinite(state).all() and np.abs(state).max() < 10.0
@@ -110,11 +108,11 @@ def test_a_firmer_contact_that_does_not_rest_is_passed_over_and_named():
 
 
 def test_against_a_rigid_wall_the_tool_stays_whatever_moves(held):
-    effects = replace(held.scene.effects, gravity=Gravity())
+    effects = replace(held.scene.effects, gravity=GravityParameters())
     heavy = replace(held, scene=replace(held.scene, effects=effects))
     wall = heavy.against_rigid_wall()
     assert wall.X_WT.IsExactlyEqualTo(held.X_WT)
-    linear = analyse_held_scene(wall).linearization
+    linear = analyze_held_scene(wall).linearization
     of_tool = [i for i, name in enumerate(linear.state_names) if "haptic_tool" in name]
     velocity = of_tool[-6:]
     expected = np.zeros((6, len(linear.A)))

@@ -32,8 +32,8 @@ def test_what_is_not_of_each_loop_keeps_its_name(name):
 
 
 def test_each_loops_own_paths_are_shorter():
-    assert list_parts(["device/display_force_hold/sample/F"]) == [
-        "display_force_hold/F"
+    assert list_parts(["device/rendered_force_hold/sample/F"]) == [
+        "rendered_force_hold/F"
     ]
 
 

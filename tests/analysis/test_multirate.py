@@ -19,7 +19,7 @@ from spring_mass import SpringMass
 from two_rates import make_two_rates
 from wall_loop import MASS_KG, PERIOD, make_loop, make_mass
 
-from drake_haptics.analysis import linearize_sampled, monodromy
+from drake_haptics.analysis import calc_monodromy, linearize_sampled
 
 
 def calc_two_rates(stiffness, damping=1.0, b=0.5):
@@ -34,7 +34,7 @@ def calc_two_rates(stiffness, damping=1.0, b=0.5):
 
 
 def find(system, *args, **options):
-    return monodromy(system, system.CreateDefaultContext(), *args, **options)
+    return calc_monodromy(system, system.CreateDefaultContext(), *args, **options)
 
 
 def test_two_rates_are_the_product_of_their_ticks():
@@ -57,9 +57,9 @@ def test_one_rate_is_what_linearize_sampled_says(start):
     context = loop.CreateDefaultContext()
     context.SetTime(start)
     exact = linearize_sampled(loop, context)
-    found = monodromy(loop, context)
+    found = calc_monodromy(loop, context)
     np.testing.assert_allclose(found.A, exact.A, rtol=1e-9, atol=1e-9)
-    thrice = monodromy(loop, context, 3 * PERIOD)
+    thrice = calc_monodromy(loop, context, 3 * PERIOD)
     cubed = np.linalg.matrix_power(exact.A, 3)
     np.testing.assert_allclose(thrice.A, cubed, rtol=1e-8, atol=1e-8)
     assert context.get_time() == start
@@ -76,7 +76,7 @@ def test_times_that_differ_by_round_off_are_one():
     context = diagram.CreateDefaultContext()
     for i in range(2):
         diagram.get_input_port(i).FixValue(context, [0.0])
-    found = monodromy(diagram, context)
+    found = calc_monodromy(diagram, context)
     assert found.period_s == 0.3
     np.testing.assert_array_equal(found.A, np.diag([0.125, 0.5]))
 
@@ -159,7 +159,7 @@ def test_steps_are_those_asked_for():
     mass = make_mass()
     context = mass.CreateDefaultContext()
     mass.get_input_port().FixValue(context, [0.0])
-    found = monodromy(mass, context, 0.05, step_s=0.05)
+    found = calc_monodromy(mass, context, 0.05, step_s=0.05)
     # A third-order method on a linear system is its series up to the third power.
     F = mass.A() * 0.05
     series = np.eye(2) + F + F @ F / 2.0 + F @ F @ F / 6.0
@@ -179,7 +179,7 @@ def test_a_state_that_does_not_return_is_refused():
     context = loop.CreateDefaultContext()
     context.SetContinuousState([0.0, 1.0])
     with pytest.raises(ValueError, match=r"not an equilibrium.*find_equilibrium"):
-        monodromy(loop, context)
+        calc_monodromy(loop, context)
 
 
 def test_lost_derivatives_are_an_error():
@@ -187,7 +187,7 @@ def test_lost_derivatives_are_an_error():
     context = system.CreateDefaultContext()
     system.get_input_port().FixValue(context, [0.0])
     with pytest.raises(ValueError, match=r"derivatives are lost.*xd\[1\]"):
-        monodromy(system, context)
+        calc_monodromy(system, context)
 
 
 def test_abstract_state_is_refused():
@@ -219,6 +219,6 @@ def test_without_updates_a_hyperperiod_must_be_given():
     context = mass.CreateDefaultContext()
     mass.get_input_port().FixValue(context, [0.0])
     with pytest.raises(ValueError, match="hyperperiod_s must be given"):
-        monodromy(mass, context)
-    found = monodromy(mass, context, 0.01)
+        calc_monodromy(mass, context)
+    found = calc_monodromy(mass, context, 0.01)
     np.testing.assert_allclose(found.A, expm(mass.A() * 0.01), atol=1e-9)

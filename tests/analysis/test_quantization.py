@@ -24,7 +24,7 @@ def calc_gain(path, K, friction, offset):
 
 
 def make_paths():
-    """Closed paths at random: in and out, and wandering, from counts to millimetres."""
+    """Closed paths at random: in and out, and wandering, from counts to millimeters."""
     random = np.random.default_rng(5)
     for size in np.geomspace(0.1, 300.0, 60) * RESOLUTION:
         yield np.array([0.0, size]), random.uniform()

@@ -17,10 +17,10 @@ from pydrake.systems.scalar_conversion import TemplateSystem
 from wall_loop import PERIOD, make_loop, make_mass
 
 from drake_haptics.analysis import (
+    calc_monodromy,
     find_equilibrium,
     find_modes,
     linearize_sampled,
-    monodromy,
 )
 
 
@@ -202,16 +202,18 @@ def test_an_open_input_elsewhere_is_said():
         linearize(make(make_mass(), Eventful()))
 
 
-@pytest.mark.parametrize("analyse", [find_equilibrium, linearize_sampled, monodromy])
-def test_what_is_no_system_or_no_context_of_it_is_refused(analyse):
+@pytest.mark.parametrize(
+    "analyze", [find_equilibrium, linearize_sampled, calc_monodromy]
+)
+def test_what_is_no_system_or_no_context_of_it_is_refused(analyze):
     loop, other = make_loop(900.0), make_loop(900.0)
     context = loop.CreateDefaultContext()
     with pytest.raises(TypeError, match=r"^diagram must be .* it is \.diagram"):
-        analyse(context, loop)
+        analyze(context, loop)
     with pytest.raises(TypeError, match=r"^context must be .*Simulator\.get_context"):
-        analyse(loop, Simulator(loop))
+        analyze(loop, Simulator(loop))
     with pytest.raises(RuntimeError, match="was passed the Context of"):
-        analyse(loop, other.CreateDefaultContext())
+        analyze(loop, other.CreateDefaultContext())
 
 
 def test_modes_are_of_a_linear_map():

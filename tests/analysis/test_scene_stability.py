@@ -14,13 +14,13 @@ from matplotlib.patches import Patch
 
 from drake_haptics.analysis import scene_stability
 from drake_haptics.analysis.delay_margin import calc_delay_margin
-from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_loop import analyze_held_scene
 from drake_haptics.analysis.jobs.pool import SerialExecutor
-from drake_haptics.analysis.scene_stability import analyse_scene
+from drake_haptics.analysis.scene_stability import analyze_scene
 from drake_haptics.bounds.held_handle import check_scene_coupling
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import Coupling
+from drake_haptics.scene.schema import CouplingParameters
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def reports():
 def found(scene, reports):
     with pytest.MonkeyPatch.context() as patch:
         shorten_limits(patch)
-        return analyse_scene(
+        return analyze_scene(
             scene,
             map_size=3,
             executor=SerialExecutor(),
@@ -63,12 +63,12 @@ def quick_limits(monkeypatch):
 
 def test_it_is_what_the_held_loop_is(found):
     held = load_held("hammer_block")
-    loop = analyse_held_scene(held)
+    loop = analyze_held_scene(held)
     assert found.time_s == held.time_s
     assert found.growth == pytest.approx(loop.growth, abs=1e-9)
     assert found.is_stable
     assert found.delay_margin_s == pytest.approx(calc_delay_margin(loop), rel=1e-3)
-    force = np.linalg.norm(held.F_Tool_W[3:])
+    force = np.linalg.norm(held.F_To_W[3:])
     assert found.contact_force_N == pytest.approx(force, abs=1e-6)
     # The hammer's face lies on one flat block.
     assert found.num_contacts == 1
@@ -176,8 +176,8 @@ def test_no_label_is_cut(found):
 
 
 def test_an_unstable_coupling_is_analysed_all_the_same(scene, quick_limits):
-    wild = replace(scene, coupling=Coupling(stiffness_N_per_m=2e6))
-    found = analyse_scene(wild, 0.35, map_size=0)
+    wild = replace(scene, coupling=CouplingParameters(stiffness_N_per_m=2e6))
+    found = analyze_scene(wild, 0.35, map_size=0)
     assert not found.is_stable and found.delay_margin_s == 0.0
     assert not found.is_passive
     assert found.map is None and found.broken_bounds
@@ -188,7 +188,7 @@ def test_a_map_of_one_point_is_refused(scene, size):
     with pytest.raises(
         ValueError, match=f"map_size must be 0 or at least 2, is {size}"
     ):
-        analyse_scene(scene, map_size=size)
+        analyze_scene(scene, map_size=size)
 
 
 def test_a_store_keeps_the_map(scene, quick_limits, tmp_path):
@@ -201,11 +201,11 @@ def test_a_store_keeps_the_map(scene, quick_limits, tmp_path):
             names.add(what)
 
     settings = {"map_size": 2, "store": tmp_path / "map.jsonl", "progress": note}
-    first = analyse_scene(scene, 0.35, executor=SerialExecutor(), **settings)
+    first = analyze_scene(scene, 0.35, executor=SerialExecutor(), **settings)
     assert done[0] == 0.0 and done[-1] == 1.0
     done.clear()
     names.clear()
-    again = analyse_scene(scene, 0.35, executor=None, **settings)
+    again = analyze_scene(scene, 0.35, executor=None, **settings)
     assert set(done) == {1.0}
     # Of a pool of all cores it is known how long the map takes.
     (words,) = names

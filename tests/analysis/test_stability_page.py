@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from held_samples import analyse_sample, make_limits
+from held_samples import analyze_sample, make_limits
 from PIL import Image
 
 from drake_haptics.analysis.modes import Mode, ModeKind, describe_motion
@@ -30,7 +30,7 @@ GROWING = Mode(
 
 @pytest.fixture(scope="module")
 def sample():
-    stability = analyse_sample()
+    stability = analyze_sample()
     # As if device and hand damped twice of what is needed.
     usage = stability.damping_usage / stability.damping_usage.max() / 2.0
     return replace(stability, damping_usage=usage)
@@ -153,7 +153,7 @@ def test_the_picture_is_beside_the_page_and_in_it(sample, tmp_path):
     assert not re.findall(r"\$\w+", page)
 
 
-def test_the_verdict_has_a_colour(sample, tmp_path):
+def test_the_verdict_has_a_color(sample, tmp_path):
     assert 'class="verdict bad"' in write(make_unstable(sample), tmp_path)
     needy = replace(sample, damping_usage=3.0 * sample.damping_usage)
     assert 'class="verdict fair"' in write(needy, tmp_path)

@@ -8,7 +8,7 @@ import pytest
 from held_samples import load_held, make_limits
 
 from drake_haptics.analysis import stiffness_limits
-from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_loop import analyze_held_scene
 from drake_haptics.analysis.sampled_wall import SampledWall
 from drake_haptics.analysis.stiffness_limits import find_stiffness_limits, format_limit
 
@@ -34,7 +34,7 @@ def test_the_limit_is_between_what_dies_out_and_what_grows(held, limits):
         coupling = replace(
             held.scene.coupling, stiffness_N_per_m=factor * limits.eigenvalue
         )
-        growth = analyse_held_scene(still, coupling).growth
+        growth = analyze_held_scene(still, coupling).growth
         assert (growth < 1.0) == is_stable
 
 
@@ -71,14 +71,14 @@ def test_a_range_without_a_limit_says_so(held, monkeypatch):
 
 
 def test_where_nothing_can_be_told_beyond_it_says_why(held, monkeypatch):
-    true = stiffness_limits.analyse_held_scene
+    true = stiffness_limits.analyze_held_scene
 
-    def analyse(held, coupling):
+    def analyze(held, coupling):
         if coupling.stiffness_N_per_m > 2000.0:
             raise ValueError("the arm does not reach that far")
         return true(held, coupling)
 
-    monkeypatch.setattr(stiffness_limits, "analyse_held_scene", analyse)
+    monkeypatch.setattr(stiffness_limits, "analyze_held_scene", analyze)
     found = find_stiffness_limits(held, "translation")
     assert found.eigenvalue == pytest.approx(2000.0, rel=1e-3)
     assert math.isnan(found.simulated)

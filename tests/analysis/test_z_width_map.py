@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from sampled_loop import SampledLoop, refuse_stiff
 from scipy.optimize import minimize_scalar
 
-from drake_haptics.analysis import HeldBounds, SerialExecutor, StudyError, z_width
+from drake_haptics.analysis import HeldBounds, SerialExecutor, StudyError, calc_z_width
 from drake_haptics.analysis.z_width_map import ZWidth
 from drake_haptics.bounds.sampled_spring import (
     calc_passive_damping,
@@ -31,7 +31,7 @@ def make_map(radius, stiffness=(1.0, 2.0, 4.0)) -> ZWidth:
 
 def test_the_map_has_the_polynomials_growth_at_each_point():
     K, B = np.linspace(0.05, 0.8, 4), np.linspace(0.1, 1.5, 3)
-    found = z_width(UNIT, K, B, executor=SERIAL)
+    found = calc_z_width(UNIT, K, B, executor=SERIAL)
     assert found.spectral_radius.shape == (3, 4)
     for i, beta in enumerate(B):
         for j, alpha in enumerate(K):
@@ -48,7 +48,7 @@ def test_the_edge_of_the_map_is_jurys_boundary():
     loop = SampledLoop(m, T)
     K = np.linspace(1000.0, 80000.0, 80)
     B = np.linspace(10.0, 150.0, 15)
-    edge = z_width(loop, K, B).largest_stable_stiffness()
+    edge = calc_z_width(loop, K, B).largest_stable_stiffness()
     exact = [calc_sampled_stiffness(m, b, T) for b in B]
     # Within the grid's 1000 N/m by far: the crossing is interpolated.
     np.testing.assert_allclose(edge, exact, rtol=1e-4)
@@ -70,7 +70,7 @@ def test_the_largest_stiffness_of_all_is_the_known_maximum(delay, alpha, beta):
     B = beta * np.linspace(0.97, 1.03, 3)
 
     def edge(b: float) -> float:
-        row = z_width(loop, K, [b], executor=SERIAL).largest_stable_stiffness()
+        row = calc_z_width(loop, K, [b], executor=SERIAL).largest_stable_stiffness()
         return float(row[0])
 
     best = minimize_scalar(lambda b: -edge(b), bounds=(B[0], B[-1]), method="bounded")
@@ -82,7 +82,7 @@ def test_physical_damping_and_a_sample_of_delay_move_the_edge_as_measured():
     for delay, expected in [(0, 1000.8), (1, 333.8)]:
         K = expected * np.linspace(0.5, 1.5, 60)
         loop = SampledLoop(0.1, 1e-3, damping=0.5, delay=delay)
-        found = z_width(loop, K, [0.0], executor=SERIAL)
+        found = calc_z_width(loop, K, [0.0], executor=SERIAL)
         assert found.largest_stable_stiffness()[0] == pytest.approx(expected, abs=0.1)
 
 
@@ -103,7 +103,9 @@ def test_the_crossing_is_the_first_and_interpolated():
 
 
 def test_points_that_cannot_be_evaluated_stay_open_with_their_reason():
-    found = z_width(refuse_stiff, [100.0, 200.0, 400.0], [0.0, 1.0], executor=SERIAL)
+    found = calc_z_width(
+        refuse_stiff, [100.0, 200.0, 400.0], [0.0, 1.0], executor=SERIAL
+    )
     assert np.isnan(found.spectral_radius[:, 2]).all()
     assert (found.spectral_radius[:, :2] == 0.9).all()
     reason = "no equilibrium at 400 N/m"
@@ -112,11 +114,11 @@ def test_points_that_cannot_be_evaluated_stay_open_with_their_reason():
 
 def test_a_map_without_a_point_is_an_error():
     with pytest.raises(ValueError, match=r"no point .* no equilibrium at 400 N/m"):
-        z_width(refuse_stiff, [400.0, 500.0], [0.0], executor=SERIAL)
+        calc_z_width(refuse_stiff, [400.0, 500.0], [0.0], executor=SERIAL)
 
 
 def test_a_radius_that_is_no_number_is_a_reason():
-    found = z_width(
+    found = calc_z_width(
         lambda k, b: {"spectral_radius": math.inf if k > 1 else 0.5},
         [1.0, 2.0],
         [0.0],
@@ -127,7 +129,7 @@ def test_a_radius_that_is_no_number_is_a_reason():
 
 def test_a_defect_of_evaluate_is_an_error():
     with pytest.raises(StudyError, match="KeyError: 'spectral_radius'"):
-        z_width(lambda k, b: {}, [1.0], [0.0], executor=SERIAL)
+        calc_z_width(lambda k, b: {}, [1.0], [0.0], executor=SERIAL)
 
 
 @pytest.mark.parametrize(
@@ -142,13 +144,13 @@ def test_a_defect_of_evaluate_is_an_error():
 )
 def test_a_grid_that_is_none_is_refused(K, message):
     with pytest.raises(ValueError, match=message):
-        z_width(UNIT, K, [1.0])
+        calc_z_width(UNIT, K, [1.0])
 
 
 def test_a_finer_map_takes_what_its_store_has(tmp_path):
     store, seen = tmp_path / "map.jsonl", []
-    coarse = z_width(UNIT, [0.1, 0.3], [0.5, 0.7], executor=SERIAL, store=store)
-    fine = z_width(
+    coarse = calc_z_width(UNIT, [0.1, 0.3], [0.5, 0.7], executor=SERIAL, store=store)
+    fine = calc_z_width(
         UNIT,
         [0.1, 0.2, 0.3],
         [0.5, 0.7],
@@ -160,11 +162,11 @@ def test_a_finer_map_takes_what_its_store_has(tmp_path):
     np.testing.assert_array_equal(fine.spectral_radius[:, ::2], coarse.spectral_radius)
     other = SampledLoop(1.0, 1.0, delay=1)
     with pytest.raises(ValueError, match=r"_Point\(sampled_loop\.SampledLoop\) with"):
-        z_width(other, [0.1], [0.5], executor=SERIAL, store=store)
+        calc_z_width(other, [0.1], [0.5], executor=SERIAL, store=store)
 
 
 def test_a_map_comes_back_from_json():
-    found = z_width(refuse_stiff, [100.0, 400.0], [0.0, 1.0], executor=SERIAL)
+    found = calc_z_width(refuse_stiff, [100.0, 400.0], [0.0, 1.0], executor=SERIAL)
     text = json.dumps(found.to_dict(), allow_nan=False)
     again = ZWidth.from_dict(json.loads(text))
     for name in ("stiffness", "damping", "spectral_radius", "passive_damping"):
@@ -213,7 +215,7 @@ def labels(axes) -> set[str]:
 def test_the_picture_has_region_lines_and_gains():
     b, T = 0.5, 1e-3
     loop = SampledLoop(0.1, T, damping=b)
-    found = z_width(
+    found = calc_z_width(
         loop, np.linspace(100, 4000, 20), np.linspace(0, 2, 9), executor=SERIAL
     )
     axes = Figure().add_subplot()
@@ -248,7 +250,9 @@ def test_the_picture_has_region_lines_and_gains():
 
 
 def test_open_points_are_drawn_as_such_and_grids_by_a_factor_are_logarithmic():
-    found = z_width(refuse_stiff, [1.0, 20.0, 400.0], [0.1, 0.2, 0.4], executor=SERIAL)
+    found = calc_z_width(
+        refuse_stiff, [1.0, 20.0, 400.0], [0.1, 0.2, 0.4], executor=SERIAL
+    )
     axes = found.plot(Figure().add_subplot())
     assert labels(axes) == {"stable", "not evaluated"}
     (open_points,) = (x for x in axes.lines if x.get_label() == "not evaluated")

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 from box_scenes import PLATE_TOP, over_a_plate, write
 
-from drake_haptics.authoring.plausibility import question_scene
+from drake_haptics.authoring.plausibility import check_plausibility
 from drake_haptics.device.backend import DeviceBackend, DeviceReading
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.loop.builder import BuildHapticDiagram
@@ -20,7 +20,7 @@ PRESS = [(0.0, 0.0, 0.0, 0.03), (1.0, 0.0, 0.0, 0.005)]
 
 
 def ask(scene, **settings):
-    return question_scene(BuildHapticDiagram(scene, **settings))
+    return check_plausibility(BuildHapticDiagram(scene, **settings))
 
 
 @pytest.mark.parametrize("name", list_scenes())
@@ -28,7 +28,7 @@ def test_nothing_is_asked_about_what_comes_along(name):
     assert ask(load_scene(list_scenes()[name])) == []
 
 
-def test_millimetres_taken_for_metres_are_asked_for(tmp_path):
+def test_millimeters_taken_for_meters_are_asked_for(tmp_path):
     scene = over_a_plate(tmp_path, PRESS)
     assert ask(scene) == []
     size_m = 1e3 * max(trimesh.load(scene.environment[0].mesh).extents)
@@ -48,7 +48,7 @@ def test_a_scale_too_small_is_asked_for(tmp_path):
     assert "20 µm wide" in question and question.endswith("tool.scale: 1")
 
 
-def test_a_tolerance_in_millimetres_is_asked_for(tmp_path):
+def test_a_tolerance_in_millimeters_is_asked_for(tmp_path):
     scene = over_a_plate(tmp_path, PRESS)
     scene.contact.tolerance_m = 2.0
     assert [q for q in ask(scene) if q.startswith("contact.tolerance_m: is 2 m")]
@@ -104,13 +104,13 @@ def test_the_depth_that_a_tool_starts_at_is_that_of_the_run(budget_us):
     scene.hand.path.waypoints = [Waypoint(0.0, [0.01, 0.01, 0.01])]
     scene.device.tick_budget_us = budget_us
     haptic = BuildHapticDiagram(scene)
-    (question,) = [q for q in question_scene(haptic) if "the tool starts" in q]
+    (question,) = [q for q in check_plausibility(haptic) if "the tool starts" in q]
     port = haptic.loop.found_contacts
     root = haptic.diagram.CreateDefaultContext()
-    X_WTool = haptic.loop.haptic_tool.get_pose_output_port().Eval(
+    X_WT = haptic.loop.haptic_tool.GetOutputPort("X_WT").Eval(
         haptic.loop.haptic_tool.GetMyContextFromRoot(root)
     )
-    np.testing.assert_allclose(X_WTool, [1, 0, 0, 0, 0.01, 0.01, 0.01], atol=1e-12)
+    np.testing.assert_allclose(X_WT, [1, 0, 0, 0, 0.01, 0.01, 0.01], atol=1e-12)
     contacts = port.Eval(port.get_system().GetMyContextFromRoot(root))
     assert f"starts {length(-contacts.least_distance)} deep in 'cup'" in question
 

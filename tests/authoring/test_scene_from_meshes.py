@@ -53,26 +53,26 @@ def test_its_numbers_are_short_to_read(tmp_path):
     for waypoint in scene.hand.path.waypoints:
         numbers += [waypoint.time_s, *waypoint.position_m]
     assert {type(number) for number in numbers} == {float}
-    # As a person would write them, to the nanometre and microsecond.
+    # As a person would write them, to the nanometer and microsecond.
     assert all(number == float(f"{number:.9f}") for number in numbers)
     assert "-0.0" not in map(repr, numbers)
-    # The page shows it, in millimetres.
+    # The page shows it, in millimeters.
     assert float(f"{1e3 * scene.contact.tolerance_m:.2g}") == pytest.approx(
         1e3 * scene.contact.tolerance_m, rel=1e-12
     )
     assert scene.contact.tolerance_m < 2e-3
 
 
-def test_scales_are_metres_per_unit(tmp_path):
+def test_scales_are_meters_per_unit(tmp_path):
     in_mm = SHAPES["block"].copy()
     in_mm.apply_scale(1000.0)
     stick = write(tmp_path, "stick.stl", SHAPES["stick"])
-    metres = make_scene_for_meshes(stick, write(tmp_path, "m.ply", SHAPES["block"]))
+    meters = make_scene_for_meshes(stick, write(tmp_path, "m.ply", SHAPES["block"]))
     scaled = make_scene_for_meshes(
         stick, write(tmp_path, "mm.ply", in_mm), environment_scale=1e-3
     )
     for one, two in zip(
-        metres.hand.path.waypoints, scaled.hand.path.waypoints, strict=True
+        meters.hand.path.waypoints, scaled.hand.path.waypoints, strict=True
     ):
         np.testing.assert_allclose(one.position_m, two.position_m, atol=1e-6)
 
@@ -92,7 +92,7 @@ def test_a_tool_far_from_its_origin_is_held_as_if_it_were_not(tmp_path):
     moved.apply_translation([0.5, -0.25, 0.125])
     far = make_scene_for_meshes(write(tmp_path, "far.stl", moved), ball)
     assert (near.tool.center, far.tool.center) == (False, True)
-    # STL has single precision: half a metre away, 30 nm.
+    # STL has single precision: half a meter away, 30 nm.
     np.testing.assert_allclose(
         far.tool.grasp.position_m, near.tool.grasp.position_m, atol=1e-7
     )

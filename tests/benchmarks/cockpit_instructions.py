@@ -17,8 +17,8 @@ from pydrake.systems.framework import Context
 
 from drake_haptics.cockpit import cockpit
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.common.errors import UserError
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.evaluation.measuring.valgrind import (
     count_by_library,
     counted,
@@ -29,7 +29,7 @@ from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.visualization.meshcat import start_meshcat
 from drake_haptics.web.link import open_page_port
 
 _KINDS = ("without", "with")
@@ -56,13 +56,13 @@ def run_counted(name: str, kind: str) -> None:
         def read_clock() -> float:
             return ticks * haptic.period_s
 
-        pace = TickClock(haptic.period_s, read_clock, lambda _: None)
+        pace = RealTimePacer(haptic.period_s, read_clock, lambda _: None)
         duration_s = (_WARM_UP + _TICKS + 1) * haptic.period_s
         if kind == "without":
             run(haptic, duration_s, pace=pace, on_tick=on_tick)
             return
         cockpit.monotonic = read_clock
-        shown = CockpitRun(scene, open_meshcat(), open_page_port(), name=name)
+        shown = CockpitRun(scene, start_meshcat(), open_page_port(), name=name)
         stack.enter_context(closing(shown))
         shown.run(
             haptic,
@@ -87,7 +87,7 @@ def main() -> None:
             kind: sum(count_by_library([__file__, scene, kind]).values()) / _TICKS
             for kind in _KINDS
         }
-    except UserError as error:
+    except HapticsError as error:
         sys.exit(str(error))
     except subprocess.CalledProcessError as error:
         sys.exit(error.stderr)

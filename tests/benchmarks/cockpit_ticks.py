@@ -23,7 +23,7 @@ from typing import Any
 from pydrake.systems.framework import Context
 
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
@@ -31,7 +31,7 @@ from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.output.haptic_visualizer import HapticVisualizer
-from drake_haptics.visualization.meshcat import open_meshcat, set_stage
+from drake_haptics.visualization.meshcat import configure_camera, start_meshcat
 from drake_haptics.web.link import open_page_port
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "support"))
@@ -62,7 +62,7 @@ class Book:
     """What was measured of a kind of run, in all turns."""
 
     def __init__(self, period_s: float):
-        self.pace = TickClock(period_s)
+        self.pace = RealTimePacer(period_s)
         self.statistics = RunStatistics(period_s, self.pace)
         self.counts: Counter[str] = Counter()
 
@@ -70,16 +70,16 @@ class Book:
 def run_without(scene: Scene, book: Book) -> None:
     """Runs a scene that nobody sees."""
     haptic = BuildHapticDiagram(scene)
-    run(haptic, _WARM_UP_S, pace=TickClock(haptic.period_s))
+    run(haptic, _WARM_UP_S, pace=RealTimePacer(haptic.period_s))
     book.pace.pause()
     run(haptic, _MEASURED_S, pace=book.pace, statistics=book.statistics)
 
 
 def run_with_page(scene: Scene, book: Book, executable: str, drags: bool) -> None:
     """Runs a scene with its page in a browser."""
-    meshcat = open_meshcat()
+    meshcat = start_meshcat()
     haptic = BuildHapticDiagram(scene, meshcat=meshcat)
-    set_stage(meshcat, haptic)
+    configure_camera(meshcat, haptic)
     shown = CockpitRun(scene, meshcat, open_page_port(), name="measured")
     with closing(shown), HeadlessBrowser(executable) as browser:
         browser.open(shown.url)
@@ -91,7 +91,7 @@ def run_with_page(scene: Scene, book: Book, executable: str, drags: bool) -> Non
             "on_begin": lambda haptic: None,
             "on_tick": lambda context: None,
         }
-        warm = TickClock(haptic.period_s)
+        warm = RealTimePacer(haptic.period_s)
         unread = RunStatistics(haptic.period_s, warm)
         shown.run(haptic, _WARM_UP_S, pace=warm, statistics=unread, **options)
         before = count(browser)

@@ -8,7 +8,7 @@ static const double V_BH[6] = {0.1, 0.2, 0.3, 0.1, 0.2, 0.3};
 int main(int argc, char** argv) {
   const dh_gate_limits limits = dh_gate_default_limits(8.5, 0.188);
   uint8_t packet[DH_STATE_SIZE];
-  double F_BH[6];
+  double F_Ho_B[6];
   dh_command command;
   dh_state state;
   dh_gate gate;
@@ -20,8 +20,8 @@ int main(int argc, char** argv) {
   state.boot = 1;
   command.session = 1;
   command.ttl_us = 20000;
-  command.F_BH[0] = 1;
-  command.F_BH[5] = 50; /* both are over the limits */
+  command.F_Ho_B[0] = 1;
+  command.F_Ho_B[5] = 50; /* both are over the limits */
   dh_gate_init(&gate, &limits);
   dh_pack_command(&command, packet);
   dh_gate_receive(&gate, 0, packet, DH_COMMAND_SIZE);
@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
         dh_gate_receive(&gate, now_ns, packet, DH_COMMAND_SIZE);
         break;
       default:
-        dh_gate_step(&gate, now_ns, X_BH, V_BH, F_BH);
+        dh_gate_step(&gate, now_ns, X_BH, V_BH, F_Ho_B);
     }
   }
   return gate.state != DH_ACTIVE;

@@ -35,7 +35,7 @@ def record(name: str, file: Path) -> None:
     scenario = scenario_makers(None)[name]()
     haptic = build_loop(scenario, scenario.path.duration_s)
     tool = haptic.loop.haptic_tool
-    port = tool.get_pose_output_port()
+    port = tool.GetOutputPort("X_WT")
     X_WT: list[np.ndarray] = []
     run(
         haptic,

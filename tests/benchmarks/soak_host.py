@@ -13,7 +13,7 @@ import sys
 import time
 from contextlib import suppress
 
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.open_device import open_device
 from drake_haptics.scene.library import find_scene
@@ -32,7 +32,7 @@ class Person:
     def __init__(self):
         self._since_s = None
 
-    def wants_it_back(self):
+    def should_recover(self):
         """Asked in every tick of a fault, until yes."""
         now_s = time.monotonic()
         if self._since_s is None:
@@ -50,8 +50,8 @@ def main():
     scene = load_scene(find_scene(sys.argv[1]))
     with open_device(sys.argv[2], scene, None) as backend:
         haptic = BuildHapticDiagram(scene, device=backend)
-        watch = DeviceWatch(backend, Person().wants_it_back)
-        pace = TickClock(haptic.period_s)
+        watch = DeviceWatch(backend, Person().should_recover)
+        pace = RealTimePacer(haptic.period_s)
         statistics = RunStatistics(haptic.period_s, pace=pace)
         with suppress(KeyboardInterrupt):
             run(haptic, pace=pace, on_tick=watch.end_tick, statistics=statistics)

@@ -38,12 +38,12 @@ class StateWatch:
         """Takes a state in."""
         state = unpack_state(packet)
         self.states += 1
-        if not all(map(math.isfinite, (*state.X_BH, *state.V_BH, *state.F_BH))):
+        if not all(map(math.isfinite, (*state.X_BH, *state.V_BH, *state.F_Ho_B))):
             self.not_finite += 1
         self.over_limit += not (
             state.force_N <= state.max_force_N * ROUNDING
             and state.torque_Nm <= state.max_torque_Nm * ROUNDING
-            and (state.gate == ACTIVE or not any(state.F_BH))
+            and (state.gate == ACTIVE or not any(state.F_Ho_B))
         )
         self.max_force_N = max(self.max_force_N, state.force_N)
         self.max_torque_Nm = max(self.max_torque_Nm, state.torque_Nm)

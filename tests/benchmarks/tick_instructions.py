@@ -21,7 +21,7 @@ from contextlib import ExitStack
 
 from pydrake.systems.framework import Context
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.benchmark.loop.problem import make_problem
 from drake_haptics.evaluation.benchmark.loop.this_package import ThisLoop
 from drake_haptics.evaluation.measuring.valgrind import (
@@ -97,7 +97,7 @@ def main() -> None:
         return
     try:
         require_valgrind()
-    except UserError as error:
+    except HapticsError as error:
         sys.exit(str(error))
     for scene in sys.argv[1:] or ["cup_spoon"]:
         print(f"| {scene}: instructions per tick | {' | '.join(LOOPS)} |")

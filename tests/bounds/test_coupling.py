@@ -7,7 +7,7 @@ import pytest
 from drake_haptics import _core
 from drake_haptics.bounds.coupling import HeldHandle, check_coupling
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import Coupling
+from drake_haptics.scene.schema import CouplingParameters
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS, NOMINAL_GRIP
 
 PERIOD = 1e-3
@@ -33,7 +33,7 @@ def test_the_shipped_scenes_break_no_bound(path):
 
 @pytest.mark.parametrize("grip", ["nominal", "firm"])
 def test_the_default_coupling_breaks_no_bound_in_a_hand(grip):
-    assert check_coupling(Coupling(), held_by(HAND_GRIPS[grip]), PERIOD) == []
+    assert check_coupling(CouplingParameters(), held_by(HAND_GRIPS[grip]), PERIOD) == []
 
 
 def test_gains_of_the_core_are_checked_as_well():
@@ -42,7 +42,7 @@ def test_gains_of_the_core_are_checked_as_well():
 
 
 def test_without_the_hands_damping_the_default_is_not_passive():
-    found = check_coupling(Coupling(), held_by(HAND_GRIPS["light"]), PERIOD)
+    found = check_coupling(CouplingParameters(), held_by(HAND_GRIPS["light"]), PERIOD)
     (sentence,) = found
     assert sentence.startswith("damping_Ns_per_m is 2: not passive")
     assert "b = 1 N·s/m" in sentence
@@ -80,7 +80,7 @@ def test_without_the_hands_damping_the_default_is_not_passive():
     ],
 )
 def test_each_bound_is_named_with_the_value(change, begins, names):
-    found = check_coupling(Coupling(**change), held_by(NOMINAL_GRIP), PERIOD)
+    found = check_coupling(CouplingParameters(**change), held_by(NOMINAL_GRIP), PERIOD)
     assert any(begins in text and names in text for text in found), found
     # Only what was changed is blamed.
     kind = "rotational" if "rotational" in begins else "_N"
@@ -88,7 +88,7 @@ def test_each_bound_is_named_with_the_value(change, begins, names):
 
 
 def test_a_slower_rate_and_a_delay_count():
-    coupling = Coupling(stiffness_N_per_m=3000.0)
+    coupling = CouplingParameters(stiffness_N_per_m=3000.0)
     handle = held_by(NOMINAL_GRIP)
     assert check_coupling(coupling, handle, PERIOD) == []
     assert "Gil" in check_coupling(coupling, handle, 10 * PERIOD)[0]
@@ -101,8 +101,8 @@ def test_a_slower_rate_and_a_delay_count():
 def test_what_cannot_be_is_refused(bad):
     handle = held_by(NOMINAL_GRIP)
     with pytest.raises(ValueError, match="period_s must be positive"):
-        check_coupling(Coupling(), handle, bad)
+        check_coupling(CouplingParameters(), handle, bad)
     with pytest.raises(ValueError, match="mass_kg must be positive"):
-        check_coupling(Coupling(), HeldHandle(bad, 5, 1e-4, 0.1), PERIOD)
+        check_coupling(CouplingParameters(), HeldHandle(bad, 5, 1e-4, 0.1), PERIOD)
     with pytest.raises(ValueError, match="inertia_kgm2 must be positive"):
-        check_coupling(Coupling(), HeldHandle(0.1, 5, bad, 0.1), PERIOD)
+        check_coupling(CouplingParameters(), HeldHandle(0.1, 5, bad, 0.1), PERIOD)

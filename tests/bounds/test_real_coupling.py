@@ -12,7 +12,7 @@ from drake_haptics.cockpit.scene_changes import CouplingAdvice
 from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.device_preset import list_device_presets, load_device_preset
-from drake_haptics.scene.schema import ForceDelay
+from drake_haptics.scene.schema import ForceDelayParameters
 from drake_haptics.scene.validation import SceneWarning
 
 PREMIUM = "phantom_premium_1_5_6dof"
@@ -87,7 +87,7 @@ def test_the_twin_is_held_in_the_loosest_grip_whatever_the_scene_names(tmp_path)
     scene.coupling.damping_Ns_per_m = 0.5
     assert build(scene) == []
     # The delay of the way to it counts, a tick here.
-    scene.device.twin.delay = ForceDelay(samples=1)
+    scene.device.twin.delay = ForceDelayParameters(samples=1)
     (sentence,) = build(scene)
     assert "Colgate" in sentence
 

@@ -86,7 +86,7 @@ def test_an_edge_meets_a_face_in_the_middle_of_what_is_over_it(height: float) ->
         np.testing.assert_allclose(c.p_WCb[:2], middle, atol=1e-9)
 
 
-def test_the_centre_moves_no_faster_than_a_sliding_face() -> None:
+def test_the_center_moves_no_faster_than_a_sliding_face() -> None:
     A = box(0.4, 0.7, 0.2)
     xs = np.linspace(-1.35, 1.35, 3000)
     X_WA = np.array([pose([x, 0.3, 1.199], [0, 0, 0.4]) for x in xs])

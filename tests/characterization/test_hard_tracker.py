@@ -57,7 +57,7 @@ def test_a_tight_peg_feels_a_wall_at_its_distance() -> None:
 
 
 def peg_in_hole() -> tuple[list[float], int]:
-    """A peg goes into a tight hole, rocking by micrometres.
+    """A peg goes into a tight hole, rocking by micrometers.
 
     Returns:
         The errors (m) of the distances to walls that are felt, and how often one of the

@@ -14,7 +14,7 @@ from drake_haptics.models import FOLDER
 MESHES = FOLDER / "meshes"
 
 
-def pieces(name: str) -> _core.Decomposition:
+def pieces(name: str) -> _core.ConvexPieces:
     return decompose(load_mesh(MESHES / name, scale=1.0)).core
 
 

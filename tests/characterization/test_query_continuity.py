@@ -22,7 +22,7 @@ def test_the_point_of_nearly_parallel_edges_stays_on_the_tool() -> None:
     assert farthest_m < 1e-4
 
 
-def test_the_centre_of_an_edge_does_not_depend_on_its_ends() -> None:
+def test_the_center_of_an_edge_does_not_depend_on_its_ends() -> None:
     """A prism on a plane, its lowest vertex now one end, now the other: once 130."""
     found = measure(make_scene("prism"), 10_000, ("shared",))["shared"]
     assert found.ratio.max() < 15

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from stability_table import PAGE, PICTURE, SCENES, limit_rows, place_rows, span_of
 
-from drake_haptics.analysis import analyse_held_scene, hold_scene
+from drake_haptics.analysis import analyze_held_scene, hold_scene
 from drake_haptics.analysis.stiffness_limits import find_stiffness_limits
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
@@ -63,10 +63,10 @@ def test_a_scene_that_is_held_again_is_that_of_the_page():
     head, *places = read_rows("places")
     [told] = [dict(zip(head, row, strict=True)) for row in places if row[0] == name]
     held = hold_scene(load_scene(find_scene(name)), float(told["held at, s"]))
-    loop = analyse_held_scene(held)
+    loop = analyze_held_scene(held)
     assert loop.growth == number(told["growth per tick"])
-    F_Tool_W = loop.haptic.diagram.GetOutputPort("F_Tool_W").Eval(loop.context)
-    assert np.linalg.norm(F_Tool_W[3:]) == number(told["force, N"])
+    F_To_W = loop.haptic.diagram.GetOutputPort("F_To_W").Eval(loop.context)
+    assert np.linalg.norm(F_To_W[3:]) == number(told["force, N"])
     limits = (find_stiffness_limits(held, kind, against),)
     _, now = limit_rows({name: SimpleNamespace(limits=limits)})
     [told] = [row for row in read_rows("limits") if row[:3] == now[:3]]

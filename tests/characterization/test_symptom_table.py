@@ -15,7 +15,7 @@ from symptom_table import HEAD, PAGE, describe_case, make_row, span_of
 
 from drake_haptics.cli.status_line import make_summary
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import Gravity
+from drake_haptics.scene.schema import GravityParameters
 from drake_haptics.simulation.statistics import RunStatistics
 
 TEXT = PAGE.read_text(encoding="utf-8")
@@ -57,7 +57,7 @@ def test_each_cure_cures_by_five_times_at_least(case):
 def test_a_weight_hangs_below_a_handle_by_its_weight_over_the_stiffness():
     (case,) = (c for c in CASES if "effects.gravity" in c.provoked)
     weight_N = case.provoked["tool.mass_kg"] * np.linalg.norm(
-        Gravity().acceleration_m_per_s2
+        GravityParameters().acceleration_m_per_s2
     )
     for stiffness, cell in [
         (case.provoked[COUPLING], 3),

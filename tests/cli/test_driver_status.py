@@ -18,7 +18,7 @@ class SteadyArm:
     def start(self):
         """Nothing to switch on."""
 
-    def step(self, F_BH):
+    def step(self, F_Ho_B):
         """Returns where it would be."""
         return np.eye(7)[0], np.array([0.0, 0.0, 0.0, 0.3, 0.0, -0.4])
 

@@ -11,8 +11,8 @@ from fake_device import ScriptedDevice, make_reading
 from rich.console import Console
 
 from drake_haptics.cli.status_line import StatusLine, make_summary
-from drake_haptics.cockpit.holding import TakenDevice
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.cockpit.holding import SoftStartDevice
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import Fault, GateState
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
@@ -51,7 +51,7 @@ def follow_device(script, duration_s=0.05, width=200, wrap=lambda device: device
     text = io.StringIO()
     console = Console(file=text, force_terminal=True, width=width, color_system=None)
     clock = itertools.count(0.0, 0.1)
-    pace = TickClock(haptic.period_s)
+    pace = RealTimePacer(haptic.period_s)
     with StatusLine(console, haptic, pace, clock=lambda: next(clock)) as status:
         run(haptic, duration_s, pace=pace, on_tick=status.end_tick)
     return text.getvalue()
@@ -67,7 +67,9 @@ def test_a_force_that_the_device_does_not_show_is_said_to_be_none(gate):
 
 def test_a_device_that_is_taken_says_what_it_waits_for():
     def take(device):
-        return TakenDevice(device, max_force_N=8.5, max_torque_Nm=0.2, period_s=1e-3)
+        return SoftStartDevice(
+            device, max_force_N=8.5, max_torque_Nm=0.2, period_s=1e-3
+        )
 
     def script(call):
         return replace(make_reading(call), gate=GateState.ACTIVE)

@@ -7,13 +7,13 @@ import websocket
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
 from drake_haptics.cockpit.cockpit_run import CockpitRun
-from drake_haptics.common.errors import UserError
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.errors import HapticsError
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import GateState
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import RunError
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.visualization.meshcat import start_meshcat
 from drake_haptics.web.link import open_page_port
 
 BOUND_S = 120.0
@@ -27,7 +27,7 @@ def scene(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def meshcat():
-    return open_meshcat()
+    return start_meshcat()
 
 
 def read_all(page):
@@ -45,7 +45,7 @@ def test_it_is_seen_until_its_end_which_is_told(scene, meshcat, fails):
     page = websocket.create_connection(shown.url.replace("http", "ws"), timeout=BOUND_S)
     mouse = shown.backend
     haptic = BuildHapticDiagram(scene, device=mouse)
-    pace = TickClock(haptic.period_s)
+    pace = RealTimePacer(haptic.period_s)
     statistics = RunStatistics(haptic.period_s, pace)
     ran = []
 
@@ -86,6 +86,6 @@ def test_it_is_seen_until_its_end_which_is_told(scene, meshcat, fails):
 def test_a_device_that_cannot_be_had_leaves_nothing_open(scene, meshcat):
     listener = open_page_port()
     port = listener.getsockname()[1]
-    with pytest.raises(UserError, match="give udp"):
+    with pytest.raises(HapticsError, match="give udp"):
         CockpitRun(scene, meshcat, listener, name="plate", device="tin:can")
     open_page_port(port).close()

@@ -13,8 +13,8 @@ from cockpit_rig import FRICTION, CockpitRig
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.cockpit import holding
-from drake_haptics.scene.schema import Effects, Passivity
-from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.scene.schema import Effects, PassivityParameters
+from drake_haptics.visualization.meshcat import start_meshcat
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.005)
 DEEP_M, DOWN_TICKS, ASKED_AT = 6e-3, 100, 250
@@ -41,7 +41,7 @@ def press_held(k):
 def find_force(haptic, root):
     """The force (3,) that the device shows, N."""
     device = haptic.loop.device
-    port = device.get_applied_wrench_output_port()
+    port = device.GetOutputPort("F_Ho_W_rendered")
     return port.Eval(device.GetMyContextFromRoot(root))[3:].copy()
 
 
@@ -57,7 +57,7 @@ def scene(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def meshcat():
-    return open_meshcat()
+    return start_meshcat()
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def meshcat():
         ([OCTREE], Effects(), calc_force()),
         ([STIFF, FRICTION], Effects(), calc_force(3000.0)),
         # Its reserve comes of the stiffness: another diagram.
-        ([STIFF], Effects(passivity=Passivity()), calc_force(3000.0)),
+        ([STIFF], Effects(passivity=PassivityParameters()), calc_force(3000.0)),
         ([{"do": "restart"}], Effects(), calc_force()),
         ([SOFT, {"do": "restart"}], Effects(), calc_force(100.0)),
         ([{"do": "handle", "to": "device"}], Effects(), calc_force()),
@@ -111,7 +111,7 @@ def test_a_heavy_tool_is_not_dropped_into_a_hand(scene, meshcat, monkeypatch):
     rig.run(1.0)
     asked, felt = (
         np.linalg.norm(forces, axis=1)
-        for forces in (rig.seen, [command.F_BH[3:] for command in device.commands])
+        for forces in (rig.seen, [command.F_Ho_B[3:] for command in device.commands])
     )
     assert np.diff(asked).max() > 2 * LARGEST_STEP_N
     began = np.flatnonzero(felt)[0]

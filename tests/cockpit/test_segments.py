@@ -21,15 +21,15 @@ from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.cockpit import cockpit_run as segments
 from drake_haptics.cockpit import holding
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import DeviceError, GateState
 from drake_haptics.device.udp_device import UdpDevice
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.schema import Gravity, Pose
+from drake_haptics.scene.schema import GravityParameters, Pose
 from drake_haptics.scene.validation import SceneError
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.transfer_state import find_handle
-from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.visualization.meshcat import start_meshcat
 from drake_haptics.web.messages import GATES
 
 RETAKE = {"do": "handle", "to": "device"}
@@ -43,7 +43,7 @@ def scene(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def meshcat():
-    return open_meshcat()
+    return start_meshcat()
 
 
 @pytest.fixture
@@ -304,7 +304,7 @@ def test_a_driver_bears_the_pause_of_a_rebuild(make, monkeypatch, tmp_path, mesh
             address="udp://there",
             watch=lambda *_: gates.append(rig.holding.backend.read().gate),
         )
-        rig.run(0.8, pace=TickClock(rig.period_s))
+        rig.run(0.8, pace=RealTimePacer(rig.period_s))
         rig.holding.close()
         figures = driver.end()
     assert len(rig.haptics) == 2
@@ -318,11 +318,11 @@ def test_a_device_is_taken_again_without_a_kick(make, monkeypatch, tmp_path):
     """The mouse has turned the tool; it goes on, and force sets in gently."""
 
     def watch(haptic, root):
-        port = haptic.loop.device.get_applied_wrench_output_port()
+        port = haptic.loop.device.GetOutputPort("F_Ho_W_rendered")
         asked = port.Eval(haptic.loop.device.GetMyContextFromRoot(root))
         shown = np.zeros(6)
         if haptic.backend is not None:
-            shown = haptic.backend.read().F_BH
+            shown = haptic.backend.read().F_Ho_B
         return [*find_tool(haptic, root)[4:], *asked[:3], *shown[:3]]
 
     file = tmp_path / "figures.json"
@@ -337,7 +337,7 @@ def test_a_device_is_taken_again_without_a_kick(make, monkeypatch, tmp_path):
             address="udp://there",
             watch=watch,
         )
-        rig.run(1.15, pace=TickClock(rig.period_s))
+        rig.run(1.15, pace=RealTimePacer(rig.period_s))
         rig.holding.close()
         driver.end()
     p_WT, asked, shown = np.split(np.array(rig.seen), [3, 6], axis=1)
@@ -381,7 +381,7 @@ def test_a_tool_that_begins_in_an_object_is_told_of_and_not_felt(
     assert set(gates[:9]) == {"waiting"} and gates[-1] == "active"
     # From the plate it was pressed up, and nobody felt it.
     assert rig.seen[299] > rig.seen[0]
-    assert not any(command.F_BH.any() for command in device.commands[:400])
+    assert not any(command.F_Ho_B.any() for command in device.commands[:400])
     assert rig.seen[400] == pytest.approx(0.05, abs=1e-6)
 
 
@@ -389,5 +389,5 @@ def test_gravity_of_the_page_is_that_of_a_scene_file(make, scene):
     """The same diagram comes of a switch as of a scene that names the effect."""
     rig = make({1: [{"do": "effect", "name": "gravity", "on": True}]})
     rig.run(0.4)
-    effects = dataclasses.replace(scene.effects, gravity=Gravity())
+    effects = dataclasses.replace(scene.effects, gravity=GravityParameters())
     assert rig.last.scene == dataclasses.replace(scene, effects=effects)

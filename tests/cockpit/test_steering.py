@@ -19,11 +19,16 @@ from cockpit_rig import (
 from drake_haptics.cockpit.scene_changes import EFFECTS
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
-from drake_haptics.scene.schema import Effects, EnvironmentObject, Passivity, Scene
+from drake_haptics.scene.schema import (
+    Effects,
+    EnvironmentObject,
+    PassivityParameters,
+    Scene,
+)
 from drake_haptics.simulation.live_values import live_keys, write_live_values
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.output.haptic_picture import PICTURE_VIEWS
-from drake_haptics.visualization.meshcat import CAMERAS, open_meshcat
+from drake_haptics.visualization.meshcat import CAMERAS, start_meshcat
 from drake_haptics.web.messages import LARGEST_DATAGRAM, read_page_request
 
 
@@ -34,7 +39,7 @@ def scene(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def meshcat():
-    return open_meshcat()
+    return start_meshcat()
 
 
 @pytest.fixture
@@ -199,8 +204,8 @@ def test_ticks_that_take_too_long_are_told_with_the_key_that_helps(
     rig = make({}, scene=dataclasses.replace(scene, device=device))
     rig.run(0.2)
     assert rig.page.outlooks[-1].shed > 0
-    assert rig.page.states[0]["relief"] == ""
-    assert rig.page.states[-1]["relief"] == "contact.tolerance_m: a smaller one."
+    assert rig.page.states[0]["load_shedding"] == ""
+    assert rig.page.states[-1]["load_shedding"] == "contact.tolerance_m: a smaller one."
     [(costs_us, slow)] = asked
     assert costs_us["contact_query"] > 0.0 and slow is rig.changes.scene
 
@@ -250,7 +255,7 @@ def read_live_values(haptic, root):
     }
 
 
-@pytest.mark.parametrize("passivity", [None, Passivity()])
+@pytest.mark.parametrize("passivity", [None, PassivityParameters()])
 def test_whatever_is_asked_in_whatever_order_the_run_goes_on(make, scene, passivity):
     """And runs in the end with what the page says."""
     rng = np.random.default_rng(8)

@@ -1,4 +1,4 @@
-"""The colour scheme: valid, and pieces can be told apart."""
+"""The color scheme: valid, and pieces can be told apart."""
 
 import itertools
 from importlib.resources import files
@@ -47,7 +47,7 @@ def calc_luminance(color):
     return float(linear @ [0.2126, 0.7152, 0.0722])
 
 
-def test_the_legend_names_each_colour_once():
+def test_the_legend_names_each_color_once():
     legend = colors.make_legend(has_friction=True)
     assert len({row["color"] for row in legend}) == len(legend) == 9
     assert [row for row in legend if "friction" not in row["label"]] == (
@@ -56,7 +56,7 @@ def test_the_legend_names_each_colour_once():
     assert colors.write_css(colors.HANDLE_GHOST) == "rgb(64 120 217 / 0.35)"
 
 
-def test_the_pages_colours_are_those_of_the_scheme():
+def test_the_pages_colors_are_those_of_the_scheme():
     style = files("drake_haptics.web").joinpath("page", "theme.css").read_text()
     for name, color in {
         "handle": colors.HANDLE_GHOST,

@@ -10,7 +10,7 @@ import numpy as np
 from drake_haptics.common.one_line import brief, count, one_line
 
 
-class Colour(Enum):
+class Color(Enum):
     """A field that is one of a few."""
 
     RED = 1
@@ -23,7 +23,7 @@ class Sample:
     time_s: float
     wrench: np.ndarray
     matrix: np.ndarray
-    colour: Colour
+    color: Color
     inner: object = None
     _memo: int = 7
     unseen: int = field(default=8, repr=False)
@@ -32,11 +32,11 @@ class Sample:
 
 
 def test_numbers_are_told_and_large_arrays_counted() -> None:
-    inner = Sample(0.0, np.zeros(2), np.zeros(1), Colour.RED)
-    told = repr(Sample(1 / 3, np.arange(6.0), np.eye(12), Colour.RED, inner))
+    inner = Sample(0.0, np.zeros(2), np.zeros(1), Color.RED)
+    told = repr(Sample(1 / 3, np.arange(6.0), np.eye(12), Color.RED, inner))
     assert told == (
         "Sample(time_s=0.3333, wrench=[0 1 2 3 4 5], matrix=12×12 numbers, "
-        "colour=RED, inner=Sample(...))"
+        "color=RED, inner=Sample(...))"
     )
 
 

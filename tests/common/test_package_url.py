@@ -16,7 +16,13 @@ from drake_haptics import (
 from drake_haptics.common.files import resolve_package_url
 from drake_haptics.geometry.parsing.model_file import load_model_mesh
 from drake_haptics.loop.outputs import make_log_header
-from drake_haptics.scene.schema import EnvironmentObject, Hand, HandPath, Tool, Waypoint
+from drake_haptics.scene.schema import (
+    EnvironmentObject,
+    HandParameters,
+    HandPathParameters,
+    Tool,
+    Waypoint,
+)
 
 MODELS = Path(__file__).parents[2] / "models"
 PEG = "package://drake_haptics/models/meshes/peg.obj"
@@ -30,7 +36,9 @@ def scene():
     return Scene(
         tool=Tool(mesh=PEG),
         environment=[EnvironmentObject(name="block", mesh=BLOCK)],
-        hand=Hand(path=HandPath(waypoints=[Waypoint(0.0, [0.0, 0.0, 0.1])])),
+        hand=HandParameters(
+            path=HandPathParameters(waypoints=[Waypoint(0.0, [0.0, 0.0, 0.1])])
+        ),
     )
 
 

@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from drake_haptics import BuildHapticDiagram, TickClock, find_scene, load_scene, run
+from drake_haptics import BuildHapticDiagram, RealTimePacer, find_scene, load_scene, run
 from drake_haptics.common.real_time import realtime_priority
 
 pytestmark = pytest.mark.skipif(
@@ -86,7 +86,7 @@ def test_a_paced_run_alone_asks_for_it(paced):
     run(
         haptic,
         0.01,
-        pace=TickClock(haptic.period_s) if paced else None,
+        pace=RealTimePacer(haptic.period_s) if paced else None,
         on_tick=lambda _: seen.add(policy()),
     )
     assert seen == {os.SCHED_RR if paced else before}

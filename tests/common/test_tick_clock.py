@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 
 
 class Time:
@@ -20,7 +20,7 @@ class Time:
 
     def make_clock(self, period_s=1e-3):
         """Returns a tick clock by this time, after its first tick."""
-        clock = TickClock(period_s, lambda: self.now_s, self.sleep)
+        clock = RealTimePacer(period_s, lambda: self.now_s, self.sleep)
         assert clock.wait() == 0.0
         return clock
 
@@ -63,7 +63,7 @@ def test_work_that_takes_longer_than_a_tick_shortens_none():
 
 def test_what_comes_before_the_first_tick_is_no_lateness():
     time = Time()
-    clock = TickClock(1e-3, lambda: time.now_s, time.sleep)
+    clock = RealTimePacer(1e-3, lambda: time.now_s, time.sleep)
     time.now_s += 0.5
     assert clock.wait() == 0.0
     assert clock.wait() == pytest.approx(0.0, abs=1e-12)
@@ -96,4 +96,4 @@ def test_memory_does_not_grow_and_old_ticks_are_forgotten():
 
 def test_the_period_must_be_positive():
     with pytest.raises(ValueError, match="period_s must be positive, is 0"):
-        TickClock(0.0)
+        RealTimePacer(0.0)

@@ -16,11 +16,11 @@ from drake_haptics import AddHapticRendering, BuildHapticDiagram, find_scene, ru
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
-    Contact,
-    Coupling,
+    ContactParameters,
+    CouplingParameters,
     Effects,
     EnvironmentObject,
-    Friction,
+    FrictionParameters,
     Material,
     Scene,
 )
@@ -64,12 +64,16 @@ def test_what_fits_is_taken(value, kind):
         # There are two classes of this name.
         (
             drake_haptics.Contact,
-            Contact,
+            ContactParameters,
             "it must be a drake_haptics.scene.schema.Contact, is of type",
         ),
-        (Contact(tolerance_m="1"), Contact, r"it.tolerance_m must be a number, is the"),
         (
-            Scene(effects=Effects(friction=Friction(coefficient=None))),
+            ContactParameters(tolerance_m="1"),
+            ContactParameters,
+            r"it.tolerance_m must be a number, is the",
+        ),
+        (
+            Scene(effects=Effects(friction=FrictionParameters(coefficient=None))),
             Scene,
             r"it.effects.friction.coefficient must be a number, is None",
         ),
@@ -127,7 +131,7 @@ def drake():
         {"contact": 2000.0},
         {"materials": [Material()]},
         {"effects": {"friction": {}}},
-        {"coupling": Coupling},
+        {"coupling": CouplingParameters},
         {"device": "udp://127.0.0.1:7400"},
         {"X_HT": [0.0, 0.0, 0.0]},
         {"period_s": "1e-3"},

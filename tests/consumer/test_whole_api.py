@@ -53,7 +53,7 @@ def test_mistakes_of_a_consumer_are_found(python: Path) -> None:
         "import drake_haptics as dh\n"
         "dh.no_such_name\n"
         "dh.load_mesh(3)\n"
-        "dh.TickClock('fast')\n"
+        "dh.RealTimePacer('fast')\n"
         "for contact in dh.SceneTracker(1, [], 0.1).query(''):\n"
         "    contact.depth\n",
     )

@@ -16,7 +16,7 @@ from drake_haptics import (
     AddAppliedSpatialForce,
     AddHapticLoop,
     AddHapticRendering,
-    Braking,
+    BrakingParameters,
     BuildHapticDiagram,
     CallbackTimer,
     ConnectMovingObject,
@@ -27,7 +27,7 @@ from drake_haptics import (
     ContactTrajectory,
     ConvexPair,
     ConvexPolytope,
-    Coupling,
+    CouplingParameters,
     Decomposition,
     DeviceBackend,
     DeviceCommand,
@@ -37,26 +37,25 @@ from drake_haptics import (
     EnergyLedger,
     Feature,
     FeatureKind,
-    Friction,
-    Gravity,
+    FrictionParameters,
+    GravityParameters,
     HapticDiagram,
     HapticLoop,
     HapticRendering,
+    HapticsError,
     Material,
     Mesh,
     MeshError,
     PairTrajectory,
+    RealTimePacer,
     RunError,
     RunStatistics,
     Scene,
     SceneError,
     SceneTracker,
-    Shading,
-    TickClock,
+    ShadingParameters,
     TickRecorder,
-    UserError,
     __version__,
-    carry_on,
     decompose,
     explain_tick,
     find_mesh,
@@ -75,8 +74,11 @@ from drake_haptics import (
     read_tick_log,
     replay,
     run,
+    transfer_context,
     write_live_values,
 )
+from drake_haptics.geometry import RigidToolDynamics, center, make_tool_dynamics
+from drake_haptics.simulation import LiveKey
 from drake_haptics.systems import HapticDevice
 
 
@@ -90,7 +92,7 @@ class Still(DeviceBackend):
 
     def write(self, command: DeviceCommand) -> None:
         """Takes no notice."""
-        assert_type(command.F_BH, NDArray[np.float64])
+        assert_type(command.F_Ho_B, NDArray[np.float64])
 
     def close(self) -> None:
         """Has nothing to end."""
@@ -105,6 +107,7 @@ def use_geometry(path: Path) -> float:
         raise SystemExit(str(error)) from error
     cup: Decomposition = decompose(mesh, "merged", error_m=1e-4, progress=print)
     assert_type(cup.pieces, list[ConvexPolytope])
+    assert_type(make_tool_dynamics(center(mesh), 0.1), RigidToolDynamics)
     assert_type(cup.report.pieces, int)
     assert_type(mesh.report.extent, tuple[float, float, float])
     pair = ConvexPair(cup.pieces[0], ConvexPolytope([[0.0, 0.0, 0.0]]), "global")
@@ -130,14 +133,14 @@ def use_a_scene(name: str) -> float:
     assert_type(list_scenes(), dict[str, Path])
     scene: Scene = load_scene(find_scene(name))
     scene.contact.stiffness_N_per_m = 4000.0
-    scene.coupling = Coupling(stiffness_N_per_m=500.0)
-    scene.effects.gravity = Gravity([0.0, 0.0, -1.6])
+    scene.coupling = CouplingParameters(stiffness_N_per_m=500.0)
+    scene.effects.gravity = GravityParameters([0.0, 0.0, -1.6])
     made = make_scene_for_meshes(find_mesh("pen"), find_mesh("sphere"))
     assert_type(made, Scene)
     try:
         backend = open_device("udp://127.0.0.1:7400", scene)
     except (DeviceError, SceneError) as error:
-        raise UserError(str(error)) from error
+        raise HapticsError(str(error)) from error
     with backend:
         with CallbackTimer() as timer:
             haptic: HapticDiagram = BuildHapticDiagram(scene, device=backend)
@@ -145,14 +148,15 @@ def use_a_scene(name: str) -> float:
         loop: HapticLoop = haptic.loop
         root = make_simulator(haptic).get_context()
         write_live_values(haptic, root, scene)
+        assert_type(live_keys(scene), tuple[LiveKey, ...])
         assert_type([key.high for key in live_keys(scene)], list[float])
-        root = carry_on(haptic, root, BuildHapticDiagram(scene))
+        root = transfer_context(haptic, root, BuildHapticDiagram(scene))
         ledger = EnergyLedger(loop, root)
         assert_type(ledger.to_dict(), dict[str, dict[str, float]])
         with TickRecorder("run.ticks", make_log_header(scene)):
             pass
         try:
-            figures = run(haptic, 2.0, pace=TickClock(haptic.period_s))
+            figures = run(haptic, 2.0, pace=RealTimePacer(haptic.period_s))
         except RunError as error:
             print(error)
     log = replay(read_tick_log("run.ticks"))
@@ -171,9 +175,15 @@ def use_in_a_plant(
         scene_graph,
         "die",
         materials={"cup": Material(stiffness_N_per_m=500.0)},
-        effects=Effects(shading=Shading(), friction=Friction(), braking=Braking()),
+        effects=Effects(
+            shading=ShadingParameters(),
+            friction=FrictionParameters(),
+            braking=BrakingParameters(),
+        ),
     )
-    AddAppliedSpatialForce(builder, plant, rendering.get_applied_force_output_port())
+    AddAppliedSpatialForce(
+        builder, plant, rendering.GetOutputPort("applied_spatial_force")
+    )
     assert_type(rendering.tool.name, str)
     return rendering
 

@@ -50,7 +50,7 @@ def build_and_run(target, *chosen):
 
 
 def test_the_cpp_tests_pass_without_python():
-    """Under the address and undefined behaviour sanitizers, and all assertions."""
+    """Under the address and undefined behavior sanitizers, and all assertions."""
     build_and_run("core_tests", "--label-exclude", "threads")
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from struct_host import ACTIVE, FAULT, IDLE, StructHost
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.device.backend import GateState
 from drake_haptics.device.driver import DeviceDriver, read_clock_ns
 
@@ -27,9 +27,9 @@ class NotingArm:
         """Notes it."""
         self.calls.append("start")
 
-    def step(self, F_BH):
+    def step(self, F_Ho_B):
         """Notes the wrench."""
-        self.calls.append(np.array(F_BH))
+        self.calls.append(np.array(F_Ho_B))
         if self.breaks:
             self.breaks = False
             raise RuntimeError("a cable is loose")
@@ -73,7 +73,7 @@ class Rig:
             host.send(force)
             self.tick()
             state = host.receive(5.0)
-        assert state.gate == ACTIVE and state.F_BH[5] == pytest.approx(force)
+        assert state.gate == ACTIVE and state.F_Ho_B[5] == pytest.approx(force)
         return state
 
 
@@ -103,7 +103,7 @@ def test_each_tick_has_one_state_with_all_that_it_knows(rig):
     assert second.time_ns == first.time_ns + 10**6 == rig.now_ns
     assert second.X_BH == pytest.approx(HANDLE, rel=0, abs=0)
     assert second.V_BH == pytest.approx(VELOCITY, rel=0, abs=0)
-    assert not any(second.F_BH)
+    assert not any(second.F_Ho_B)
     assert (second.gate, second.fault) == (IDLE, "NONE")
     assert second.boot == first.boot != 0
     assert second.max_force_N == 8.5
@@ -129,8 +129,8 @@ def test_what_the_arm_shows_is_what_the_state_tells(rig):
     host.send(wrench=(0.01, 0.02, -0.03, 1.0, -2.0, 3.0))
     rig.tick()
     state = host.receive(5.0)
-    assert tuple(rig.arm.calls[-1]) == state.F_BH
-    assert state.F_BH == pytest.approx((0.01, 0.02, -0.03, 1.0, -2.0, 3.0))
+    assert tuple(rig.arm.calls[-1]) == state.F_Ho_B
+    assert state.F_Ho_B == pytest.approx((0.01, 0.02, -0.03, 1.0, -2.0, 3.0))
 
 
 def test_a_tick_looks_at_a_bounded_number_of_packets(rig):
@@ -180,7 +180,7 @@ def test_a_host_that_may_not_enable_hears_how_the_device_stands(rig):
     rig.tick()
     state = stranger.receive(5.0)
     assert (state.gate, state.fault) == (FAULT, "STALE")
-    assert not any(state.F_BH)
+    assert not any(state.F_Ho_B)
 
 
 def test_a_host_that_has_gone_is_sent_no_more(rig):
@@ -233,7 +233,7 @@ def test_a_run_ends_at_zero_force_and_says_so(rig):
     rig.bring_to_force(host, 3.0)
     rig.driver.run(1e-9)
     state = host.receive(5.0)
-    assert state.gate == IDLE and not any(state.F_BH)
+    assert state.gate == IDLE and not any(state.F_Ho_B)
     assert not np.any(rig.arm.calls[-1])
     assert rig.driver.reading.gate == GateState.IDLE
 
@@ -268,7 +268,7 @@ def test_a_run_ends_at_zero_force_when_the_arm_breaks(rig):
     with pytest.raises(RuntimeError, match="cable"):
         rig.driver.run()
     assert not np.any(rig.arm.calls[-1])
-    assert not any(host.receive(5.0).F_BH)
+    assert not any(host.receive(5.0).F_Ho_B)
 
 
 @pytest.mark.parametrize("rate_hz", [0.0, -1.0, float("nan"), float("inf")])
@@ -309,5 +309,5 @@ def test_a_host_finds_the_driver_under_its_url(bind):
 def test_a_port_that_is_taken_is_the_users_error():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("127.0.0.1", 0))
-        with pytest.raises(UserError, match="is taken"):
+        with pytest.raises(HapticsError, match="is taken"):
             Rig(other.getsockname()[1])

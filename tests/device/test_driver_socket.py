@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.device.driver import DriverSocket
 
 
@@ -55,18 +55,18 @@ def test_a_peer_that_is_gone_or_impossible_is_no_error(driver):
 
 def test_a_port_that_is_taken_is_the_users_error(driver):
     port = driver.address[1]
-    with pytest.raises(UserError, match=f"port {port} is taken.*choose another"):
+    with pytest.raises(HapticsError, match=f"port {port} is taken.*choose another"):
         DriverSocket("127.0.0.1", port)
 
 
 @pytest.mark.parametrize("address", ["192.0.2.1", "no.such.host.invalid"])
 def test_an_address_of_another_machine_is_the_users_error(address):
-    with pytest.raises(UserError, match=f"^bind {address}: .*127.0.0.1"):
+    with pytest.raises(HapticsError, match=f"^bind {address}: .*127.0.0.1"):
         DriverSocket(address, 0)
 
 
 def test_no_address_is_not_taken_for_every_address():
-    with pytest.raises(UserError, match=r"^bind is empty"):
+    with pytest.raises(HapticsError, match=r"^bind is empty"):
         DriverSocket("", 0)
 
 

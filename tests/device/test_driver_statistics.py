@@ -16,7 +16,7 @@ def tick(statistics, wrench, gate=GateState.ACTIVE, fault=Fault.NONE, time_s=0.0
             time_s=time_s,
             X_BH=np.eye(7)[0],
             V_BH=np.zeros(6),
-            F_BH=np.array(wrench, dtype=float),
+            F_Ho_B=np.array(wrench, dtype=float),
             gate=gate,
             fault=fault,
         )

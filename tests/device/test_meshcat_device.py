@@ -10,7 +10,7 @@ from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.device import meshcat_device
 from drake_haptics.device.backend import DeviceCommand, DeviceError, GateState
 from drake_haptics.device.meshcat_device import MeshcatDevice
-from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.visualization.meshcat import start_meshcat
 
 # A base that stands across, and a handle that is not straight in it.
 X_WB = RigidTransform(RollPitchYaw(0.3, -0.2, 1.8), [0.1, 0.2, -0.3])
@@ -29,7 +29,7 @@ def clock(monkeypatch):
 
 @pytest.fixture(scope="module")
 def meshcat():
-    return open_meshcat()
+    return start_meshcat()
 
 
 @pytest.fixture
@@ -60,7 +60,7 @@ def test_it_starts_at_rest_where_it_was_put(device):
     reading = device.read()
     assert vector_to_pose(reading.X_BH).IsNearlyEqualTo(X_BH, 1e-12)
     np.testing.assert_array_equal(reading.V_BH, np.zeros(6))
-    np.testing.assert_array_equal(reading.F_BH, np.zeros(6))
+    np.testing.assert_array_equal(reading.F_Ho_B, np.zeros(6))
     assert reading.gate is GateState.IDLE
     assert device.read().sequence == reading.sequence + 1
 
@@ -166,24 +166,24 @@ def test_nonsense_from_a_page_leaves_the_handle_in_reach(meshcat, device, clock,
 
 def test_force_and_torque_are_shown_as_numbers(meshcat, device, clock):
     reading = device.read()
-    F_BH = np.array([0.0, 0.03, 0.04, 1.0, 2.0, 2.0])
+    F_Ho_B = np.array([0.0, 0.03, 0.04, 1.0, 2.0, 2.0])
     clock.now_s += 1.0
-    device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
+    device.write(DeviceCommand(F_Ho_B, reading.X_BH, reading.V_BH))
     assert meshcat.GetButtonNames() == [HOME, "force 3.0 N, torque 0.05 N·m"]
     reading = device.read()
-    np.testing.assert_array_equal(reading.F_BH, F_BH)
+    np.testing.assert_array_equal(reading.F_Ho_B, F_Ho_B)
     assert reading.gate is GateState.ACTIVE
     # Not with every write.
-    device.write(DeviceCommand(2 * F_BH, reading.X_BH, reading.V_BH))
+    device.write(DeviceCommand(2 * F_Ho_B, reading.X_BH, reading.V_BH))
     assert meshcat.GetButtonNames() == [HOME, "force 3.0 N, torque 0.05 N·m"]
-    np.testing.assert_array_equal(device.read().F_BH, 2 * F_BH)
+    np.testing.assert_array_equal(device.read().F_Ho_B, 2 * F_Ho_B)
 
 
 def test_a_wrench_that_is_none_is_shown_as_zero(device):
     reading = device.read()
-    F_BH = np.array([0.0, 0, 0, np.nan, 1, 1])
-    device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
-    np.testing.assert_array_equal(device.read().F_BH, np.zeros(6))
+    F_Ho_B = np.array([0.0, 0, 0, np.nan, 1, 1])
+    device.write(DeviceCommand(F_Ho_B, reading.X_BH, reading.V_BH))
+    np.testing.assert_array_equal(device.read().F_Ho_B, np.zeros(6))
 
 
 def test_close_takes_the_controls_away_and_the_force(meshcat, device, clock):
@@ -196,7 +196,7 @@ def test_close_takes_the_controls_away_and_the_force(meshcat, device, clock):
     device.write(DeviceCommand(np.ones(6), X, np.zeros(6)))
     reading = run(device, clock, 1.0)
     np.testing.assert_allclose(reading.X_BH, X, atol=1e-6)
-    np.testing.assert_array_equal(reading.F_BH, np.zeros(6))
+    np.testing.assert_array_equal(reading.F_Ho_B, np.zeros(6))
     assert reading.gate is GateState.IDLE
 
 

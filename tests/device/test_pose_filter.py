@@ -50,7 +50,7 @@ def test_it_arrives_and_rests():
 
 
 def test_about_one_axis_it_turns_as_it_moves_along_one():
-    """Its angle in radians is its way in metres, if both limits are the same."""
+    """Its angle in radians is its way in meters, if both limits are the same."""
     # A share of the limit of turning is kept for what a curve adds.
     handle = PoseFilter(
         START, rate_per_s=RATE, max_speed_m_per_s=0.98 * TURN, max_turn_rad_per_s=TURN

@@ -41,14 +41,14 @@ def test_a_reading_is_the_state_that_was_sent(driver, device):
     driver.exchange(
         X_BH=(0.6, 0, 0.8, 0, 1, 2, 3),
         V_BH=(1, 2, 3, 4, 5, 6),
-        F_BH=(0, 0, 0, 7, 8, 9),
+        F_Ho_B=(0, 0, 0, 7, 8, 9),
         buttons=3,
     )
     wait_for(device.read)
     reading = device.read()
     np.testing.assert_allclose(reading.X_BH, [0.6, 0, 0.8, 0, 1, 2, 3])
     np.testing.assert_array_equal(reading.V_BH, [1, 2, 3, 4, 5, 6])
-    np.testing.assert_array_equal(reading.F_BH, [0, 0, 0, 7, 8, 9])
+    np.testing.assert_array_equal(reading.F_Ho_B, [0, 0, 0, 7, 8, 9])
     assert (reading.buttons, reading.gate, reading.fault) == (
         3,
         GateState.IDLE,
@@ -64,12 +64,12 @@ def test_a_wrench_is_shown_with_its_slopes(driver, device):
     wait_for(lambda: driver.exchange(gate=IDLE).sequence > 3)
     assert not driver.exchange().enable
     K = np.diag([0, 0, 0, 50.0, 0, 0])
-    device.write(DeviceCommand(PUSH.F_BH, AT_REST, STILL, K, np.eye(6)))
+    device.write(DeviceCommand(PUSH.F_Ho_B, AT_REST, STILL, K, np.eye(6)))
     wait_for(lambda: driver.exchange(gate=IDLE).enable)
-    wait_for(lambda: driver.exchange(gate=ACTIVE).F_BH[3] == 2.0)
+    wait_for(lambda: driver.exchange(gate=ACTIVE).F_Ho_B[3] == 2.0)
     X_BH, V_BH = (1, 0, 0, 0, 0.01, 0, 0), (0, 0, 0, 0.2, 0, 0)
     command = driver.exchange(X_BH=X_BH, V_BH=V_BH)
-    np.testing.assert_allclose(command.F_BH, [0, 0, 0, 2 - 0.5 - 0.2, 0, 0])
+    np.testing.assert_allclose(command.F_Ho_B, [0, 0, 0, 2 - 0.5 - 0.2, 0, 0])
 
 
 def test_a_fault_is_told_and_taken_back(driver, device):
@@ -117,7 +117,7 @@ def test_a_device_that_is_dropped_ends_at_zero_force(driver):
     gc.collect()
     last = driver.receive_all()[-1]
     assert not last.enable
-    assert last.F_BH == (0.0,) * 6
+    assert last.F_Ho_B == (0.0,) * 6
 
 
 def test_it_may_be_closed_twice(driver, device):

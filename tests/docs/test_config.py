@@ -11,7 +11,7 @@ from config_keys import list_parts
 from config_reference import FILES
 from config_rules import find_rules
 
-from drake_haptics import BuildHapticDiagram, UserError, load_scene, run
+from drake_haptics import BuildHapticDiagram, HapticsError, load_scene, run
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -85,7 +85,7 @@ def test_rules_are_what_the_program_says(tmp_path):
 
     def load(path):
         if yaml.safe_load(path.read_text())["a"] < 0:
-            raise UserError(f"{path}: a must be 0 or more, is -1")
+            raise HapticsError(f"{path}: a must be 0 or more, is -1")
 
     example = tmp_path / "a.yaml"
     example.write_text("a: 1.0\nb: 1.0")

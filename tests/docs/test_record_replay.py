@@ -15,7 +15,7 @@ PAGE = tick_log_costs.PAGE.read_text("utf-8")
 
 
 def test_every_quantity_is_explained_in_order():
-    table = PAGE[PAGE.index("| quantity |") : PAGE.index("So `F_applied`")]
+    table = PAGE[PAGE.index("| quantity |") : PAGE.index("So `F_Ho_W_rendered`")]
     found = []
     for line in table.splitlines()[2:]:
         cells = line.strip("| ").split(" | ")

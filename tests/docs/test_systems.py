@@ -18,12 +18,12 @@ from system_pages import find_systems, list_system_modules
 import drake_haptics.systems
 from drake_haptics import BuildHapticDiagram, TickRecorder, load_scene, make_log_header
 from drake_haptics.scene.schema import (
-    Braking,
-    Coupling,
+    BrakingParameters,
+    CouplingParameters,
     Effects,
-    Friction,
-    Passivity,
-    Shading,
+    FrictionParameters,
+    PassivityParameters,
+    ShadingParameters,
 )
 from drake_haptics.systems.device.replayed_handle import ReplayedHandle
 from drake_haptics.systems.lcm.haptic_command_receiver import HapticCommandReceiver
@@ -54,11 +54,15 @@ def systems(tmp_path_factory):
         held = BuildHapticDiagram(
             scene, device=ScriptedDevice(), recorder=recorder, meshcat=meshcat
         )
-    effects = Effects(shading=Shading(), friction=Friction(), braking=Braking())
-    _, rendering = make_scene(cart=True, effects=effects, coupling=Coupling())
-    effects.passivity = Passivity()
+    effects = Effects(
+        shading=ShadingParameters(),
+        friction=FrictionParameters(),
+        braking=BrakingParameters(),
+    )
+    _, rendering = make_scene(cart=True, effects=effects, coupling=CouplingParameters())
+    effects.passivity = PassivityParameters()
     _, with_device = make_scene(
-        effects=effects, coupling=Coupling(), device=make_device()
+        effects=effects, coupling=CouplingParameters(), device=make_device()
     )
     return [
         *list_systems(BuildHapticDiagram(scene).diagram),

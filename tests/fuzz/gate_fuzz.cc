@@ -99,7 +99,7 @@ class GateRun {
     command.session = 1 + source_->Choice(3);
     sequence_ += source_->Choice(5) - 1;
     command.sequence = sequence_;
-    for (double& f : command.F_BH) f = Real();
+    for (double& f : command.F_Ho_B) f = Real();
     command.ttl_us = source_->Flag() ? 20'000 : 1u << source_->Choice(32);
     command.enable = source_->Choice(4) > 0;
     Bytes bytes(DH_COMMAND_SIZE);
@@ -128,13 +128,13 @@ class GateRun {
   void Show(const std::array<double, 6>& V) {
     std::array<double, 6> F;
     dh_gate_step(&gate_, now_, kPose.data(), V.data(), F.data());
-    if (std::memcmp(F.data(), gate_.F_BH, sizeof gate_.F_BH) != 0) {
+    if (std::memcmp(F.data(), gate_.F_Ho_B, sizeof gate_.F_Ho_B) != 0) {
       tally_->Violated("shows what it says", "%g N", F[5]);
     }
   }
 
   void Check() {
-    const double* F = gate_.F_BH;
+    const double* F = gate_.F_Ho_B;
     const double torque = std::hypot(F[0], F[1], F[2]);
     const double force = std::hypot(F[3], F[4], F[5]);
     if (!(torque <= kTorque && force <= kForce)) {

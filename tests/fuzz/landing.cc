@@ -88,13 +88,13 @@ class Check {
       : landing_(landing),
         A_(*landing.tool),
         B_(*landing.object),
-        before_X_AB_(RelativePose(landing.before_X_WTool, landing.X_WO)),
-        X_AB_(RelativePose(landing.X_WTool, landing.X_WO)),
+        before_X_AB_(RelativePose(landing.before_X_WT, landing.X_WO)),
+        X_AB_(RelativePose(landing.X_WT, landing.X_WO)),
         tally_(*tally) {
     const Sphere a = SphereAround(A_), b = SphereAround(B_);
     scale_ = a.radius + b.radius;
     const double magnitude = scale_ + a.center.norm() + b.center.norm() +
-                             landing.X_WTool.p.norm() + landing.X_WO.p.norm();
+                             landing.X_WT.p.norm() + landing.X_WO.p.norm();
     round_off_ = 1e-9 * scale_ + 1e-14 * magnitude;
     noise_ = 1e-6 * scale_ + 1e-14 * magnitude;
     is_followed_ = Motion(before_X_AB_.inverse(), X_AB_.inverse())
@@ -142,13 +142,13 @@ class Check {
     tracker.SetObjectPose(0, landing_.X_WO);
     ContactSet contacts;
     if (has_come) {
-      tracker.Query(landing_.before_X_WTool, &contacts);
+      tracker.Query(landing_.before_X_WT, &contacts);
       if (!contacts.contacts.empty()) {
         tally_.Violated("no contact beyond the tolerance", "%g, tolerance %g",
                         contacts.contacts[0].distance, landing_.tolerance);
       }
     }
-    tracker.Query(landing_.X_WTool, &contacts);
+    tracker.Query(landing_.X_WT, &contacts);
     ++tally_.queries;
     double deepest = std::numeric_limits<double>::infinity();
     for (const Contact& contact : contacts.contacts) {
@@ -248,7 +248,7 @@ Landing DrawLanding(ByteSource* source) {
     if (distance < 1.5 * gap) break;
     X.p -= (distance - gap) * n;
   }
-  landing.before_X_WTool = X;
+  landing.before_X_WT = X;
   const double depth =
       A.radius * source->Power(-3, 0) * std::abs(source->Unit());
   const Vec3 aside = source->Flag() ? Vec3::Zero() : Vec3(DrawVector(source));
@@ -259,7 +259,7 @@ Landing DrawLanding(ByteSource* source) {
     X.R = turn.toRotationMatrix() * X.R;
     X.p = middle - X.R * A.center;
   }
-  landing.X_WTool = X;
+  landing.X_WT = X;
   return landing;
 }
 

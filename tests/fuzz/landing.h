@@ -16,8 +16,8 @@ struct Landing {
   std::shared_ptr<const Decomposition> tool;
   std::shared_ptr<const Decomposition> object;
   Pose X_WO;
-  Pose before_X_WTool;
-  Pose X_WTool;
+  Pose before_X_WT;
+  Pose X_WT;
   double tolerance = 0;  ///< of the trackers, m; less than the gap before
 };
 

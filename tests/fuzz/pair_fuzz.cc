@@ -33,7 +33,7 @@ std::optional<Polytope> DrawPolytope(ByteSource* source, double scale,
 // often tiny, share of their size.
 void PutNextTo(const PosedPair& pair, ByteSource* source, Pose* X_AB) {
   const Vec3 n = DrawDirection(source);
-  Hub hub;
+  MinkowskiVertex hub;
   const double gap = SupportGap(pair, n, &hub);
   const double wanted =
       source->Flag() ? source->Unit() * source->Power(-17, -1) : 0;

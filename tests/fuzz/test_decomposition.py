@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from drake_haptics import Mesh, UserError, decompose
+from drake_haptics import HapticsError, Mesh, decompose
 
 fuzz_profile.load()
 TETRAHEDRON = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
@@ -31,7 +31,7 @@ def test_pieces_cover_any_mesh_that_is_taken(data: Any) -> None:
     F = data.draw(faces(len(V)))
     try:
         mesh = Mesh.from_arrays(V, F)
-    except UserError as error:
+    except HapticsError as error:
         assert str(error)
         return
     result = decompose(mesh, cache=False)
@@ -49,7 +49,7 @@ def test_pieces_cover_any_mesh_that_is_taken(data: Any) -> None:
 
 @given(wrong_points())
 def test_wrong_vertices_are_refused(vertices: object) -> None:
-    with pytest.raises(UserError):
+    with pytest.raises(HapticsError):
         Mesh.from_arrays(vertices, TETRAHEDRON)
 
 
@@ -69,5 +69,5 @@ def test_wrong_vertices_are_refused(vertices: object) -> None:
 )
 def test_wrong_triangles_are_refused(triangles: object) -> None:
     corners = np.concatenate([np.zeros((1, 3)), np.eye(3)])
-    with pytest.raises(UserError):
+    with pytest.raises(HapticsError):
         Mesh.from_arrays(corners, triangles)

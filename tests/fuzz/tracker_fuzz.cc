@@ -32,7 +32,7 @@ struct Scene {
   DecompositionPtr tool;
   std::vector<DecompositionPtr> objects;
   std::vector<Pose> X_WO;
-  Pose X_WTool;
+  Pose X_WT;
   double size = 1;
   double tolerance = 0;
 };
@@ -45,7 +45,7 @@ Scene DrawScene(ByteSource* source) {
   const Vec3 far = source->Rarely(4)
                        ? Vec3(source->Power(0, 6) * DrawVector(source))
                        : Vec3::Zero();
-  scene.X_WTool.p = scene.size * far;
+  scene.X_WT.p = scene.size * far;
   const int count = 1 + source->Choice(2);
   for (int i = 0; i < count; ++i) {
     scene.objects.push_back(DrawDecomposition(source, scene.size));
@@ -91,7 +91,7 @@ void CheckContact(const Scene& scene, const Contact& contact, Tally* tally) {
   const Polytope& A = scene.tool->pieces.at(contact.piece_A);
   const Polytope& B =
       scene.objects.at(contact.object)->pieces.at(contact.piece_B);
-  const Pose& X_WA = scene.X_WTool;
+  const Pose& X_WA = scene.X_WT;
   const PosedPair pair{A, B, RelativePose(X_WA, scene.X_WO[contact.object])};
   const PairTruth truth(pair);
   const double world =
@@ -127,7 +127,7 @@ void CheckOrder(const ContactSet& contacts, Tally* tally) {
 }
 
 void CheckClusters(const ClusterSet& clusters, const ContactSet& contacts,
-                   const Scene& scene, const Vec6& V_WTool, Tally* tally) {
+                   const Scene& scene, const Vec6& V_WT, Tally* tally) {
   std::size_t members = 0;
   for (const Cluster& cluster : clusters.clusters) {
     members += static_cast<std::size_t>(cluster.num_contacts);
@@ -147,8 +147,8 @@ void CheckClusters(const ClusterSet& clusters, const ContactSet& contacts,
   std::vector<MovingFrame> frames;
   for (const Pose& X : scene.X_WO) frames.push_back({X.p, Vec6::Zero()});
   const std::vector<ContactMaterial> materials(frames.size(), {1000, 1});
-  const PenaltyWrench wrench = ComputePenaltyWrench(
-      clusters, {scene.X_WTool.p, V_WTool}, frames, materials);
+  const PenaltyWrench wrench =
+      ComputePenaltyWrench(clusters, {scene.X_WT.p, V_WT}, frames, materials);
   for (std::size_t k = 0; k < clusters.clusters.size(); ++k) {
     const Vec3& f = wrench.f_cluster_W[k];
     const Vec3& n = clusters.clusters[k].nhat_BA_W;
@@ -161,13 +161,13 @@ void CheckClusters(const ClusterSet& clusters, const ContactSet& contacts,
 void CheckForce(const Scene& scene, const ContactSet& contacts,
                 ByteSource* source, Tally* tally) {
   const double delta = scene.size * source->Power(-6, 0);
-  Vec6 V_WTool;
-  V_WTool << DrawVector(source), DrawVector(source);
+  Vec6 V_WT;
+  V_WT << DrawVector(source), DrawVector(source);
   ClusterSet clusters;
   ClusterContacts(contacts.contacts, delta, scene.tolerance, &clusters);
-  CheckClusters(clusters, contacts, scene, V_WTool, tally);
+  CheckClusters(clusters, contacts, scene, V_WT, tally);
   ShareStiffness(contacts.contacts, scene.tolerance, &clusters);
-  CheckClusters(clusters, contacts, scene, V_WTool, tally);
+  CheckClusters(clusters, contacts, scene, V_WT, tally);
 }
 
 void RunLanding(ByteSource* source, Tally* tally) {
@@ -201,7 +201,7 @@ void RunInput(std::span<const std::uint8_t> bytes, Tally* tally) try {
     tracker.SetObjectPose(static_cast<int>(i), scene.X_WO[i]);
   }
   do {
-    Move(&source, scene.size, &scene.X_WTool);
+    Move(&source, scene.size, &scene.X_WT);
     if (source.Rarely(8)) {
       Move(&source, scene.size, &scene.X_WO[0]);
       tracker.SetObjectPose(0, scene.X_WO[0]);
@@ -209,8 +209,8 @@ void RunInput(std::span<const std::uint8_t> bytes, Tally* tally) try {
     if (source.Rarely(32)) tracker.Reset();
     ContactTracker again = tracker;
     ContactSet contacts, same;
-    tracker.Query(scene.X_WTool, &contacts);
-    again.Query(scene.X_WTool, &same);
+    tracker.Query(scene.X_WT, &contacts);
+    again.Query(scene.X_WT, &same);
     if (same.contacts.size() != contacts.contacts.size()) {
       tally->Violated("the same twice", "%zu contacts, then %zu",
                       contacts.contacts.size(), same.contacts.size());

@@ -11,7 +11,7 @@ from twin_check import differentiate
 
 from drake_haptics._core import AutoDiffVector
 from drake_haptics.analysis.diagram_systems import (
-    AutoDiffTwin,
+    AutoDiffClone,
     find_state_layout,
     walk_leaves,
 )
@@ -78,7 +78,7 @@ def test_derivatives_that_a_system_loses_would_be_seen(run, monkeypatch):
 def test_a_simulation_of_the_twin_has_the_derivatives_of_a_simulation(run):
     """Several ticks: what was updated is felt in the next."""
     diagram, context = run.loop.diagram, run.states[-1].Clone()
-    twin = AutoDiffTwin(diagram)
+    twin = AutoDiffClone(diagram)
     twin.follow(context)
     x, end_s = get_state(context), context.get_time() + 3.5 * run.loop.period_s
 

@@ -17,7 +17,12 @@ from drake_haptics.loop.add_haptic_loop import AddHapticLoop
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.loop.haptic_loop import ConnectMovingObject
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.scene.schema import Contact, Coupling, Effects, Pose
+from drake_haptics.scene.schema import (
+    ContactParameters,
+    CouplingParameters,
+    Effects,
+    Pose,
+)
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.arm.simulated_arm import SimulatedArm
 from drake_haptics.systems.contact.contact_query import ContactObject
@@ -31,7 +36,7 @@ def test_a_scene_gets_the_systems_it_needs_and_no_more(tmp_path):
     assert names(haptic.diagram) == SYSTEMS
     assert haptic.visualizer is None
     assert haptic.period_s == 1e-3
-    assert names(haptic.loop.device) == {"display_force_hold", "simulated_arm"}
+    assert names(haptic.loop.device) == {"rendered_force_hold", "simulated_arm"}
 
 
 def test_there_is_a_material_for_each_object(tmp_path):
@@ -53,8 +58,8 @@ def test_a_budget_of_ticks_adds_what_keeps_it_first_and_last(tmp_path):
     for taker in ("contact_query", "contact_clustering", "haptic_visualizer"):
         system = haptic.diagram.GetSubsystemByName(taker)
         context = haptic.diagram.CreateDefaultContext()
-        relief = system.GetInputPort("relief")
-        assert relief.Eval(system.GetMyContextFromRoot(context))[1] == 1.0
+        load_shedding = system.GetInputPort("load_shedding")
+        assert load_shedding.Eval(system.GetMyContextFromRoot(context))[1] == 1.0
 
 
 def test_a_meshcat_adds_the_visualizer(tmp_path):
@@ -69,16 +74,16 @@ def test_tool_and_handle_start_where_the_path_does(tmp_path):
     root = haptic.diagram.CreateDefaultContext()
     tool, device = haptic.loop.haptic_tool, haptic.loop.device
     X_WT = vector_to_pose(
-        tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root))
+        tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(root))
     )
     np.testing.assert_allclose(X_WT.translation(), [0.01, 0.02, 0.06], atol=1e-15)
     X_WH = vector_to_pose(
-        device.get_handle_pose_output_port().Eval(device.GetMyContextFromRoot(root))
+        device.GetOutputPort("X_WH").Eval(device.GetMyContextFromRoot(root))
     )
     assert (X_WH @ scene.tool.grasp.to_rigid_transform()).IsNearlyEqualTo(X_WT, 1e-8)
     # There the coupling is at ease, so a run starts without a jolt.
     coupling = haptic.loop.virtual_coupling
-    display = coupling.get_display_wrench_output_port().Eval(
+    display = coupling.GetOutputPort("F_Ho_W_commanded").Eval(
         coupling.GetMyContextFromRoot(root)
     )
     np.testing.assert_allclose(display, 0.0, atol=1e-5)
@@ -86,7 +91,7 @@ def test_tool_and_handle_start_where_the_path_does(tmp_path):
 
 def test_contact_reaches_the_tool_as_the_scene_says(tmp_path):
     scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 1e-3)])
-    scene.contact = Contact(
+    scene.contact = ContactParameters(
         tolerance_m=2e-3,
         stiffness_N_per_m=500.0,
         clustering="octree",
@@ -95,7 +100,7 @@ def test_contact_reaches_the_tool_as_the_scene_says(tmp_path):
     haptic = BuildHapticDiagram(scene)
     root = haptic.diagram.CreateDefaultContext()
     force = haptic.loop.penalty_force
-    F = force.get_tool_wrench_output_port().Eval(force.GetMyContextFromRoot(root))
+    F = force.GetOutputPort("F_To_W").Eval(force.GetMyContextFromRoot(root))
     np.testing.assert_allclose(F, [0, 0, 0, 0, 0, 500.0 * 1e-3], atol=1e-9)
 
 
@@ -143,8 +148,8 @@ def add_loop_around_a_cart(tmp_path, **options):
         tool=core,
         tool_dynamics=RigidToolDynamics(0.1, np.zeros(3), 1e-5 * np.eye(3)),
         objects=[ContactObject("cart", core)],
-        contact=Contact(),
-        coupling=Coupling(),
+        contact=ContactParameters(),
+        coupling=CouplingParameters(),
         X_HT=RigidTransform(),
         X_WT=RigidTransform(preset.workspace_center_m),
         period_s=1e-3,

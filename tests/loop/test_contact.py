@@ -8,7 +8,12 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
 from drake_haptics.loop.contact import add_contact_systems, connect_by_name
-from drake_haptics.scene.schema import Braking, Contact, Effects, Material
+from drake_haptics.scene.schema import (
+    BrakingParameters,
+    ContactParameters,
+    Effects,
+    Material,
+)
 from drake_haptics.systems.contact.contact_query import ContactObject
 
 
@@ -22,7 +27,7 @@ def objects(core):
 
 
 def test_a_material_gives_what_the_contact_does_not(core):
-    contact = Contact(stiffness_N_per_m=100.0)
+    contact = ContactParameters(stiffness_N_per_m=100.0)
     materials = [Material(), Material(stiffness_N_per_m=900.0)]
     found = add_contact_systems(
         DiagramBuilder(), core, objects(core), contact, Effects(), materials, 1e-3
@@ -34,20 +39,20 @@ def test_a_material_gives_what_the_contact_does_not(core):
 
 @pytest.mark.parametrize(("distance", "contacts"), [(1e-3, 0), (6e-3, 1)])
 def test_contacts_are_looked_for_as_far_as_braking_reaches(core, distance, contacts):
-    effects = Effects(braking=Braking(distance_m=distance))
+    effects = Effects(braking=BrakingParameters(distance_m=distance))
     found = add_contact_systems(
         DiagramBuilder(),
         core,
         objects(core)[:1],
-        Contact(tolerance_m=2e-3),
+        ContactParameters(tolerance_m=2e-3),
         effects,
         [Material()],
         1e-3,
     )
     query = found.contact_query
     context = query.CreateDefaultContext()
-    query.get_tool_pose_input_port().FixValue(context, [1, 0, 0, 0, 0, 0, 0.025])
-    assert len(query.get_contacts_output_port().Eval(context)) == contacts
+    query.GetInputPort("X_WT").FixValue(context, [1, 0, 0, 0, 0, 0, 0.025])
+    assert len(query.GetOutputPort("contacts").Eval(context)) == contacts
     clustering = found.contact_clustering
     rule = clustering.get_rule(clustering.CreateDefaultContext())
     assert rule.tolerance_m == 2e-3
@@ -59,14 +64,14 @@ def test_a_query_of_several_ticks_is_not_asked_anew_by_relief(core, query_rate_h
         DiagramBuilder(),
         core,
         objects(core)[:1],
-        Contact(query_rate_hz=query_rate_hz),
+        ContactParameters(query_rate_hz=query_rate_hz),
         Effects(),
         [Material()],
         1e-3,
-        sheds_load=True,
+        enable_load_shedding=True,
     )
-    assert found.contact_query.HasInputPort("relief") == (query_rate_hz is None)
-    assert found.contact_clustering.HasInputPort("relief")
+    assert found.contact_query.HasInputPort("load_shedding") == (query_rate_hz is None)
+    assert found.contact_clustering.HasInputPort("load_shedding")
 
 
 def test_there_is_a_material_for_each_object(core):
@@ -75,7 +80,7 @@ def test_there_is_a_material_for_each_object(core):
             DiagramBuilder(),
             core,
             objects(core),
-            Contact(),
+            ContactParameters(),
             Effects(),
             [Material()],
             1e-3,
@@ -85,23 +90,29 @@ def test_there_is_a_material_for_each_object(core):
 def test_inputs_are_connected_by_their_names_once(core):
     builder = DiagramBuilder()
     found = add_contact_systems(
-        builder, core, objects(core), Contact(), Effects(), [Material()] * 2, 1e-3
+        builder,
+        core,
+        objects(core),
+        ContactParameters(),
+        Effects(),
+        [Material()] * 2,
+        1e-3,
     )
     rest, moving = (
         builder.AddSystem(ConstantVectorSource(np.full(6, x))) for x in (0.0, 1.0)
     )
     force = found.penalty_force
-    clusters = found.contact_clustering.get_clusters_output_port()
-    connect_by_name(builder, force, {"V_WTool": rest.get_output_port()})
+    clusters = found.contact_clustering.GetOutputPort("clusters")
+    connect_by_name(builder, force, {"V_WT": rest.get_output_port()})
     connect_by_name(
         builder,
         force,
-        {"V_WTool": moving.get_output_port(), "clusters": clusters, "other": clusters},
+        {"V_WT": moving.get_output_port(), "clusters": clusters, "other": clusters},
     )
     sources = {
         port.get_name(): builder.connection_map().get((force, port.get_index()))
         for port in map(force.get_input_port, range(force.num_input_ports()))
     }
-    assert sources["V_WTool"][0] is rest
+    assert sources["V_WT"][0] is rest
     assert sources["clusters"][0] is found.contact_clustering
-    assert sources["X_WTool"] is None
+    assert sources["X_WT"] is None

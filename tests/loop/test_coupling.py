@@ -10,11 +10,11 @@ from slider_device import PERIOD, Slider
 
 from drake_haptics.loop.add_haptic_loop import make_coupling_gains
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.schema import Coupling
+from drake_haptics.scene.schema import CouplingParameters
 from drake_haptics.simulation.live_values import write_live_values
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
-COUPLING = Coupling(stiffness_N_per_m=500.0)
+COUPLING = CouplingParameters(stiffness_N_per_m=500.0)
 
 
 def make_device(max_force_N=3.0, max_torque_Nm=0.1):

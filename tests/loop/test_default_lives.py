@@ -49,7 +49,7 @@ def capture_host(scene, count):
             packet, _ = driver.socket.recvfrom(512)
             command = unpack_command(packet)
             gate = ACTIVE if command.enable else IDLE
-            if any(command.F_BH):
+            if any(command.F_Ho_B):
                 packets.append(packet)
     return first, packets
 
@@ -80,10 +80,10 @@ def measure_afterlife(monkeypatch, disable, packets):
                 self.tick()
             assert self.packets == {"accepted": 1 + len(packets)}
             heard_ns = self.now_ns
-            assert self.reading.F_BH.any()
+            assert self.reading.F_Ho_B.any()
             for _ in range(2000):
                 self.tick()
-                if self.reading.F_BH.any():
+                if self.reading.F_Ho_B.any():
                     shown_s.append(1e-9 * (self.now_ns - heard_ns))
             host.close()
             super().run(1e-9)
@@ -125,11 +125,11 @@ def test_the_wrench_of_a_python_that_stalls_is_gone_within_40_ms(scene):
             device.write(PUSH)
             command = driver.exchange(gate=gate)
             gate = ACTIVE if command.enable else IDLE
-            pushed = command.F_BH[5] > 1.9
+            pushed = command.F_Ho_B[5] > 1.9
         asked_ns = last_ns = command.time_ns
         while command.time_ns < asked_ns + 10**9:
             command = driver.exchange(gate=ACTIVE)
             assert command.enable
-            if any(command.F_BH):
+            if any(command.F_Ho_B):
                 last_ns = command.time_ns
     assert 0.0 < 1e-9 * (last_ns - asked_ns) < HOLD_S + RELEASE_S + slack_s

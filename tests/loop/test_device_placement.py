@@ -55,7 +55,7 @@ def test_the_tool_starts_where_the_device_holds_it(scene):
     haptic = BuildHapticDiagram(scene, device=device_at(scene, 0.004))
     tool = haptic.loop.haptic_tool
     root = haptic.diagram.CreateDefaultContext()
-    q_WT = tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root))
+    q_WT = tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(root))
     X_WT = vector_to_pose(q_WT)
     expected = RigidTransform([0.0, 0.0, PLATE_TOP + TOOL_HALF_HEIGHT + 0.004])
     assert X_WT.IsNearlyEqualTo(expected, 1e-12)
@@ -69,7 +69,7 @@ def test_a_device_pressed_into_the_plate_is_pushed_out(scene):
     run(BuildHapticDiagram(scene, device=backend), 1.0)
     K, k = scene.coupling.stiffness_N_per_m, scene.contact.stiffness_N_per_m
     X_WB = find_device_site(scene).X_WB
-    f_W = X_WB.rotation() @ backend.commands[-1].F_BH[3:]
+    f_W = X_WB.rotation() @ backend.commands[-1].F_Ho_B[3:]
     # Four corners press: clustering shares one spring among them.
     np.testing.assert_allclose(
         f_W, [0, 0, (depth + tolerance) * K * k / (K + k)], rtol=1e-3, atol=1e-4
@@ -97,7 +97,7 @@ def test_what_is_written_is_within_the_device_limits(scene):
     scene.device.max_force_N, scene.device.max_torque_Nm = 0.3, 0.001
     backend = device_at(scene, *np.linspace(0.001, -0.02, 100))
     run(BuildHapticDiagram(scene, device=backend), 0.5)
-    wrenches = np.array([command.F_BH for command in backend.commands])
+    wrenches = np.array([command.F_Ho_B for command in backend.commands])
     forces = np.linalg.norm(wrenches[:, 3:], axis=1)
     assert forces.max() == pytest.approx(0.3)
     assert np.linalg.norm(wrenches[:, :3], axis=1).max() <= 0.001 + 1e-15
@@ -118,7 +118,7 @@ def test_without_a_base_the_handle_starts_where_the_path_does(scene):
     haptic = BuildHapticDiagram(scene, device=ScriptedDevice(lambda _: read_first))
     device = haptic.loop.device
     context = device.GetMyContextFromRoot(haptic.diagram.CreateDefaultContext())
-    q_WH = device.get_handle_pose_output_port().Eval(context)
+    q_WH = device.GetOutputPort("X_WH").Eval(context)
     X_TH = scene.tool.grasp.to_rigid_transform().inverse()
     start = RigidTransform([0.0, 0.0, START[3] + PLATE_TOP]) @ X_TH
     np.testing.assert_allclose(q_WH[4:], start.translation(), atol=1e-12)
@@ -135,7 +135,7 @@ def test_a_device_that_knows_its_place_is_left_there(scene):
     device = haptic.loop.device
     context = device.GetMyContextFromRoot(haptic.diagram.CreateDefaultContext())
     expected = find_device_site(scene).X_WB @ np.array([0.3, -0.2, 0.1])
-    q_WH = device.get_handle_pose_output_port().Eval(context)
+    q_WH = device.GetOutputPort("X_WH").Eval(context)
     np.testing.assert_allclose(q_WH[4:], expected, atol=1e-12)
 
 

@@ -13,13 +13,13 @@ from pydrake.geometry import Meshcat
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.schema import (
-    Braking,
-    Contact,
+    BrakingParameters,
+    ContactParameters,
     Effects,
-    Friction,
-    Gravity,
+    FrictionParameters,
+    GravityParameters,
     Material,
-    Passivity,
+    PassivityParameters,
 )
 from drake_haptics.simulation.run import run
 
@@ -71,8 +71,10 @@ def test_a_diagram_holds_exactly_the_systems_of_the_effects_named(tmp_path, effe
     assert fed["contact_clustering.contacts"] == (
         "force_shading.contacts" if shading else "contact_query.contacts"
     )
-    assert fed["device.F_display"] == (
-        "passivity_control.F_display" if passivity else "virtual_coupling.F_display"
+    assert fed["device.F_Ho_W_commanded"] == (
+        "passivity_control.F_Ho_W_commanded"
+        if passivity
+        else "virtual_coupling.F_Ho_W_commanded"
     )
 
 
@@ -110,9 +112,9 @@ print(*(n for n in {sorted(OF_EFFECT.values())}
 
 def test_braking_looks_further_but_contact_does_not_push_there(tmp_path):
     scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 3e-3)])
-    scene.contact = Contact(tolerance_m=2e-3)
+    scene.contact = ContactParameters(tolerance_m=2e-3)
     for distance, contacts in [(1e-3, 0), (4e-3, 1)]:
-        scene.effects = Effects(braking=Braking(distance_m=distance))
+        scene.effects = Effects(braking=BrakingParameters(distance_m=distance))
         haptic = BuildHapticDiagram(scene)
         loop, root = haptic.loop, haptic.diagram.CreateDefaultContext()
 
@@ -120,7 +122,7 @@ def test_braking_looks_further_but_contact_does_not_push_there(tmp_path):
             return port.Eval(port.get_system().GetMyContextFromRoot(root))
 
         assert (len(value(loop.contacts)) > 0) == (contacts > 0)
-        F = value(loop.penalty_force.get_tool_wrench_output_port())
+        F = value(loop.penalty_force.GetOutputPort("F_To_W"))
         np.testing.assert_array_equal(F, np.zeros(6))
 
 
@@ -128,14 +130,14 @@ def test_each_object_pushes_with_its_own_stiffness(tmp_path):
     # Two plates at one place: half of the force comes from each.
     scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 1e-3)])
     second = replace(scene.environment[0], name="second")
-    scene.contact = Contact(tolerance_m=2e-3, stiffness_N_per_m=500.0)
+    scene.contact = ContactParameters(tolerance_m=2e-3, stiffness_N_per_m=500.0)
     pushes = []
     for material in (Material(), Material(stiffness_N_per_m=1500.0)):
         scene.environment = [scene.environment[0], replace(second, material=material)]
         haptic = BuildHapticDiagram(scene)
         root = haptic.diagram.CreateDefaultContext()
         force = haptic.loop.penalty_force
-        F = force.get_tool_wrench_output_port().Eval(force.GetMyContextFromRoot(root))
+        F = force.GetOutputPort("F_To_W").Eval(force.GetMyContextFromRoot(root))
         pushes.append(F[5])
     np.testing.assert_allclose(pushes[1], 2.0 * pushes[0], rtol=1e-9)
 
@@ -144,7 +146,7 @@ def test_each_object_damps_with_its_own_damping(tmp_path):
     # Two plates at one place share the damper: b₁/2 + b₂/2 of the speed of approach.
     scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 1e-3)])
     second = replace(scene.environment[0], name="second")
-    scene.contact = Contact(tolerance_m=2e-3, damping_Ns_per_m=4.0)
+    scene.contact = ContactParameters(tolerance_m=2e-3, damping_Ns_per_m=4.0)
     damped = []
     for material in (Material(), Material(damping_Ns_per_m=20.0)):
         scene.environment = [scene.environment[0], replace(second, material=material)]
@@ -155,8 +157,8 @@ def test_each_object_damps_with_its_own_damping(tmp_path):
         pushes = []
         for speed in (0.0, 0.1):
             falling = [0.0, 0.0, 0.0, 0.0, 0.0, -speed]
-            force.get_tool_velocity_input_port().FixValue(context, falling)
-            pushes.append(force.get_tool_wrench_output_port().Eval(context)[5])
+            force.GetInputPort("V_WT").FixValue(context, falling)
+            pushes.append(force.GetOutputPort("F_To_W").Eval(context)[5])
         damped.append(pushes[1] - pushes[0])
     assert damped[0] > 0.0
     np.testing.assert_allclose(damped[1], damped[0] * (4.0 + 20.0) / (4.0 + 4.0))
@@ -169,7 +171,7 @@ def test_each_object_rubs_with_its_own_friction(tmp_path, own):
     down = TOOL_HALF_HEIGHT - 5e-3
     path = [(0.0, 0.0, 0.0, down), (0.3, 0.0, 0.0, down), (0.8, 0.04, 0.0, down)]
     scene = over_a_plate(tmp_path, path)
-    scene.effects = Effects(friction=Friction(coefficient=0.2))
+    scene.effects = Effects(friction=FrictionParameters(coefficient=0.2))
     scene.environment[0].material = Material(friction_coefficient=own)
     haptic = BuildHapticDiagram(scene)
     ratios = []
@@ -198,14 +200,14 @@ def test_the_reserve_is_what_coupling_softest_contact_and_tool_can_give_back(tmp
         material=Material(stiffness_N_per_m=250.0),
     )
     scene.environment = [scene.environment[0], second]
-    scene.contact = Contact(stiffness_N_per_m=5e4)
+    scene.contact = ContactParameters(stiffness_N_per_m=5e4)
     force, torque, mass = 8.5, 0.188, scene.tool.mass_kg
     springs = force**2 / 800.0 / 2 + torque**2 / 1.0 / 2 + force**2 / 250.0 / 2
     for gravity, lifted in [
         (None, 0.0),
-        (Gravity(acceleration_m_per_s2=[0.0, 3.0, -4.0]), 0.5 * mass * 5.0),
+        (GravityParameters(acceleration_m_per_s2=[0.0, 3.0, -4.0]), 0.5 * mass * 5.0),
     ]:
-        scene.effects = Effects(gravity=gravity, passivity=Passivity())
+        scene.effects = Effects(gravity=gravity, passivity=PassivityParameters())
         # The hand moves the tool with 1 m/s at most.
         expected_J = springs + 0.5 * mass * 1.0**2 + lifted
         assert measure_reserve(BuildHapticDiagram(scene)) == pytest.approx(expected_J)
@@ -217,15 +219,15 @@ def measure_reserve(haptic):
     context = passivity.CreateDefaultContext()
     X_WH, F = [1.0, 0, 0, 0, 0, 0, 0], [0.0, 0, 0, 0, 0, -1000.0]
     ports = [
-        (passivity.get_asked_wrench_input_port(), F),
-        (passivity.get_applied_wrench_input_port(), F),
-        (passivity.get_handle_velocity_input_port(), np.zeros(6)),
+        (passivity.GetInputPort("F_Ho_W_desired"), F),
+        (passivity.GetInputPort("F_Ho_W_rendered"), F),
+        (passivity.GetInputPort("V_WH"), np.zeros(6)),
     ]
     for port, value in ports:
         port.FixValue(context, value)
     for height in (0.0, 1.0, 2.0):
         X_WH[6] = height
-        passivity.get_handle_pose_input_port().FixValue(context, X_WH)
+        passivity.GetInputPort("X_WH").FixValue(context, X_WH)
         updated = passivity.EvalUniquePeriodicDiscreteUpdate(context)
         context.SetDiscreteState(updated.Clone())
     return passivity.GetOutputPort("energy_J").Eval(context)[0]

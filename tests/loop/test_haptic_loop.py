@@ -16,17 +16,17 @@ from drake_haptics.simulation.run import run
 # The hand wants the cube's middle 5 mm above the plate, where half of it does not fit.
 PRESSED = [(0.0, 0.0, 0.0, 0.02), (0.3, 0.0, 0.0, 0.005)]
 ALWAYS = {
-    "X_WTool",
-    "V_WTool",
+    "X_WT",
+    "V_WT",
     "X_WH",
     "V_WH",
-    "F_display",
-    "F_applied",
+    "F_Ho_W_commanded",
+    "F_Ho_W_rendered",
     "status",
     "contacts",
     "clusters",
     "contact_wrench",
-    "F_Tool_W",
+    "F_To_W",
 }
 
 
@@ -48,7 +48,8 @@ def test_a_diagram_has_an_output_for_what_it_has(scene, tmp_path):
     assert list_outputs(haptic.diagram) == ALWAYS | {"friction_force", "energy_J"}
     # What is displayed comes last, and contacts are those that are felt.
     assert (
-        haptic.loop.outputs["F_display"].get_system() is haptic.loop.effects.passivity
+        haptic.loop.outputs["F_Ho_W_commanded"].get_system()
+        is haptic.loop.effects.passivity
     )
     assert haptic.loop.outputs["contacts"].get_system() is haptic.loop.effects.shading
 
@@ -64,18 +65,20 @@ def test_a_tick_reads_what_balances_at_rest(scene):
     run(haptic, 1.0, on_tick=look)
     # Nothing moves, and nothing but coupling and contact acts on the tool: the
     # handle's wrench is the contact's, about another point.
-    np.testing.assert_allclose(seen["V_WTool"], 0.0, atol=1e-4)
+    np.testing.assert_allclose(seen["V_WT"], 0.0, atol=1e-4)
     np.testing.assert_allclose(seen["V_WH"], 0.0, atol=1e-4)
-    force = seen["F_Tool_W"][3:]
+    force = seen["F_To_W"][3:]
     assert force[2] > 0.5
-    np.testing.assert_allclose(seen["F_applied"][3:], force, atol=1e-3)
-    np.testing.assert_allclose(seen["F_display"], seen["F_applied"], atol=1e-3)
+    np.testing.assert_allclose(seen["F_Ho_W_rendered"][3:], force, atol=1e-3)
+    np.testing.assert_allclose(
+        seen["F_Ho_W_commanded"], seen["F_Ho_W_rendered"], atol=1e-3
+    )
     # The coupling is the one spring between handle and tool: 800 N/m.
-    X_WTool, X_WH = vector_to_pose(seen["X_WTool"]), vector_to_pose(seen["X_WH"])
+    X_WT, X_WH = vector_to_pose(seen["X_WT"]), vector_to_pose(seen["X_WH"])
     grasp = scene.tool.grasp.to_rigid_transform()
-    stretch = X_WTool.translation() - (X_WH @ grasp).translation()
+    stretch = X_WT.translation() - (X_WH @ grasp).translation()
     np.testing.assert_allclose(800.0 * stretch, force, atol=1e-2)
-    gap = X_WTool.translation()[2] - TOOL_HALF_HEIGHT - PLATE_TOP
+    gap = X_WT.translation()[2] - TOOL_HALF_HEIGHT - PLATE_TOP
     assert seen["contacts"].least_distance == pytest.approx(gap, abs=1e-6)
     assert len(seen["clusters"]) > 0
 
@@ -84,7 +87,7 @@ def test_an_output_is_logged_in_a_diagram_around_it(scene):
     haptic = BuildHapticDiagram(scene)
     builder = DiagramBuilder()
     builder.AddSystem(haptic.diagram)
-    port = haptic.diagram.GetOutputPort("F_applied")
+    port = haptic.diagram.GetOutputPort("F_Ho_W_rendered")
     log = LogVectorOutput(port, builder, haptic.period_s)
     simulator = Simulator(builder.Build())
     simulator.AdvanceTo(0.3)

@@ -90,7 +90,7 @@ def add_loop(scene):
 def pry(diagram, loop):
     """Returns the largest torque on the tool, N·m, and the least distance, m."""
     torques, distances = [], [0.0]
-    coupling = loop.virtual_coupling.get_wrench_model_output_port()
+    coupling = loop.virtual_coupling.GetOutputPort("wrench_model")
     found = loop.found_contacts
 
     def look(root):

@@ -56,10 +56,10 @@ def test_a_force_in_the_base_moves_the_hand_there_as_its_spring_gives(
     arm = SimulatedDriverArm(scene)
     start = arm.step(np.zeros(6))[0]
     arm.start()
-    F_BH = np.zeros(6)
-    F_BH[axis] = 2.0
+    F_Ho_B = np.zeros(6)
+    F_Ho_B[axis] = 2.0
     for _ in range(1500):
-        X_BH, V_BH = arm.step(F_BH)
+        X_BH, V_BH = arm.step(F_Ho_B)
     expected = np.zeros(3)
     expected[axis - 3] = 2.0 / GRIP.stiffness_N_per_m
     assert X_BH[4:] - start[4:] == pytest.approx(expected, abs=2e-6)
@@ -87,8 +87,8 @@ def test_velocity_is_that_of_the_pose(scene, rpy_deg):
     scene.device.rate_hz = 10_000.0
     arm = SimulatedDriverArm(scene)
     arm.start()
-    F_BH = np.array([0.02, -0.03, 0.04, 1.0, -2.0, 1.5])
-    readings = [arm.step(F_BH) for _ in range(102)]
+    F_Ho_B = np.array([0.02, -0.03, 0.04, 1.0, -2.0, 1.5])
+    readings = [arm.step(F_Ho_B) for _ in range(102)]
     (before, _), (_, V_BH), (after, _) = readings[-3:]
     X_0, X_1 = vector_to_pose(before), vector_to_pose(after)
     turned = (X_1.rotation() @ X_0.rotation().inverse()).ToAngleAxis()

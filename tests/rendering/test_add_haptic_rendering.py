@@ -17,17 +17,17 @@ from pydrake.systems.primitives import ConstantValueSource
 
 from drake_haptics import AddHapticRendering
 from drake_haptics.scene.schema import (
-    Contact,
-    Coupling,
+    ContactParameters,
+    CouplingParameters,
     Effects,
-    Friction,
+    FrictionParameters,
     Material,
-    Shading,
+    ShadingParameters,
 )
 from drake_haptics.scene.validation import SceneWarning
 
 K, MASS, HALF = 1e3, 0.1, 0.02
-SOFT = Contact(stiffness_N_per_m=K, damping_Ns_per_m=3.0)
+SOFT = ContactParameters(stiffness_N_per_m=K, damping_Ns_per_m=3.0)
 CUBE = Box(2 * HALF, 2 * HALF, 2 * HALF)
 # Where a cube of this mass rests, its middle.
 REST = HALF + SOFT.tolerance_m - MASS * G / K
@@ -61,7 +61,7 @@ def test_a_body_comes_to_rest_where_its_weight_is_borne(config, shape):
     p = scene.pose("tool").translation()
     chord = 2e-5 if isinstance(shape, Sphere) else 0.0
     assert p[2] == pytest.approx(REST, abs=chord + 1e-6)
-    F = scene.read(rendering, "F_Tool_W")
+    F = scene.read(rendering, "F_To_W")
     np.testing.assert_allclose(F[3:], [0, 0, MASS * G], atol=2e-3)
 
 
@@ -70,7 +70,7 @@ def test_there_is_no_sample_of_delay(config):
     """The force is that of the state now, also before the first step."""
     scene, rendering = over_a_slab(config)
     scene.start(tool=RigidTransform([0, 0, REST - 1e-4]))
-    F = scene.read(rendering, "F_Tool_W")
+    F = scene.read(rendering, "F_To_W")
     assert F[5] == pytest.approx(MASS * G + 1e-4 * K, rel=1e-9)
     (force,) = scene.read(rendering, "applied_spatial_force")
     np.testing.assert_array_equal(force.F_Bq_W.get_coeffs(), F)
@@ -101,7 +101,7 @@ def test_two_free_bodies_keep_their_momentum(tmp_path):
     start, forces = momentum(), []
     for step in range(1, 201):
         scene.simulator.AdvanceTo(step * 1e-3)
-        forces.append(scene.read(rendering, "F_Tool_W")[3:])
+        forces.append(scene.read(rendering, "F_To_W")[3:])
     assert np.linalg.norm(forces, axis=1).max() > 1.0
     np.testing.assert_array_equal(forces[-1], np.zeros(3))
     np.testing.assert_allclose(momentum(), start, rtol=0, atol=1e-14)
@@ -139,7 +139,9 @@ def test_a_hole_guides_a_peg_that_is_pressed_aside(tmp_path):
     scene.plant.WeldFrames(scene.plant.world_frame(), block.body_frame())
     scene.finalize(gravity=0.0)
     push(scene, tool, [0.5, 0.0, 0.0])
-    rendering = render(scene, contact=Contact(tolerance_m=5e-4, stiffness_N_per_m=K))
+    rendering = render(
+        scene, contact=ContactParameters(tolerance_m=5e-4, stiffness_N_per_m=K)
+    )
     scene.start(tool=RigidTransform())
     scene.simulator.AdvanceTo(1.0)
     assert len(scene.read(rendering, "contacts")) > 0
@@ -253,7 +255,7 @@ def test_bodies_at_rest_have_no_ports_and_moving_ones_do():
 def test_a_material_takes_the_place_of_the_contacts_gains():
     scene, rendering = over_a_slab(materials={"slab": Material(stiffness_N_per_m=5e3)})
     scene.start(tool=RigidTransform([0, 0, HALF]))
-    F = scene.read(rendering, "F_Tool_W")
+    F = scene.read(rendering, "F_To_W")
     assert F[5] == pytest.approx(5e3 * SOFT.tolerance_m)
 
 
@@ -268,7 +270,7 @@ def test_shapes_for_illustration_are_used_if_asked_for():
     scene.finalize()
     rendering = render(scene, role=Role.kIllustration)
     scene.start(tool=RigidTransform([0, 0, REST]))
-    assert scene.read(rendering, "F_Tool_W")[5] == pytest.approx(MASS * G)
+    assert scene.read(rendering, "F_To_W")[5] == pytest.approx(MASS * G)
 
 
 @pytest.mark.parametrize("factor", [0.97, 1.03])
@@ -282,7 +284,7 @@ def test_the_stiffness_that_is_warned_of_is_the_one_that_fails(factor):
     scene.touchable(tool, Sphere(HALF))
     scene.add_slab()
     scene.finalize()
-    stiff = Contact(stiffness_N_per_m=factor * limit, damping_Ns_per_m=0.0)
+    stiff = ContactParameters(stiffness_N_per_m=factor * limit, damping_Ns_per_m=0.0)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         rendering = render(scene, contact=stiff)
@@ -297,12 +299,12 @@ def test_the_stiffness_that_is_warned_of_is_the_one_that_fails(factor):
         RigidTransform([0, 0, HALF + stiff.tolerance_m - gap - 1.01 * sag]),
     )
     scene.simulator.AdvanceTo(0.05)
-    weight = scene.read(rendering, "F_Tool_W")[5] / (MASS * G)
+    weight = scene.read(rendering, "F_To_W")[5] / (MASS * G)
     assert (abs(weight - 1.0) < 0.1) == (factor < 1)
 
 
 def test_a_stiffness_that_a_discrete_plant_does_not_hold_is_warned_of():
-    stiff = Contact(stiffness_N_per_m=1e6)
+    stiff = ContactParameters(stiffness_N_per_m=1e6)
     with pytest.warns(SceneWarning, match=r"contact of 'tool' with 'slab'.*time_step"):
         over_a_slab(contact=stiff)
     with warnings.catch_warnings():
@@ -311,7 +313,7 @@ def test_a_stiffness_that_a_discrete_plant_does_not_hold_is_warned_of():
 
 
 def test_a_coupling_that_a_discrete_plant_does_not_hold_is_warned_of():
-    stiff = Coupling(rotational_damping_Nms_per_rad=0.2)
+    stiff = CouplingParameters(rotational_damping_Nms_per_rad=0.2)
     with pytest.warns(SceneWarning, match=r"coupling of 'tool': .* N·m/rad"):
         over_a_slab(coupling=stiff)
 
@@ -393,12 +395,12 @@ def test_materials_that_mean_nothing_are_refused():
         ({"slob": Material()}, Effects(), "materials: there is no 'slob' .* are slab"),
         (
             {"slab": Material(friction_coefficient=1.0)},
-            Effects(shading=Shading()),
+            Effects(shading=ShadingParameters()),
             r"\['slab'\]\.friction_coefficient means nothing without effects.friction",
         ),
         (
             {"slab": Material(shading=False)},
-            Effects(friction=Friction()),
+            Effects(friction=FrictionParameters()),
             r"\['slab'\]\.shading means nothing without effects.shading",
         ),
     ]:
@@ -409,10 +411,22 @@ def test_materials_that_mean_nothing_are_refused():
 @pytest.mark.parametrize(
     "options, message",
     [
-        ({"contact": Contact(clustering="octre")}, r"contact\.clustering .*'octree'"),
-        ({"contact": Contact(clustering="octree")}, r"contact\.cluster_size_m is miss"),
-        ({"coupling": Coupling(damping_Ns_per_m=-1.0)}, r"coupling\.damping_Ns_per_m"),
-        ({"effects": Effects(friction=Friction(-0.3))}, r"friction\.coefficient must"),
+        (
+            {"contact": ContactParameters(clustering="octre")},
+            r"contact\.clustering .*'octree'",
+        ),
+        (
+            {"contact": ContactParameters(clustering="octree")},
+            r"contact\.cluster_size_m is miss",
+        ),
+        (
+            {"coupling": CouplingParameters(damping_Ns_per_m=-1.0)},
+            r"coupling\.damping_Ns_per_m",
+        ),
+        (
+            {"effects": Effects(friction=FrictionParameters(-0.3))},
+            r"friction\.coefficient must",
+        ),
         ({"materials": {"slab": Material(-1.0)}}, r"materials\['slab'\]\.stiffness"),
         ({"chord_error_m": 0.0}, "chord_error_m must be positive"),
     ],
@@ -428,7 +442,7 @@ def test_what_was_refused_leaves_the_builder_as_it_was():
     scene.add_slab()
     scene.finalize()
     with pytest.raises(ValueError, match="tolerance"):
-        render(scene, contact=Contact(tolerance_m=-1.0))
+        render(scene, contact=ContactParameters(tolerance_m=-1.0))
     assert len(scene.builder.GetSystems()) == 2
     port = scene.plant.get_applied_spatial_force_input_port()
     assert not scene.builder.IsConnectedOrExported(port)

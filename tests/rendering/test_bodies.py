@@ -96,7 +96,7 @@ def test_a_name_of_several_bodies_is_refused():
 
 
 def test_the_environment_is_all_that_the_tool_can_meet(scene):
-    # Neither what is welded to it, nor its neighbour on a joint, nor the shapeless.
+    # Neither what is welded to it, nor its neighbor on a joint, nor the shapeless.
     assert names(environment(scene)) == ["b", "slab"]
     assert names(environment(scene, "b")) == ["tool", "tip", "arm", "slab"]
     assert names(environment(scene, role=Role.kIllustration)) == []

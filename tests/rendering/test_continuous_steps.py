@@ -17,7 +17,7 @@ from pydrake.systems.analysis import (
 )
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.scene.schema import Contact
+from drake_haptics.scene.schema import ContactParameters
 
 TOLERANCE_M = 2e-3
 SPEED_M_PER_S = 1.0
@@ -51,7 +51,7 @@ def throw_at_a_plate(
         scene.plant,
         scene.scene_graph,
         "cube",
-        contact=Contact(stiffness_N_per_m=2e4, tolerance_m=TOLERANCE_M),
+        contact=ContactParameters(stiffness_N_per_m=2e4, tolerance_m=TOLERANCE_M),
     )
     scene.start(cube=RigidTransform([0.0, 0.0, height_m]))
     scene.plant.SetVelocities(scene.context, [0.0, 0.0, 0.0, 0.0, 0.0, -SPEED_M_PER_S])

@@ -11,7 +11,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics import AddHapticRendering, make_device_port
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.scene.schema import Contact, Coupling
+from drake_haptics.scene.schema import ContactParameters, CouplingParameters
 
 LIMITS = {"period_s": 1e-3, "max_force_N": 5.0, "max_torque_Nm": 0.2}
 # The base stands turned in the world.
@@ -58,8 +58,8 @@ def test_a_device_presses_a_body_of_a_plant():
         plant,
         scene_graph,
         "cube",
-        contact=Contact(stiffness_N_per_m=2e3, damping_Ns_per_m=10.0),
-        coupling=Coupling(stiffness_N_per_m=400.0, damping_Ns_per_m=1.0),
+        contact=ContactParameters(stiffness_N_per_m=2e3, damping_Ns_per_m=10.0),
+        coupling=CouplingParameters(stiffness_N_per_m=400.0, damping_Ns_per_m=1.0),
         device=device,
     )
     Simulator(builder.Build()).AdvanceTo(1.0)
@@ -67,8 +67,8 @@ def test_a_device_presses_a_body_of_a_plant():
     # 12 mm; the cube rests where both carry its weight.
     z = (2000 * 0.012 + 400 * 0.008 - 0.1 * 9.81) / (2000 + 400)
     expected_N = 400 * (z - 0.008)
-    F_BH = backend.commands[-1].F_BH
-    force_W = X_WB.rotation() @ F_BH[3:]
+    F_Ho_B = backend.commands[-1].F_Ho_B
+    force_W = X_WB.rotation() @ F_Ho_B[3:]
     np.testing.assert_allclose(force_W, [0.0, 0.0, expected_N], atol=1e-3)
 
 

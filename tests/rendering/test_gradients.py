@@ -13,9 +13,9 @@ from pydrake.systems.framework import InputPortSelection, OutputPortSelection
 from pydrake.systems.primitives import Linearize
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.scene.schema import Braking, Contact, Effects
+from drake_haptics.scene.schema import BrakingParameters, ContactParameters, Effects
 
-CONTACT = Contact(stiffness_N_per_m=1e3, damping_Ns_per_m=3.0)
+CONTACT = ContactParameters(stiffness_N_per_m=1e3, damping_Ns_per_m=3.0)
 K, MASS = 1e3, 0.1
 CUBE = Box(0.04, 0.04, 0.04)
 
@@ -52,7 +52,9 @@ def change_of_velocity(scene, x):
 
 @pytest.mark.parametrize("braked", [False, True])
 def test_accelerations_in_contact_agree_with_central_differences(braked):
-    scene, rendering = make_scene(Effects(braking=Braking() if braked else None))
+    scene, rendering = make_scene(
+        Effects(braking=BrakingParameters() if braked else None)
+    )
     plant = scene.plant
     x = plant.GetPositionsAndVelocities(scene.context).copy()
     nq = plant.num_positions()
@@ -113,7 +115,7 @@ def add_slider(config):
         scene.plant,
         scene.scene_graph,
         "tool",
-        contact=Contact(stiffness_N_per_m=K, damping_Ns_per_m=0.0),
+        contact=ContactParameters(stiffness_N_per_m=K, damping_Ns_per_m=0.0),
     )
     scene.start()
     rest = 0.02 + 2e-3 - MASS * G / K

@@ -12,14 +12,14 @@ from slider_device import make_device
 from drake_haptics import AddHapticRendering
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.scene.schema import (
-    Braking,
-    Contact,
-    Coupling,
+    BrakingParameters,
+    ContactParameters,
+    CouplingParameters,
     Effects,
-    Friction,
-    Gravity,
-    Passivity,
-    Shading,
+    FrictionParameters,
+    GravityParameters,
+    PassivityParameters,
+    ShadingParameters,
 )
 
 REST = HALF + CONTACT.tolerance_m - MASS * G / 1e3
@@ -32,12 +32,12 @@ BASE = {
 }
 OUTPUTS = {
     "applied_spatial_force",
-    "X_WTool",
-    "V_WTool",
+    "X_WT",
+    "V_WT",
     "contacts",
     "clusters",
     "contact_wrench",
-    "F_Tool_W",
+    "F_To_W",
 }
 
 
@@ -69,14 +69,14 @@ def test_a_body_that_moves_has_ports_and_a_reaction():
 @pytest.mark.parametrize(
     ("effects", "systems", "ports"),
     [
-        (Effects(shading=Shading()), {"force_shading"}, set()),
+        (Effects(shading=ShadingParameters()), {"force_shading"}, set()),
         (
-            Effects(friction=Friction()),
+            Effects(friction=FrictionParameters()),
             {"stick_slip_friction", "stick_slip_friction_wrench"},
             {"friction_force"},
         ),
         (
-            Effects(braking=Braking()),
+            Effects(braking=BrakingParameters()),
             {"pre_contact_braking", "pre_contact_braking_wrench"},
             set(),
         ),
@@ -92,7 +92,7 @@ def test_an_effect_adds_its_systems_and_no_others(effects, systems, ports):
 
 
 def test_what_is_shaded_is_what_is_clustered_and_shown():
-    scene, rendering = make_scene(effects=Effects(shading=Shading()))
+    scene, rendering = make_scene(effects=Effects(shading=ShadingParameters()))
     fed = sources(rendering)
     assert fed["force_shading.contacts"] == "contact_query.contacts"
     assert fed["contact_clustering.contacts"] == "force_shading.contacts"
@@ -114,7 +114,7 @@ def test_friction_stops_a_body_that_slides(config):
     assert slide(Effects()) == pytest.approx(0.2 * 0.3, abs=1e-6)
     # It slides for v² / (2 μ g), within the give of what sticks and its tilt.
     expected = 0.2**2 / (2 * 0.3 * G)
-    found = slide(Effects(friction=Friction(coefficient=0.3)))
+    found = slide(Effects(friction=FrictionParameters(coefficient=0.3)))
     assert found == pytest.approx(expected, abs=1e-3)
 
 
@@ -138,7 +138,7 @@ def test_one_tool_may_meet_bodies_in_two_ways():
             name=f"on_{body}",
         )
         for body, effects in [
-            ("slab", Effects(braking=Braking())),
+            ("slab", Effects(braking=BrakingParameters())),
             ("cart", Effects()),
         ]
     )
@@ -151,9 +151,9 @@ def test_one_tool_may_meet_bodies_in_two_ways():
     cart = scene.plant.GetBodyByName("cart")
     scene.plant.SetFloatingBaseBodyPoseInWorldFrame(scene.context, cart, near)
     scene.simulator.AdvanceTo(1e-3)
-    assert scene.read(plain, "F_Tool_W")[3] < -0.9
+    assert scene.read(plain, "F_To_W")[3] < -0.9
     assert scene.velocity("cart")[3] == pytest.approx(1.0 / 0.1 * 1e-3, rel=1e-6)
-    assert scene.read(braked, "F_Tool_W")[5] == pytest.approx(MASS * G, rel=1e-3)
+    assert scene.read(braked, "F_To_W")[5] == pytest.approx(MASS * G, rel=1e-3)
 
 
 def measure_momentum(plant, context):
@@ -166,7 +166,7 @@ def test_bodies_that_rub_keep_their_momentum():
     scene, rendering = make_scene(
         cart=True,
         gravity=0.0,
-        effects=Effects(friction=Friction(coefficient=0.5)),
+        effects=Effects(friction=FrictionParameters(coefficient=0.5)),
     )
     assert "friction_reaction" in names(rendering)
     # Far from the slab, pressed together, and sliding along each other.
@@ -191,7 +191,9 @@ def test_bodies_that_brake_each_other_keep_their_momentum():
     scene, rendering = make_scene(
         cart=True,
         gravity=0.0,
-        effects=Effects(braking=Braking(damping_Ns_per_m=5.0, distance_m=4e-3)),
+        effects=Effects(
+            braking=BrakingParameters(damping_Ns_per_m=5.0, distance_m=4e-3)
+        ),
     )
     # Far from the slab and not in contact yet, one turned against the other.
     turned = RollPitchYaw(0.0, 0.0, 0.1)
@@ -216,8 +218,8 @@ def test_bodies_that_brake_each_other_keep_their_momentum():
 
 
 def test_braking_takes_the_speed_that_it_says():
-    effects = Effects(braking=Braking(damping_Ns_per_m=20.0, distance_m=4e-3))
-    contact = Contact(tolerance_m=0.0, damping_Ns_per_m=0.0)
+    effects = Effects(braking=BrakingParameters(damping_Ns_per_m=20.0, distance_m=4e-3))
+    contact = ContactParameters(tolerance_m=0.0, damping_Ns_per_m=0.0)
     scene = PlantScene(PLANTS["continuous"])
     scene.add("tool", CUBE, mass=MASS)
     scene.add_slab()
@@ -247,14 +249,14 @@ def hold_handle(scene, rendering, X_WH):
 
 
 def test_a_handle_outside_holds_the_tool_and_feels_it():
-    coupling = Coupling(stiffness_N_per_m=500.0)
+    coupling = CouplingParameters(stiffness_N_per_m=500.0)
     X_HT = RigidTransform([0.0, 0.0, -0.1])
     scene, rendering = make_scene(coupling=coupling, X_HT=X_HT)
     assert inputs(rendering) - {"body_poses", "body_spatial_velocities"} == {
         "X_WH",
         "V_WH",
     }
-    assert outputs(rendering) == OUTPUTS | {"F_display"}
+    assert outputs(rendering) == OUTPUTS | {"F_Ho_W_commanded"}
     coupled = {"virtual_coupling", "virtual_coupling_wrench", "X_WH", "V_WH"}
     assert names(rendering) == BASE | coupled
     hold_handle(scene, rendering, RigidTransform([0, 0, 0.4]))
@@ -262,15 +264,15 @@ def test_a_handle_outside_holds_the_tool_and_feels_it():
     scene.simulator.AdvanceTo(1.0)
     sag = MASS * G / 500.0
     assert scene.pose("tool").translation()[2] == pytest.approx(0.3 - sag, abs=1e-6)
-    F = scene.read(rendering, "F_display")
+    F = scene.read(rendering, "F_Ho_W_commanded")
     np.testing.assert_allclose(F[3:], [0, 0, -MASS * G], atol=1e-4)
     # The contact's own output is without the coupling.
-    np.testing.assert_array_equal(scene.read(rendering, "F_Tool_W"), np.zeros(6))
+    np.testing.assert_array_equal(scene.read(rendering, "F_To_W"), np.zeros(6))
 
 
 @pytest.mark.parametrize("left_out", ["X_WH", "V_WH"])
 def test_a_handle_that_is_not_connected_is_named(left_out):
-    scene, rendering = make_scene(coupling=Coupling())
+    scene, rendering = make_scene(coupling=CouplingParameters())
     (given,) = {"X_WH", "V_WH"} - {left_out}
     value = pose_to_vector(RigidTransform()) if given == "X_WH" else np.zeros(6)
     source = scene.builder.AddSystem(ConstantVectorSource(value))
@@ -291,16 +293,18 @@ def start_with_handle(scene, rendering, speed):
 
 def test_a_device_inside_is_shown_the_contact():
     X_HT = RigidTransform([0, 0, REST])
-    scene, rendering = make_scene(coupling=Coupling(), device=make_device(), X_HT=X_HT)
+    scene, rendering = make_scene(
+        coupling=CouplingParameters(), device=make_device(), X_HT=X_HT
+    )
     assert inputs(rendering) == {"body_poses", "body_spatial_velocities"}
-    device_ports = {"F_display", "X_WH", "V_WH", "F_applied", "status"}
+    device_ports = {"F_Ho_W_commanded", "X_WH", "V_WH", "F_Ho_W_rendered", "status"}
     assert outputs(rendering) == OUTPUTS | device_ports
     assert "device" in names(rendering)
     start_with_handle(scene, rendering, -0.1)
     scene.simulator.AdvanceTo(0.02)
     # The handle presses the tool down, and is pressed up.
     assert scene.pose("tool").translation()[2] < REST - 1e-4
-    assert scene.read(rendering, "F_applied")[5] > 0.1
+    assert scene.read(rendering, "F_Ho_W_rendered")[5] > 0.1
     scene.simulator.AdvanceTo(3.0)
     # At rest the handle is where the tool is borne.
     assert scene.pose("tool").translation()[2] == pytest.approx(REST, abs=1e-5)
@@ -308,10 +312,10 @@ def test_a_device_inside_is_shown_the_contact():
 
 
 def test_passivity_control_goes_before_a_device():
-    effects = Effects(passivity=Passivity())
+    effects = Effects(passivity=PassivityParameters())
     X_HT = RigidTransform([0, 0, REST])
     scene, rendering = make_scene(
-        coupling=Coupling(), device=make_device(), effects=effects, X_HT=X_HT
+        coupling=CouplingParameters(), device=make_device(), effects=effects, X_HT=X_HT
     )
     assert "passivity_control" in names(rendering)
     start_with_handle(scene, rendering, -0.1)
@@ -326,10 +330,19 @@ def test_passivity_control_goes_before_a_device():
 def test_what_would_mean_nothing_is_refused():
     for options, message in [
         ({"device": make_device()}, "device: needs a coupling"),
-        ({"effects": Effects(gravity=Gravity())}, "gravity: the plant's own gravity"),
-        ({"effects": Effects(passivity=Passivity())}, "passivity: is of a device"),
         (
-            {"effects": Effects(passivity=Passivity()), "coupling": Coupling()},
+            {"effects": Effects(gravity=GravityParameters())},
+            "gravity: the plant's own gravity",
+        ),
+        (
+            {"effects": Effects(passivity=PassivityParameters())},
+            "passivity: is of a device",
+        ),
+        (
+            {
+                "effects": Effects(passivity=PassivityParameters()),
+                "coupling": CouplingParameters(),
+            },
             "passivity: is of a device",
         ),
     ]:
@@ -339,4 +352,4 @@ def test_what_would_mean_nothing_is_refused():
 
 def test_a_gain_out_of_range_is_named():
     with pytest.raises(ValueError, match="stiffness_N_per_m"):
-        make_scene(contact=Contact(stiffness_N_per_m=-1.0))
+        make_scene(contact=ContactParameters(stiffness_N_per_m=-1.0))

@@ -11,10 +11,10 @@ from pydrake.multibody.tree import JacobianWrtVariable
 from pydrake.visualization import AddDefaultVisualization
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.scene.schema import Contact
+from drake_haptics.scene.schema import ContactParameters
 
 K = 2e3
-CONTACT = Contact(stiffness_N_per_m=K, damping_Ns_per_m=5.0)
+CONTACT = ContactParameters(stiffness_N_per_m=K, damping_Ns_per_m=5.0)
 DRAKE = "package://drake/examples"
 TABLE = (
     f"{DRAKE}/kuka_iiwa_arm/models/table/"
@@ -87,7 +87,7 @@ def test_an_object_that_drake_ships_stands_on_a_table(
     scene.start(**{tool: RigidTransform([0.02, 0.01, rest + 1e-4])})
     scene.simulator.AdvanceTo(1.0)
     assert scene.pose(tool).translation()[2] == pytest.approx(rest, abs=2e-5)
-    F = scene.read(rendering, "F_Tool_W")
+    F = scene.read(rendering, "F_To_W")
     np.testing.assert_allclose(F[3:], [0, 0, mass * G], atol=1e-2)
 
 
@@ -128,7 +128,7 @@ def test_an_arm_feels_its_tool_on_a_table_by_its_jacobian(scene, tmp_path):
     rendering = render(scene, "pen", environment=["table::link"])
     start_arm(scene)
     plant, context, pen = scene.plant, scene.context, scene.plant.GetBodyByName("pen")
-    F = scene.read(rendering, "F_Tool_W")
+    F = scene.read(rendering, "F_To_W")
     assert F[5] == pytest.approx(1.5e-3 * K, rel=0.01)
     world = plant.world_frame()
     J = plant.CalcJacobianSpatialVelocity(
@@ -155,7 +155,7 @@ def test_an_arm_feels_its_tool_on_a_table_by_its_jacobian(scene, tmp_path):
     assert np.abs((J.T @ F)[finger]).min() > 1e-2
 
 
-def test_what_is_in_the_way_of_a_welded_arm_is_not_its_own_neighbour(tmp_path):
+def test_what_is_in_the_way_of_a_welded_arm_is_not_its_own_neighbor(tmp_path):
     """Without a list, an arm's tool meets the table and the links it can reach."""
     scene = add_arm(PlantScene(), tmp_path, -1.0)
     rendering = render(scene, "pen")

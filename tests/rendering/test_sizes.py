@@ -1,4 +1,4 @@
-"""A body of a plant whose mesh is in another unit than metres is asked about."""
+"""A body of a plant whose mesh is in another unit than meters is asked about."""
 
 import warnings
 
@@ -7,10 +7,10 @@ from plant_scenes import PlantScene
 from pydrake.geometry import Box
 
 from drake_haptics import AddHapticRendering
-from drake_haptics.scene.schema import Contact
+from drake_haptics.scene.schema import ContactParameters
 from drake_haptics.scene.validation import SceneWarning
 
-SOFT = Contact(stiffness_N_per_m=10.0, damping_Ns_per_m=0.0)
+SOFT = ContactParameters(stiffness_N_per_m=10.0, damping_Ns_per_m=0.0)
 
 
 def render(tool_m, object_m, contact=SOFT):
@@ -36,8 +36,10 @@ def test_a_tool_in_another_unit_is_asked_about(tool_m, unit, factor):
         assert part in sentence
 
 
-def test_a_tolerance_in_millimetres_is_asked_about():
-    (sentence,) = render(0.04, 0.1, Contact(tolerance_m=2.0, stiffness_N_per_m=10.0))
+def test_a_tolerance_in_millimeters_is_asked_about():
+    (sentence,) = render(
+        0.04, 0.1, ContactParameters(tolerance_m=2.0, stiffness_N_per_m=10.0)
+    )
     assert sentence.startswith("contact.tolerance_m: is 2 m, more than 'tool'")
 
 

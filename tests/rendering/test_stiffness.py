@@ -9,11 +9,11 @@ from pydrake.multibody.tree import SpatialInertia
 
 from drake_haptics.rendering.bodies import make_rendered_bodies
 from drake_haptics.rendering.checks import check_rendering_stiffness
-from drake_haptics.scene.schema import Contact, Coupling, Material
+from drake_haptics.scene.schema import ContactParameters, CouplingParameters, Material
 
 MASS, STEP = 0.1, 1e-3
 LIMIT = 4 * MASS / STEP**2
-SOFT = Contact(stiffness_N_per_m=1e3, damping_Ns_per_m=0.0)
+SOFT = ContactParameters(stiffness_N_per_m=1e3, damping_Ns_per_m=0.0)
 PLAIN = [Material(), Material()]
 
 
@@ -41,7 +41,9 @@ def make_case(config=PLANTS["sampled"]):
 
 
 def test_soft_gains_are_silent():
-    assert check_rendering_stiffness(*make_case(), SOFT, PLAIN, Coupling()) == []
+    assert (
+        check_rendering_stiffness(*make_case(), SOFT, PLAIN, CouplingParameters()) == []
+    )
 
 
 @pytest.mark.parametrize(
@@ -71,10 +73,12 @@ def test_a_coupling_is_judged_in_translation_and_in_rotation():
     case = make_case()
     inertia = 0.4 * MASS * 1e6
     for coupling, unit in [
-        (Coupling(stiffness_N_per_m=1.01 * LIMIT), "N/m"),
-        (Coupling(damping_Ns_per_m=201.0), "N/m"),
+        (CouplingParameters(stiffness_N_per_m=1.01 * LIMIT), "N/m"),
+        (CouplingParameters(damping_Ns_per_m=201.0), "N/m"),
         (
-            Coupling(rotational_stiffness_Nm_per_rad=1.01 * 4 * inertia / STEP**2),
+            CouplingParameters(
+                rotational_stiffness_Nm_per_rad=1.01 * 4 * inertia / STEP**2
+            ),
             "N·m/rad",
         ),
     ]:
@@ -86,4 +90,4 @@ def test_a_coupling_is_judged_in_translation_and_in_rotation():
 def test_a_continuous_plant_has_no_limit():
     case = make_case(PLANTS["continuous"])
     stiff = replace(SOFT, stiffness_N_per_m=100 * LIMIT)
-    assert check_rendering_stiffness(*case, stiff, PLAIN, Coupling()) == []
+    assert check_rendering_stiffness(*case, stiff, PLAIN, CouplingParameters()) == []

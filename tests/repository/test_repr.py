@@ -85,7 +85,7 @@ def make_loop(folder: Path) -> list[object]:
         haptic.loop,
         drake_haptics.run(haptic, 0.01),
         drake_haptics.CallbackTimer(),
-        drake_haptics.TickClock(1e-3),
+        drake_haptics.RealTimePacer(1e-3),
         drake_haptics.CallbackTimer(),
         drake_haptics.EnergyLedger(haptic.loop, simulator.get_context()),
         recorder,
@@ -129,7 +129,7 @@ def test_each_is_one_line_that_names_its_class_and_no_address(
     ("name", "first_question"),
     [
         ("Mesh", "252 vertices, 504 triangles, 108.2 × 78.46 × 71.8 mm"),
-        ("Decomposition", "75 pieces"),
+        ("ConvexPieces", "75 pieces"),
         ("ConvexPolytope", "8 vertices, 12 edges, 6 facets"),
         ("SceneTracker", "1 object, tolerance=0.001 m"),
         ("CouplingGains", "800 N/m, 4 N·s/m, 1 N·m/rad, 0.01 N·m·s/rad"),

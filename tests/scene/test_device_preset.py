@@ -15,7 +15,7 @@ from drake_haptics.scene.device_preset import (
     load_device_preset,
 )
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import Encoder, Twin
+from drake_haptics.scene.schema import DeviceImperfections, EncoderParameters
 from drake_haptics.simulation.run import run
 
 PREMIUM = "phantom_premium_1_5_6dof"
@@ -97,7 +97,7 @@ def test_an_arm_of_ones_own_is_felt_like_the_shipped_one(tmp_path):
         )
     )
     scene = load_scene(path)
-    assert scene.device.twin == Twin(encoder=Encoder())
+    assert scene.device.twin == DeviceImperfections(encoder=EncoderParameters())
     haptic = BuildHapticDiagram(scene)
     assert haptic.loop.device.max_force_N == 5.0
     arm = haptic.loop.device.GetSubsystemByName("simulated_arm")

@@ -7,7 +7,7 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.geometry import cut_scene
-from drake_haptics.scene.schema import Friction
+from drake_haptics.scene.schema import FrictionParameters
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def test_a_rebuild_takes_the_pieces_as_they_are(scene, haptic):
         scene,
         tool=replace(scene.tool, mass_kg=0.3),
         environment=[replace(plate, name="floor"), replace(plate, name="roof")],
-        effects=replace(scene.effects, friction=Friction()),
+        effects=replace(scene.effects, friction=FrictionParameters()),
     )
     again = BuildHapticDiagram(other, reuse=haptic)
     assert again.tool is haptic.tool

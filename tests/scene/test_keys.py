@@ -2,7 +2,12 @@
 
 from dataclasses import asdict
 
-from drake_haptics.scene.schema import Braking, Effects, EnvironmentObject, Scene
+from drake_haptics.scene.schema import (
+    BrakingParameters,
+    Effects,
+    EnvironmentObject,
+    Scene,
+)
 from drake_haptics.scene.settings import list_keys
 
 
@@ -18,7 +23,7 @@ def find_leaves(data, where=""):
 def test_every_value_of_a_scene_has_a_key():
     keys = list_keys(Scene)
     assert len(set(keys)) == len(keys)
-    scene = Scene(effects=Effects(braking=Braking()))
+    scene = Scene(effects=Effects(braking=BrakingParameters()))
     for leaf in find_leaves(asdict(scene)):
         # A part that is not there has its keys in the list.
         assert leaf in keys or any(key.startswith(f"{leaf}.") for key in keys)

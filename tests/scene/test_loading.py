@@ -10,19 +10,19 @@ from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_d
 from drake_haptics.scene.library import find_scene, list_scenes
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
-    Braking,
-    Contact,
-    Coupling,
-    Device,
+    BrakingParameters,
+    ContactParameters,
+    CouplingParameters,
+    DeviceImperfections,
+    DeviceParameters,
     Effects,
-    Friction,
-    Gravity,
-    HandPath,
+    FrictionParameters,
+    GravityParameters,
+    HandPathParameters,
     Material,
-    Passivity,
+    PassivityParameters,
     Pose,
-    Shading,
-    Twin,
+    ShadingParameters,
     Waypoint,
 )
 
@@ -60,8 +60,11 @@ def test_a_scene_is_read_with_defaults_for_the_rest(tmp_path):
     assert scene.tool.mass_kg == 0.08
     assert scene.environment[0].scale == 1e-3
     assert scene.hand.path.waypoints[1].rpy_deg == [0, 10, 0]
-    assert (scene.contact, scene.coupling) == (Contact(), Coupling())
-    assert scene.device == Device()
+    assert (scene.contact, scene.coupling) == (
+        ContactParameters(),
+        CouplingParameters(),
+    )
+    assert scene.device == DeviceParameters()
     assert scene.environment[0].material == Material()
     assert scene.effects == Effects(None, None, None, None, None)
 
@@ -73,9 +76,12 @@ def test_an_effect_is_there_once_it_is_named(tmp_path):
     )
     scene = load(tmp_path, GOOD.replace("hand:", every))
     assert scene.effects == Effects(
-        Shading(), Friction(coefficient=0.5), Braking(), Gravity([0, 0, -1.62]),
-        Passivity(),
-    )  # fmt: skip
+        ShadingParameters(),
+        FrictionParameters(coefficient=0.5),
+        BrakingParameters(),
+        GravityParameters([0, 0, -1.62]),
+        PassivityParameters(),
+    )
 
 
 def test_a_material_takes_the_place_of_the_scenes(tmp_path):
@@ -329,7 +335,7 @@ def test_an_unknown_scene_is_answered_with_those_there_are():
 )
 def test_a_device_that_cannot_hold_it_is_refused(tmp_path, change, complaint):
     scene = load(tmp_path, GOOD)
-    scene.device = Device(**change)
+    scene.device = DeviceParameters(**change)
     with pytest.raises(SceneError, match=complaint):
         make_simulated_device(scene, make_hand_path(scene.hand.path))
 
@@ -347,7 +353,7 @@ def test_an_unknown_grip_is_refused(tmp_path):
 
 
 def test_a_path_that_turns_too_far_is_refused():
-    path = HandPath(waypoints=[Waypoint(0), Waypoint(1, rpy_deg=[0, 0, 150])])
+    path = HandPathParameters(waypoints=[Waypoint(0), Waypoint(1, rpy_deg=[0, 0, 150])])
     with pytest.raises(SceneError, match=r"hand\.path\.waypoints: .* 0 and 1"):
         make_hand_path(path)
 
@@ -355,15 +361,15 @@ def test_a_path_that_turns_too_far_is_refused():
 def test_default_coupling_is_stable_on_the_shipped_device():
     # Gil et al.: K < (b + B) / (T / 2) without further delay; the arm gives almost
     # no damping of its own, and the hand's is left out, so this is the worst case.
-    coupling = Coupling()
-    half_tick = 0.5 / Device().rate_hz
+    coupling = CouplingParameters()
+    half_tick = 0.5 / DeviceParameters().rate_hz
     assert coupling.stiffness_N_per_m < 0.5 * coupling.damping_Ns_per_m / half_tick
     assert (
         coupling.rotational_stiffness_Nm_per_rad
         < 0.5 * coupling.rotational_damping_Nms_per_rad / half_tick
     )
     # Sampled damping itself is bounded: B T / m of the lightest handle motion.
-    assert coupling.damping_Ns_per_m / Device().rate_hz / 0.12 < 0.2
+    assert coupling.damping_Ns_per_m / DeviceParameters().rate_hz / 0.12 < 0.2
 
 
 def test_a_mesh_may_come_from_drake(tmp_path):
@@ -382,7 +388,12 @@ def test_a_name_that_a_scene_does_not_have_cannot_be_set():
     """It would be silent otherwise: the value that was meant stays as it was."""
     scene = load_scene(find_scene("cup_spoon"))
     parts = (scene, scene.contact, scene.coupling, scene.device, scene.effects)
-    for part in (*parts, scene.hand.path.waypoints[0], Friction(), Twin()):
+    for part in (
+        *parts,
+        scene.hand.path.waypoints[0],
+        FrictionParameters(),
+        DeviceImperfections(),
+    ):
         with pytest.raises(AttributeError, match="stiffnes_N_per_m"):
             part.stiffnes_N_per_m = 1.0
 

@@ -18,7 +18,7 @@ from drake_haptics import AddHapticRendering
 from drake_haptics.cli import endings, main, run_session
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.scene_file import write_scene
-from drake_haptics.scene.schema import Braking, Contact, Effects
+from drake_haptics.scene.schema import BrakingParameters, ContactParameters, Effects
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.run import run
 from drake_haptics.simulation.statistics import RunStatistics
@@ -54,7 +54,7 @@ def make_plant(tolerance_m=1e-3, **contact):
             scene.plant,
             scene.scene_graph,
             "tool",
-            contact=Contact(tolerance_m=tolerance_m, **contact),
+            contact=ContactParameters(tolerance_m=tolerance_m, **contact),
         )
     return scene, rendering
 
@@ -91,8 +91,8 @@ def test_a_plant_says_so_where_it_looks_for_contacts_as_far_as_braking_needs():
             scene.plant,
             scene.scene_graph,
             "tool",
-            contact=Contact(tolerance_m=1e-3),
-            effects=Effects(braking=Braking(distance_m=0.01)),
+            contact=ContactParameters(tolerance_m=1e-3),
+            effects=Effects(braking=BrakingParameters(distance_m=0.01)),
         )
         scene.start(tool=RigidTransform([0, 0, HALF - DEEP]))
         scene.simulator.AdvanceTo(0.02)

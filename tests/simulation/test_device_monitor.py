@@ -7,14 +7,14 @@ import pytest
 from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.device.backend import Fault, GateState, LinkStatus
-from drake_haptics.simulation.device_monitor import DeviceWatch, DriverSilence
+from drake_haptics.simulation.device_monitor import DeviceWatch, SilenceMonitor
 
 ACTIVE = (GateState.ACTIVE, Fault.NONE)
 STALE = (GateState.FAULT, Fault.STALE)
 FAST = (GateState.FAULT, Fault.OVERSPEED)
 
 
-def watch_states(*states, wants_it_back=lambda: False):
+def watch_states(*states, should_recover=lambda: False):
     """Watches a device go through (gate, fault) states, one per tick."""
 
     def read(call):
@@ -22,7 +22,7 @@ def watch_states(*states, wants_it_back=lambda: False):
         return dataclasses.replace(make_reading(call), gate=gate, fault=fault)
 
     backend = ScriptedDevice(read)
-    watch = DeviceWatch(backend, wants_it_back)
+    watch = DeviceWatch(backend, should_recover)
     for _ in states:
         watch.end_tick()
     return watch.to_dict(), backend
@@ -42,7 +42,7 @@ def test_a_fault_lasts_until_somebody_wants_the_device_back():
 
 def test_a_wish_is_passed_on_once_for_each_fault():
     _, backend = watch_states(
-        STALE, STALE, STALE, ACTIVE, FAST, FAST, FAST, wants_it_back=lambda: True
+        STALE, STALE, STALE, ACTIVE, FAST, FAST, FAST, should_recover=lambda: True
     )
     assert backend.recovered == 2
 
@@ -51,14 +51,14 @@ def test_a_wish_from_before_the_fault_does_not_count():
     """As the Enter key is: pressed once, at some time before anybody asks."""
     typed = [True]
     _, backend = watch_states(
-        ACTIVE, *[STALE] * 20, wants_it_back=lambda: bool(typed and typed.pop())
+        ACTIVE, *[STALE] * 20, should_recover=lambda: bool(typed and typed.pop())
     )
     assert backend.recovered == 0
 
 
 def test_nobody_is_asked_while_all_is_well():
     asked = []
-    watch_states(ACTIVE, ACTIVE, wants_it_back=lambda: asked.append(1))
+    watch_states(ACTIVE, ACTIVE, should_recover=lambda: asked.append(1))
     assert not asked
 
 
@@ -83,7 +83,7 @@ def test_loads_are_those_that_the_device_showed():
 
     def read(call):
         wrench = np.array(wrenches[min(call, 2) - 1], dtype=float)
-        return dataclasses.replace(make_reading(call), F_BH=wrench)
+        return dataclasses.replace(make_reading(call), F_Ho_B=wrench)
 
     watch = DeviceWatch(ScriptedDevice(read), lambda: False)
     watch.end_tick()
@@ -94,7 +94,7 @@ def test_loads_are_those_that_the_device_showed():
 
 
 def test_a_driver_is_silent_from_its_last_new_reading_on():
-    silence = DriverSilence()
+    silence = SilenceMonitor()
     readings = [None, *(make_reading(n) for n in (1, 2, 2, 2, 3))]
     said = [silence.add(reading, 0.4) for reading in readings]
     # None the first time is as it was before.

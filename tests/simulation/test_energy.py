@@ -13,7 +13,12 @@ from scipy.spatial.transform import Rotation
 from drake_haptics import EnergyLedger
 from drake_haptics.geometry.mesh.mesh import calc_mass_properties
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.schema import Braking, Effects, Friction, Gravity
+from drake_haptics.scene.schema import (
+    BrakingParameters,
+    Effects,
+    FrictionParameters,
+    GravityParameters,
+)
 from drake_haptics.simulation.run import make_simulator, run
 
 H = 1e-3
@@ -34,12 +39,12 @@ def record(scene, duration_s):
     haptic = BuildHapticDiagram(scene)
     loop = haptic.loop
     ports = {
-        "X_WTool": loop.haptic_tool.get_pose_output_port(),
-        "V_WTool": loop.haptic_tool.get_velocity_output_port(),
-        "X_WH": loop.device.get_handle_pose_output_port(),
-        "V_WH": loop.device.get_handle_velocity_output_port(),
-        "F_applied": loop.device.get_applied_wrench_output_port(),
-        "F_display": loop.virtual_coupling.get_display_wrench_output_port(),
+        "X_WT": loop.haptic_tool.GetOutputPort("X_WT"),
+        "V_WT": loop.haptic_tool.GetOutputPort("V_WT"),
+        "X_WH": loop.device.GetOutputPort("X_WH"),
+        "V_WH": loop.device.GetOutputPort("V_WH"),
+        "F_Ho_W_rendered": loop.device.GetOutputPort("F_Ho_W_rendered"),
+        "F_Ho_W_commanded": loop.virtual_coupling.GetOutputPort("F_Ho_W_commanded"),
         **loop.wrench_sources,
     }
     seen = {name: [] for name in ports}
@@ -76,7 +81,7 @@ def works_on_tool(seen, name):
     """Of the wrench that the implicit step applies, in each tick."""
     model = getattr(seen, name)[:-1]
     F, K, B = model[:, :6], model[:, 6:42], model[:, 42:]
-    V, V_after = seen.V_WTool[:-1], seen.V_WTool[1:]
+    V, V_after = seen.V_WT[:-1], seen.V_WT[1:]
     applied = (
         F
         - np.einsum("tij,tj->ti", B.reshape(-1, 6, 6), V_after - V)
@@ -86,8 +91,8 @@ def works_on_tool(seen, name):
 
 
 def kinetic_energies(seen):
-    R = rotations(seen.X_WTool)
-    w, v = seen.V_WTool[:, :3], seen.V_WTool[:, 3:]
+    R = rotations(seen.X_WT)
+    w, v = seen.V_WT[:, :3], seen.V_WT[:, 3:]
     v_cm = v + np.cross(w, R.apply(seen.p_TTcm))
     w_T = R.inv().apply(w)
     return 0.5 * TOOL_MASS * np.sum(v_cm**2, axis=1) + 0.5 * np.einsum(
@@ -106,7 +111,11 @@ def plain(tmp_path_factory):
 def rich(tmp_path_factory):
     folder = tmp_path_factory.mktemp("rich")
     scene = turned(over_a_plate(folder, [ABOVE, PRESSING, ASIDE], tool="cube"))
-    scene.effects = Effects(friction=Friction(), braking=Braking(), gravity=Gravity())
+    scene.effects = Effects(
+        friction=FrictionParameters(),
+        braking=BrakingParameters(),
+        gravity=GravityParameters(),
+    )
     return record(scene, 0.7)
 
 
@@ -143,14 +152,14 @@ def test_the_tool_has_the_work_of_all_less_what_the_implicit_step_takes(seen):
     assert books["stored"] == pytest.approx(E[-1], rel=1e-12)
     assert books["lost"] == pytest.approx(W.sum() - (E[-1] - E[0]), abs=1e-12 * scale)
     # ½ ΔVᵀM ΔV and the gyroscopic force, both from energies: M is that of the start.
-    R = rotations(seen.X_WTool)[:-1]
-    V, V_after = seen.V_WTool[:-1], seen.V_WTool[1:]
+    R = rotations(seen.X_WT)[:-1]
+    V, V_after = seen.V_WT[:-1], seen.V_WT[1:]
 
     def energies(V):
         return kinetic_energies(
             SimpleNamespace(
-                X_WTool=seen.X_WTool[:-1],
-                V_WTool=V,
+                X_WT=seen.X_WT[:-1],
+                V_WT=V,
                 p_TTcm=seen.p_TTcm,
                 I_TTcm_T=seen.I_TTcm_T,
             )
@@ -167,18 +176,18 @@ def test_the_tool_has_the_work_of_all_less_what_the_implicit_step_takes(seen):
 
 
 def test_the_hand_is_charged_for_its_way_against_the_wrench_that_is_held(seen):
-    work = -np.sum(seen.F_applied[1:] * displacements(seen.X_WH), axis=1)
+    work = -np.sum(seen.F_Ho_W_rendered[1:] * displacements(seen.X_WH), axis=1)
     books = seen.books["device"]
     scale = books["in"] + books["out"]
     assert books["net"] == pytest.approx(work.sum(), abs=1e-12 * scale)
     # The wrench of the right tick: a speed half-way says the same.
     V = (seen.V_WH[1:] + seen.V_WH[:-1]) / 2
-    power = -np.sum(seen.F_applied[1:] * V, axis=1)
+    power = -np.sum(seen.F_Ho_W_rendered[1:] * V, axis=1)
     assert books["net"] == pytest.approx(H * power.sum(), abs=5e-4 * scale)
 
 
 def test_what_the_coupling_gets_from_the_handle_goes_through_the_display(seen):
-    asked = -np.sum(seen.F_display[:-1] * displacements(seen.X_WH), axis=1)
+    asked = -np.sum(seen.F_Ho_W_commanded[:-1] * displacements(seen.X_WH), axis=1)
     to_tool = works_on_tool(seen, "coupling")
     books = seen.books["coupling"]
     scale = books["in"] + books["out"]
@@ -199,8 +208,8 @@ def test_what_the_hand_put_in_is_stored_or_lost(seen):
 
 
 def test_a_weight_stores_its_height(rich):
-    R = rotations(rich.X_WTool)
-    z = rich.X_WTool[:, 6] + R.apply(rich.p_TTcm)[:, 2]
+    R = rotations(rich.X_WT)
+    z = rich.X_WT[:, 6] + R.apply(rich.p_TTcm)[:, 2]
     assert rich.books["gravity"]["stored"] == pytest.approx(TOOL_MASS * 9.81 * z[-1])
 
 

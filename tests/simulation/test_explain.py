@@ -23,7 +23,7 @@ class StillArm(LeafSystem):
 
     def __init__(self, height_m):
         super().__init__()
-        self.DeclareVectorInputPort("F_applied", 6)
+        self.DeclareVectorInputPort("F_Ho_W_rendered", 6)
         self._X_WH = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, height_m]
         always = {self.nothing_ticket()}
         self.DeclareVectorOutputPort("X_WH", 7, self._calc_pose, always)
@@ -59,7 +59,7 @@ def build_with_own_arm(haptic):
 
 
 ALWAYS = [
-    "display_force_hold",
+    "rendered_force_hold",
     "simulated_arm",
     "virtual_coupling",
     "haptic_tool",
@@ -115,7 +115,7 @@ def test_a_device_of_the_users_own_is_a_part_that_is_said_to_be_theirs(tmp_path)
     parts = {part.name: part for part in explain_tick(theirs, timer)}
     assert parts["my_arm"].why == "yours: it was added to the loop"
     assert parts["my_arm"].system == "StillArm"
-    assert parts["display_force_hold"].why == "always: limits what the device shows"
+    assert parts["rendered_force_hold"].why == "always: limits what the device shows"
     assert sum(part.share for part in parts.values()) == pytest.approx(1.0)
 
 

@@ -5,8 +5,8 @@ from dataclasses import fields, replace
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
-    Contact,
-    Coupling,
+    ContactParameters,
+    CouplingParameters,
     EnvironmentObject,
     Material,
     Scene,
@@ -22,7 +22,7 @@ def make_scene(*materials, **contact):
         EnvironmentObject(name=f"object_{i}", material=material)
         for i, material in enumerate(materials or [Material()])
     ]
-    return Scene(environment=objects, contact=Contact(**contact))
+    return Scene(environment=objects, contact=ContactParameters(**contact))
 
 
 def names(scene):
@@ -31,7 +31,7 @@ def names(scene):
 
 def test_gains_and_tolerance_are_live():
     assert names(make_scene()) == [
-        *(f"coupling.{field.name}" for field in fields(Coupling)),
+        *(f"coupling.{field.name}" for field in fields(CouplingParameters)),
         "contact.stiffness_N_per_m",
         "contact.damping_Ns_per_m",
         "contact.tolerance_m",
@@ -63,7 +63,7 @@ def test_a_key_reads_and_changes_its_value_in_a_scene():
 def test_ranges_hold_what_the_scene_says_and_are_valid():
     wild = replace(
         make_scene(tolerance_m=0.0, stiffness_N_per_m=3e6),
-        coupling=Coupling(stiffness_N_per_m=1.0, damping_Ns_per_m=99.0),
+        coupling=CouplingParameters(stiffness_N_per_m=1.0, damping_Ns_per_m=99.0),
     )
     for scene in (make_scene(), wild):
         for key in live_keys(scene):

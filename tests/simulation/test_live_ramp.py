@@ -4,8 +4,13 @@ from itertools import pairwise
 
 import pytest
 
-from drake_haptics.scene.schema import Contact, Coupling, EnvironmentObject, Scene
-from drake_haptics.simulation.live_values import GLIDE_S, LiveGlide, live_keys
+from drake_haptics.scene.schema import (
+    ContactParameters,
+    CouplingParameters,
+    EnvironmentObject,
+    Scene,
+)
+from drake_haptics.simulation.live_values import GLIDE_S, LiveValueRamp, live_keys
 
 PERIOD_S = 1e-3
 STEPS = round(GLIDE_S / PERIOD_S)
@@ -13,15 +18,17 @@ BLOCK = EnvironmentObject(name="block")
 
 
 def make_scene(stiffness_N_per_m=800.0, damping_Ns_per_m=2.0, **contact):
-    coupling = Coupling(
+    coupling = CouplingParameters(
         stiffness_N_per_m=stiffness_N_per_m, damping_Ns_per_m=damping_Ns_per_m
     )
-    return Scene(environment=[BLOCK], coupling=coupling, contact=Contact(**contact))
+    return Scene(
+        environment=[BLOCK], coupling=coupling, contact=ContactParameters(**contact)
+    )
 
 
 def glide(*scenes, after=STEPS):
     """Returns a glide on its way to each scene from the one before, so many ticks."""
-    glide = LiveGlide(PERIOD_S)
+    glide = LiveValueRamp(PERIOD_S)
     for scene in scenes:
         glide.aim(scene)
         for _ in range(after):
@@ -31,7 +38,7 @@ def glide(*scenes, after=STEPS):
 
 def test_the_first_values_are_there_at_once():
     scene = make_scene()
-    glide = LiveGlide(PERIOD_S)
+    glide = LiveValueRamp(PERIOD_S)
     glide.aim(scene)
     assert not glide.is_moving
     assert glide.apply(make_scene(stiffness_N_per_m=50.0)) == scene
@@ -39,7 +46,7 @@ def test_the_first_values_are_there_at_once():
 
 def test_a_stiffness_goes_in_equal_ratios_and_a_length_in_equal_steps():
     goal = make_scene(3200.0, tolerance_m=6e-3)
-    glide = LiveGlide(PERIOD_S)
+    glide = LiveValueRamp(PERIOD_S)
     glide.aim(make_scene())
     glide.aim(goal)
     now = []
@@ -59,7 +66,7 @@ def test_a_stiffness_goes_in_equal_ratios_and_a_length_in_equal_steps():
 def test_to_nothing_and_back_it_goes_in_equal_steps():
     no_damping = make_scene(damping_Ns_per_m=0.0)
     for start, goal in [(make_scene(), no_damping), (no_damping, make_scene())]:
-        glide = LiveGlide(PERIOD_S)
+        glide = LiveValueRamp(PERIOD_S)
         glide.aim(start)
         glide.aim(goal)
         for _ in range(STEPS // 4):

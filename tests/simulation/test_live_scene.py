@@ -7,7 +7,12 @@ import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.schema import Braking, Friction, Material, Passivity
+from drake_haptics.scene.schema import (
+    BrakingParameters,
+    FrictionParameters,
+    Material,
+    PassivityParameters,
+)
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.simulation.live_values import (
     is_live_change,
@@ -15,7 +20,7 @@ from drake_haptics.simulation.live_values import (
     write_live_values,
 )
 from drake_haptics.simulation.run import make_simulator
-from drake_haptics.simulation.transfer_state import carry_on
+from drake_haptics.simulation.transfer_state import transfer_context
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.005)
 PRESSING = (0.15, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.01)
@@ -25,7 +30,7 @@ PRESSING = (0.15, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.01)
 def haptic(tmp_path_factory):
     folder = tmp_path_factory.mktemp("scene")
     scene = over_a_plate(folder, [ABOVE, PRESSING])
-    scene.effects.braking = Braking(distance_m=4e-3)
+    scene.effects.braking = BrakingParameters(distance_m=4e-3)
     return BuildHapticDiagram(scene)
 
 
@@ -78,7 +83,7 @@ def test_what_is_written_acts_as_what_is_built(haptic, pressed, clustering):
         written = pressed.Clone()
         write_live_values(haptic, written, scene)
         built = BuildHapticDiagram(scene, reuse=haptic)
-        there = carry_on(haptic, pressed, built)
+        there = transfer_context(haptic, pressed, built)
         found = advance(haptic, written, 20)
         np.testing.assert_allclose(found, advance(built, there, 20), atol=1e-9)
         assert not np.allclose(found, before, atol=1e-6)
@@ -117,13 +122,13 @@ def test_another_order_is_refused_by_name(haptic):
     with pytest.raises(TypeError, match=r"^haptic must be .* is their order"):
         write_live_values(haptic.scene, root, haptic)
     with pytest.raises(TypeError, match=r"^old_context must be .* is their order"):
-        carry_on(haptic, haptic, root)
+        transfer_context(haptic, haptic, root)
 
 
 def test_what_needs_a_diagram_of_its_own_is_not_live(haptic):
     scene = haptic.scene
     for other in (
-        replace(scene, effects=replace(scene.effects, friction=Friction())),
+        replace(scene, effects=replace(scene.effects, friction=FrictionParameters())),
         replace(scene, tool=replace(scene.tool, mass_kg=0.2)),
         change(scene, contact__depth="global"),
         change(scene, device__rate_hz=500.0),
@@ -139,7 +144,9 @@ def test_what_needs_a_diagram_of_its_own_is_not_live(haptic):
 def test_a_reserve_that_comes_of_springs_needs_another_diagram(
     haptic, reserve_J, is_live
 ):
-    effects = replace(haptic.scene.effects, passivity=Passivity(reserve_J=reserve_J))
+    effects = replace(
+        haptic.scene.effects, passivity=PassivityParameters(reserve_J=reserve_J)
+    )
     scene = replace(haptic.scene, effects=effects)
     stiffer = change(scene, coupling__stiffness_N_per_m=900.0)
     assert is_live_change(scene, stiffer) == is_live

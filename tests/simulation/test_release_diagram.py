@@ -8,8 +8,8 @@ from box_scenes import over_a_plate
 from cockpit_rig import ABOVE, PRESSING, CockpitRig
 
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.simulation.transfer_state import retire
-from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.simulation.transfer_state import release_diagram
+from drake_haptics.visualization.meshcat import start_meshcat
 
 TOGGLES = 4
 
@@ -29,7 +29,7 @@ def test_what_ran_before_is_freed(tmp_path, monkeypatch):
             known.append([weakref.ref(part) for part in parts])
         del rig.haptics[:-1]
 
-    rig = CockpitRig(scene, open_meshcat(), monkeypatch, script, watch=watch)
+    rig = CockpitRig(scene, start_meshcat(), monkeypatch, script, watch=watch)
     rig.run(0.26 * (TOGGLES + 1))
     assert len(known) == TOGGLES + 1
     gc.collect()
@@ -43,10 +43,10 @@ def test_what_ran_before_is_freed(tmp_path, monkeypatch):
 
 
 def test_pydrake_frees_a_diagram_whose_systems_have_no_attributes(tmp_path):
-    """What `retire` rests on: a change of pydrake's bindings fails here first."""
+    """`release_diagram` rests on this: a change of pydrake fails here first."""
     haptic = BuildHapticDiagram(over_a_plate(tmp_path, [ABOVE]))
     diagram = weakref.ref(haptic.diagram)
-    retire(haptic)
+    release_diagram(haptic)
     del haptic
     gc.collect()
     assert diagram() is None
@@ -58,4 +58,4 @@ def test_a_system_without_attributes_is_left_as_it_is():
 
         __slots__ = ()
 
-    retire(SimpleNamespace(diagram=Bare()))
+    release_diagram(SimpleNamespace(diagram=Bare()))

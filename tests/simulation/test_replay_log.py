@@ -16,12 +16,12 @@ from drake_haptics.loop.outputs import make_log_header
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
-    Braking,
+    BrakingParameters,
     Effects,
-    Friction,
-    Gravity,
-    Passivity,
-    Shading,
+    FrictionParameters,
+    GravityParameters,
+    PassivityParameters,
+    ShadingParameters,
 )
 from drake_haptics.scene.settings import change_scene
 from drake_haptics.simulation.replay_log import load_log_scene, replay
@@ -64,11 +64,11 @@ def make_scene(folder, kind):
     scene = over_a_plate(folder, SCRAPE, tool="ball" if "ball" in kind else "cube")
     if "effects" in kind:
         scene.effects = Effects(
-            shading=Shading(),
-            friction=Friction(coefficient=0.6),
-            braking=Braking(),
-            gravity=Gravity(),
-            passivity=Passivity(),
+            shading=ShadingParameters(),
+            friction=FrictionParameters(coefficient=0.6),
+            braking=BrakingParameters(),
+            gravity=GravityParameters(),
+            passivity=PassivityParameters(),
         )
     if "octree" in kind:
         scene.contact.clustering = "octree"
@@ -88,7 +88,7 @@ def test_the_same_scene_gives_the_same_bits(tmp_path, kind):
     log = record(tmp_path / "log", make_scene(tmp_path, kind))
     # There is something to compute.
     assert log.rows["contacts"].max() > 0
-    assert np.linalg.norm(log.rows["F_display"][:, 3:], axis=1).max() > 0.7
+    assert np.linalg.norm(log.rows["F_Ho_W_commanded"][:, 3:], axis=1).max() > 0.7
     assert_bit_equal(log, replay(log))
 
 
@@ -100,7 +100,7 @@ def test_friction_sticks_and_slips_in_what_is_compared(tmp_path):
     without = replay(with_it, scene)
     diff = {q.name: q for q in compare_logs(with_it, without).quantities}
     assert diff["X_WH position"].differing == 0
-    assert diff["F_display force"].largest > 0.5
+    assert diff["F_Ho_W_commanded force"].largest > 0.5
 
 
 @pytest.mark.parametrize("name", ["cup_spoon", "torus_peg", "rubbed_sphere"])
@@ -142,8 +142,8 @@ def test_other_gains_differ_from_the_first_contact_on(tmp_path):
         assert by_name[name].differing == 0
     first = int(np.argmax(log.rows["contacts"] > 0))
     # The contact first moves the tool, and the tool then the coupling.
-    assert by_name["X_WTool position"].first_tick == first + 1
-    assert by_name["F_display force"].first_tick == first + 1
+    assert by_name["X_WT position"].first_tick == first + 1
+    assert by_name["F_Ho_W_commanded force"].first_tick == first + 1
     # At rest in the press the softer contact yields five times as far: 4000, not 20000.
     press = slice(95, 100)
     depth = [x.rows["distance_m"][press].mean() for x in (log, again)]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import RunError, make_simulator, run
 from drake_haptics.simulation.statistics import RunStatistics
@@ -137,7 +137,7 @@ def test_other_errors_come_out(haptic):
 
 def test_in_real_time_a_run_is_not_faster_than_the_clock(haptic):
     start = time.perf_counter()
-    figures = run(haptic, 0.2, pace=TickClock(haptic.period_s)).to_dict()
+    figures = run(haptic, 0.2, pace=RealTimePacer(haptic.period_s)).to_dict()
     assert time.perf_counter() - start >= 0.199
     # Waiting is not counted: most ticks are much shorter than their millisecond
     # even on a busy computer.
@@ -180,7 +180,7 @@ def test_no_coupling_is_too_stiff_for_the_limits_of_the_device(tmp_path):
 def test_the_step_is_fine_enough_for_the_arm(haptic):
     # A four times smaller step changes the handle's motion, at 0.15 m/s, by less
     # than the resolution of such devices, 30 µm.
-    port = haptic.loop.device.get_handle_pose_output_port()
+    port = haptic.loop.device.GetOutputPort("X_WH")
     ends = []
     for share in (1.0, 0.25):
         simulator = make_simulator(haptic)

@@ -8,7 +8,7 @@ import pytest
 
 from drake_haptics.simulation import statistics as run_statistics
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.systems.device.display_force_hold import (
+from drake_haptics.systems.device.rendered_force_hold import (
     LIMITED,
     NOT_FINITE,
     SHOWN_AS_ASKED,

@@ -9,36 +9,36 @@ from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate, write
 
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.schema import (
-    Braking,
-    Coupling,
+    BrakingParameters,
+    CouplingParameters,
+    DeviceImperfections,
     Effects,
-    Encoder,
-    ForceDelay,
-    Friction,
-    Gravity,
-    JointFriction,
-    Passivity,
+    EncoderParameters,
+    ForceDelayParameters,
+    FrictionParameters,
+    GravityParameters,
+    JointFrictionParameters,
+    PassivityParameters,
     Pose,
-    Shading,
-    Twin,
+    ShadingParameters,
 )
 from drake_haptics.simulation.run import run
-from drake_haptics.simulation.transfer_state import carry_on, find_handle
+from drake_haptics.simulation.transfer_state import find_handle, transfer_context
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.005)
 DOWN = (0.05, 0.0, 0.0, TOOL_HALF_HEIGHT - 0.005)
 ALONG = (0.3, 0.02, 0.01, TOOL_HALF_HEIGHT - 0.005)
 ALL = Effects(
-    shading=Shading(),
-    friction=Friction(),
-    braking=Braking(),
-    gravity=Gravity(),
-    passivity=Passivity(),
+    shading=ShadingParameters(),
+    friction=FrictionParameters(),
+    braking=BrakingParameters(),
+    gravity=GravityParameters(),
+    passivity=PassivityParameters(),
 )
-FAULTS = Twin(
-    encoder=Encoder(velocity_window=4),
-    friction=JointFriction(),
-    delay=ForceDelay(samples=2),
+FAULTS = DeviceImperfections(
+    encoder=EncoderParameters(velocity_window=4),
+    friction=JointFrictionParameters(),
+    delay=ForceDelayParameters(samples=2),
 )
 
 
@@ -57,7 +57,7 @@ def plain(scene):
 def run_until(haptic, time_s, context=None):
     """Returns a context in which a run was ended at a tick, and what it showed."""
     ends, shown = [], []
-    hold = haptic.loop.device.GetOutputPort("F_applied")
+    hold = haptic.loop.device.GetOutputPort("F_Ho_W_rendered")
 
     def end_tick(root):
         device = haptic.loop.device.GetMyContextFromRoot(root)
@@ -71,7 +71,7 @@ def run_until(haptic, time_s, context=None):
 
 
 def read_tool(haptic, root):
-    """Returns [X_WTool; V_WTool] (13,)."""
+    """Returns [X_WT; V_WT] (13,)."""
     tool = haptic.loop.haptic_tool.GetMyContextFromRoot(root)
     return tool.get_discrete_state_vector().value()
 
@@ -84,7 +84,11 @@ def read_wrench(haptic, root, name="contact"):
 
 @pytest.mark.parametrize(
     ("effects", "twin", "query_rate_hz"),
-    [(Effects(), Twin(), None), (ALL, FAULTS, None), (ALL, Twin(), 250.0)],
+    [
+        (Effects(), DeviceImperfections(), None),
+        (ALL, FAULTS, None),
+        (ALL, DeviceImperfections(), 250.0),
+    ],
 )
 def test_in_an_equal_diagram_all_goes_on_as_it_would_have(
     scene, plain, effects, twin, query_rate_hz
@@ -101,7 +105,9 @@ def test_in_an_equal_diagram_all_goes_on_as_it_would_have(
     # Between two queries, and just as one is due.
     for time_s in (0.201, 0.204):
         context, start = run_until(first, time_s)
-        context, rest = run_until(second, 0.25, carry_on(first, context, second))
+        context, rest = run_until(
+            second, 0.25, transfer_context(first, context, second)
+        )
         assert context.get_time() == pytest.approx(0.25)
         np.testing.assert_allclose(np.vstack([start, rest]), whole, atol=1e-9)
 
@@ -110,7 +116,7 @@ def test_what_was_is_left_as_it_is(scene, plain):
     other = BuildHapticDiagram(replace(scene, effects=ALL), reuse=plain)
     context, _ = run_until(plain, 0.2)
     _, before = run_until(plain, 0.22, context.Clone())
-    run_until(other, 0.22, carry_on(plain, context, other))
+    run_until(other, 0.22, transfer_context(plain, context, other))
     _, after = run_until(plain, 0.22, context)
     np.testing.assert_array_equal(after, before)
 
@@ -122,8 +128,8 @@ def test_an_effect_comes_and_goes_without_a_jolt(scene, plain, name):
     other = BuildHapticDiagram(replace(scene, effects=effects), reuse=plain)
     context, shown = run_until(plain, 0.15)
     largest_N = np.linalg.norm(np.diff(shown[60:, 3:], axis=0), axis=1).max()
-    context, with_it = run_until(other, 0.2, carry_on(plain, context, other))
-    context, without = run_until(plain, 0.25, carry_on(other, context, plain))
+    context, with_it = run_until(other, 0.2, transfer_context(plain, context, other))
+    context, without = run_until(plain, 0.25, transfer_context(other, context, plain))
     shown = np.vstack([shown[-1:], with_it, without])
     assert np.linalg.norm(shown[:, 3:], axis=1).min() > 0.5
     steps_N = np.linalg.norm(np.diff(shown[:, 3:], axis=0), axis=1)
@@ -132,10 +138,10 @@ def test_an_effect_comes_and_goes_without_a_jolt(scene, plain, name):
 
 def test_the_tool_weighs_at_once_what_gravity_says(scene, plain):
     heavy = BuildHapticDiagram(
-        replace(scene, effects=Effects(gravity=Gravity())), reuse=plain
+        replace(scene, effects=Effects(gravity=GravityParameters())), reuse=plain
     )
     context, _ = run_until(plain, 0.2)
-    there = carry_on(plain, context, heavy)
+    there = transfer_context(plain, context, heavy)
     assert read_wrench(heavy, there, "gravity")[5] == pytest.approx(-0.981)
     np.testing.assert_array_equal(read_tool(heavy, there), read_tool(plain, context))
 
@@ -143,7 +149,7 @@ def test_the_tool_weighs_at_once_what_gravity_says(scene, plain):
 def test_forces_are_the_same_on_both_sides(scene, plain):
     other = BuildHapticDiagram(replace(scene, effects=ALL), reuse=plain)
     context, _ = run_until(plain, 0.2)
-    there = carry_on(plain, context, other)
+    there = transfer_context(plain, context, other)
     assert there.get_time() == context.get_time()
     np.testing.assert_array_equal(read_tool(other, there), read_tool(plain, context))
     F = read_wrench(plain, context)
@@ -162,11 +168,13 @@ def test_what_is_new_reads_at_its_beginning_what_is_there(scene, plain):
     other = replace(
         scene,
         contact=replace(scene.contact, query_rate_hz=250.0),
-        device=replace(scene.device, twin=Twin(encoder=Encoder())),
+        device=replace(
+            scene.device, twin=DeviceImperfections(encoder=EncoderParameters())
+        ),
     )
     other = BuildHapticDiagram(other, reuse=plain)
     context, _ = run_until(plain, 0.201)
-    there = carry_on(plain, context, other)
+    there = transfer_context(plain, context, other)
     F = read_wrench(plain, context)
     np.testing.assert_allclose(read_wrench(other, there), F, atol=1e-6)
     handles = [find_handle(plain, context), find_handle(other, there)]
@@ -175,17 +183,17 @@ def test_what_is_new_reads_at_its_beginning_what_is_there(scene, plain):
 
 
 def test_bristles_stay_bent_where_both_have_friction(scene, plain):
-    effects = Effects(friction=Friction())
+    effects = Effects(friction=FrictionParameters())
     first = BuildHapticDiagram(replace(scene, effects=effects), reuse=plain)
-    effects = replace(effects, passivity=Passivity())
+    effects = replace(effects, passivity=PassivityParameters())
     second = BuildHapticDiagram(replace(scene, effects=effects), reuse=plain)
     context, _ = run_until(first, 0.2)
     F = read_wrench(first, context, "friction")
     assert np.linalg.norm(F[3:]) > 0.1
-    there = carry_on(first, context, second)
+    there = transfer_context(first, context, second)
     np.testing.assert_allclose(read_wrench(second, there, "friction"), F, atol=1e-9)
     # Where one has none, there is none at first.
-    again = carry_on(plain, carry_on(first, context, plain), first)
+    again = transfer_context(plain, transfer_context(first, context, plain), first)
     np.testing.assert_array_equal(read_wrench(first, again, "friction"), np.zeros(6))
 
 
@@ -202,21 +210,21 @@ def test_the_way_in_is_the_way_out_there_too(tmp_path):
         tool.SetDiscreteState([1, 0, 0, 0, 0, 0, z, *np.zeros(6)])
         F = read_wrench(first, context)
     assert F[5] > 100.0
-    effects = Effects(friction=Friction())
+    effects = Effects(friction=FrictionParameters())
     other = BuildHapticDiagram(replace(scene, effects=effects), reuse=first)
     np.testing.assert_allclose(
-        read_wrench(other, carry_on(first, context, other)), F, atol=1e-6
+        read_wrench(other, transfer_context(first, context, other)), F, atol=1e-6
     )
     # Pieces that were cut again are others.
     apart = BuildHapticDiagram(scene)
-    assert read_wrench(apart, carry_on(first, context, apart))[5] < 0.0
+    assert read_wrench(apart, transfer_context(first, context, apart))[5] < 0.0
 
 
 def test_gains_are_those_of_the_scene_where_it_goes_on(scene, plain):
-    stiff = replace(scene, coupling=Coupling(stiffness_N_per_m=500.0))
+    stiff = replace(scene, coupling=CouplingParameters(stiffness_N_per_m=500.0))
     other = BuildHapticDiagram(replace(stiff, effects=ALL), reuse=plain)
     context, _ = run_until(plain, 0.2)
-    there = carry_on(plain, context, other)
+    there = transfer_context(plain, context, other)
     coupling = other.loop.virtual_coupling
     gains = coupling.get_gains(coupling.GetMyContextFromRoot(there))
     assert gains.stiffness_N_per_m == 500.0

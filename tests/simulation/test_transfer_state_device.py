@@ -9,9 +9,9 @@ from fake_device import ScriptedDevice, make_reading
 from pydrake.math import RigidTransform, RollPitchYaw
 
 from drake_haptics.loop.builder import BuildHapticDiagram
-from drake_haptics.scene.schema import Effects, Friction, Pose
+from drake_haptics.scene.schema import Effects, FrictionParameters, Pose
 from drake_haptics.simulation.run import run
-from drake_haptics.simulation.transfer_state import carry_on, find_handle
+from drake_haptics.simulation.transfer_state import find_handle, transfer_context
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
 BESIDE = (0.2, 0.02, 0.01, TOOL_HALF_HEIGHT + 0.01)
@@ -50,7 +50,7 @@ def run_on(haptic, context, duration_s):
 
 
 def read_tool(haptic, root):
-    """Returns [X_WTool; V_WTool] (13,)."""
+    """Returns [X_WT; V_WT] (13,)."""
     tool = haptic.loop.haptic_tool.GetMyContextFromRoot(root)
     return tool.get_discrete_state_vector().value()
 
@@ -66,7 +66,7 @@ def test_a_device_that_can_stand_anywhere_takes_the_handle_where_it_is(
     X_WH = find_handle(by_hand, under_way)
     device = ScriptedDevice(lambda k: make_reading(k, position=[0.3, 0.2, 0.1]))
     held = BuildHapticDiagram(scene, device=device, reuse=by_hand, X_WH=X_WH)
-    context = carry_on(by_hand, under_way, held)
+    context = transfer_context(by_hand, under_way, held)
     p_WH = find_handle(held, context).translation()
     np.testing.assert_allclose(p_WH, X_WH.translation(), atol=1e-12)
     tool = read_tool(by_hand, under_way)
@@ -89,12 +89,12 @@ def test_a_device_that_moves_on_while_an_effect_comes_is_where_it_is(scene, by_h
     context = run_on(first, first.diagram.CreateDefaultContext(), 0.05)
     for _ in range(40):
         device.read()
-    effects = Effects(friction=Friction())
+    effects = Effects(friction=FrictionParameters())
     other = BuildHapticDiagram(
         replace(scene, effects=effects), device=device, reuse=first
     )
     assert other.X_WB.IsExactlyEqualTo(first.X_WB)
-    there = carry_on(first, context, other)
+    there = transfer_context(first, context, other)
     np.testing.assert_array_equal(read_tool(other, there), read_tool(first, context))
     there = run_on(other, there, 0.001)
     moved = find_handle(other, there).translation()
@@ -107,16 +107,16 @@ def test_a_hand_takes_the_handle_where_a_device_left_it(scene, by_hand, under_wa
     X_WH = find_handle(by_hand, under_way)
     device = move_by([1e-4, 0.0, 5e-5])
     held = BuildHapticDiagram(scene, device=device, reuse=by_hand, X_WH=X_WH)
-    context = run_on(held, carry_on(by_hand, under_way, held), 0.1)
-    there = carry_on(held, context, by_hand)
+    context = run_on(held, transfer_context(by_hand, under_way, held), 0.1)
+    there = transfer_context(held, context, by_hand)
     assert find_handle(by_hand, there).IsNearlyEqualTo(find_handle(held, context), 1e-9)
     np.testing.assert_array_equal(read_tool(by_hand, there), read_tool(held, context))
     # At rest, and nothing is shown yet.
     loop = by_hand.loop
     at_device = loop.device.GetMyContextFromRoot(there)
-    V_WH = loop.device.get_handle_velocity_output_port().Eval(at_device)
+    V_WH = loop.device.GetOutputPort("V_WH").Eval(at_device)
     np.testing.assert_array_equal(V_WH, np.zeros(6))
-    F = loop.device.get_applied_wrench_output_port().Eval(at_device)
+    F = loop.device.GetOutputPort("F_Ho_W_rendered").Eval(at_device)
     np.testing.assert_array_equal(F, np.zeros(6))
 
 
@@ -124,7 +124,7 @@ def test_out_of_the_arms_reach_the_hand_begins_at_its_path(scene, by_hand):
     device = move_by([0.0, 0.0, 0.02])
     held = BuildHapticDiagram(scene, device=device, reuse=by_hand)
     context = run_on(held, held.diagram.CreateDefaultContext(), 0.05)
-    there = carry_on(held, context, by_hand)
+    there = transfer_context(held, context, by_hand)
     start = by_hand.diagram.CreateDefaultContext()
     assert there.get_time() == context.get_time()
     assert find_handle(by_hand, there).IsNearlyEqualTo(find_handle(by_hand, start), 0.0)
@@ -136,7 +136,7 @@ def test_an_arm_that_stands_elsewhere_is_another(scene, by_hand, under_way):
     moved = BuildHapticDiagram(
         replace(scene, device=replace(scene.device, base=base)), reuse=by_hand
     )
-    there = carry_on(by_hand, under_way, moved)
+    there = transfer_context(by_hand, under_way, moved)
     assert find_handle(moved, there).IsNearlyEqualTo(
         find_handle(by_hand, under_way), 1e-9
     )

@@ -15,14 +15,14 @@ from pydrake.systems.primitives import LogVectorOutput
 
 from drake_haptics._core import CouplingGains
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.scene.schema import Coupling
+from drake_haptics.scene.schema import CouplingParameters
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.arm.simulated_arm import SimulatedArm
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
 PERIOD = 1e-3
-DEFAULT = Coupling()
+DEFAULT = CouplingParameters()
 
 
 def growth(grip, stiffness, rotational_stiffness):
@@ -46,10 +46,10 @@ def growth(grip, stiffness, rotational_stiffness):
         rotational_stiffness,
         DEFAULT.rotational_damping_Nms_per_rad,
     )
-    # Some micrometres away from rest: enough to begin.
+    # Some micrometers away from rest: enough to begin.
     X_WT = X_WH @ RigidTransform([1e-6, 2e-6, 3e-6])
     add_device_on_fixed_tool(builder, device, gains, X_WT)
-    log = LogVectorOutput(device.get_handle_velocity_output_port(), builder, PERIOD)
+    log = LogVectorOutput(device.GetOutputPort("V_WH"), builder, PERIOD)
     simulator = Simulator(builder.Build())
     ResetIntegratorFromFlags(simulator, "runge_kutta2", PERIOD)
     simulator.get_mutable_integrator().set_fixed_step_mode(True)

@@ -8,7 +8,12 @@ from box_scenes import TOOL_HALF_HEIGHT, over_a_plate
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import Braking, Effects, Friction, Gravity
+from drake_haptics.scene.schema import (
+    BrakingParameters,
+    Effects,
+    FrictionParameters,
+    GravityParameters,
+)
 from drake_haptics.simulation.run import run
 
 # Far below what can be felt, far above rounding.
@@ -50,7 +55,11 @@ def test_a_cube_flat_on_a_plate(tmp_path, path):
 @pytest.mark.parametrize("path", PATHS)
 def test_effects_that_only_take_or_store(tmp_path, path):
     scene = over_a_plate(tmp_path, PATHS[path], tool="ball")
-    scene.effects = Effects(friction=Friction(), braking=Braking(), gravity=Gravity())
+    scene.effects = Effects(
+        friction=FrictionParameters(),
+        braking=BrakingParameters(),
+        gravity=GravityParameters(),
+    )
     books = energies(scene)
     assert books["braking"]["damped"] > 0.0
     assert_nothing_is_created(books)
@@ -91,7 +100,7 @@ MADE = {
 
 @pytest.mark.parametrize("scene", MADE)
 def test_what_a_shipped_scene_creates_is_the_contact_s(scene):
-    """A known gap: depth and centre of a flush contact are of different points.
+    """A known gap: depth and center of a flush contact are of different points.
 
     Its wrench is then not quite the gradient of what it stores. All else balances. What
     is made was measured, and may be a tenth more; docs/numerics.md tells of it.

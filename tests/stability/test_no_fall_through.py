@@ -36,7 +36,7 @@ def tools():
 
 
 @cache
-def solid(path: Path) -> tuple[Mesh, Surface, _core.Decomposition]:
+def solid(path: Path) -> tuple[Mesh, Surface, _core.ConvexPieces]:
     mesh = load_mesh(path, scale=1.0)
     return mesh, Surface(mesh), decompose(mesh).core
 

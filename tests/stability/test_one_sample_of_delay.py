@@ -43,9 +43,9 @@ class LateDevice(HapticDevice):
         builder = DiagramBuilder()
         builder.AddNamedSystem("device", device)
         hold = builder.AddNamedSystem("late", ZeroOrderHold(PERIOD, 6))
-        builder.Connect(hold.get_output_port(), device.get_display_wrench_input_port())
-        builder.ExportInput(hold.get_input_port(), "F_display")
-        for name in ("X_WH", "V_WH", "F_applied", "status"):
+        builder.Connect(hold.get_output_port(), device.GetInputPort("F_Ho_W_commanded"))
+        builder.ExportInput(hold.get_input_port(), "F_Ho_W_commanded")
+        for name in ("X_WH", "V_WH", "F_Ho_W_rendered", "status"):
             builder.ExportOutput(device.GetOutputPort(name), name)
         builder.BuildInto(self)
 

@@ -54,17 +54,17 @@ def precessing_disc() -> tuple:
 
 
 @way
-def through_the_symmetric_centre() -> tuple:
+def through_the_symmetric_center() -> tuple:
     return cube(), cube(), along([-2.5, 0, 0], [2.5, 0, 0])
 
 
 @way
-def through_the_centre_of_a_ball() -> tuple:
+def through_the_center_of_a_ball() -> tuple:
     return ball(1), ball(1), along([-2.5, 0, 0], [2.5, 0, 0])
 
 
 @way
-def through_the_centre_at_a_slant() -> tuple:
+def through_the_center_at_a_slant() -> tuple:
     return (
         disc(),
         disc(),
@@ -102,7 +102,7 @@ def pin_through_a_plate() -> tuple:
 
 
 @way
-def micrometre_jitter() -> tuple:
+def micrometer_jitter() -> tuple:
     rng = np.random.default_rng(0)
     poses = [
         pose([0.3, 0.2, 1.05] + 1e-6 * rng.normal(size=3), 1e-6 * rng.normal(size=3))

@@ -39,7 +39,7 @@ def make_slider():
         )
     )
     body.configure_default_state([0.0, SPEED])
-    builder.ExportInput(body.get_input_port(), "F_applied")
+    builder.ExportInput(body.get_input_port(), "F_Ho_W_rendered")
     export_parts(builder, body.get_output_port(), {"X_WH": 7, "V_WH": 6})
     slider = Diagram()
     builder.BuildInto(slider)
@@ -56,17 +56,17 @@ def make_control(max_damping, max_rotational_damping=0.0):
 
 
 def run(backend, gains, X_WT, control, duration_s):
-    """Returns logs over ticks: X_WH, V_WH, F_applied and the balance."""
+    """Returns logs over ticks: X_WH, V_WH, F_Ho_W_rendered and the balance."""
     builder = DiagramBuilder()
     device = HapticDevice(backend, period_s=PERIOD, max_force_N=1e9, max_torque_Nm=1e9)
     add_device_on_fixed_tool(builder, device, gains, X_WT, control)
     ports = [
-        device.get_handle_pose_output_port(),
-        device.get_handle_velocity_output_port(),
-        device.get_applied_wrench_output_port(),
+        device.GetOutputPort("X_WH"),
+        device.GetOutputPort("V_WH"),
+        device.GetOutputPort("F_Ho_W_rendered"),
     ]
     if control is not None:
-        ports.append(control.get_energy_output_port())
+        ports.append(control.GetOutputPort("energy_J"))
     logs = [LogVectorOutput(port, builder, PERIOD) for port in ports]
     simulator = Simulator(builder.Build())
     ResetIntegratorFromFlags(simulator, "runge_kutta2", PERIOD)

@@ -35,14 +35,14 @@ def run_and_record(scene):
     haptic = BuildHapticDiagram(scene)
     loop = haptic.loop
     ports = {
-        "pose": (loop.haptic_tool, loop.haptic_tool.get_pose_output_port()),
-        "velocity": (loop.haptic_tool, loop.haptic_tool.get_velocity_output_port()),
+        "pose": (loop.haptic_tool, loop.haptic_tool.GetOutputPort("X_WT")),
+        "velocity": (loop.haptic_tool, loop.haptic_tool.GetOutputPort("V_WT")),
         "contact": (
             loop.penalty_force,
-            loop.penalty_force.get_tool_wrench_output_port(),
+            loop.penalty_force.GetOutputPort("F_To_W"),
         ),
-        "handle": (loop.device, loop.device.get_handle_pose_output_port()),
-        "shown": (loop.device, loop.device.get_applied_wrench_output_port()),
+        "handle": (loop.device, loop.device.GetOutputPort("X_WH")),
+        "shown": (loop.device, loop.device.GetOutputPort("F_Ho_W_rendered")),
     }
     seen = {name: [] for name in ports}
 
@@ -99,9 +99,7 @@ def test_sliding_and_tapping_stays_finite_and_within_the_limits(tmp_path):
     force = haptic.loop.penalty_force
 
     def never_pulls(context):
-        F = force.get_tool_wrench_output_port().Eval(
-            force.GetMyContextFromRoot(context)
-        )
+        F = force.GetOutputPort("F_To_W").Eval(force.GetMyContextFromRoot(context))
         assert F[5] >= 0.0
 
     figures = run(haptic, 4.0, on_tick=never_pulls).to_dict()

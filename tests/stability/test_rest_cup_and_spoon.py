@@ -6,7 +6,12 @@ import pytest
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import Effects, Friction, Gravity, Shading
+from drake_haptics.scene.schema import (
+    Effects,
+    FrictionParameters,
+    GravityParameters,
+    ShadingParameters,
+)
 from drake_haptics.simulation.run import run
 
 SETTLED_S, END_S = 3.0, 63.0
@@ -20,7 +25,14 @@ LARGEST_FORCE_CYCLE_N = 0.01
     [
         ("shared", Effects()),
         ("octree", Effects()),
-        ("shared", Effects(shading=Shading(), friction=Friction(), gravity=Gravity())),
+        (
+            "shared",
+            Effects(
+                shading=ShadingParameters(),
+                friction=FrictionParameters(),
+                gravity=GravityParameters(),
+            ),
+        ),
     ],
     ids=["shared", "octree", "effects"],
 )
@@ -40,8 +52,8 @@ def test_a_minute_of_rest(clustering, effects):
     def watch(context):
         if context.get_time() < SETTLED_S:
             return
-        pose = tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(context))
-        shown = device.get_applied_wrench_output_port().Eval(
+        pose = tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(context))
+        shown = device.GetOutputPort("F_Ho_W_rendered").Eval(
             device.GetMyContextFromRoot(context)
         )
         p_WT.append(pose[4:])

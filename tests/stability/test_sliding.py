@@ -135,7 +135,7 @@ def globe():
 
 @pytest.mark.parametrize("method", ["octree", "shared"])
 def test_a_tessellated_ball_is_felt_as_far_as_its_facets_are_tilted(globe, method):
-    """A tip at a constant distance from the centre of 1,280 pieces of a sphere.
+    """A tip at a constant distance from the center of 1,280 pieces of a sphere.
 
     Its facets' circles subtend an angle t: the surface is between R cos t and R, and
     its normals within t of the radius.

@@ -12,7 +12,7 @@ from drake_haptics.loop import builder
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import Braking, Effects, Friction
+from drake_haptics.scene.schema import BrakingParameters, Effects, FrictionParameters
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.contact.load_shedding import TickMeter
 
@@ -39,7 +39,7 @@ def build(scene_name, monkeypatch, *, budget_us=1e6 * BUDGET_S, **contact):
     """Returns a scene with a budget, and the clock that its ticks are timed by."""
     scene = load_scene(find_scene(scene_name))
     scene.device.tick_budget_us = budget_us
-    scene.effects = Effects(friction=Friction(), braking=Braking())
+    scene.effects = Effects(friction=FrictionParameters(), braking=BrakingParameters())
     for name, value in contact.items():
         setattr(scene.contact, name, value)
     clock = TickingClock()
@@ -51,8 +51,9 @@ def watch_run(haptic, clock):
     """Runs it, slow for a while.
 
     Returns:
-        For each tick the time, `relief` (3), the force on the tool (3), N, the distance
-        of the deepest cluster and that of the deepest contact by another query, m.
+        For each tick the time, `load_shedding` (3), the force on the tool (3), N, the
+        distance of the deepest cluster and that of the deepest contact by another
+        query, m.
     """
     loop = haptic.loop
     truth = SceneTracker(
@@ -74,21 +75,19 @@ def watch_run(haptic, clock):
                 loop.haptic_tool,
             )
         }
-        relief = loop.load_shedding.get_relief_output_port().Eval(
+        load_shedding = loop.load_shedding.GetOutputPort("load_shedding").Eval(
             own[loop.load_shedding]
         )
-        F = loop.penalty_force.get_tool_wrench_output_port().Eval(
-            own[loop.penalty_force]
-        )
-        clusters = loop.contact_clustering.get_clusters_output_port().Eval(
+        F = loop.penalty_force.GetOutputPort("F_To_W").Eval(own[loop.penalty_force])
+        clusters = loop.contact_clustering.GetOutputPort("clusters").Eval(
             own[loop.contact_clustering]
         )
-        X_WTool = loop.haptic_tool.get_pose_output_port().Eval(own[loop.haptic_tool])
-        contacts = truth.query(X_WTool)
+        X_WT = loop.haptic_tool.GetOutputPort("X_WT").Eval(own[loop.haptic_tool])
+        contacts = truth.query(X_WT)
         rows.append(
             (
                 time_s,
-                *relief,
+                *load_shedding,
                 *F[3:],
                 clusters.distance.min(initial=0.0),
                 contacts.distance.min(initial=0.0),

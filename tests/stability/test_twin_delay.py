@@ -9,12 +9,12 @@ from scipy.linalg import expm
 from twin_rig import CoupledArm, make_arm, make_twin
 
 from drake_haptics.analysis.delay_margin import calc_delay_margin
-from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_loop import analyze_held_scene
 from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.analysis.sampled_linearization import linearize_sampled
 from drake_haptics.analysis.stability_limit import calc_growth, find_stability_limit
 from drake_haptics.analysis.stiffness_limits import find_stiffness_limits
-from drake_haptics.scene.schema import ForceDelay, Twin
+from drake_haptics.scene.schema import DeviceImperfections, ForceDelayParameters
 
 # A light hand's damping, 1 N·s/m, holds: 2 b/T = 2000 N/m without any delay.
 GRIP = "light"
@@ -67,13 +67,15 @@ def test_the_eigenvalues_are_those_of_the_loop_with_its_wrench_shifted(samples):
 
 def test_a_scene_is_analysed_with_its_delay():
     plain = load_held("sphere_pen")
-    device = replace(plain.scene.device, twin=Twin(delay=ForceDelay(1)))
+    device = replace(
+        plain.scene.device, twin=DeviceImperfections(delay=ForceDelayParameters(1))
+    )
     late = hold_scene(replace(plain.scene, device=device), plain.time_s)
     limits = find_stiffness_limits(late, "translation", "a rigid wall")
     # What is left of the margin is a tick less.
     stiff = replace(plain.scene.coupling, stiffness_N_per_m=4000.0)
     margins = [
-        calc_delay_margin(analyse_held_scene(held.against_rigid_wall(), stiff))
+        calc_delay_margin(analyze_held_scene(held.against_rigid_wall(), stiff))
         for held in (plain, late)
     ]
     assert limits.simulated == pytest.approx(limits.eigenvalue, rel=5e-3)

@@ -106,7 +106,7 @@ def test_it_stays_in_contact_on_its_side_and_comes_back(scene, direction):
 
 @pytest.mark.parametrize(("scene", "direction"), CASES)
 def test_what_the_hand_feels_there_is_steady(scene, direction):
-    """In contacts that soft the spoon may rock by a millimetre; nobody feels it."""
+    """In contacts that soft the spoon may rock by a millimeter; nobody feels it."""
     course = drive(scene, direction)
     held = slice(_OUT + _HOLD // 2, _OUT + _HOLD)
     pull = course.pull_m[held]

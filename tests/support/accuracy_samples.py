@@ -108,7 +108,8 @@ def make_usual_rows() -> tuple[Row, ...]:
                  stiffness=None, effects__gravity=None),
         Row(
             Setting("decomposition", "CoACD", {"tool.decomposition": "coacd"}),
-            is_scene=False, cost=None, errors=None, why_not="coacd is not installed",
+            is_scene=False, cost=None, errors=None,
+            failure_reason="coacd is not installed",
         ),
     )  # fmt: skip
 

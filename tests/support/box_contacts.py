@@ -20,5 +20,5 @@ def at_height(z):
 
 
 def query_at(query, context, z):
-    query.get_tool_pose_input_port().FixValue(context, at_height(z))
-    return query.get_contacts_output_port().Eval(context)
+    query.GetInputPort("X_WT").FixValue(context, at_height(z))
+    return query.GetOutputPort("contacts").Eval(context)

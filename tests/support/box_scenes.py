@@ -6,8 +6,8 @@ import trimesh
 
 from drake_haptics.scene.schema import (
     EnvironmentObject,
-    Hand,
-    HandPath,
+    HandParameters,
+    HandPathParameters,
     Scene,
     Tool,
     Waypoint,
@@ -49,9 +49,9 @@ def over_a_plate(
         environment=[
             EnvironmentObject(name="plate", mesh=write(folder, "plate", plate))
         ],
-        hand=Hand(
+        hand=HandParameters(
             grip=grip,
-            path=HandPath(
+            path=HandPathParameters(
                 periodic=periodic,
                 waypoints=[
                     Waypoint(time_s=t, position_m=[x, y, z + PLATE_TOP])

@@ -1,6 +1,6 @@
 """What CHAI3D 3.2.0 says of each device, under the names that it has there.
 
-The neighbours of the devices that have a preset are in the table as well: figures of
+The neighbors of the devices that have a preset are in the table as well: figures of
 another model are told apart from a preset's own.
 """
 

@@ -9,7 +9,7 @@ from drake_haptics.cockpit.cockpit_run import Segments
 from drake_haptics.cockpit.holding import Holding
 from drake_haptics.cockpit.scene_changes import CouplingAdvice, SceneChanges
 from drake_haptics.cockpit.steering import PagePicture
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.statistics import RunStatistics
 from drake_haptics.systems.output.haptic_picture import SHOWN_AT_FIRST
@@ -27,7 +27,7 @@ MOUSE = {"do": "handle", "to": "mouse"}
 def find_tool(haptic, root):
     """The tool's pose (7,)."""
     tool = haptic.loop.haptic_tool
-    return tool.get_pose_output_port().Eval(tool.GetMyContextFromRoot(root)).copy()
+    return tool.GetOutputPort("X_WT").Eval(tool.GetMyContextFromRoot(root)).copy()
 
 
 class ScriptedPage:
@@ -100,7 +100,7 @@ class CockpitRig:
 
     def run(self, duration_s, *, energy=False, pace=None):
         """Runs and returns the statistics."""
-        pace = pace or TickClock(
+        pace = pace or RealTimePacer(
             self.period_s, lambda: self.ticks * self.period_s, lambda _: None
         )
         self.statistics = RunStatistics(self.period_s, pace)

@@ -23,7 +23,7 @@ class ContactChain:
     """From poses and velocities to wrenches, around a state.
 
     Attributes:
-        diagram: Its inputs are X_WTool, V_WTool, X_WO_<i> and V_WO_<i>, its outputs
+        diagram: Its inputs are X_WT, V_WT, X_WO_<i> and V_WO_<i>, its outputs
             those of `PenaltyForce` that are vectors.
         context: At the state.
     """
@@ -50,10 +50,10 @@ class ContactChain:
         builder.AddNamedSystem("contact_clustering", clustering)
         force = builder.AddNamedSystem("penalty_force", PenaltyForce(objects, *gains))
         builder.Connect(
-            query.get_contacts_output_port(), clustering.get_contacts_input_port()
+            query.GetOutputPort("contacts"), clustering.GetInputPort("contacts")
         )
         builder.Connect(
-            clustering.get_clusters_output_port(), force.get_clusters_input_port()
+            clustering.GetOutputPort("clusters"), force.GetInputPort("clusters")
         )
         inputs: dict[str, int] = {}
         for system in (force, query):
@@ -64,7 +64,7 @@ class ContactChain:
                     builder.ConnectInput(inputs[name], port)
                 elif name != "clusters":
                     inputs[name] = builder.ExportInput(port, name)
-        for name in ("wrench_model", "F_Tool_W", "F_O_W"):
+        for name in ("wrench_model", "F_To_W", "F_O_W"):
             if force.HasOutputPort(name):
                 builder.ExportOutput(force.GetOutputPort(name), name)
         self.diagram = builder.Build()

@@ -17,7 +17,7 @@ def pose(p: object, quaternion: object = (1, 0, 0, 0)) -> np.ndarray:
     return np.concatenate([np.asarray(quaternion, float), np.asarray(p, float)])
 
 
-def hull(points: object) -> _core.Decomposition:
+def hull(points: object) -> _core.ConvexPieces:
     """One convex piece, whole boundary."""
     points = np.asarray(points, dtype=float)
     polytope = _core.ConvexPolytope(points)
@@ -31,13 +31,13 @@ def hull(points: object) -> _core.Decomposition:
     )
 
 
-def box(size: object, center: object = (0, 0, 0)) -> _core.Decomposition:
+def box(size: object, center: object = (0, 0, 0)) -> _core.ConvexPieces:
     """An axis-aligned box of the given size, m."""
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     return hull(corners * np.asarray(size) / 2 + np.asarray(center))
 
 
-def spike(tip: object) -> _core.Decomposition:
+def spike(tip: object) -> _core.ConvexPieces:
     """A slender tetrahedron that stands on its tip, 20 mm tall."""
     tip = np.asarray(tip, dtype=float)
     up = np.array([[1, 0, 20], [-0.5, 0.8, 20], [-0.5, -0.8, 20]]) * 1e-3
@@ -65,6 +65,6 @@ def contacts_at(points: object, depths: object, tolerance: float) -> _core.Conta
     return _core.SceneTracker(body, [slab], tolerance).query(IDENTITY)
 
 
-def shipped(name: str) -> _core.Decomposition:
+def shipped(name: str) -> _core.ConvexPieces:
     """A mesh that comes along, in pieces."""
     return decompose(load_mesh(MODELS / f"{name}.obj", scale=1.0)).core

@@ -33,7 +33,7 @@ class Site:
     object: int = 0
 
 
-def _cube(x: float, y: float, distance: float, tilt: float) -> _core.Decomposition:
+def _cube(x: float, y: float, distance: float, tilt: float) -> _core.ConvexPieces:
     corners = np.array(list(product((-2e-3, 2e-3), (-2e-3, 2e-3), (0, 4e-3))))
     corners = Rotation.from_rotvec([tilt, 0.3 * tilt, 0]).apply(corners)
     corners[:, 2] -= corners[:, 2].min()
@@ -41,8 +41,8 @@ def _cube(x: float, y: float, distance: float, tilt: float) -> _core.Decompositi
 
 
 def _placed(
-    parts: Sequence[tuple[_core.Decomposition, Rotation, np.ndarray]],
-) -> _core.Decomposition:
+    parts: Sequence[tuple[_core.ConvexPieces, Rotation, np.ndarray]],
+) -> _core.ConvexPieces:
     """One body of many, each turned and moved."""
     vertices = [R.apply(part.vertices) + p for part, R, p in parts]
     starts = np.cumsum([0] + [len(v) for v in vertices[:-1]])

@@ -43,7 +43,7 @@ class State:
         V: (1 + m, 6) their spatial velocities.
     """
 
-    bodies: tuple[_core.Decomposition, ...]
+    bodies: tuple[_core.ConvexPieces, ...]
     tracker: _core.SceneTracker
     method: str
     q: np.ndarray
@@ -167,8 +167,8 @@ def keeps_features(state: State, reach: float) -> bool:
 
 
 def random_states(
-    tool: _core.Decomposition,
-    solid: _core.Decomposition,
+    tool: _core.ConvexPieces,
+    solid: _core.ConvexPieces,
     method: str,
     count: int,
     *,

@@ -88,7 +88,7 @@ def elastic_wrench(
     stiffness = np.array([gains.stiffness_N_per_m])
     return _core.penalty_force(
         clusters, p_WM, _ZEROS6[0], _ZEROS3, _ZEROS6, stiffness, np.zeros(1)
-    ).F_Tool_W
+    ).F_To_W
 
 
 @dataclass(frozen=True)

@@ -45,8 +45,8 @@ def _tilted(rng: np.random.Generator, tilt_rad: float) -> Rotation:
 
 def _scene(
     name: str,
-    tool: _core.Decomposition,
-    solid: _core.Decomposition,
+    tool: _core.ConvexPieces,
+    solid: _core.ConvexPieces,
     gains: str,
     draw_home: Callable[[np.random.Generator], Home],
     turn_rad: float,
@@ -143,7 +143,7 @@ def _peg_in_hole() -> WalkScene:
     """A square peg in a square hole, 0.1 mm wider on each side."""
     cells = set(product(range(3), range(3), (0,))) - {(1, 1, 0)}
     block = cell_mesh(cells, 0.01)
-    centred = Mesh.from_arrays(block.vertices - [0.015, 0.015, 0], block.triangles)
+    centered = Mesh.from_arrays(block.vertices - [0.015, 0.015, 0], block.triangles)
     peg = box([9.8e-3, 9.8e-3, 0.03], [0, 0, 0.015])
 
     def draw_home(rng: np.random.Generator) -> Home:
@@ -152,7 +152,7 @@ def _peg_in_hole() -> WalkScene:
             _tilted(rng, 2e-3),
         )
 
-    solid = decompose(centred, cache=False).core
+    solid = decompose(centered, cache=False).core
     return _scene("peg in hole", peg, solid, "sinking", draw_home, 0.01)
 
 

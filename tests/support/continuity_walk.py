@@ -1,4 +1,4 @@
-"""Random walks of micrometres around poses in contact."""
+"""Random walks of micrometers around poses in contact."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from drake_haptics import _core
 
 STEP_M = 1e-6
 EPISODE_STEPS = 2000
-# Share of the walk's direction that a step keeps: it turns within a millimetre.
+# Share of the walk's direction that a step keeps: it turns within a millimeter.
 _KEPT = 0.999
 _LEASH_M = 2e-3
 _APPROACH_STEP_M = 1e-4
@@ -47,9 +47,9 @@ class WalkScene:
     """
 
     name: str
-    tool: _core.Decomposition
+    tool: _core.ConvexPieces
     points_T: np.ndarray
-    solid: _core.Decomposition
+    solid: _core.ConvexPieces
     gains: Gains
     draw_home: Callable[[np.random.Generator], Home]
     turn_rad: float = 0.1

@@ -36,36 +36,36 @@ def add_device_on_fixed_tool(
     rest = builder.AddSystem(ConstantVectorSource(np.zeros(6)))
     for output, input in [
         (
-            device.get_handle_pose_output_port(),
-            coupling.get_handle_pose_input_port(),
+            device.GetOutputPort("X_WH"),
+            coupling.GetInputPort("X_WH"),
         ),
         (
-            device.get_handle_velocity_output_port(),
-            coupling.get_handle_velocity_input_port(),
+            device.GetOutputPort("V_WH"),
+            coupling.GetInputPort("V_WH"),
         ),
-        (pose.get_output_port(), coupling.get_tool_pose_input_port()),
-        (rest.get_output_port(), coupling.get_tool_velocity_input_port()),
+        (pose.get_output_port(), coupling.GetInputPort("X_WT")),
+        (rest.get_output_port(), coupling.GetInputPort("V_WT")),
     ]:
         builder.Connect(output, input)
-    F_asked = coupling.get_display_wrench_output_port()
-    F_shown = F_asked
+    F_Ho_W_desired = coupling.GetOutputPort("F_Ho_W_commanded")
+    F_shown = F_Ho_W_desired
     if control is not None:
         builder.AddSystem(control)
         for output, input in [
-            (F_asked, control.get_asked_wrench_input_port()),
+            (F_Ho_W_desired, control.GetInputPort("F_Ho_W_desired")),
             (
-                device.get_applied_wrench_output_port(),
-                control.get_applied_wrench_input_port(),
+                device.GetOutputPort("F_Ho_W_rendered"),
+                control.GetInputPort("F_Ho_W_rendered"),
             ),
             (
-                device.get_handle_pose_output_port(),
-                control.get_handle_pose_input_port(),
+                device.GetOutputPort("X_WH"),
+                control.GetInputPort("X_WH"),
             ),
             (
-                device.get_handle_velocity_output_port(),
-                control.get_handle_velocity_input_port(),
+                device.GetOutputPort("V_WH"),
+                control.GetInputPort("V_WH"),
             ),
         ]:
             builder.Connect(output, input)
-        F_shown = control.get_display_wrench_output_port()
-    builder.Connect(F_shown, device.get_display_wrench_input_port())
+        F_shown = control.GetOutputPort("F_Ho_W_commanded")
+    builder.Connect(F_shown, device.GetInputPort("F_Ho_W_commanded"))

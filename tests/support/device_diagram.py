@@ -20,10 +20,10 @@ def make_diagram(backend, *, X_WB=X_WB, source=None, slopes=None, first=None):
     builder = DiagramBuilder()
     builder.AddNamedSystem("device", device)
     source = builder.AddSystem(source or ConstantVectorSource(np.zeros(6)))
-    builder.Connect(source.get_output_port(), device.get_display_wrench_input_port())
+    builder.Connect(source.get_output_port(), device.GetInputPort("F_Ho_W_commanded"))
     if source.num_input_ports():
-        builder.Connect(device.get_handle_pose_output_port(), source.get_input_port(0))
+        builder.Connect(device.GetOutputPort("X_WH"), source.get_input_port(0))
     if slopes is not None:
         held = builder.AddSystem(ConstantVectorSource(slopes))
-        builder.Connect(held.get_output_port(), device.get_handle_slopes_input_port())
+        builder.Connect(held.get_output_port(), device.GetInputPort("handle_slopes"))
     return builder.Build(), device

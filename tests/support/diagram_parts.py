@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from pydrake.systems.framework import Diagram
 
-from drake_haptics.scene.schema import Braking, Friction, Gravity, Passivity, Shading
+from drake_haptics.scene.schema import (
+    BrakingParameters,
+    FrictionParameters,
+    GravityParameters,
+    PassivityParameters,
+    ShadingParameters,
+)
 
 # The systems of every scene.
 SYSTEMS = {
@@ -17,11 +23,11 @@ SYSTEMS = {
 }
 # Every effect, with its defaults.
 EVERY = {
-    "shading": Shading(),
-    "friction": Friction(),
-    "braking": Braking(),
-    "gravity": Gravity(),
-    "passivity": Passivity(),
+    "shading": ShadingParameters(),
+    "friction": FrictionParameters(),
+    "braking": BrakingParameters(),
+    "gravity": GravityParameters(),
+    "passivity": PassivityParameters(),
 }
 
 

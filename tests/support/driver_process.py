@@ -103,7 +103,7 @@ class WatchedLink(LossyLink):
         for state in self.states:
             assert state.force_N <= state.max_force_N * (1 + 1e-6), state
             assert state.torque_Nm <= state.max_torque_Nm * (1 + 1e-6), state
-            assert state.gate == ACTIVE or not any(state.F_BH), state
+            assert state.gate == ACTIVE or not any(state.F_Ho_B), state
 
 
 def check_figures(figures):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from pydrake.systems.framework import Diagram, DiagramBuilder, System
 
-from drake_haptics._core import Decomposition
+from drake_haptics._core import ConvexPieces
 from drake_haptics.systems.contact.contact_clustering import ContactClustering
 from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
 from drake_haptics.systems.contact.force_shading import ForceShading
@@ -29,7 +29,7 @@ _CONNECTIONS = {
 
 
 def make_chain(
-    tool: Decomposition,
+    tool: ConvexPieces,
     objects: Sequence[ContactObject],
     tolerance_m: float,
     *,

@@ -25,7 +25,7 @@ def add(ledger, tool_state, sources=(), stored=None, **changes):
     """Adds a reading with nothing in it but what is given."""
     reading = {
         "q_WH": IDENTITY,
-        "F_applied": np.zeros(6),
+        "F_Ho_W_rendered": np.zeros(6),
         "coupling": NO_WRENCH,
         "wrench_models": list(sources),
         "stored_J": [0.0] * len(sources) if stored is None else stored,

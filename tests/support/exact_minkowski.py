@@ -136,7 +136,7 @@ class ExactPair:
     def is_local_minimum(self, n_W: np.ndarray, slack: float) -> bool:
         """Whether n is the normal of a facet of A ⊖ B that no touching facet beats.
 
-        Two facets touch where they share a vertex of A ⊖ B: the neighbourhood of the
+        Two facets touch where they share a vertex of A ⊖ B: the neighborhood of the
         paper's hubs.
 
         Args:

@@ -14,7 +14,7 @@ def make_reading(
         time_s=1e-3 * sequence,
         X_BH=np.array([*wxyz, *position], dtype=float),
         V_BH=np.array([0, 0, 0, *velocity], dtype=float),
-        F_BH=np.zeros(6),
+        F_Ho_B=np.zeros(6),
     )
 
 

@@ -138,7 +138,7 @@ def octree(contacts: _core.ContactSet, label: np.ndarray, t: float) -> Pushes:
 def wrenches(
     pushes: Pushes,
     p_WTo: np.ndarray,
-    V_WTool: np.ndarray,
+    V_WT: np.ndarray,
     p_WO: np.ndarray,
     V_WO: np.ndarray,
     k: np.ndarray,
@@ -154,7 +154,7 @@ def wrenches(
         pushes.objects,
         strict=True,
     ):
-        v_A = V_WTool[3:] + np.cross(V_WTool[:3], p - p_WTo)
+        v_A = V_WT[3:] + np.cross(V_WT[:3], p - p_WTo)
         v_B = V_WO[o, 3:] + np.cross(V_WO[o, :3], p - p_WO[o])
         v = (v_A - v_B) @ n
         f = (k[o] * compression - (kv[o] * share * v if v < 0 else 0)) * n

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from drake_haptics import _core
 
 
-def union(pieces: Sequence[_core.Decomposition]) -> _core.Decomposition:
+def union(pieces: Sequence[_core.ConvexPieces]) -> _core.ConvexPieces:
     """One body of several convex pieces that do not meet."""
     vertices = np.vstack([piece.vertices for piece in pieces])
     offsets = np.cumsum([0] + [len(piece.vertices) for piece in pieces[:-1]])
@@ -23,19 +23,19 @@ def union(pieces: Sequence[_core.Decomposition]) -> _core.Decomposition:
     )
 
 
-def sled(tips: object) -> _core.Decomposition:
+def sled(tips: object) -> _core.ConvexPieces:
     """A tool that stands on slender feet, whose tips are at (n, 3) points, m."""
     return union([spike(tip) for tip in np.atleast_2d(tips)])
 
 
-def floor(size: object = (1.0, 1.0, 0.1)) -> _core.Decomposition:
+def floor(size: object = (1.0, 1.0, 0.1)) -> _core.ConvexPieces:
     """A slab whose top is the plane z = 0."""
     return box(size, [0, 0, -np.asarray(size)[2] / 2])
 
 
 def burr(
     rng: np.random.Generator, count: int
-) -> tuple[_core.Decomposition, _core.Decomposition]:
+) -> tuple[_core.ConvexPieces, _core.ConvexPieces]:
     """A tool of spikes in all directions, and an object of plates that they touch.
 
     The tips lie within 60 mm of each other; each touches the middle of its plate.

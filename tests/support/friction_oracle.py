@@ -127,8 +127,8 @@ def slip(t: Touch, law: Law) -> np.ndarray:
         t.z = t.z * (1 - high / length)
         t.grip = max(t.grip - high / law.break_away_m, 0)
     f = -k * t.z
-    relief = 1 - np.linalg.norm(f) / (mu * t.N)
-    t.grip = min(1, max(t.grip, 2 * relief / (law.static_ratio - 1)))
+    load_shedding = 1 - np.linalg.norm(f) / (mu * t.N)
+    t.grip = min(1, max(t.grip, 2 * load_shedding / (law.static_ratio - 1)))
     return f
 
 

@@ -51,8 +51,8 @@ class FrictionRig:
 
     def __init__(
         self,
-        tool: _core.Decomposition,
-        objects: Sequence[_core.Decomposition],
+        tool: _core.ConvexPieces,
+        objects: Sequence[_core.ConvexPieces],
         model: _core.StickSlipModel,
         *,
         moves: Sequence[bool] = (False,),
@@ -101,12 +101,12 @@ class FrictionRig:
         """Lets friction begin anew."""
         self.memory = np.zeros(self._model.state_size)
 
-    def advance(self, F_Tool_W: object = (0,) * 6, K: object = None) -> Tick:
+    def advance(self, F_To_W: object = (0,) * 6, K: object = None) -> Tick:
         """Lets the tool move for one period under a wrench on it and its stiffness."""
         tick = self.look()
         self.remember(tick)
         other = np.zeros(78)
-        other[:6] = F_Tool_W
+        other[:6] = F_To_W
         if K is not None:
             other[6:42] = np.ravel(K)
         model = tick.wrench.wrench_model + tick.friction.wrench_model + other

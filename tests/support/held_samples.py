@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from drake_haptics.analysis.felt_impedance import calc_felt_impedance
-from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_loop import analyze_held_scene
 from drake_haptics.analysis.held_scene import HeldScene, hold_scene
 from drake_haptics.analysis.modes import find_modes
 from drake_haptics.analysis.passivity import calc_passivity
@@ -47,10 +47,10 @@ def make_limits(eigenvalue: float, against: str = "a rigid wall") -> StiffnessLi
 
 
 @cache
-def analyse_sample() -> SceneStability:
+def analyze_sample() -> SceneStability:
     """Returns the analysis of a true loop, with limits that were not searched."""
     held = load_held("hammer_block")
-    loop = analyse_held_scene(held)
+    loop = analyze_held_scene(held)
     felt = calc_felt_impedance(loop)
     passivity = calc_passivity(felt, felt.period_s)
     return SceneStability(

@@ -57,7 +57,7 @@ def make_arm():
 
 
 def make_spring(stiffness_N_per_m=100.0, origin=START):
-    """F_BH (6) of X_BH (7): a spring to a point, nothing to turn against."""
+    """F_Ho_B (6) of X_BH (7): a spring to a point, nothing to turn against."""
     D, y0 = np.zeros((6, 7)), np.zeros(6)
     D[3:, 4:] = -stiffness_N_per_m * np.eye(3)
     y0[3:] = stiffness_N_per_m * np.asarray(origin)
@@ -95,10 +95,10 @@ def add_host(builder, lcm, law):
         LcmPublisherSystem.Make("HAPTIC_COMMAND", lcmt_haptic_command, lcm, PERIOD_S)
     )
     for output, input in [
-        (statuses.get_output_port(), receiver.get_status_input_port()),
-        (receiver.get_handle_pose_output_port(), law.get_input_port()),
-        (law.get_output_port(), sender.get_wrench_input_port()),
-        (sender.get_command_output_port(), commands.get_input_port()),
+        (statuses.get_output_port(), receiver.GetInputPort("lcmt_haptic_status")),
+        (receiver.GetOutputPort("X_BH"), law.get_input_port()),
+        (law.get_output_port(), sender.GetInputPort("F_Ho_B")),
+        (sender.GetOutputPort("lcmt_haptic_command"), commands.get_input_port()),
     ]:
         builder.Connect(output, input)
     return receiver

@@ -49,7 +49,7 @@ def contact_states(loop: HapticDiagram, count: int, until_s: float) -> list[Cont
 
 def _run(loop: HapticDiagram, until_s: float) -> Iterator[Context]:
     simulator = Simulator(loop.diagram)
-    contacts = loop.loop.contact_clustering.get_clusters_output_port()
+    contacts = loop.loop.contact_clustering.GetOutputPort("clusters")
     while simulator.get_context().get_time() < until_s:
         simulator.AdvanceTo(simulator.get_context().get_time() + _LOOK_S)
         context = simulator.get_context()

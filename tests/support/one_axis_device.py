@@ -10,7 +10,7 @@ from drake_haptics.systems.framework.differentiable_system import export_parts
 
 
 def make_one_axis_device(mass_kg: float, damping_Ns_per_m: float) -> Diagram:
-    """Returns a backend for a `HapticDevice`: F_applied in, X_WH and V_WH out."""
+    """Returns a backend for a `HapticDevice`: F_Ho_W_rendered in, X_WH and V_WH out."""
     A = np.array([[0.0, 1.0], [0.0, -damping_Ns_per_m / mass_kg]])
     B = np.zeros((2, 6))
     B[1, 3] = 1.0 / mass_kg
@@ -23,7 +23,7 @@ def make_one_axis_device(mass_kg: float, damping_Ns_per_m: float) -> Diagram:
     axis = builder.AddNamedSystem(
         "axis", AffineSystem(A, B, np.zeros(2), C, np.zeros((13, 6)), y0)
     )
-    builder.ExportInput(axis.get_input_port(), "F_applied")
+    builder.ExportInput(axis.get_input_port(), "F_Ho_W_rendered")
     export_parts(builder, axis.get_output_port(), {"X_WH": 7, "V_WH": 6})
     backend = builder.Build()
     backend.set_name("one_axis_device")

@@ -13,10 +13,10 @@ from scipy.spatial.transform import Rotation
 from drake_haptics import _core
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.scene.device_preset import load_device_preset
-from drake_haptics.scene.schema import Coupling, Device
+from drake_haptics.scene.schema import CouplingParameters, DeviceParameters
 
 PERIOD_S = 1e-3
-_DEVICE = load_device_preset(Device().preset)
+_DEVICE = load_device_preset(DeviceParameters().preset)
 LARGEST_FORCE_N = _DEVICE.max_force_N
 START_M = 5e-3  # how far outside a press starts
 LONGEST_TRAVEL_M = 40e-3  # where it gives up if nothing resists
@@ -45,7 +45,7 @@ GAINS = {
 }
 # A scene's own, which yields where its device can show no more.
 COUPLING = _core.CouplingGains(
-    **asdict(Coupling()),
+    **asdict(CouplingParameters()),
     max_force_N=_DEVICE.max_force_N,
     max_torque_Nm=_DEVICE.max_torque_Nm,
 )
@@ -157,7 +157,7 @@ class Tick:
 
 
 def run_press(
-    press: Press, tool: PressTool, solid: _core.Decomposition, gains: Gains
+    press: Press, tool: PressTool, solid: _core.ConvexPieces, gains: Gains
 ) -> Iterator[Tick]:
     """Runs a press tick by tick, wired as by `AddHapticLoop`."""
     tracker = _core.SceneTracker(tool.core, [solid], gains.tolerance_m)

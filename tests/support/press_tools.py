@@ -27,7 +27,7 @@ class PressTool:
     """
 
     mesh: Mesh
-    core: _core.Decomposition
+    core: _core.ConvexPieces
     dynamics: _core.RigidToolDynamics
     pushes_T: np.ndarray
 

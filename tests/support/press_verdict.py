@@ -57,7 +57,7 @@ def judge(
     press: Press,
     tool: PressTool,
     solid: Surface,
-    pieces: _core.Decomposition,
+    pieces: _core.ConvexPieces,
     gains: Gains,
     overlap: Overlap,
 ) -> Verdict:
@@ -99,7 +99,7 @@ def judge(
 
 
 def _judge_normals(
-    verdict: Verdict, ticks: list[Tick], solid: Surface, pieces: _core.Decomposition
+    verdict: Verdict, ticks: list[Tick], solid: Surface, pieces: _core.ConvexPieces
 ) -> None:
     """A contact pushes along its normal: out of the surface at the solid's feature.
 

@@ -34,7 +34,7 @@ class PressingArm:
         """Rises."""
         self.wanted_m = GENTLE_M
 
-    def step(self, F_BH):
+    def step(self, F_Ho_B):
         """Moves on."""
         before_m, step_m = self.height_m, SPEED_M_PER_S * TICK_S
         self.height_m += np.clip(self.wanted_m - before_m, -step_m, step_m)

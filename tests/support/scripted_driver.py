@@ -35,9 +35,9 @@ class ScriptedArm:
     def start(self):
         """Nothing to switch on."""
 
-    def step(self, F_BH):
+    def step(self, F_Ho_B):
         """Counts ticks at force."""
-        self.ticks += bool(np.any(F_BH)) or self.in_trouble
+        self.ticks += bool(np.any(F_Ho_B)) or self.in_trouble
         X_BH, V_BH = np.eye(7)[0], np.zeros(6)
         if self.in_trouble and self.trouble == "fast":
             V_BH[3] = 5.0

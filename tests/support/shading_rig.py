@@ -16,14 +16,14 @@ CREASE = np.deg2rad(40.0)
 REST = IDENTITY[None]
 
 
-def core_of(body: trimesh.Trimesh, method: Method = "surface") -> _core.Decomposition:
+def core_of(body: trimesh.Trimesh, method: Method = "surface") -> _core.ConvexPieces:
     """A closed mesh in convex pieces."""
     mesh = Mesh.from_arrays(np.asarray(body.vertices), np.asarray(body.faces))
     return decompose(mesh, method, cache=False).core
 
 
 def shading(
-    tool: _core.Decomposition, body: _core.Decomposition, crease: float = CREASE
+    tool: _core.ConvexPieces, body: _core.ConvexPieces, crease: float = CREASE
 ) -> _core.ContactShading:
     """Of both bodies, with edges sharp from the crease angle (rad) on."""
     surfaces = [_core.SurfaceShading(item, crease) for item in (tool, body)]
@@ -44,8 +44,8 @@ def turned(out: np.ndarray) -> np.ndarray:
 
 
 def directions(
-    tool: _core.Decomposition,
-    body: _core.Decomposition,
+    tool: _core.ConvexPieces,
+    body: _core.ConvexPieces,
     poses: np.ndarray,
     crease: float = CREASE,
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -18,7 +18,7 @@ STEP_M = 1e-4  # of a slide, in a tick: 0.1 m/s
 _APPROACH_M = 4e-3
 
 
-def make_slide_tools() -> dict[str, _core.Decomposition]:
+def make_slide_tools() -> dict[str, _core.ConvexPieces]:
     """Convex tools whose lowest feature is at the origin, all of it above z = 0."""
     ball = Rotation.random(200, random_state=1).apply([0.0, 0.0, 6e-3])
     cube = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (0, 2)])
@@ -35,7 +35,7 @@ def make_slide_tools() -> dict[str, _core.Decomposition]:
     }
 
 
-def cut(mesh: Mesh, piece_of_triangle: object) -> _core.Decomposition:
+def cut(mesh: Mesh, piece_of_triangle: object) -> _core.ConvexPieces:
     """A mesh in the pieces that one chooses: whatever numbers, one for a piece."""
     _, labels = np.unique(np.asarray(piece_of_triangle), return_inverse=True)
     return _core.assemble_surface_pieces(
@@ -44,8 +44,8 @@ def cut(mesh: Mesh, piece_of_triangle: object) -> _core.Decomposition:
 
 
 def slide(
-    tool: _core.Decomposition,
-    solid: _core.Decomposition,
+    tool: _core.ConvexPieces,
+    solid: _core.ConvexPieces,
     path_W: np.ndarray,
     nhat_W: np.ndarray,
     R_WT: np.ndarray,
@@ -97,7 +97,7 @@ def feel(
 ) -> Felt:
     """What the project's chain makes of contacts, for a tool that moves at v_WT."""
     clusters = cluster(contacts, method, gains.tolerance_m, gains.delta_m)
-    F_Tool_W = _core.penalty_force(
+    F_To_W = _core.penalty_force(
         clusters,
         np.zeros(3),
         np.concatenate([np.zeros(3), v_WT]),
@@ -105,8 +105,8 @@ def feel(
         np.zeros((1, 6)),
         np.array([gains.stiffness_N_per_m]),
         np.array([gains.damping_Ns_per_m]),
-    ).F_Tool_W
-    return Felt(np.array(F_Tool_W[3:]), len(clusters))
+    ).F_To_W
+    return Felt(np.array(F_To_W[3:]), len(clusters))
 
 
 def velocity(path_W: np.ndarray) -> np.ndarray:

@@ -21,7 +21,7 @@ def triangles_of_top(mesh: Mesh) -> np.ndarray:
     return np.abs(z - TOP_M).max(axis=1) < 1e-9
 
 
-def fifty_pieces() -> _core.Decomposition:
+def fifty_pieces() -> _core.ConvexPieces:
     """A plate of 10 × 5 cells of 10 mm, each cell's top a piece of its own."""
     mesh = cell_mesh(product(range(10), range(5), (0,)), 0.01)
     middles = mesh.vertices[mesh.triangles].mean(axis=1)
@@ -40,7 +40,7 @@ def fifty_pieces_path(height_m: float) -> np.ndarray:
     return line([0.02, 0.02, z], [0.08, 0.031, z])
 
 
-def pitted_block() -> _core.Decomposition:
+def pitted_block() -> _core.ConvexPieces:
     """A block with square pits, as the decomposition cuts it: coplanar pieces."""
     pits = set(product((2, 5, 8), (2, 5), (1,)))
     cells = set(product(range(11), range(8), range(2))) - pits

@@ -14,7 +14,7 @@ class Slider(LeafSystem):
     def __init__(self):
         super().__init__()
         self.set_name("slider")
-        self._F = self.DeclareVectorInputPort("F_applied", 6)
+        self._F = self.DeclareVectorInputPort("F_Ho_W_rendered", 6)
         self.DeclareContinuousState(1, 1, 0)
         from_state = {self.all_state_ticket()}
         self.DeclareVectorOutputPort("X_WH", 7, self._calc_pose, from_state)

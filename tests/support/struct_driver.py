@@ -27,7 +27,7 @@ class SentState:
     time_ns: int = 0
     X_BH: tuple = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     V_BH: tuple = (0.0,) * 6
-    F_BH: tuple = (0.0,) * 6
+    F_Ho_B: tuple = (0.0,) * 6
     boot: int = 7
     command_sequence: int = 0
     buttons: int = 0
@@ -45,7 +45,7 @@ class SentState:
             *(1, 1, STATE_SIZE),
             *(self.session, self.sequence % 2**32, self.time_ns),
         )
-        body = struct.pack("<19d", *self.X_BH, *self.V_BH, *self.F_BH)
+        body = struct.pack("<19d", *self.X_BH, *self.V_BH, *self.F_Ho_B)
         tail = struct.pack(
             "<IIIIffBBH",
             *(self.boot, self.command_sequence, self.buttons, self.rejected),
@@ -62,7 +62,7 @@ class GotCommand:
     session: int
     sequence: int
     time_ns: int
-    F_BH: tuple
+    F_Ho_B: tuple
     state_sequence: int
     ttl_us: int
     enable: bool
@@ -153,7 +153,7 @@ def main():
             stalls = bool(select.select([0], [], [], 0.002)[0])
             for command in driver.receive_all():
                 driver.state.gate = ACTIVE if command.enable else IDLE
-                shows_none = command.enable and not any(command.F_BH)
+                shows_none = command.enable and not any(command.F_Ho_B)
                 silent = silent + 1 if stalls and shows_none else 0
             if silent >= 100:
                 print("silent", flush=True)

@@ -40,7 +40,7 @@ class State:
     time_ns: int
     X_BH: tuple
     V_BH: tuple
-    F_BH: tuple
+    F_Ho_B: tuple
     boot: int
     command_sequence: int
     buttons: int
@@ -53,12 +53,12 @@ class State:
     @property
     def torque_Nm(self):
         """Norm of the torque shown."""
-        return math.hypot(*self.F_BH[:3])
+        return math.hypot(*self.F_Ho_B[:3])
 
     @property
     def force_N(self):
         """Norm of the force shown."""
-        return math.hypot(*self.F_BH[3:])
+        return math.hypot(*self.F_Ho_B[3:])
 
 
 def is_whole(packet):

@@ -36,7 +36,7 @@ def at(x: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
 )
 def test_cubes_have_their_distance_to_the_last_digit(p: tuple, truth: float) -> None:
     assert ExactPair(CUBE, CUBE, at(*p), at(0)).signed_distance == truth
-    # A million metres away the numbers that are left of the poses are exact.
+    # A million meters away the numbers that are left of the poses are exact.
     far = 2.0**20
     moved = ExactPair(CUBE, CUBE, at(p[0] + far, *p[1:]), at(far))
     left = Fraction(p[0] + far) - Fraction(far)

@@ -36,7 +36,7 @@ def make_smooth_rows(ticks, *, amplitude=1.0):
     rows = make_rows(ticks)
     time = 1e-3 * np.arange(ticks)[:, None]
     rows.reals[:] = amplitude * np.sin(time * np.linspace(1.0, 9.0, NUM_REALS))
-    rows["X_WH"][:, :4] = rows["X_WTool"][:, :4] = [1.0, 0.0, 0.0, 0.0]
+    rows["X_WH"][:, :4] = rows["X_WT"][:, :4] = [1.0, 0.0, 0.0, 0.0]
     rows.reals[:, 0] = time[:, 0]
     rows.counts[:] = 1
     return rows

@@ -11,8 +11,8 @@ from drake_haptics import _core
 
 def touching_pose(
     rng: np.random.Generator,
-    tool: _core.Decomposition,
-    solid: _core.Decomposition,
+    tool: _core.ConvexPieces,
+    solid: _core.ConvexPieces,
     reach: float,
 ) -> np.ndarray:
     """A pose (7,) that brings two random vertices together, to within `reach` m."""

@@ -134,15 +134,15 @@ def make_context(
     visualizer,
     contacts=(),
     forces=None,
-    X_WTool=X_WH @ X_HT,
+    X_WT=X_WH @ X_HT,
     f_H_W=(0, 0, 0),
     tau_H_W=(0, 0, 0),
 ):
     context = visualizer.CreateDefaultContext()
     values = {
         "X_WH": pose_to_vector(X_WH),
-        "X_WTool": pose_to_vector(X_WTool),
-        "F_display": np.array([*tau_H_W, *f_H_W], dtype=float),
+        "X_WT": pose_to_vector(X_WT),
+        "F_Ho_W_commanded": np.array([*tau_H_W, *f_H_W], dtype=float),
         "contacts": Value(make_contacts(contacts)),
         "clusters": Value(make_contacts(contacts)),
         "contact_wrench": Value(

@@ -45,7 +45,7 @@ class Body:
         damping_Ns_per_m: The same.
     """
 
-    shape: _core.Decomposition
+    shape: _core.ConvexPieces
     X_SB: np.ndarray
     V_SB: np.ndarray
     stiffness_N_per_m: float = STIFFNESS_N_PER_M
@@ -53,7 +53,7 @@ class Body:
 
 
 def place(
-    shape: _core.Decomposition,
+    shape: _core.ConvexPieces,
     p_SB: object = (0.0, 0.0, 0.0),
     rotvec: object = (0.0, 0.0, 0.0),
     V_SB: object = AT_REST,
@@ -65,7 +65,7 @@ def place(
     return Body(shape, X, np.asarray(V_SB, float), **material)
 
 
-def join_hulls(*bodies: _core.Decomposition) -> _core.Decomposition:
+def join_hulls(*bodies: _core.ConvexPieces) -> _core.ConvexPieces:
     """Convex solids as one body."""
     starts = np.cumsum([0, *(len(b.vertices) for b in bodies)])[:-1]
     triangles = np.vstack(
@@ -124,7 +124,7 @@ def run_chain(
     )
     R_SW = X_WS[:3, :3].T
     return Wrenches(
-        turned(R_SW, found.F_Tool_W),
+        turned(R_SW, found.F_To_W),
         turned(R_SW, found.F_objects_W),
         clusters,
         found,

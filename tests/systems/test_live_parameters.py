@@ -27,7 +27,7 @@ from drake_haptics.systems.contact.penalty_force import ContactGains, PenaltyFor
 from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 OTHER = CouplingGains(3 * K, 5 * B, 7 * KR, 11 * BR)
-OUTPUTS = ("wrench_model", "F_display")
+OUTPUTS = ("wrench_model", "F_Ho_W_commanded")
 
 
 def stretched(gains):
@@ -35,10 +35,10 @@ def stretched(gains):
     coupling = VirtualCoupling(gains, X_HT)
     context = coupling.CreateDefaultContext()
     X_WT = X_WH @ X_HT @ RigidTransform([0.01, -0.02, 0.03])
-    coupling.get_handle_pose_input_port().FixValue(context, pose_to_vector(X_WH))
-    coupling.get_tool_pose_input_port().FixValue(context, pose_to_vector(X_WT))
-    coupling.get_handle_velocity_input_port().FixValue(context, np.arange(6.0))
-    coupling.get_tool_velocity_input_port().FixValue(context, np.zeros(6))
+    coupling.GetInputPort("X_WH").FixValue(context, pose_to_vector(X_WH))
+    coupling.GetInputPort("X_WT").FixValue(context, pose_to_vector(X_WT))
+    coupling.GetInputPort("V_WH").FixValue(context, np.arange(6.0))
+    coupling.GetInputPort("V_WT").FixValue(context, np.zeros(6))
     return coupling, context
 
 
@@ -65,13 +65,11 @@ def test_a_coupling_of_type_autodiff_has_the_gains_of_its_context():
     twin = coupling.ToScalarType[AutoDiffXd]()
     of_twin = twin.CreateDefaultContext()
     of_twin.SetTimeStateAndParametersFrom(context)
-    names = ["X_WH", "V_WH", "X_WTool", "V_WTool"]
+    names = ["X_WH", "V_WH", "X_WT", "V_WT"]
     for name in names[:3]:
         value = coupling.GetInputPort(name).Eval(context)
         twin.GetInputPort(name).FixValue(of_twin, [AutoDiffXd(x) for x in value])
-    twin.GetInputPort("V_WTool").FixValue(
-        of_twin, InitializeAutoDiff(np.zeros(6)).ravel()
-    )
+    twin.GetInputPort("V_WT").FixValue(of_twin, InitializeAutoDiff(np.zeros(6)).ravel())
     model = twin.GetOutputPort("wrench_model").Eval(of_twin)
     np.testing.assert_allclose(
         ExtractGradient(model[:6]), -np.diag([11 * BR] * 3 + [5 * B] * 3), atol=1e-9
@@ -123,16 +121,16 @@ def test_a_chain_with_other_parameters_has_their_force_in_both_scalars(states, r
         state = replace(state, V=np.zeros_like(state.V))
         chain = ContactChain(state, (True, True))
         x = chain.variables(state)
-        before = chain.evaluate("F_Tool_W", x)
+        before = chain.evaluate("F_To_W", x)
         write(chain, "penalty_force", gains)
         write(chain, "contact_clustering", rule)
         write(chain, "contact_query", rule.tolerance_m)
         F = calc_elastic_force(state, gains, rule)
-        found = chain.evaluate("F_Tool_W", x)
+        found = chain.evaluate("F_To_W", x)
         np.testing.assert_allclose(found[3:], F, atol=1e-9)
         assert not np.allclose(found, before)
         np.testing.assert_allclose(
-            chain.differentiate("F_Tool_W", x).value, found, atol=1e-9
+            chain.differentiate("F_To_W", x).value, found, atol=1e-9
         )
 
 
@@ -155,37 +153,39 @@ def test_damping_and_stiffness_of_contact_are_each_felt_at_once(states):
 @pytest.fixture(scope="module")
 def query():
     plate = ContactObject("plate", box_core(0.2, 0.2, 0.02), RigidTransform())
-    return ContactQuery(box_core(0.02, 0.02, 0.02), [plate], 2e-3, sheds_load=True)
+    return ContactQuery(
+        box_core(0.02, 0.02, 0.02), [plate], 2e-3, enable_load_shedding=True
+    )
 
 
 def test_a_query_looks_as_far_as_its_context_says_and_relief_leaves(query):
     context = query.CreateDefaultContext()
-    relief = query.get_relief_input_port()
-    relief.FixValue(context, [0.0, 1.0, 0.0])
+    load_shedding = query.GetInputPort("load_shedding")
+    load_shedding.FixValue(context, [0.0, 1.0, 0.0])
     assert len(query_at(query, context, 0.023)) == 0
     query.set_tolerance(context, 8e-3)
     assert query.get_tolerance(context) == 8e-3
-    found = query.get_contacts_output_port().Eval(context)
+    found = query.GetOutputPort("contacts").Eval(context)
     assert found.least_distance == pytest.approx(3e-3)
-    relief.FixValue(context, [2.0, 0.25, 0.0])
+    load_shedding.FixValue(context, [2.0, 0.25, 0.0])
     assert len(query_at(query, context, 0.023)) == 0
     assert query_at(query, context, 0.0219).least_distance == pytest.approx(1.9e-3)
     # Others look as far as they did.
     anew = query.CreateDefaultContext()
-    relief.FixValue(anew, [0.0, 1.0, 0.0])
+    load_shedding.FixValue(anew, [0.0, 1.0, 0.0])
     assert len(query_at(query, anew, 0.0219)) > 0
     assert len(query_at(query, anew, 0.0221)) == 0
 
 
 def test_relief_leaves_a_share_of_the_tolerance_that_the_context_says(query):
     context = query.CreateDefaultContext()
-    query.get_relief_input_port().FixValue(context, [0.0, 1.0, 0.0])
+    query.GetInputPort("load_shedding").FixValue(context, [0.0, 1.0, 0.0])
     contacts = query_at(query, context, 0.0205)
-    clustering = ContactClustering("shared", 2e-3, sheds_load=True)
+    clustering = ContactClustering("shared", 2e-3, enable_load_shedding=True)
     context = clustering.CreateDefaultContext()
-    clustering.get_contacts_input_port().FixValue(context, Value[object](contacts))
-    clustering.get_relief_input_port().FixValue(context, [2.0, 0.25, 0.0])
-    port = clustering.get_clusters_output_port()
+    clustering.GetInputPort("contacts").FixValue(context, Value[object](contacts))
+    clustering.GetInputPort("load_shedding").FixValue(context, [2.0, 0.25, 0.0])
+    port = clustering.GetOutputPort("clusters")
     assert len(port.Eval(context)) == 0
     clustering.set_rule(context, ClusteringRule("shared", 8e-3))
     # A quarter of 8 mm, less the 0.5 mm that they are away.

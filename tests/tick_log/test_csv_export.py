@@ -43,9 +43,9 @@ def test_the_columns_are_named_with_their_units(tmp_path):
     head, *_ = export(write_log(tmp_path / "log", [make_rows(1)]))
     assert len(head) == len(set(head)) == 1 + 43 + 7
     assert head[:6] == "tick time_s clock_s query_s device_time_s distance_m".split()
-    for name in ("X_WH_qw", "X_WTool_z_m", "V_WH_vx_m_per_s", "F_applied_taux_Nm"):
+    for name in ("X_WH_qw", "X_WT_z_m", "V_WH_vx_m_per_s", "F_Ho_W_rendered_taux_Nm"):
         assert name in head
-    assert head[head.index("F_display_fx_N") - 3] == "F_display_taux_Nm"
+    assert head[head.index("F_Ho_W_commanded_fx_N") - 3] == "F_Ho_W_commanded_taux_Nm"
     assert head[-7:] == "contacts clusters status sequence buttons gate fault".split()
     assert sum(map(len, REALS.values())) == 43
 

@@ -41,12 +41,12 @@ def test_the_same_is_the_same_whatever_its_bits():
 
 def test_a_force_differs_by_its_norm():
     def change(rows):
-        rows["F_display"][40:60, 3:] += [3.0, 0.0, 4.0]
-        rows["F_display"][50, 3:] += [3.0, 0.0, 4.0]
+        rows["F_Ho_W_commanded"][40:60, 3:] += [3.0, 0.0, 4.0]
+        rows["F_Ho_W_commanded"][50, 3:] += [3.0, 0.0, 4.0]
 
     differing = compare(change)
-    assert list(differing) == ["F_display force"]
-    force = differing["F_display force"]
+    assert list(differing) == ["F_Ho_W_commanded force"]
+    force = differing["F_Ho_W_commanded force"]
     assert (force.unit, force.differing, force.first_tick) == ("N", 20, 40)
     assert force.largest == pytest.approx(10.0)
     assert force.largest_tick == 50
@@ -59,11 +59,11 @@ def test_a_rotation_differs_by_its_angle(angle, sign):
     turned = AngleAxis(angle, np.array([0.6, 0.0, 0.8])).quaternion().wxyz()
 
     def change(rows):
-        rows["X_WTool"][7, :4] = sign * turned
+        rows["X_WT"][7, :4] = sign * turned
 
     differing = compare(change)
-    assert list(differing) == ["X_WTool rotation"]
-    rotation = differing["X_WTool rotation"]
+    assert list(differing) == ["X_WT rotation"]
+    rotation = differing["X_WT rotation"]
     assert (rotation.unit, rotation.differing, rotation.first_tick) == ("rad", 1, 7)
     assert rotation.largest == pytest.approx(angle, rel=1e-7)
 

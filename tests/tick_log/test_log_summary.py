@@ -18,8 +18,8 @@ def test_the_figures_are_those_of_the_ticks(tmp_path):
     rows["device_time_s"][:] = math.nan
     rows["clock_s"][:] = 1e-3 * np.arange(500)
     rows["clock_s"][321:] += 0.025
-    rows["F_display"][77] = [0.0, 0.3, 0.4, 2.0, 0.0, 0.0]
-    rows["F_display"][400] = [0.0, 0.0, 0.0, 0.0, 3.0, -4.0]
+    rows["F_Ho_W_commanded"][77] = [0.0, 0.3, 0.4, 2.0, 0.0, 0.0]
+    rows["F_Ho_W_commanded"][400] = [0.0, 0.0, 0.0, 0.0, 3.0, -4.0]
     rows["distance_m"][:] = math.inf
     rows["distance_m"][9] = -2e-3
     rows["contacts"][:] = 0

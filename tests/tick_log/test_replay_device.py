@@ -60,7 +60,7 @@ def test_it_tells_of_the_handle_in_its_base():
             V_WH = np.concatenate([R_WB @ reading.V_BH[:3], R_WB @ reading.V_BH[3:]])
             np.testing.assert_allclose(V_WH, log.rows["V_WH"][k], atol=1e-14)
             assert reading.time_s == log.rows["time_s"][k]
-            assert not reading.F_BH.any()
+            assert not reading.F_Ho_B.any()
             device.write(None)
 
 
@@ -73,7 +73,7 @@ def test_a_loop_meets_each_tick_at_its_time():
     for k in range(20):
         # In the middle of the tick: after its updates.
         simulator.AdvanceTo((k + 0.5) * 1e-3)
-        X_WH = device.get_handle_pose_output_port().Eval(context)
+        X_WH = device.GetOutputPort("X_WH").Eval(context)
         np.testing.assert_allclose(X_WH, log.rows["X_WH"][k], atol=1e-14)
         assert device.GetOutputPort("reading").Eval(context).sequence == k
 

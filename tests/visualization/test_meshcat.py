@@ -9,7 +9,7 @@ import pytest
 import trimesh
 
 from drake_haptics.cli.endings import failures_in_words
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import list_scenes
 from drake_haptics.scene.scene_file import load_scene
@@ -18,9 +18,9 @@ from drake_haptics.visualization.meshcat import (
     CAMERAS,
     aim_camera,
     clip_facet,
+    configure_camera,
     find_framed_points,
-    open_meshcat,
-    set_stage,
+    start_meshcat,
 )
 
 # Half of the vertical angle of Meshcat's camera.
@@ -50,7 +50,7 @@ class CameraKeeper:
 def test_the_whole_scene_is_in_the_picture(name):
     haptic = BuildHapticDiagram(load_scene(list_scenes()[name]))
     camera = CameraKeeper()
-    set_stage(camera, haptic)
+    configure_camera(camera, haptic)
     points = [haptic.environment[0].mesh.vertices]
     for waypoint in haptic.scene.hand.path.waypoints:
         X_WT = Pose(waypoint.position_m, waypoint.rpy_deg).to_rigid_transform()
@@ -96,11 +96,11 @@ def test_bad_views_are_refused():
 def test_of_large_surroundings_only_what_is_near_is_framed():
     scene = load_scene(list_scenes()["sphere_pen"])
     near = CameraKeeper()
-    set_stage(near, BuildHapticDiagram(scene))
+    configure_camera(near, BuildHapticDiagram(scene))
     scene.environment[0].scale = 50.0
     scene.environment[0].pose.position_m = [0.0, 0.0, -0.040 * 49]
     far = CameraKeeper()
-    set_stage(far, BuildHapticDiagram(scene))
+    configure_camera(far, BuildHapticDiagram(scene))
     distance = [np.linalg.norm(c.p_WCamera - c.p_WTarget) for c in (near, far)]
     assert distance[1] < 3 * distance[0]
 
@@ -149,13 +149,13 @@ def test_a_facet_is_clipped_to_what_is_in_the_box(seed):
 def test_a_page_leaves_drakes_log_as_it_is(caplog):
     logger = logging.getLogger("drake")
     before = logger.level, list(logger.filters)
-    open_meshcat()
+    start_meshcat()
     assert (logger.level, logger.filters) == before
 
 
 def test_on_the_terminal_drakes_warning_of_two_pages_is_not_shown(capsys):
     with failures_in_words(debug=False):
-        open_meshcat()
+        start_meshcat()
         logger = logging.getLogger("drake")
         logger.warning(
             "More than one meshcat client is attempting to broadcast its camera pose."
@@ -172,5 +172,5 @@ def test_a_taken_port_is_a_users_error():
         taken.bind(("localhost", 0))
         taken.listen()
         port = taken.getsockname()[1]
-        with pytest.raises(UserError, match=str(port)):
-            open_meshcat(port)
+        with pytest.raises(HapticsError, match=str(port)):
+            start_meshcat(port)

@@ -14,10 +14,10 @@ from meshcat_page import MeshcatPage
 from pydrake.math import RigidTransform, RollPitchYaw
 from scipy.spatial.transform import Rotation
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.device.backend import DeviceCommand, GateState
-from drake_haptics.visualization.meshcat import open_meshcat
+from drake_haptics.visualization.meshcat import start_meshcat
 from drake_haptics.web import handle as page_handle
 from drake_haptics.web import mouse_device
 from drake_haptics.web.mouse_device import MouseDevice
@@ -40,7 +40,7 @@ def clock(monkeypatch):
 
 @pytest.fixture(scope="module")
 def meshcat():
-    return open_meshcat()
+    return start_meshcat()
 
 
 def make(meshcat, **changes):
@@ -121,7 +121,7 @@ def test_it_needs_nobody_to_look_at_it(device, clock):
     device.write(DeviceCommand(np.ones(6), reading.X_BH, reading.V_BH))
     reading = device.read()
     assert reading.gate is GateState.ACTIVE
-    np.testing.assert_array_equal(reading.F_BH, np.ones(6))
+    np.testing.assert_array_equal(reading.F_Ho_B, np.ones(6))
 
 
 def test_the_pointer_moves_the_handle_as_seen_from_the_front(device, clock):
@@ -268,10 +268,10 @@ def test_a_page_is_told_the_wrench_as_its_picture_shows_it(device, clock):
     # 1 N to the right, 2 up, 3 towards the viewer, who looks along y.
     f_W, tau_W = np.array([1.0, -3.0, 2.0]), np.array([0.0, -0.2, 0.1])
     R_BW = X_WB.rotation().inverse()
-    F_BH = np.concatenate([R_BW @ tau_W, R_BW @ f_W])
+    F_Ho_B = np.concatenate([R_BW @ tau_W, R_BW @ f_W])
     with Page(device, clock) as page:
         assert page.hear("frame", lambda report: True)["gate"] == "idle"
-        device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
+        device.write(DeviceCommand(F_Ho_B, reading.X_BH, reading.V_BH))
         report = page.hear("frame", lambda report: report["gate"] == "active")
         np.testing.assert_allclose(report["f"], [1, 2, 3], atol=1e-12)
         np.testing.assert_allclose(report["tau"], [0, 0.1, 0.2], atol=1e-12)
@@ -286,8 +286,8 @@ def test_a_wrench_that_is_none_is_shown_as_zero(device, clock):
     """JSON has no word for it: a page would fail to read the report."""
     reading = device.read()
     with Page(device, clock) as page:
-        F_BH = np.array([0.0, np.inf, 0, np.nan, 1, 1])
-        device.write(DeviceCommand(F_BH, reading.X_BH, reading.V_BH))
+        F_Ho_B = np.array([0.0, np.inf, 0, np.nan, 1, 1])
+        device.write(DeviceCommand(F_Ho_B, reading.X_BH, reading.V_BH))
         report = page.hear("frame", lambda report: report["gate"] == "active")
     assert report["f"] == report["tau"] == [0, 0, 0]
 
@@ -304,7 +304,7 @@ def test_close_ends_at_no_force_and_tells_the_page(meshcat, clock):
     device.write(DeviceCommand(np.ones(6), reading.X_BH, reading.V_BH))
     reading = device.read()
     assert reading.gate is GateState.IDLE
-    np.testing.assert_array_equal(reading.F_BH, np.zeros(6))
+    np.testing.assert_array_equal(reading.F_Ho_B, np.zeros(6))
 
 
 def test_nothing_holds_it_after_its_end(meshcat, clock):
@@ -324,7 +324,7 @@ def test_nothing_holds_it_after_its_end(meshcat, clock):
 
 def test_a_port_in_use_is_refused(meshcat, device):
     port = int(device.url.rstrip("/").rpartition(":")[2])
-    with pytest.raises(UserError, match=str(port)):
+    with pytest.raises(HapticsError, match=str(port)):
         make(meshcat, port=port)
 
 

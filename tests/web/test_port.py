@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.web import link as page_port
 from drake_haptics.web.link import FIRST_PORT, open_page_port
 
@@ -25,13 +25,13 @@ def test_it_is_one_of_those_that_are_said():
 def test_a_port_in_use_is_refused_with_what_to_do():
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(UserError, match=rf"port {port} .*Give another one"):
+        with pytest.raises(HapticsError, match=rf"port {port} .*Give another one"):
             open_page_port(port)
 
 
 @pytest.mark.parametrize("port", [-1, 70_000])
 def test_a_port_that_is_none_is_refused(port):
-    with pytest.raises(UserError, match="Give another one"):
+    with pytest.raises(HapticsError, match="Give another one"):
         open_page_port(port)
 
 

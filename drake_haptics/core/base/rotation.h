@@ -22,10 +22,10 @@ using PoseVectorOf = Eigen::Matrix<T, 7, 1>;
 using PoseVector = PoseVectorOf<double>;
 
 /// @throws std::invalid_argument unless all values are finite and the
-///         quaternion can be normalised. `what` names the pose in the message.
+///         quaternion can be normalized. `what` names the pose in the message.
 Pose PoseFromVector(const PoseVector& q, const char* what);
 
-/// The quaternion of a pose vector, normalised.
+/// The quaternion of a pose vector, normalized.
 template <typename T>
 Eigen::Quaternion<T> QuaternionOf(const Eigen::Matrix<T, 7, 1>& q) {
   return Eigen::Quaternion<T>(q[0], q[1], q[2], q[3]).normalized();

@@ -11,7 +11,7 @@
 #include "bind/bind.h"
 #include "bind/bind_eigen.h"
 #include "law/autodiff_sets.h"
-#include "law/contact_advance.h"
+#include "law/contact_extrapolation.h"
 
 namespace nb = nanobind;
 
@@ -32,8 +32,8 @@ PoseOf<AutoDiff> PoseAt(const AutoDiffVector& poses, Eigen::Index i,
 
 // @param found, now poses of the tool and of the objects that move.
 template <typename T, typename Poses>
-void Advance(const ContactCarrier& self, const Poses& found, const Poses& now,
-             ContactSetOf<T>* contacts) {
+void Advance(const ContactExtrapolation& self, const Poses& found,
+             const Poses& now, ContactSetOf<T>* contacts) {
   const Eigen::Index size = self.num_moving() + 1;
   if (found.size() != 7 * size || now.size() != 7 * size) {
     throw std::invalid_argument(
@@ -47,14 +47,14 @@ void Advance(const ContactCarrier& self, const Poses& found, const Poses& now,
   self.Advance<T>(bodies[0], std::span(bodies).subspan(1), contacts);
 }
 
-ContactSet AdvanceValues(const ContactCarrier& self, ContactSet contacts,
+ContactSet AdvanceValues(const ContactExtrapolation& self, ContactSet contacts,
                          const Eigen::VectorXd& found,
                          const Eigen::VectorXd& now) {
   Advance<double>(self, found, now, &contacts);
   return contacts;
 }
 
-AutoDiffContactSet DifferentiateAdvance(const ContactCarrier& self,
+AutoDiffContactSet DifferentiateAdvance(const ContactExtrapolation& self,
                                         AutoDiffContactSet contacts,
                                         const AutoDiffVector& found,
                                         const AutoDiffVector& now) {
@@ -73,14 +73,14 @@ AutoDiffContactSet DifferentiateAdvance(const ContactCarrier& self,
 
 void BindAdvance(nb::module_& m) {
   using Shape = std::shared_ptr<Decomposition>;
-  nb::class_<ContactCarrier>(
-      m, "ContactCarrier",
+  nb::class_<ContactExtrapolation>(
+      m, "ContactExtrapolation",
       "Carries contacts along with the bodies: features stay, witness points "
       "stay on their bodies, and the normal on the one whose facet it is of "
-      "(contact_advance.h). Immutable.")
+      "(contact_extrapolator.h). Immutable.")
       .def(
           "__init__",
-          [](ContactCarrier* self, const Shape& tool,
+          [](ContactExtrapolation* self, const Shape& tool,
              const std::vector<Shape>& objects,
              const std::vector<std::optional<PoseVector>>& X_WO) {
             std::vector<std::optional<Pose>> rest;
@@ -88,8 +88,8 @@ void BindAdvance(nb::module_& m) {
               rest.push_back(q ? std::optional(PoseFromVector(*q, "X_WO"))
                                : std::nullopt);
             }
-            new (self) ContactCarrier(tool, {objects.begin(), objects.end()},
-                                      std::move(rest));
+            new (self) ContactExtrapolation(
+                tool, {objects.begin(), objects.end()}, std::move(rest));
           },
           nb::arg("tool"), nb::arg("objects"), nb::arg("X_WO"),
           "Carries contacts of `tool` with `objects`, those of the query.\n\n"

@@ -13,7 +13,7 @@ namespace {
 
 AutoDiffContactSet Differentiate(
     const ContactSet& contacts, double tolerance, const Decomposition& tool,
-    const AutoDiffVector& X_WTool,
+    const AutoDiffVector& X_WT,
     const std::vector<const Decomposition*>& objects,
     const std::vector<AutoDiffVector>& X_WO) {
   if (X_WO.size() != objects.size()) {
@@ -21,16 +21,15 @@ AutoDiffContactSet Differentiate(
   }
   std::vector<DisplacedShape> displaced;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (X_WO[i].num_derivatives() != X_WTool.num_derivatives()) {
+    if (X_WO[i].num_derivatives() != X_WT.num_derivatives()) {
       throw std::invalid_argument(
-          "X_WTool and X_WO must have derivatives by the same variables");
+          "X_WT and X_WO must have derivatives by the same variables");
     }
     displaced.push_back(DisplaceShape(objects[i], X_WO[i], "X_WO"));
   }
   return {DifferentiateContacts(contacts, tolerance,
-                                DisplaceShape(&tool, X_WTool, "X_WTool"),
-                                displaced),
-          X_WTool.num_derivatives()};
+                                DisplaceShape(&tool, X_WT, "X_WT"), displaced),
+          X_WT.num_derivatives()};
 }
 
 }  // namespace
@@ -58,7 +57,7 @@ void BindAutoDiffContact(nb::module_& m) {
   DefGradientColumn<kItems, &Item::flushness>(&set, "flushness", "(n,).");
   DefDifferentiated(&set, "The `ContactSet`.");
   m.def("differentiate_contacts", &Differentiate, nb::arg("contacts"),
-        nb::arg("tolerance"), nb::arg("tool"), nb::arg("X_WTool"),
+        nb::arg("tolerance"), nb::arg("tool"), nb::arg("X_WT"),
         nb::arg("objects"), nb::arg("X_WO"),
         "The answer of a query with its derivatives, while features stay "
         "(query_gradient.h).\n\n"
@@ -66,7 +65,7 @@ void BindAutoDiffContact(nb::module_& m) {
         "    contacts: as the query gave them at these poses, not shaded.\n"
         "    tolerance: of the query, m.\n"
         "    tool, objects: the bodies of the query.\n"
-        "    X_WTool: (7,) pose [qw qx qy qz x y z].\n"
+        "    X_WT: (7,) pose [qw qx qy qz x y z].\n"
         "    X_WO: a (7,) pose for each object.\n\n"
         "Raises:\n"
         "    ValueError: a pose is not one, or numbers of objects or of "

@@ -106,7 +106,7 @@ MovingFrameOf<AutoDiff> FrameOf(const AutoDiffVector& p_WF,
 
 AutoDiffPenaltyWrench Compute(const AutoDiffClusterSet& clusters,
                               const AutoDiffVector& p_WTo,
-                              const AutoDiffVector& V_WTool,
+                              const AutoDiffVector& V_WT,
                               const AutoDiffVector& p_WO,
                               const AutoDiffVector& V_WO,
                               const Eigen::VectorXd& stiffness,
@@ -117,10 +117,10 @@ AutoDiffPenaltyWrench Compute(const AutoDiffClusterSet& clusters,
         "stiffness and damping must have one row for each object");
   }
   RequireVector(p_WTo, 3, D, "p_WTo");
-  RequireVector(V_WTool, 6, D, "V_WTool");
+  RequireVector(V_WT, 6, D, "V_WT");
   RequireVector(p_WO, 3 * count, D, "p_WO");
   RequireVector(V_WO, 6 * count, D, "V_WO");
-  const auto tool = FrameOf(p_WTo, V_WTool, 0);
+  const auto tool = FrameOf(p_WTo, V_WT, 0);
   std::vector<MovingFrameOf<AutoDiff>> objects;
   std::vector<MovingFrame> values;
   std::vector<ContactMaterial> materials;
@@ -163,7 +163,7 @@ void BindWrench(nb::module_& m) {
       },
       "(78,) wrench on the tool at To with its linear model.");
   wrench.def_prop_ro(
-      "F_Tool_W",
+      "F_To_W",
       [](const Wrench& w) {
         return ToAutoDiffVector(w.set.tool.F, w.num_derivatives);
       },
@@ -183,8 +183,8 @@ void BindWrench(nb::module_& m) {
   DefDifferentiated(&wrench, "The `PenaltyWrench`.");
   m.def(
       "penalty_force", &Compute, nb::arg("clusters"), nb::arg("p_WTo"),
-      nb::arg("V_WTool"), nb::arg("p_WO"), nb::arg("V_WO"),
-      nb::arg("stiffness"), nb::arg("damping"),
+      nb::arg("V_WT"), nb::arg("p_WO"), nb::arg("V_WO"), nb::arg("stiffness"),
+      nb::arg("damping"),
       "The same with derivatives; p_WO (3 m,) and V_WO (6 m,) have one object "
       "after another.");
 }

@@ -12,15 +12,15 @@ namespace drake_haptics {
 namespace {
 
 Eigen::VectorXd Brake(const ContactSet& contacts, const Vec3& p_WTo,
-                      const Vec6& V_WTool, const ObjectFrames& objects,
+                      const Vec6& V_WT, const ObjectFrames& objects,
                       const BrakingGains& gains) {
-  return ToVector(ComputeBraking<double>(contacts.contacts, {p_WTo, V_WTool},
+  return ToVector(ComputeBraking<double>(contacts.contacts, {p_WTo, V_WT},
                                          objects.frames, gains));
 }
 
 AutoDiffVector DifferentiateBraking(const AutoDiffContactSet& contacts,
                                     const AutoDiffVector& p_WTo,
-                                    const AutoDiffVector& V_WTool,
+                                    const AutoDiffVector& V_WT,
                                     const AutoDiffVector& p_WO,
                                     const AutoDiffVector& V_WO,
                                     const BrakingGains& gains) {
@@ -37,8 +37,8 @@ AutoDiffVector DifferentiateBraking(const AutoDiffContactSet& contacts,
   return ToAutoDiffVector(
       ToVector(ComputeBraking<AutoDiff>(
           contacts.set.contacts,
-          {ToScalars<3>(p_WTo, "p_WTo"), ToScalars<6>(V_WTool, "V_WTool")},
-          objects, gains)),
+          {ToScalars<3>(p_WTo, "p_WTo"), ToScalars<6>(V_WT, "V_WT")}, objects,
+          gains)),
       contacts.num_derivatives);
 }
 
@@ -61,7 +61,7 @@ void BindBraking(nb::module_& m) {
           "Raises:\n"
           "    ValueError: b < 0, D <= 0, or one of them is not finite.");
   m.def("pre_contact_braking", &Brake, nb::arg("contacts"), nb::arg("p_WTo"),
-        nb::arg("V_WTool"), nb::arg("objects"), nb::arg("gains"),
+        nb::arg("V_WT"), nb::arg("objects"), nb::arg("gains"),
         "Braking of the approach of surfaces that do not touch yet (McNeely, "
         "Puterbaugh and Troy 1999): at each contact with 0 < d < D a force b s "
         "w v along its normal, v the speed of approach, w = 4 (d/D)(1 − d/D), "
@@ -69,7 +69,7 @@ void BindBraking(nb::module_& m) {
         "pull.\n\n"
         "Args:\n"
         "    p_WTo: (3,) tool's origin, m.\n"
-        "    V_WTool: (6,) its spatial velocity [rad/s; m/s].\n"
+        "    V_WT: (6,) its spatial velocity [rad/s; m/s].\n"
         "    objects: where they are.\n\n"
         "Returns:\n"
         "    (78 + 6 m,) wrench model on the tool at To in W: [F (6); K (36), "
@@ -78,7 +78,7 @@ void BindBraking(nb::module_& m) {
         "Raises:\n"
         "    IndexError: a contact names an object that is not given.");
   m.def("pre_contact_braking", &DifferentiateBraking, nb::arg("contacts"),
-        nb::arg("p_WTo"), nb::arg("V_WTool"), nb::arg("p_WO"), nb::arg("V_WO"),
+        nb::arg("p_WTo"), nb::arg("V_WT"), nb::arg("p_WO"), nb::arg("V_WO"),
         nb::arg("gains"),
         "The same with derivatives; p_WO (3 m,) and V_WO (6 m,) have one "
         "object after another.");

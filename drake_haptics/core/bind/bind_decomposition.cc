@@ -135,7 +135,7 @@ std::vector<std::shared_ptr<Polytope>> Pieces(const DecompositionPtr& self) {
 
 void BindDecomposition(nb::module_& m) {
   nb::class_<Decomposition>(
-      m, "Decomposition",
+      m, "ConvexPieces",
       "A mesh and the convex pieces that stand for its surface. Immutable.")
       .def_prop_ro(
           "vertices",
@@ -216,7 +216,7 @@ void BindDecomposition(nb::module_& m) {
   m.def("merge_pieces", &Merge, nb::arg("vertices"), nb::arg("triangles"),
         nb::arg("solid"), nb::arg("piece_of_triangle"), nb::arg("error"),
         nb::arg("progress") = nb::none(),
-        "Joins neighbouring pieces of an exact decomposition, the cheapest "
+        "Joins neighboring pieces of an exact decomposition, the cheapest "
         "first, while hulls depart from the mesh by no more than an error.\n\n"
         "Args:\n"
         "    vertices: (n, 3) positions, m.\n"

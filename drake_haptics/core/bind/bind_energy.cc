@@ -101,7 +101,7 @@ void BindLedger(nb::module_& m) {
       .def(
           "add",
           [](NamedLedger& self, const ToolStateVector& tool_state,
-             const PoseVector& q_WH, const Vec6& F_applied,
+             const PoseVector& q_WH, const Vec6& F_Ho_W_rendered,
              const WrenchModelVector& coupling,
              const std::vector<WrenchModelVector>& wrench_models,
              const std::vector<double>& stored) {
@@ -111,7 +111,7 @@ void BindLedger(nb::module_& m) {
             }
             LoopReading reading{{tool_state.head<7>(), tool_state.tail<6>()},
                                 q_WH,
-                                F_applied,
+                                F_Ho_W_rendered,
                                 ToWrenchModel(coupling),
                                 {}};
             for (std::size_t i = 0; i < stored.size(); ++i) {
@@ -120,7 +120,7 @@ void BindLedger(nb::module_& m) {
             }
             self.ledger.Add(reading);
           },
-          nb::arg("tool_state"), nb::arg("q_WH"), nb::arg("F_applied"),
+          nb::arg("tool_state"), nb::arg("q_WH"), nb::arg("F_Ho_W_rendered"),
           nb::arg("coupling"), nb::arg("wrench_models"), nb::arg("stored_J"),
           "Books the tick between the call before and this one; the first call "
           "only says what is stored. All is read at one instant, after one "
@@ -130,7 +130,8 @@ void BindLedger(nb::module_& m) {
           "    tool_state: (13,) = [pose (7), m; spatial velocity (6), rad/s "
           "and m/s].\n"
           "    q_WH: (7,) pose of the handle.\n"
-          "    F_applied: (6,) wrench that was held on the handle up to now, "
+          "    F_Ho_W_rendered: (6,) wrench that was held on the handle up to "
+          "now, "
           "at Ho in W, N·m and N.\n"
           "    coupling: (78,) wrench model of the coupling on the tool.\n"
           "    wrench_models: (78,) of each source.\n"
@@ -166,13 +167,13 @@ void BindStoredEnergy(nb::module_& m) {
         "    stiffness: of each object, N/m.\n"
         "    tolerance: t, m.\n\n"
         "Raises:\n    IndexError: a cluster names an object that has none.");
-  m.def("weight_energy", &WeightEnergy, nb::arg("q_WTool"), nb::arg("p_TTcm"),
+  m.def("weight_energy", &WeightEnergy, nb::arg("q_WT"), nb::arg("p_TTcm"),
         nb::arg("weight_W"),
-        "Potential energy of the tool's weight, J, zero with its centre of "
+        "Potential energy of the tool's weight, J, zero with its center of "
         "mass at the world's origin.\n\n"
         "Args:\n"
-        "    q_WTool: (7,) its pose.\n"
-        "    p_TTcm: (3,) centre of mass in its frame, m.\n"
+        "    q_WT: (7,) its pose.\n"
+        "    p_TTcm: (3,) center of mass in its frame, m.\n"
         "    weight_W: (3,) mass times gravity, N.");
 }
 

@@ -34,7 +34,7 @@ FrictionStepOf<T> CheckedStep(const StickSlipModel& model,
                               std::span<const T> state,
                               const ClusterSetOf<T>& clusters,
                               const PenaltyWrenchOf<T>& contact_wrench,
-                              const Eigen::Matrix<T, 7, 1>& q_WTool,
+                              const Eigen::Matrix<T, 7, 1>& q_WT,
                               std::span<const T> q_WO) {
   RequireSize(state, model.state_size(), "state");
   RequireSize(q_WO, 7 * model.num_moving(), "q_WO");
@@ -51,16 +51,16 @@ FrictionStepOf<T> CheckedStep(const StickSlipModel& model,
     }
     normal_forces.push_back(LengthOf(contact_wrench.f_cluster_W[c]));
   }
-  return model.Step(state.data(), clusters.clusters, normal_forces, q_WTool,
+  return model.Step(state.data(), clusters.clusters, normal_forces, q_WT,
                     q_WO.data());
 }
 
 FrictionStep Step(const StickSlipModel& model, const Numbers& state,
                   const ClusterSet& clusters,
-                  const PenaltyWrench& contact_wrench,
-                  const PoseVector& q_WTool, const Numbers& q_WO) {
+                  const PenaltyWrench& contact_wrench, const PoseVector& q_WT,
+                  const Numbers& q_WO) {
   return CheckedStep<double>(model, {state.data(), state.shape(0)}, clusters,
-                             contact_wrench, q_WTool,
+                             contact_wrench, q_WT,
                              {q_WO.data(), q_WO.shape(0)});
 }
 
@@ -77,10 +77,9 @@ std::span<const double> ToSpan(const Eigen::VectorXd& values) {
 AutoDiffFrictionStep DifferentiateStep(
     const StickSlipModel& model, const AutoDiffVector& state,
     const AutoDiffClusterSet& clusters,
-    const AutoDiffPenaltyWrench& contact_wrench, const AutoDiffVector& q_WTool,
+    const AutoDiffPenaltyWrench& contact_wrench, const AutoDiffVector& q_WT,
     const AutoDiffVector& q_WO) {
-  const Eigen::Index num_derivatives =
-      CommonNumDerivatives(state, q_WTool, q_WO);
+  const Eigen::Index num_derivatives = CommonNumDerivatives(state, q_WT, q_WO);
   if (clusters.num_derivatives != num_derivatives ||
       contact_wrench.num_derivatives != num_derivatives) {
     throw std::invalid_argument(
@@ -89,14 +88,13 @@ AutoDiffFrictionStep DifferentiateStep(
   }
   AutoDiffFrictionStep step{
       CheckedStep<AutoDiff>(model, ToList(state), clusters.set,
-                            contact_wrench.set,
-                            ToScalars<7>(q_WTool, "q_WTool"), ToList(q_WO)),
+                            contact_wrench.set, ToScalars<7>(q_WT, "q_WT"),
+                            ToList(q_WO)),
       num_derivatives};
-  SetValues(
-      CheckedStep<double>(model, ToSpan(state.value), ValuesOf(clusters.set),
-                          ValuesOf(contact_wrench.set), q_WTool.value,
-                          ToSpan(q_WO.value)),
-      &step);
+  SetValues(CheckedStep<double>(
+                model, ToSpan(state.value), ValuesOf(clusters.set),
+                ValuesOf(contact_wrench.set), q_WT.value, ToSpan(q_WO.value)),
+            &step);
   return step;
 }
 
@@ -178,7 +176,7 @@ void BindStickSlipModel(nb::module_& m) {
       m, "StickSlipModel",
       "Stick-slip friction after Hayward and Armstrong (2000) of a tool on "
       "objects, at the representative contacts of clusters. Immutable: its "
-      "state, (n,), goes in and comes out. It is [X_WTool (7); X_WO (7) of "
+      "state, (n,), goes in and comes out. It is [X_WT (7); X_WO (7) of "
       "each object that moves; 32 slots of object, p_WC (3), nhat_BA_W (3), z "
       "(3), load, grip], the poses and the contacts of the last tick. A slot "
       "without a load is empty.")
@@ -205,23 +203,23 @@ void BindStickSlipModel(nb::module_& m) {
           "length not above 0.")
       .def_prop_ro("state_size", &StickSlipModel::state_size, "n.")
       .def("step", &Step, nb::arg("state"), nb::arg("clusters"),
-           nb::arg("contact_wrench"), nb::arg("q_WTool"), nb::arg("q_WO"),
+           nb::arg("contact_wrench"), nb::arg("q_WT"), nb::arg("q_WO"),
            "Friction now, and the state for the next tick.\n\n"
            "Args:\n"
            "    state: (n,) from the last tick; zeros before the first.\n"
            "    clusters: of now.\n"
            "    contact_wrench: their normal forces are the norms of its "
            "`f_cluster_W`.\n"
-           "    q_WTool: (7,) pose of the tool.\n"
+           "    q_WT: (7,) pose of the tool.\n"
            "    q_WO: (7 j,) poses of the j objects that move, one after the "
            "other.\n\n"
            "Raises:\n"
            "    ValueError: a size does not match, or a cluster names an "
            "object that has no coefficient.")
       .def("step", &DifferentiateStep, nb::arg("state"), nb::arg("clusters"),
-           nb::arg("contact_wrench"), nb::arg("q_WTool"), nb::arg("q_WO"),
+           nb::arg("contact_wrench"), nb::arg("q_WT"), nb::arg("q_WO"),
            "The same with derivatives: those of each contact as it sticks or "
-           "slides, and with the neighbours it has.");
+           "slides, and with the neighbors it has.");
 }
 
 }  // namespace

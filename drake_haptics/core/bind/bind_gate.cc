@@ -126,11 +126,11 @@ void BindGate(nb::module_& m) {
       .def_ro("command_sequence", &dh_gate::command_sequence,
               "Of the newest command that was accepted.")
       .def_prop_ro(
-          "command_F_BH",
-          [](const dh_gate& gate) { return ToArray(gate.command_F_BH); },
+          "command_F_Ho_B",
+          [](const dh_gate& gate) { return ToArray(gate.command_F_Ho_B); },
           "(6,) the newest wrench to show, within the limits, N·m and N.")
       .def_prop_ro(
-          "F_BH", [](const dh_gate& gate) { return ToArray(gate.F_BH); },
+          "F_Ho_B", [](const dh_gate& gate) { return ToArray(gate.F_Ho_B); },
           "(6,) the wrench that is shown, N·m and N.")
       .def_ro("scale", &dh_gate::scale, "Share of it that is shown, 0 to 1.")
       .def_prop_ro("rejected", &dh_gate_rejected, "Packets refused so far.")

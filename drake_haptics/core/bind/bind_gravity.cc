@@ -10,10 +10,10 @@ namespace drake_haptics {
 void BindGravity(nb::module_& m) {
   m.def("tool_weight", &ToolWeight<double>, nb::arg("q_WT"), nb::arg("p_TTcm"),
         nb::arg("weight_W"),
-        "Weight of the tool, a force at its centre of mass.\n\n"
+        "Weight of the tool, a force at its center of mass.\n\n"
         "Args:\n"
         "    q_WT: (7,) pose [qw qx qy qz x y z].\n"
-        "    p_TTcm: (3,) centre of mass in the tool's frame, m.\n"
+        "    p_TTcm: (3,) center of mass in the tool's frame, m.\n"
         "    weight_W: (3,) mass times gravity, N.\n\n"
         "Returns:\n"
         "    (6,) wrench on the tool at To in W, [N·m; N].");

@@ -8,7 +8,7 @@
 #include "base/frame_change.h"
 #include "bind/bind.h"
 #include "bind/bind_array.h"
-#include "tool/held_arm.h"
+#include "tool/arm_dynamics.h"
 
 namespace nb = nanobind;
 
@@ -44,7 +44,7 @@ void RequireFinite(const State<T>& state) {
 }
 
 template <typename T>
-Eigen::Matrix<T, 13, 1> HandleState(const HeldArm& held,
+Eigen::Matrix<T, 13, 1> HandleState(const ArmDynamics& held,
                                     const State<T>& state) {
   RequireFinite(state);
   const MovingPoseOf<T> pose = held.arm.Evaluate(state).pose;
@@ -54,10 +54,11 @@ Eigen::Matrix<T, 13, 1> HandleState(const HeldArm& held,
 }
 
 template <typename T>
-Vec6Of<T> JointTorques(const HeldArm& held, const T& time,
-                       const State<T>& state, const Vec6Of<T>& F_applied) {
+Vec6Of<T> JointTorques(const ArmDynamics& held, const T& time,
+                       const State<T>& state,
+                       const Vec6Of<T>& F_Ho_W_rendered) {
   RequireFinite(state);
-  return held.JointTorques<T>(time, state, F_applied);
+  return held.JointTorques<T>(time, state, F_Ho_W_rendered);
 }
 
 void BindPath(nb::module_& m) {
@@ -91,17 +92,18 @@ void BindPath(nb::module_& m) {
 }
 
 void BindHeldArm(nb::module_& m) {
-  nb::class_<HeldArm>(m, "HeldArm",
-                      "A chain of six revolute joints and a hand that draws "
-                      "its handle H along a path. States are (12,): angles, "
-                      "rad, and speeds, rad/s. All methods raise "
-                      "FloatingPointError where a state is not finite.")
+  nb::class_<ArmDynamics>(
+      m, "ArmDynamics",
+      "A chain of six revolute joints and a hand that draws "
+      "its handle H along a path. States are (12,): angles, "
+      "rad, and speeds, rad/s. All methods raise "
+      "FloatingPointError where a state is not finite.")
       .def(
           "__init__",
-          [](HeldArm* self, const Mat6& J_WH, const PoseVector& q_WH,
+          [](ArmDynamics* self, const Mat6& J_WH, const PoseVector& q_WH,
              const PosePath& path, const PoseVector& q_PH,
              const CouplingGains& gains) {
-            new (self) HeldArm{SixJointArm(J_WH, q_WH), path, q_PH, gains};
+            new (self) ArmDynamics{SixJointArm(J_WH, q_WH), path, q_PH, gains};
           },
           nb::arg("J_WH"), nb::arg("q_WH"), nb::arg("path"), nb::arg("q_PH"),
           nb::arg("gains"),
@@ -117,29 +119,31 @@ void BindHeldArm(nb::module_& m) {
            "m/s].")
       .def(
           "calc_handle_state",
-          [](const HeldArm& self, const AutoDiffVector& state) {
+          [](const ArmDynamics& self, const AutoDiffVector& state) {
             return ToAutoDiffVector(
                 HandleState<AutoDiff>(self, ToScalars<12>(state, "state")),
                 state.num_derivatives());
           },
           nb::arg("state"), "The same with derivatives.")
       .def("calc_joint_torques", &JointTorques<double>, nb::arg("time_s"),
-           nb::arg("state"), nb::arg("F_applied"),
+           nb::arg("state"), nb::arg("F_Ho_W_rendered"),
            "Joint torques (6,), N·m, of the hand and of a wrench (6,) on the "
            "handle at its origin in the world, [N·m; N].")
       .def(
           "calc_joint_torques",
-          [](const HeldArm& self, const AutoDiffVector& time,
-             const AutoDiffVector& state, const AutoDiffVector& F_applied) {
+          [](const ArmDynamics& self, const AutoDiffVector& time,
+             const AutoDiffVector& state,
+             const AutoDiffVector& F_Ho_W_rendered) {
             const Eigen::Index num_derivatives =
-                CommonNumDerivatives(time, state, F_applied);
+                CommonNumDerivatives(time, state, F_Ho_W_rendered);
             return ToAutoDiffVector(
-                JointTorques<AutoDiff>(self, ToScalars<1>(time, "time_s")[0],
-                                       ToScalars<12>(state, "state"),
-                                       ToScalars<6>(F_applied, "F_applied")),
+                JointTorques<AutoDiff>(
+                    self, ToScalars<1>(time, "time_s")[0],
+                    ToScalars<12>(state, "state"),
+                    ToScalars<6>(F_Ho_W_rendered, "F_Ho_W_rendered")),
                 num_derivatives);
           },
-          nb::arg("time_s"), nb::arg("state"), nb::arg("F_applied"),
+          nb::arg("time_s"), nb::arg("state"), nb::arg("F_Ho_W_rendered"),
           "The same with derivatives; `time_s` is (1,).");
 }
 

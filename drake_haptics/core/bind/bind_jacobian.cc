@@ -28,7 +28,7 @@ Rows6 Stack(const std::vector<Mat6>& matrices) {
 
 WrenchJacobian Compute(const ContactSet& contacts, const ClusterSet& clusters,
                        double tolerance, const Decomposition& tool,
-                       const PoseVector& X_WTool, const Vec6& V_WTool,
+                       const PoseVector& X_WT, const Vec6& V_WT,
                        const std::vector<const Decomposition*>& objects,
                        const Rows7& X_WO, const Rows6& V_WO,
                        const Eigen::VectorXd& stiffness,
@@ -48,9 +48,9 @@ WrenchJacobian Compute(const ContactSet& contacts, const ClusterSet& clusters,
     materials.push_back({stiffness[i], damping[i]});
     RequireMaterial(materials.back());
   }
-  return ComputeWrenchJacobian(
-      contacts.contacts, clusters, tolerance,
-      {&tool, PoseFromVector(X_WTool, "X_WTool"), V_WTool}, shapes, materials);
+  return ComputeWrenchJacobian(contacts.contacts, clusters, tolerance,
+                               {&tool, PoseFromVector(X_WT, "X_WT"), V_WT},
+                               shapes, materials);
 }
 
 }  // namespace
@@ -62,8 +62,8 @@ void BindJacobian(nb::module_& m) {
       "displacements [rotation vector (rad); translation (m)] and velocities "
       "[rad/s; m/s] of the bodies about their origins, all in the world. "
       "Immutable.");
-  jacobian.def_ro("by_X_WTool", &WrenchJacobian::by_X_WTool, "(6, 6).")
-      .def_ro("by_V_WTool", &WrenchJacobian::by_V_WTool, "(6, 6).")
+  jacobian.def_ro("by_X_WT", &WrenchJacobian::by_X_WT, "(6, 6).")
+      .def_ro("by_V_WT", &WrenchJacobian::by_V_WT, "(6, 6).")
       .def_prop_ro(
           "by_X_WO",
           [](const WrenchJacobian& self) { return Stack(self.by_X_WO); },
@@ -73,9 +73,9 @@ void BindJacobian(nb::module_& m) {
           [](const WrenchJacobian& self) { return Stack(self.by_V_WO); },
           "(6 m, 6): (6, 6) for each object, one below the other.");
   m.def("wrench_jacobian", &Compute, nb::arg("contacts"), nb::arg("clusters"),
-        nb::arg("tolerance"), nb::arg("tool"), nb::arg("X_WTool"),
-        nb::arg("V_WTool"), nb::arg("objects"), nb::arg("X_WO"),
-        nb::arg("V_WO"), nb::arg("stiffness"), nb::arg("damping"),
+        nb::arg("tolerance"), nb::arg("tool"), nb::arg("X_WT"), nb::arg("V_WT"),
+        nb::arg("objects"), nb::arg("X_WO"), nb::arg("V_WO"),
+        nb::arg("stiffness"), nb::arg("damping"),
         "Exact derivatives of `penalty_force` through the whole chain from the "
         "poses on: contacts, clusters, forces. Features stay as they are, and "
         "which contacts are together or push (wrench_jacobian.h).\n\n"
@@ -84,8 +84,8 @@ void BindJacobian(nb::module_& m) {
         "    clusters: of them, by `cluster_contacts` or `share_stiffness`.\n"
         "    tolerance: what the clusters were made with, m.\n"
         "    tool, objects: the bodies of the query.\n"
-        "    X_WTool, X_WO: (7,) and (m, 7) poses [qw qx qy qz x y z].\n"
-        "    V_WTool, V_WO: (6,) and (m, 6) spatial velocities [rad/s; m/s].\n"
+        "    X_WT, X_WO: (7,) and (m, 7) poses [qw qx qy qz x y z].\n"
+        "    V_WT, V_WO: (6,) and (m, 6) spatial velocities [rad/s; m/s].\n"
         "    stiffness, damping: (m,) k and k_v of each object, N/m and "
         "N·s/m.\n\n"
         "Raises:\n"

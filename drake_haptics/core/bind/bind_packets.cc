@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kMax32 = UINT32_MAX, kMax64 = UINT64_MAX;
 
 nb::bytes PackState(nb::int_ sequence, nb::int_ time_ns, nb::handle X_BH,
-                    nb::handle V_BH, nb::handle F_BH, nb::int_ boot,
+                    nb::handle V_BH, nb::handle F_Ho_B, nb::int_ boot,
                     nb::int_ session, nb::int_ command_sequence,
                     nb::int_ buttons, nb::int_ rejected, double max_force_N,
                     double max_torque_Nm, nb::int_ gate, nb::int_ fault) {
@@ -24,7 +24,7 @@ nb::bytes PackState(nb::int_ sequence, nb::int_ time_ns, nb::handle X_BH,
   state.time_ns = ReadCount<std::uint64_t>("time_ns", time_ns, 0, kMax64);
   ReadReals(X_BH, "X_BH", state.X_BH);
   ReadReals(V_BH, "V_BH", state.V_BH);
-  ReadReals(F_BH, "F_BH", state.F_BH);
+  ReadReals(F_Ho_B, "F_Ho_B", state.F_Ho_B);
   state.boot = ReadCount<std::uint32_t>("boot", boot, 1, kMax32);
   state.command_sequence =
       ReadCount<std::uint32_t>("command_sequence", command_sequence, 0, kMax32);
@@ -40,13 +40,13 @@ nb::bytes PackState(nb::int_ sequence, nb::int_ time_ns, nb::handle X_BH,
 }
 
 nb::bytes PackCommand(nb::int_ session, nb::int_ sequence, nb::int_ time_ns,
-                      nb::handle F_BH, nb::int_ state_sequence, nb::int_ ttl_us,
-                      bool enable) {
+                      nb::handle F_Ho_B, nb::int_ state_sequence,
+                      nb::int_ ttl_us, bool enable) {
   dh_command command{};
   command.session = ReadCount<std::uint32_t>("session", session, 1, kMax32);
   command.sequence = ReadCount<std::uint32_t>("sequence", sequence, 0, kMax32);
   command.time_ns = ReadCount<std::uint64_t>("time_ns", time_ns, 0, kMax64);
-  ReadReals(F_BH, "F_BH", command.F_BH);
+  ReadReals(F_Ho_B, "F_Ho_B", command.F_Ho_B);
   command.state_sequence =
       ReadCount<std::uint32_t>("state_sequence", state_sequence, 0, kMax32);
   command.ttl_us = ReadCount<std::uint32_t>("ttl_us", ttl_us, 0, kMax32);
@@ -84,7 +84,7 @@ void BindPackets(nb::module_& m) {
           "V_BH", [](const dh_state& s) { return ToArray(s.V_BH); },
           "(6,) spatial velocity [ω; v], rad/s and m/s.")
       .def_prop_ro(
-          "F_BH", [](const dh_state& s) { return ToArray(s.F_BH); },
+          "F_Ho_B", [](const dh_state& s) { return ToArray(s.F_Ho_B); },
           "(6,) wrench shown [τ; f] at Ho, N·m and N.")
       .def_ro("boot", &dh_state::boot, "Random in each run of the driver.")
       .def_ro("command_sequence", &dh_state::command_sequence,
@@ -101,7 +101,7 @@ void BindPackets(nb::module_& m) {
       .def_ro("sequence", &dh_command::sequence, "Rises by one, and wraps.")
       .def_ro("time_ns", &dh_command::time_ns, "Of sending, host's clock.")
       .def_prop_ro(
-          "F_BH", [](const dh_command& c) { return ToArray(c.F_BH); },
+          "F_Ho_B", [](const dh_command& c) { return ToArray(c.F_Ho_B); },
           "(6,) wrench to show [τ; f] at Ho in B, N·m and N.")
       .def_ro("state_sequence", &dh_command::state_sequence,
               "Of the state that this answers.")
@@ -110,7 +110,7 @@ void BindPackets(nb::module_& m) {
           "enable", [](const dh_command& c) { return c.enable != 0; },
           "Whether force is to be shown.");
   m.def("pack_state", &PackState, nb::kw_only(), nb::arg("sequence"),
-        nb::arg("time_ns"), nb::arg("X_BH"), nb::arg("V_BH"), nb::arg("F_BH"),
+        nb::arg("time_ns"), nb::arg("X_BH"), nb::arg("V_BH"), nb::arg("F_Ho_B"),
         nb::arg("boot"), nb::arg("session"), nb::arg("command_sequence"),
         nb::arg("buttons"), nb::arg("rejected"), nb::arg("max_force_N"),
         nb::arg("max_torque_Nm"), nb::arg("gate"), nb::arg("fault"),
@@ -126,7 +126,7 @@ void BindPackets(nb::module_& m) {
       "Raises:\n"
       "    ValueError: it is damaged or none; says which check failed.");
   m.def("pack_command", &PackCommand, nb::kw_only(), nb::arg("session"),
-        nb::arg("sequence"), nb::arg("time_ns"), nb::arg("F_BH"),
+        nb::arg("sequence"), nb::arg("time_ns"), nb::arg("F_Ho_B"),
         nb::arg("state_sequence"), nb::arg("ttl_us"), nb::arg("enable"),
         "The 88 bytes of a command packet; the arguments are the attributes of "
         "`DeviceCommandPacket`.\n\n"

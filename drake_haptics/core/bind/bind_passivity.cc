@@ -10,31 +10,32 @@ namespace {
 
 template <typename T>
 Eigen::Matrix<T, 14, 1> Control(const Eigen::Matrix<T, 8, 1>& state,
-                                const Eigen::Matrix<T, 6, 1>& F_applied,
-                                const Eigen::Matrix<T, 6, 1>& F_asked,
+                                const Eigen::Matrix<T, 6, 1>& F_Ho_W_rendered,
+                                const Eigen::Matrix<T, 6, 1>& F_Ho_W_desired,
                                 const Eigen::Matrix<T, 7, 1>& q_WH,
                                 const Eigen::Matrix<T, 6, 1>& V_WH,
                                 const PassivityBounds& bounds) {
-  const T work = HeldWrenchWork<T>(F_applied, state.template tail<7>(), q_WH);
+  const T work =
+      HeldWrenchWork<T>(F_Ho_W_rendered, state.template tail<7>(), q_WH);
   const T balance = ObserveEnergy<T>(state[0], work, bounds);
   Eigen::Matrix<T, 14, 1> out;
-  out << LimitEnergy(F_asked, balance, V_WH, bounds), balance, q_WH;
+  out << LimitEnergy(F_Ho_W_desired, balance, V_WH, bounds), balance, q_WH;
   return out;
 }
 
 AutoDiffVector DifferentiateControl(const AutoDiffVector& state,
-                                    const AutoDiffVector& F_applied,
-                                    const AutoDiffVector& F_asked,
+                                    const AutoDiffVector& F_Ho_W_rendered,
+                                    const AutoDiffVector& F_Ho_W_desired,
                                     const AutoDiffVector& q_WH,
                                     const AutoDiffVector& V_WH,
                                     const PassivityBounds& bounds) {
   const Eigen::Index num_derivatives =
-      CommonNumDerivatives(state, F_applied, F_asked, q_WH, V_WH);
+      CommonNumDerivatives(state, F_Ho_W_rendered, F_Ho_W_desired, q_WH, V_WH);
   return ToAutoDiffVector(
       Control(ToScalars<8>(state, "state"),
-              ToScalars<6>(F_applied, "F_applied"),
-              ToScalars<6>(F_asked, "F_asked"), ToScalars<7>(q_WH, "q_WH"),
-              ToScalars<6>(V_WH, "V_WH"), bounds),
+              ToScalars<6>(F_Ho_W_rendered, "F_Ho_W_rendered"),
+              ToScalars<6>(F_Ho_W_desired, "F_Ho_W_desired"),
+              ToScalars<7>(q_WH, "q_WH"), ToScalars<6>(V_WH, "V_WH"), bounds),
       num_derivatives);
 }
 
@@ -62,24 +63,26 @@ void BindPassivity(nb::module_& m) {
           "Raises:\n"
           "    ValueError: the period is not above 0, another one below 0, or "
           "one of them not finite.");
-  m.def("passivity_control", &Control<double>, nb::arg("state"),
-        nb::arg("F_applied"), nb::arg("F_asked"), nb::arg("q_WH"),
-        nb::arg("V_WH"), nb::arg("bounds"),
-        "Passivity observer and controller (Hannaford and Ryu 2002) of one "
-        "tick.\n\n"
-        "Args:\n"
-        "    state: (8,) balance of the last tick, J, and the handle's pose "
-        "then.\n"
-        "    F_applied: (6,) wrench on the handle at Ho in W that was held "
-        "since, [N·m; N].\n"
-        "    F_asked: (6,) wrench asked for now.\n"
-        "    q_WH: (7,) pose now, [qw qx qy qz x y z].\n"
-        "    V_WH: (6,) spatial velocity now, [rad/s; m/s].\n\n"
-        "Returns:\n"
-        "    (14,) wrench to show (6), F_asked itself where the balance is not "
-        "below 0; the next state (8), balance now, J, and pose now.");
+  m.def(
+      "passivity_control", &Control<double>, nb::arg("state"),
+      nb::arg("F_Ho_W_rendered"), nb::arg("F_Ho_W_desired"), nb::arg("q_WH"),
+      nb::arg("V_WH"), nb::arg("bounds"),
+      "Passivity observer and controller (Hannaford and Ryu 2002) of one "
+      "tick.\n\n"
+      "Args:\n"
+      "    state: (8,) balance of the last tick, J, and the handle's pose "
+      "then.\n"
+      "    F_Ho_W_rendered: (6,) wrench on the handle at Ho in W that was held "
+      "since, [N·m; N].\n"
+      "    F_Ho_W_desired: (6,) wrench asked for now.\n"
+      "    q_WH: (7,) pose now, [qw qx qy qz x y z].\n"
+      "    V_WH: (6,) spatial velocity now, [rad/s; m/s].\n\n"
+      "Returns:\n"
+      "    (14,) wrench to show (6), F_Ho_W_desired itself where the balance "
+      "is not "
+      "below 0; the next state (8), balance now, J, and pose now.");
   m.def("passivity_control", &DifferentiateControl, nb::arg("state"),
-        nb::arg("F_applied"), nb::arg("F_asked"), nb::arg("q_WH"),
+        nb::arg("F_Ho_W_rendered"), nb::arg("F_Ho_W_desired"), nb::arg("q_WH"),
         nb::arg("V_WH"), nb::arg("bounds"), "The same with derivatives.");
 }
 

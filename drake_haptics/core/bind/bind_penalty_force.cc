@@ -128,7 +128,7 @@ void BindWrench(nb::module_& m) {
       "(78,) wrench on the tool at To in W with its linear model: [F (6); K "
       "(36, by rows); B (36, by rows)], rotational first.");
   wrench.def_prop_ro(
-      "F_Tool_W", [](const PenaltyWrench& w) { return w.tool.F; },
+      "F_To_W", [](const PenaltyWrench& w) { return w.tool.F; },
       "(6,) wrench on the tool at To, [N·m; N].");
   wrench.def_prop_ro(
       "F_objects_W",
@@ -144,41 +144,39 @@ void BindWrench(nb::module_& m) {
 }
 
 PenaltyWrench Compute(const ClusterSet& clusters, const Vec3& p_WTo,
-                      const Vec6& V_WTool, const ObjectFrames& objects,
+                      const Vec6& V_WT, const ObjectFrames& objects,
                       const ContactMaterials& materials) {
-  return ComputePenaltyWrench(clusters, {p_WTo, V_WTool}, objects.frames,
+  return ComputePenaltyWrench(clusters, {p_WTo, V_WT}, objects.frames,
                               materials.materials);
 }
 
-PenaltyWrench ComputePosed(const ClusterSet& clusters,
-                           const PoseVector& X_WTool, const Vec6& V_WTool,
-                           const ObjectFrames& objects,
+PenaltyWrench ComputePosed(const ClusterSet& clusters, const PoseVector& X_WT,
+                           const Vec6& V_WT, const ObjectFrames& objects,
                            const ContactMaterials& materials) {
-  return Compute(clusters, X_WTool.tail<3>(), V_WTool, objects, materials);
+  return Compute(clusters, X_WT.tail<3>(), V_WT, objects, materials);
 }
 
 void BindForces(nb::module_& m) {
   m.def(
       "penalty_wrench_model",
-      [](const ClusterSet& clusters, const PoseVector& X_WTool,
-         const Vec6& V_WTool, const ObjectFrames& objects,
-         const ContactMaterials& materials) {
+      [](const ClusterSet& clusters, const PoseVector& X_WT, const Vec6& V_WT,
+         const ObjectFrames& objects, const ContactMaterials& materials) {
         return ToVector(
-            ComputePosed(clusters, X_WTool, V_WTool, objects, materials).tool);
+            ComputePosed(clusters, X_WT, V_WT, objects, materials).tool);
       },
-      nb::arg("clusters"), nb::arg("X_WTool"), nb::arg("V_WTool"),
-      nb::arg("objects"), nb::arg("materials"),
+      nb::arg("clusters"), nb::arg("X_WT"), nb::arg("V_WT"), nb::arg("objects"),
+      nb::arg("materials"),
       "The `wrench_model` (78,) of `penalty_force` of the same, for a tick "
       "that asks for nothing else.");
-  m.def("penalty_force", &ComputePosed, nb::arg("clusters"), nb::arg("X_WTool"),
-        nb::arg("V_WTool"), nb::arg("objects"), nb::arg("materials"),
+  m.def("penalty_force", &ComputePosed, nb::arg("clusters"), nb::arg("X_WT"),
+        nb::arg("V_WT"), nb::arg("objects"), nb::arg("materials"),
         "Penalty wrenches of the clusters (paper, Eq. 6 to 10): k times the "
         "compression along the normal, plus damping while approaching; never a "
         "pull. What it takes depends on the clusters, not on how many objects "
         "there are.\n\n"
         "Args:\n"
-        "    X_WTool: (7,) pose of the tool [qw qx qy qz x y z], m.\n"
-        "    V_WTool: (6,) its spatial velocity [rad/s; m/s].\n"
+        "    X_WT: (7,) pose of the tool [qw qx qy qz x y z], m.\n"
+        "    V_WT: (6,) its spatial velocity [rad/s; m/s].\n"
         "    objects: where they are.\n"
         "    materials: one for each of them.\n\n"
         "Raises:\n"
@@ -186,15 +184,14 @@ void BindForces(nb::module_& m) {
         "    IndexError: a cluster names an object that is not given.");
   m.def(
       "penalty_force",
-      [](const ClusterSet& clusters, const Vec3& p_WTo, const Vec6& V_WTool,
+      [](const ClusterSet& clusters, const Vec3& p_WTo, const Vec6& V_WT,
          const Rows3& p_WO, const Rows6& V_WO, const Eigen::VectorXd& stiffness,
          const Eigen::VectorXd& damping) {
-        return Compute(clusters, p_WTo, V_WTool, {p_WO, V_WO},
+        return Compute(clusters, p_WTo, V_WT, {p_WO, V_WO},
                        {stiffness, damping});
       },
-      nb::arg("clusters"), nb::arg("p_WTo"), nb::arg("V_WTool"),
-      nb::arg("p_WO"), nb::arg("V_WO"), nb::arg("stiffness"),
-      nb::arg("damping"),
+      nb::arg("clusters"), nb::arg("p_WTo"), nb::arg("V_WT"), nb::arg("p_WO"),
+      nb::arg("V_WO"), nb::arg("stiffness"), nb::arg("damping"),
       "The same for what is asked once, from the arguments of `ObjectFrames` "
       "and `ContactMaterials`; p_WTo (3,) is the tool's origin, m.\n\n"
       "Raises:\n"

@@ -111,7 +111,7 @@ void BindState(nb::module_& m) {
                    "(7,) pose [qw qx qy qz x y z], m.")
       .def_prop_ro("V_BH", &Copy<&HandleState::V>,
                    "(6,) velocity [ω; v], rad/s and m/s.")
-      .def_prop_ro("F_BH", &Copy<&HandleState::F>,
+      .def_prop_ro("F_Ho_B", &Copy<&HandleState::F>,
                    "(6,) wrench that the device showed, [τ; f], N·m and N.")
       .def_ro("max_force_N", &HandleState::max_force, "The device's limit, N.")
       .def_ro("max_torque_Nm", &HandleState::max_torque,
@@ -217,7 +217,7 @@ void BindUdpServo(nb::module_& m) {
              const Vec6& V, const OptionalSlope& K, const OptionalSlope& B) {
             self.Publish(ToLocalWrench(F, X, V, K, B, 0));
           },
-          nb::arg("F_BH"), nb::arg("X_BH"), nb::arg("V_BH"),
+          nb::arg("F_Ho_B"), nb::arg("X_BH"), nb::arg("V_BH"),
           nb::arg("K_B").none() = nb::none(),
           nb::arg("B_B").none() = nb::none(),
           "Shows a local wrench from now on, as `ServoLaw.adopt` does; the "
@@ -254,10 +254,10 @@ void BindServo(nb::module_& m) {
   BindUdpServo(m);
   m.def(
       "handle_slopes",
-      [](const PoseVector& q_WH, const PoseVector& q_WTool,
+      [](const PoseVector& q_WH, const PoseVector& q_WT,
          const WrenchModelVector& coupling, const WrenchModelVector& contact) {
         const HandleSlopes slopes = ComputeHandleSlopes(
-            q_WTool.tail<3>() - q_WH.tail<3>(), ToWrenchModel(coupling),
+            q_WT.tail<3>() - q_WH.tail<3>(), ToWrenchModel(coupling),
             ToWrenchModel(contact));
         Eigen::Matrix<double, 72, 1> out;
         using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
@@ -265,13 +265,13 @@ void BindServo(nb::module_& m) {
         Eigen::Map<Rows>(out.data() + 36) = slopes.B;
         return out;
       },
-      nb::arg("q_WH"), nb::arg("q_WTool"), nb::arg("coupling_model"),
+      nb::arg("q_WH"), nb::arg("q_WT"), nb::arg("coupling_model"),
       nb::arg("contact_model"),
       "How the wrench on a handle changes with the handle's motion, the tool "
       "following at rest between coupling and contact (springs in series; "
       "Guyan, AIAA Journal 3(2), 1965).\n\n"
       "Args:\n"
-      "    q_WH, q_WTool: (7,) poses [qw qx qy qz x y z] of handle and tool.\n"
+      "    q_WH, q_WT: (7,) poses [qw qx qy qz x y z] of handle and tool.\n"
       "    coupling_model: (78,) [F; K; B] of the coupling on the tool, at To "
       "in W.\n"
       "    contact_model: (78,) the sum of all others.\n\n"

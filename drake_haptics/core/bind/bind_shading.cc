@@ -18,12 +18,12 @@ using Rows7 = Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::RowMajor>;
 using ShadingPtr = std::shared_ptr<SurfaceShading>;
 
 ContactSet Shade(const ContactShading& self, ContactSet contacts,
-                 const PoseVector& q_WTool, const Rows7& q_WO) {
+                 const PoseVector& q_WT, const Rows7& q_WO) {
   std::vector<Pose> X_WO;
   for (Eigen::Index i = 0; i < q_WO.rows(); ++i) {
     X_WO.push_back(PoseFromVector(q_WO.row(i).transpose(), "q_WO"));
   }
-  self.Shade<double>(PoseFromVector(q_WTool, "q_WTool"), X_WO, &contacts);
+  self.Shade<double>(PoseFromVector(q_WT, "q_WT"), X_WO, &contacts);
   return contacts;
 }
 
@@ -38,12 +38,12 @@ PoseOf<AutoDiff> ToPose(const AutoDiffVector& poses, Eigen::Index i,
 
 AutoDiffContactSet DifferentiateShade(const ContactShading& self,
                                       AutoDiffContactSet contacts,
-                                      const AutoDiffVector& q_WTool,
+                                      const AutoDiffVector& q_WT,
                                       const AutoDiffVector& q_WO) {
-  if (q_WTool.size() != 7 || q_WO.size() % 7 != 0) {
+  if (q_WT.size() != 7 || q_WO.size() % 7 != 0) {
     throw std::invalid_argument("poses must have 7 numbers each");
   }
-  if (CommonNumDerivatives(q_WTool, q_WO) != contacts.num_derivatives) {
+  if (CommonNumDerivatives(q_WT, q_WO) != contacts.num_derivatives) {
     throw std::invalid_argument(
         "poses must have derivatives by the variables of the contacts");
   }
@@ -53,8 +53,8 @@ AutoDiffContactSet DifferentiateShade(const ContactShading& self,
   }
   const Rows7 values = q_WO.value.reshaped<Eigen::RowMajor>(X_WO.size(), 7);
   const ContactSet shaded =
-      Shade(self, ValuesOf(contacts.set), q_WTool.value, values);
-  self.Shade<AutoDiff>(ToPose(q_WTool, 0, "q_WTool"), X_WO, &contacts.set);
+      Shade(self, ValuesOf(contacts.set), q_WT.value, values);
+  self.Shade<AutoDiff>(ToPose(q_WT, 0, "q_WT"), X_WO, &contacts.set);
   SetValues(shaded, &contacts);
   return contacts;
 }
@@ -91,20 +91,20 @@ void BindShading(nb::module_& m) {
           "Shades contacts of `tool` with `objects`, in the order of the "
           "query's objects.\n\n"
           "Raises:\n    ValueError: an object is None.")
-      .def("shade", &Shade, nb::arg("contacts"), nb::arg("q_WTool"),
+      .def("shade", &Shade, nb::arg("contacts"), nb::arg("q_WT"),
            nb::arg("q_WO"),
            "The contacts with shaded normals; all else is as it was.\n\n"
            "Args:\n"
            "    contacts: `ContactSet` of a query at these poses.\n"
-           "    q_WTool: (7,) pose of the tool [qw qx qy qz x y z].\n"
+           "    q_WT: (7,) pose of the tool [qw qx qy qz x y z].\n"
            "    q_WO: (m, 7) poses of the objects.\n\n"
            "Raises:\n"
            "    ValueError: not a pose, or not one for each object, or "
            "a contact names no features, see `contact_set`.\n"
            "    IndexError: a contact names an object, piece or feature that "
            "does not exist.")
-      .def("shade", &DifferentiateShade, nb::arg("contacts"),
-           nb::arg("q_WTool"), nb::arg("q_WO"),
+      .def("shade", &DifferentiateShade, nb::arg("contacts"), nb::arg("q_WT"),
+           nb::arg("q_WO"),
            "The same with derivatives; q_WO (7 m,) has one object after "
            "another.");
 }

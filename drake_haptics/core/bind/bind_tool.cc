@@ -25,7 +25,7 @@ template <typename T>
 Eigen::Matrix<T, kWrenchModelSize + 6, 1> ToVector(
     const CouplingWrenchOf<T>& wrench) {
   Eigen::Matrix<T, kWrenchModelSize + 6, 1> out;
-  out << drake_haptics::ToVector(wrench.tool), wrench.F_display;
+  out << drake_haptics::ToVector(wrench.tool), wrench.F_Ho_W_commanded;
   return out;
 }
 
@@ -86,7 +86,7 @@ void BindJoinedCoupling(nb::module_& m) {
       "`coupling_wrench` of one vector, as a multiplexer joins it: an array "
       "that crosses takes as long as the law.\n\n"
       "Args:\n"
-      "    joined: (32,) [q_WH; V_WH; q_WTool; V_WTool; gains], the gains (6) "
+      "    joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) "
       "in the order of `CouplingGains`.\n"
       "    q_HT: (7,) the tool's place in the handle.\n\n"
       "Raises:\n    ValueError: a gain is out of range.");
@@ -167,37 +167,34 @@ void BindCoupling(nb::module_& m) {
   m.def(
       "coupling_wrench",
       [](const PoseVector& q_WH, const Vec6& V_WH, const PoseVector& q_HT,
-         const PoseVector& q_WTool, const Vec6& V_WTool,
-         const CouplingGains& gains) {
-        return ToVector(
-            ComputeCoupling(q_WH, V_WH, q_HT, q_WTool, V_WTool, gains));
+         const PoseVector& q_WT, const Vec6& V_WT, const CouplingGains& gains) {
+        return ToVector(ComputeCoupling(q_WH, V_WH, q_HT, q_WT, V_WT, gains));
       },
-      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WTool"),
-      nb::arg("V_WTool"), nb::arg("gains"),
+      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WT"),
+      nb::arg("V_WT"), nb::arg("gains"),
       "Wrenches of the virtual coupling between handle H and tool.\n\n"
       "Args:\n"
-      "    q_WH, q_HT, q_WTool: (7,) poses [qw qx qy qz x y z]: handle, the "
+      "    q_WH, q_HT, q_WT: (7,) poses [qw qx qy qz x y z]: handle, the "
       "tool's place in it, tool.\n"
-      "    V_WH, V_WTool: (6,) spatial velocities [rad/s; m/s].\n\n"
+      "    V_WH, V_WT: (6,) spatial velocities [rad/s; m/s].\n\n"
       "Returns:\n"
       "    (84,): wrench model on the tool at To (78), then the reaction on "
       "the handle at Ho in W (6).");
   m.def(
       "coupling_wrench",
       [](const AutoDiffVector& q_WH, const AutoDiffVector& V_WH,
-         const PoseVector& q_HT, const AutoDiffVector& q_WTool,
-         const AutoDiffVector& V_WTool, const CouplingGains& gains) {
+         const PoseVector& q_HT, const AutoDiffVector& q_WT,
+         const AutoDiffVector& V_WT, const CouplingGains& gains) {
         const Eigen::Index num_derivatives =
-            CommonNumDerivatives(q_WH, V_WH, q_WTool, V_WTool);
+            CommonNumDerivatives(q_WH, V_WH, q_WT, V_WT);
         return ToAutoDiffVector(
-            ToVector(ComputeCoupling(ToScalars<7>(q_WH, "q_WH"),
-                                     ToScalars<6>(V_WH, "V_WH"), q_HT,
-                                     ToScalars<7>(q_WTool, "q_WTool"),
-                                     ToScalars<6>(V_WTool, "V_WTool"), gains)),
+            ToVector(ComputeCoupling(
+                ToScalars<7>(q_WH, "q_WH"), ToScalars<6>(V_WH, "V_WH"), q_HT,
+                ToScalars<7>(q_WT, "q_WT"), ToScalars<6>(V_WT, "V_WT"), gains)),
             num_derivatives);
       },
-      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WTool"),
-      nb::arg("V_WTool"), nb::arg("gains"), "The same with derivatives.");
+      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WT"),
+      nb::arg("V_WT"), nb::arg("gains"), "The same with derivatives.");
 }
 
 void BindRigidTool(nb::module_& m) {
@@ -212,13 +209,13 @@ void BindRigidTool(nb::module_& m) {
             new (self) ToolInertia(inertia);
           },
           nb::arg("mass_kg"), nb::arg("p_TTcm"), nb::arg("I_TTcm_T"),
-          "Tool of `mass_kg`, centre of mass (3,) m and rotational inertia "
+          "Tool of `mass_kg`, center of mass (3,) m and rotational inertia "
           "about it (3, 3) kg·m², both in the tool's frame.\n\n"
           "Raises:\n    ValueError: not a physical inertia.")
       .def_ro("mass_kg", &ToolInertia::mass, "Mass, kg.")
       .def_prop_ro(
           "p_TTcm", [](const ToolInertia& self) { return self.p_TTcm; },
-          "Centre of mass (3,) in the tool's frame, m.")
+          "Center of mass (3,) in the tool's frame, m.")
       // First what each tick calls: to try another takes as long as the step.
       .def(
           "step",

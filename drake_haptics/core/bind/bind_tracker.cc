@@ -195,23 +195,21 @@ class SceneTracker : public SharedTracker {
     tracker_.SetObjectPose(static_cast<int>(i), X_WO);
   }
 
-  ContactSet Query(nb::handle X_WTool_value, nb::handle tolerance_value) {
-    const Pose X_WTool = ToPose(X_WTool_value, "X_WTool");
+  ContactSet Query(nb::handle X_WT_value, nb::handle tolerance_value) {
+    const Pose X_WT = ToPose(X_WT_value, "X_WT");
     std::optional<double> tolerance;
     if (!tolerance_value.is_none()) {
       tolerance = ToReal(tolerance_value, "tolerance");
     }
     ContactSet contacts;
     const Turn turn(&mutex_, Turn::Gil::kHold);
-    tracker_.Query(X_WTool, tolerance.value_or(tracker_.tolerance()),
-                   &contacts);
+    tracker_.Query(X_WT, tolerance.value_or(tracker_.tolerance()), &contacts);
     return contacts;
   }
 
-  ContactTrajectory QueryTrajectory(nb::handle X_WTool_value) {
-    const PoseSeries X_WTool(X_WTool_value, "X_WTool");
-    return QueryEach(X_WTool.size(), X_WTool,
-                     [](std::size_t, ContactTracker*) {});
+  ContactTrajectory QueryTrajectory(nb::handle X_WT_value) {
+    const PoseSeries X_WT(X_WT_value, "X_WT");
+    return QueryEach(X_WT.size(), X_WT, [](std::size_t, ContactTracker*) {});
   }
 };
 
@@ -297,9 +295,9 @@ void BindContactTracker(nb::module_& m) {
            nb::arg("max_walk_steps").none() = WalkBounds{}.max_steps,
            nb::sig("def __init__(self, A: "
                    "drake_haptics.geometry.decomposition.decompose."
-                   "Decomposition | Decomposition, B: "
+                   "Decomposition | ConvexPieces, B: "
                    "drake_haptics.geometry.decomposition.decompose."
-                   "Decomposition | Decomposition, tolerance: "
+                   "Decomposition | ConvexPieces, tolerance: "
                    "float, depth: typing.Literal['tracked', 'global'] = "
                    "'tracked', max_walk_steps: int = 1024) -> None"),
            "Watches A against B for contacts up to `tolerance` "
@@ -347,10 +345,10 @@ void BindSceneTracker(nb::module_& m) {
            nb::arg("max_walk_steps").none() = WalkBounds{}.max_steps,
            nb::sig("def __init__(self, tool: "
                    "drake_haptics.geometry.decomposition.decompose."
-                   "Decomposition | Decomposition, objects: collections.abc."
+                   "Decomposition | ConvexPieces, objects: collections.abc."
                    "Sequence[drake_haptics.geometry.decomposition.decompose."
                    "Decomposition | "
-                   "Decomposition], tolerance: float, depth: typing.Literal["
+                   "ConvexPieces], tolerance: float, depth: typing.Literal["
                    "'tracked', 'global'] = 'tracked', max_walk_steps: int = "
                    "1024) -> None"),
            "Watches `tool` against `objects`, all at the identity pose, for "
@@ -369,25 +367,25 @@ void BindSceneTracker(nb::module_& m) {
            "Poses object i.\n\n"
            "Raises:\n    ValueError: not a pose; the object stays where it is."
            "\n    IndexError: no such object.")
-      .def("query", &SceneTracker::Query, nb::arg("X_WTool").none(),
+      .def("query", &SceneTracker::Query, nb::arg("X_WT").none(),
            nb::arg("tolerance") = nb::none(),
-           nb::sig("def query(self, X_WTool: "
+           nb::sig("def query(self, X_WT: "
                    "drake_haptics.common.pose_like.PoseLike, "
                    "tolerance: float | None = None) -> ContactSet"),
-           "`ContactSet` of the tool at the pose X_WTool. With a `tolerance` "
+           "`ContactSet` of the tool at the pose X_WT. With a `tolerance` "
            "(m) smaller than the tracker's only of contacts up to that, for "
            "less work; the next query may ask for another.\n\n"
            "Raises:\n    ValueError: the pose is not finite or not rigid, or "
            "the tolerance not within 0 and the tracker's.")
       .def("query_trajectory", &SceneTracker::QueryTrajectory,
-           nb::arg("X_WTool").none(),
+           nb::arg("X_WT").none(),
            nb::sig(
-               "def query_trajectory(self, X_WTool: "
+               "def query_trajectory(self, X_WT: "
                "drake_haptics.common.pose_like.PoseLike) -> ContactTrajectory"),
            "What k single queries would give, in one call without the GIL; the "
            "objects rest.\n\n"
            "Args:\n"
-           "    X_WTool: (k, 4, 4) or (k, 7) poses of the tool in turn.\n\n"
+           "    X_WT: (k, 4, 4) or (k, 7) poses of the tool in turn.\n\n"
            "Raises:\n    ValueError: a pose is not finite or not rigid; "
            "nothing was asked then.")
       .def("__repr__", [](const SceneTracker& self) {

@@ -39,7 +39,7 @@ struct FlushFacets {
   FlushFacets(const Polytope& P, int vertex, const Vec3& outward) {
     // A little below the cosine of the tilt.
     constexpr double kCosTilted = 0.9974;
-    for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
+    for (const Polytope::OneRingEntry& spoke : P.fan_of(vertex)) {
       if (!(spoke.normal.dot(outward) > kCosTilted) || count == kMost) continue;
       const double share = FacetShare(spoke.normal.cross(outward).norm());
       if (!(share > 0)) continue;
@@ -55,7 +55,7 @@ struct FlushFacets {
 template <typename Visitor>
 void VisitFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
                      const Visitor& visit) {
-  for (const Polytope::Spoke& spoke : P.fan_of(vertex)) {
+  for (const Polytope::OneRingEntry& spoke : P.fan_of(vertex)) {
     const double rise = spoke.along.dot(outward);
     const double length_squared = spoke.along.squaredNorm();
     if (rise * rise < kFlush * kFlush * length_squared) {

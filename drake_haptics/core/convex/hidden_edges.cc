@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "convex/affine_basis.h"
 #include "convex/convex_hull.h"
 #include "convex/predicates.h"
-#include "convex/spanning.h"
 
 namespace drake_haptics {
 namespace {
@@ -60,7 +60,7 @@ void FillHiddenEdges(Polytope* P) {
   for (const Vec3& v : P->vertices) {
     points.push_back(NormalizeForPredicates(v, scale));
   }
-  const Spanning spanning = FindSpanning(points, kRoundOff);
+  const AffineBasis spanning = FindAffineBasis(points, kRoundOff);
   if (spanning.dimension < 3) return;
   const std::vector<HullTriangle> triangles =
       ConvexHull(points, spanning.point).Triangles();

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "convex/affine_basis.h"
 #include "convex/convex_hull.h"
 #include "convex/convex_polygon.h"
-#include "convex/distinct_points.h"
 #include "convex/facet_merge.h"
 #include "convex/predicates.h"
-#include "convex/spanning.h"
+#include "convex/weld_points.h"
 
 namespace drake_haptics {
 namespace {
@@ -18,8 +18,8 @@ namespace {
 // flatness that merges facets, which must not merge the edge between two.
 constexpr double kSamePointShare = 1e-10;
 
-// Drops corners that stand out of the line of their neighbours by less than
-// the tolerance. Neighbours never go in the same pass, so that a fine polygon
+// Drops corners that stand out of the line of their neighbors by less than
+// the tolerance. Neighbors never go in the same pass, so that a fine polygon
 // cannot melt away.
 void DropStraightCorners(std::span<const Vec3> points, double tolerance,
                          std::vector<int>* loop) {
@@ -34,7 +34,7 @@ void DropStraightCorners(std::span<const Vec3> points, double tolerance,
       const double deviation =
           chord.cross(points[(*loop)[k]] - before).norm() /
           std::max(chord.norm(), std::numeric_limits<double>::min());
-      // Both neighbours are still there in this pass.
+      // Both neighbors are still there in this pass.
       const bool may_drop =
           (k == 0 || (!kept.empty() && kept.back() == (*loop)[k - 1])) &&
           (k + 1 < loop->size() ||
@@ -63,7 +63,7 @@ std::vector<int> FlatLoop(std::span<const Vec3> points, const Vec3& normal,
 }
 
 std::vector<HullShape::Polygon> Polygons(std::span<const Vec3> points,
-                                         const Spanning& spanning,
+                                         const AffineBasis& spanning,
                                          double tolerance,
                                          const SurfaceTest& is_on_surface) {
   const auto& p = spanning.point;
@@ -85,7 +85,7 @@ std::vector<HullShape::Polygon> Polygons(std::span<const Vec3> points,
   return {{normal, loop}, {-normal, back}};
 }
 
-std::vector<int> ExtremePoints(const Spanning& spanning,
+std::vector<int> ExtremePoints(const AffineBasis& spanning,
                                std::span<const HullShape::Polygon> polygons) {
   std::vector<int> extreme(spanning.point.begin(),
                            spanning.point.begin() + spanning.dimension + 1);
@@ -123,7 +123,7 @@ HullShape FindHullShape(std::span<const Vec3> points, double tolerance,
   Eigen::AlignedBox3d box;
   for (const Vec3& p : normalized) box.extend(p);
   const std::vector<int> source =
-      DistinctPoints(normalized, kSamePointShare * box.diagonal().norm());
+      WeldPoints(normalized, kSamePointShare * box.diagonal().norm());
   std::vector<Vec3> distinct;
   distinct.reserve(source.size());
   for (const int i : source) distinct.push_back(normalized[i]);
@@ -131,7 +131,7 @@ HullShape FindHullShape(std::span<const Vec3> points, double tolerance,
   // The coordinates are below 1 now; so is the round-off they came with.
   const double thickness =
       std::max(tolerance * scale, 4 * std::numeric_limits<double>::epsilon());
-  const Spanning spanning = FindSpanning(distinct, thickness);
+  const AffineBasis spanning = FindAffineBasis(distinct, thickness);
   HullShape shape;
   shape.dimension = spanning.dimension;
   if (spanning.dimension >= 2) {

@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "convex/carrying_cone.h"
-#include "convex/gauss_turn.h"
+#include "convex/gauss_angle_bound.h"
 #include "convex/hidden_edges.h"
 #include "convex/hull_shape.h"
+#include "convex/patch_normal_cone.h"
 
 namespace drake_haptics {
 namespace {
@@ -162,8 +162,8 @@ Polytope MakePolytope(std::span<const Vec3> points, const HullShape& shape) {
   AddFansAndRings(&P);
   FillHiddenEdges(&P);
   AddBallAndBox(&P);
-  FillGaussTurns(&P);
-  FillCarryingArcs(&P);
+  FillGaussAngleBounds(&P);
+  FillEdgeNormalArcs(&P);
   return P;
 }
 

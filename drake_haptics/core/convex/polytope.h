@@ -48,8 +48,8 @@ struct Polytope {
 
   /// An edge at a vertex and the facet that follows it, with copies of what a
   /// search reads: going round a vertex is one run through memory.
-  struct Spoke {
-    Vec3 along = Vec3::Zero();   ///< from the vertex to its neighbour, m
+  struct OneRingEntry {
+    Vec3 along = Vec3::Zero();   ///< from the vertex to its neighbor, m
     Vec3 normal = Vec3::Zero();  ///< of the facet; zero on a segment
     int neighbor = -1;           ///< vertex at the edge's other end
     int edge = -1;
@@ -58,7 +58,7 @@ struct Polytope {
 
   /// An edge of the exact hull of the vertices that is inside of a facet.
   struct HiddenEdge {
-    Vec3 along = Vec3::Zero();  ///< from the vertex to its neighbour, m
+    Vec3 along = Vec3::Zero();  ///< from the vertex to its neighbor, m
     int neighbor = -1;
   };
 
@@ -78,7 +78,7 @@ struct Polytope {
   /// The edges and facets around each vertex, counter-clockwise seen from
   /// outside: a facet lies between its spoke's edge and the next one's.
   std::vector<int> fan_start{0};
-  std::vector<Spoke> fan;
+  std::vector<OneRingEntry> fan;
 
   /// The edges at each vertex that facets hide which are flat only within the
   /// tolerance (hidden_edges.h); both empty where all facets are flat.
@@ -111,7 +111,7 @@ struct Polytope {
         return loop_of(feature.index())[0];
     }
   }
-  std::span<const Spoke> fan_of(int v) const {
+  std::span<const OneRingEntry> fan_of(int v) const {
     return {fan.data() + fan_start[v], fan.data() + fan_start[v + 1]};
   }
   std::span<const HiddenEdge> hidden_of(int v) const {

@@ -16,7 +16,7 @@ bool IsGain(double gain, const Vec3& direction, const Vec3& along) {
 }  // namespace
 
 int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
-  // Every vertex is extreme, so a vertex that no neighbour beats is the
+  // Every vertex is extreme, so a vertex that no neighbor beats is the
   // farthest one. The bound ends a walk in circles that round-off allows.
   assert(start >= 0 && start < polytope.num_vertices());
   int best = start;
@@ -40,7 +40,7 @@ int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
   return best;
 }
 
-double SupportGap(const PosedPair& pair, const Vec3& n, Hub* hub) {
+double SupportGap(const PosedPair& pair, const Vec3& n, MinkowskiVertex* hub) {
   hub->a = pair.SupportA(-n, hub->a);
   hub->b = pair.SupportB(n, hub->b);
   return n.dot(pair.a(hub->a) - pair.b(hub->b));

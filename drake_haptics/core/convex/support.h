@@ -31,15 +31,15 @@ struct PosedPair {
 };
 
 /// A vertex pair that supports the pair along a direction from B into A.
-struct Hub {
+struct MinkowskiVertex {
   int a = 0;
   int b = 0;
-  bool operator==(const Hub&) const = default;
+  bool operator==(const MinkowskiVertex&) const = default;
 };
 
 /// Moves `hub` to the vertices that face each other along n (in A's frame,
 /// from B into A) and returns the support gap
 /// h(n) = min n·a − max n·b. For unit n the signed distance is at least h(n).
-double SupportGap(const PosedPair& pair, const Vec3& n, Hub* hub);
+double SupportGap(const PosedPair& pair, const Vec3& n, MinkowskiVertex* hub);
 
 }  // namespace drake_haptics

@@ -8,7 +8,7 @@
 namespace drake_haptics {
 namespace {
 
-// A driver's quaternion may be this far from unit length; it is normalised.
+// A driver's quaternion may be this far from unit length; it is normalized.
 constexpr double kUnit = 1e-3;
 
 template <std::size_t size>
@@ -17,7 +17,7 @@ bool IsFinite(const std::array<double, size>& values) {
                      [](double value) { return std::isfinite(value); });
 }
 
-// Normalises the pose. False if it is none, or other values are not finite.
+// Normalizes the pose. False if it is none, or other values are not finite.
 bool MakeUsable(HandleState* state) {
   auto& X = state->X;
   const double norm =
@@ -43,7 +43,7 @@ bool DeviceLink::Take(std::span<const unsigned char> packet, double now) {
   state.time = 1e-9 * static_cast<double>(raw.time_ns);
   std::copy_n(raw.X_BH, 7, state.X.begin());
   std::copy_n(raw.V_BH, 6, state.V.begin());
-  std::copy_n(raw.F_BH, 6, state.F.begin());
+  std::copy_n(raw.F_Ho_B, 6, state.F.begin());
   state.max_force = raw.max_force_N;
   state.max_torque = raw.max_torque_Nm;
   state.buttons = raw.buttons;

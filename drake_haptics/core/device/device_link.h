@@ -59,7 +59,7 @@ class DeviceLink {
   void Tick(double now);
 
   /// A wrench is asked for from now on.
-  void Ask() { asked_ = true; }
+  void QueryPair() { asked_ = true; }
 
   /// Takes up again after a fault: disabled until the device is idle.
   void Recover();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/passive_part.h"
+#include "base/positive_semidefinite.h"
 #include "base/require.h"
 
 namespace drake_haptics {
@@ -54,8 +54,8 @@ void ServoLaw::Adopt(const LocalWrench& wrench) {
   }
   bool changed = false;
   wrench_ = wrench;
-  wrench_.K = PassivePart(wrench.K, &changed);
-  wrench_.B = PassivePart(wrench.B, &changed);
+  wrench_.K = ProjectToPositiveSemidefinite(wrench.K, &changed);
+  wrench_.B = ProjectToPositiveSemidefinite(wrench.B, &changed);
   num_not_passive_ += changed;
   has_wrench_ = true;
 }

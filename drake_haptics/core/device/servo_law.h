@@ -52,7 +52,8 @@ class ServoLaw {
   void SetLimits(double max_force, double max_torque);
 
   /// Takes a new wrench. Of K and B only the passive part acts; see
-  /// `PassivePart`. One that is not finite ends all force at once.
+  /// `ProjectToPositiveSemidefinite`. One that is not finite ends all force at
+  /// once.
   void Adopt(const LocalWrench& wrench);
 
   /// The wrench to show now, s, with the handle at X moving at V. Zero, at

@@ -179,7 +179,7 @@ void UdpServo::TakeRequests() {
     take(&wrench.B);
     wrench.published_at = *in;
     law_.Adopt(wrench);
-    link_.Ask();
+    link_.QueryPair();
   }
   if (recover_.exchange(false)) link_.Recover();
 }
@@ -211,7 +211,7 @@ void UdpServo::Send(const Vec6& F, bool enable) {
   command.session = session_;
   command.sequence = ++sequence_;
   command.time_ns = static_cast<std::uint64_t>(1e9 * Now());
-  std::copy_n(F.data(), 6, command.F_BH);
+  std::copy_n(F.data(), 6, command.F_Ho_B);
   command.state_sequence = link_.state().sequence;
   command.ttl_us = static_cast<std::uint32_t>(
       std::clamp(1e6 * options_.time_to_live, 1.0, 4e9));

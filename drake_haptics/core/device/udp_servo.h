@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "device/device_link.h"
-#include "device/lateness.h"
+#include "device/latency_histogram.h"
 #include "device/seqlock.h"
 #include "device/servo_law.h"
 #include "device/udp_socket.h"

@@ -45,7 +45,8 @@ void ZipCoupling(MovingSkinCoupling& a, const MovingSkinCoupling& b,
 }
 
 template <typename F>
-void ZipCoupling(MovingSkinCoupling& a, const SkinCoupling& b, const F& f) {
+void ZipCoupling(MovingSkinCoupling& a, const CompressionJacobian& b,
+                 const F& f) {
   a.values = b;
   for (std::size_t i = 0; i < a.members.size(); ++i) {
     const auto& [first, count, row] = a.members[i];
@@ -56,7 +57,8 @@ void ZipCoupling(MovingSkinCoupling& a, const SkinCoupling& b, const F& f) {
 }
 
 template <typename F>
-void ZipCoupling(const MovingSkinCoupling& a, SkinCoupling& b, const F&) {
+void ZipCoupling(const MovingSkinCoupling& a, CompressionJacobian& b,
+                 const F&) {
   b = a.values;
 }
 

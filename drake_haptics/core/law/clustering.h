@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
-#include "law/skin_coupling.h"
+#include "law/compression_jacobian.h"
 #include "pair/contact.h"
 
 namespace drake_haptics {
@@ -41,7 +41,7 @@ using ClusterSet = ClusterSetOf<double>;
 
 /// Groups contacts of the same object with an octree whose leaves have the
 /// size `delta`: contacts in one leaf are together, and adjacent occupied
-/// leaves (26 neighbours) are merged (paper, 4.2). Contacts closer than delta
+/// leaves (26 neighbors) are merged (paper, 4.2). Contacts closer than delta
 /// are always together, contacts of different clusters are at least delta
 /// apart; between delta and 2·√3·delta the leaves decide. Each member weighs
 /// `tolerance` − distance. The force jumps where a contact crosses a cell or

@@ -86,7 +86,7 @@ class Differentiation {
     return {b(edge.v0), b(edge.v1) - b(edge.v0)};
   }
 
-  // A's witness point. That of the contact may be a centre of pressure.
+  // A's witness point. That of the contact may be a center of pressure.
   Vec3 FindWitness() const {
     if (IsVertex(a_)) return a(a_.index());
     if (IsVertex(b_)) return b(b_.index()) + d_ * n_;

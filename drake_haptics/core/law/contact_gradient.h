@@ -43,7 +43,7 @@ struct PosedPieces {
 /// edge, it is the direction between them.
 ///
 /// Exact but for the pressure patch of faces that lie nearly flush, whose
-/// centre and extent are differenced (patch_gradient.h). Parallel features have
+/// center and extent are differenced (patch_gradient.h). Parallel features have
 /// no derivative: faces that are flush keep the normal of B's, and edges that
 /// are parallel keep theirs.
 /// @param contact as the query gave it.

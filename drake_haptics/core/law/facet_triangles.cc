@@ -77,7 +77,7 @@ std::vector<int> FacetsOfTriangles(const Decomposition& mesh,
       for (const Vec3& corner : corners) {
         const int v = vertices.Find(corner);
         if (v < 0) continue;
-        for (const Polytope::Spoke& spoke : piece.fan_of(v)) {
+        for (const Polytope::OneRingEntry& spoke : piece.fan_of(v)) {
           if (spoke.facet >= 0) best.Offer(spoke.facet);
         }
       }

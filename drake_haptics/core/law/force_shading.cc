@@ -173,7 +173,7 @@ ContactShading::ContactShading(
 }
 
 template <typename T>
-void ContactShading::Shade(const PoseOf<T>& X_WTool,
+void ContactShading::Shade(const PoseOf<T>& X_WT,
                            std::span<const PoseOf<T>> X_WO,
                            ContactSetOf<T>* contacts) const {
   if (X_WO.size() != objects_.size()) {
@@ -186,7 +186,7 @@ void ContactShading::Shade(const PoseOf<T>& X_WTool,
     const Side<T> B =
         FindSide<T>(*objects_.at(contact.object), X_WO[contact.object],
                     contact.piece_B, contact.feature_B, contact.p_WCb, R_WC, 1);
-    const Side<T> A = FindSide<T>(*tool_, X_WTool, contact.piece_A,
+    const Side<T> A = FindSide<T>(*tool_, X_WT, contact.piece_A,
                                   contact.feature_A, contact.p_WCa, R_WC, -1);
     contact.nhat_BA_W =
         Limited<T>(contact.nhat_BA_W, R_WC * Turn(A, B, contact.distance));

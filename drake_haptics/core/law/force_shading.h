@@ -42,13 +42,13 @@ class ContactShading {
   ContactShading(std::shared_ptr<const SurfaceShading> tool,
                  std::vector<std::shared_ptr<const SurfaceShading>> objects);
 
-  /// @param X_WTool, X_WO poses at which the contacts were found.
+  /// @param X_WT, X_WO poses at which the contacts were found.
   /// @throws std::invalid_argument unless there is one pose for each object
   ///         and each contact names its features,
   ///         std::out_of_range for a contact on an object, piece or feature
   ///         that does not exist.
   template <typename T>
-  void Shade(const PoseOf<T>& X_WTool, std::span<const PoseOf<T>> X_WO,
+  void Shade(const PoseOf<T>& X_WT, std::span<const PoseOf<T>> X_WO,
              ContactSetOf<T>* contacts) const;
 
  private:

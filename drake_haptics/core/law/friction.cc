@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/require.h"
-#include "law/friction_tracking.h"
+#include "law/stick_anchors.h"
 
 namespace drake_haptics {
 namespace {
@@ -113,11 +113,11 @@ StickSlipModel::StickSlipModel(std::vector<double> coefficients,
 template <typename T>
 FrictionStepOf<T> StickSlipModel::Step(
     const T* state, const std::vector<ClusterOf<T>>& clusters,
-    const std::vector<T>& normal_forces, const Eigen::Matrix<T, 7, 1>& q_WTool,
+    const std::vector<T>& normal_forces, const Eigen::Matrix<T, 7, 1>& q_WT,
     const T* q_WO) const {
   using PoseMap = Eigen::Map<const PoseVectorOf<T>>;
   const int poses_size = 7 * (1 + num_moving_);
-  const RigidMoveOf<T> tool_move(PoseMap(state), q_WTool);
+  const RigidMoveOf<T> tool_move(PoseMap(state), q_WT);
 
   const auto object_move = [&](int object) {
     const int m = moving_index_[object];
@@ -144,7 +144,7 @@ FrictionStepOf<T> StickSlipModel::Step(
     now.push_back({cluster.object, cluster.p_WC, cluster.nhat_BA_W,
                    Vec3Of<T>::Zero(), rubbing.normal_force[k], T(1.0)});
   }
-  HandOnAdhesion(last, parameters_.reach, &now);
+  TransportAnchors(last, parameters_.reach, &now);
 
   FrictionStepOf<T> step;
   step.f_cluster_W.assign(clusters.size(), Vec3Of<T>::Zero());
@@ -157,14 +157,14 @@ FrictionStepOf<T> StickSlipModel::Step(
     const FrictionForceOf<T> force =
         ApplyStickSlip(rubbing.normal_force[k], coefficients_[now[k].object],
                        parameters_, motion, &now[k]);
-    AddAt<T>(now[k].p_WC - q_WTool.template tail<3>(), force, &step.tool);
+    AddAt<T>(now[k].p_WC - q_WT.template tail<3>(), force, &step.tool);
     step.f_cluster_W[c] = force.f_W;
     step.sliding[c] = force.sliding;
     step.stored -= T(0.5 * force.f_W.dot(now[k].z_W));
   }
 
   step.next_state.resize(state_size(), T(0.0));
-  std::copy_n(q_WTool.data(), 7, step.next_state.begin());
+  std::copy_n(q_WT.data(), 7, step.next_state.begin());
   std::copy_n(q_WO, 7 * num_moving_, step.next_state.begin() + 7);
   now.Write(step.next_state.data() + poses_size);
   return step;

@@ -25,7 +25,7 @@ using FrictionStep = FrictionStepOf<double>;
 /// clusters (paper, 4.4.2). A function of the last tick's state and of what is
 /// now, without a sample of delay.
 ///
-/// The state is [X_WTool (7); X_WO (7) of each object that moves; 32 slots of
+/// The state is [X_WT (7); X_WO (7) of each object that moves; 32 slots of
 /// AdhesiveContacts]: the poses and contacts of the last tick.
 class StickSlipModel {
  public:
@@ -52,7 +52,7 @@ class StickSlipModel {
   FrictionStepOf<T> Step(const T* state,
                          const std::vector<ClusterOf<T>>& clusters,
                          const std::vector<T>& normal_forces,
-                         const Eigen::Matrix<T, 7, 1>& q_WTool,
+                         const Eigen::Matrix<T, 7, 1>& q_WT,
                          const T* q_WO) const;
 
  private:

@@ -20,7 +20,7 @@ void DifferentiatePatch(const PosedPieces& pieces, const Contact& contact,
                         double tolerance, ContactGradient* gradient,
                         MovingWitness* witness) {
   const double layer = PressureLayer(tolerance);
-  const Hub hub{contact.support[0], contact.support[1]};
+  const MinkowskiVertex hub{contact.support[0], contact.support[1]};
   const MovingWitness of_features = *witness;
   PatchWorkspace workspace;
   // In A's frame, with the tool displaced by `by`.

@@ -11,7 +11,7 @@ struct MovingWitness {
 };
 
 /// Puts the derivatives of a pressure patch (contact_patch.h) into `gradient`:
-/// extent and flushness; `witness` becomes the centre of pressure. The patch is
+/// extent and flushness; `witness` becomes the center of pressure. The patch is
 /// a blend of clipped polygons, and is evaluated at displacements of 1e-4 and
 /// 2e-4 of its layer to both sides, along the tangent of the contact's motion:
 /// the relative error is about 1e-9.

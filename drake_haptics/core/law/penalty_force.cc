@@ -33,7 +33,7 @@ using Wrenches = Eigen::Matrix<T, 6, Eigen::Dynamic>;
 // Σ k H_ij G_i G_jᵀ. With U = M Σ r φ Gᵀ that is, object by object,
 //   k Uᵀ U + k Σ r (G − Uᵀ φ)(G − Uᵀ φ)ᵀ:
 // no rounding makes the sum less than positive semidefinite.
-Mat6 SumCoupled(const SkinCoupling& coupling, const Wrenches<double>& G,
+Mat6 SumCoupled(const CompressionJacobian& coupling, const Wrenches<double>& G,
                 const Eigen::VectorXd& k) {
   Mat6 K = Mat6::Zero();
   for (Eigen::Index i = 0, end; i < G.cols(); i = end) {

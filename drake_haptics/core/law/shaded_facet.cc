@@ -25,15 +25,15 @@ bool IsFlat(const ShadedTriangle& triangle, const Vec3& normal, double size) {
                      });
 }
 
-BoxTree MakeTree(const std::vector<ShadedTriangle>& triangles) {
-  std::vector<BoxTree::Box> boxes;
+AabbTree MakeTree(const std::vector<ShadedTriangle>& triangles) {
+  std::vector<AabbTree::Box> boxes;
   if (triangles.size() > kFewTriangles) {
     for (const ShadedTriangle& triangle : triangles) {
-      BoxTree::Box& box = boxes.emplace_back();
+      AabbTree::Box& box = boxes.emplace_back();
       for (const Vec3& point : triangle.points) box.extend(point);
     }
   }
-  return BoxTree(std::move(boxes));
+  return AabbTree(std::move(boxes));
 }
 
 }  // namespace

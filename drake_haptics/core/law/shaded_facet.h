@@ -5,7 +5,7 @@
 
 #include "base/types.h"
 #include "law/vertex_normals.h"
-#include "mesh/box_tree.h"
+#include "mesh/aabb_tree.h"
 
 namespace drake_haptics {
 
@@ -35,7 +35,7 @@ class ShadedFacet {
  private:
   Vec3 normal_;
   std::vector<ShadedTriangle> triangles_;  // none if all have its own normal
-  BoxTree tree_;                           // over many
+  AabbTree tree_;                          // over many
   double reach_;
 };
 

@@ -9,8 +9,8 @@
 
 #include "base/low_rank.h"
 #include "base/require.h"
-#include "law/contact_shares.h"
-#include "law/skin_forces.h"
+#include "law/compliance_forces.h"
+#include "law/contact_similarity.h"
 #include "pair/contact_patch.h"
 
 namespace drake_haptics {
@@ -101,7 +101,7 @@ std::vector<char> FindPushing(const MovingSkin& skin, bool* is_bounded) {
   const Eigen::Index n = skin.depth.size();
   std::vector<std::int32_t> direction(n);
   std::iota(direction.begin(), direction.end(), 0);
-  const SkinForces forces = SolveSkin(
+  const ComplianceForces forces = SolveSkin(
       {ValuesOf(skin.depth), ValuesOf(skin.slope), std::move(direction),
        FindFeatures(n, 1 - kOwnShare, kLeftOut,
                     [&skin](Eigen::Index i, Eigen::Index j) {
@@ -114,7 +114,7 @@ std::vector<char> FindPushing(const MovingSkin& skin, bool* is_bounded) {
 }
 
 // A contact alone bears all of its depth.
-void AppendAlone(SkinCoupling* coupling) {
+void AppendAlone(CompressionJacobian* coupling) {
   coupling->members.push_back({1.0, -1, 0});
 }
 
@@ -129,9 +129,9 @@ void AppendAlone(MovingSkinCoupling* coupling) {
 Eigen::VectorXd Solve(std::span<const Contact* const> contacts,
                       double tolerance, ClusterSet* out) {
   Skin skin = MakeSkin(contacts, tolerance);
-  SkinForces forces = SolveSkin(skin);
+  ComplianceForces forces = SolveSkin(skin);
   out->is_bounded |= forces.is_bounded;
-  SkinCoupling* const coupling = &out->coupling;
+  CompressionJacobian* const coupling = &out->coupling;
   const auto place = static_cast<std::int32_t>(coupling->skins.size());
   for (Eigen::Index i = 0; i < forces.slope.size(); ++i) {
     coupling->members.push_back({forces.slope[i], place, skin.direction[i]});
@@ -144,7 +144,7 @@ Eigen::VectorXd Solve(std::span<const Contact* const> contacts,
 VectorOf<AutoDiff> Solve(std::span<const ContactOf<AutoDiff>* const> contacts,
                          double tolerance, ClusterSetOf<AutoDiff>* out) {
   const MovingSkin skin = MakeSkin(contacts, tolerance);
-  MovingSkinForces forces =
+  MovingComplianceForces forces =
       SolveSkin(skin, FindPushing(skin, &out->is_bounded));
   MovingSkinCoupling* const coupling = &out->coupling;
   const auto first = static_cast<std::int32_t>(coupling->members.size());

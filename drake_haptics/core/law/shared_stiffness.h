@@ -24,7 +24,7 @@ namespace drake_haptics {
 /// - contacts along one direction, however many, are together at most 1/(1 − ρ)
 ///   as stiff as one; one that begins, at w = 0, brings nothing with it;
 /// - λ is the solution of a convex problem: it is unique, never pulls, changes
-///   with w by at most k / ρ per metre, and is the gradient of a potential
+///   with w by at most k / ρ per meter, and is the gradient of a potential
 ///   ½ λᵀw, so that it makes no energy while normals and shares stay.
 /// Of directions that are nearly alike a billionth of c is left out
 /// (low_rank.h): the time grows with the contacts, and with the square of the

@@ -13,8 +13,8 @@ namespace drake_haptics {
 /// To in the world. Displacements are [rotation vector (rad); translation (m)]
 /// of a body about its origin, velocities [angular (rad/s); linear (m/s)].
 struct WrenchJacobian {
-  Mat6 by_X_WTool = Mat6::Zero();
-  Mat6 by_V_WTool = Mat6::Zero();
+  Mat6 by_X_WT = Mat6::Zero();
+  Mat6 by_V_WT = Mat6::Zero();
   std::vector<Mat6> by_X_WO;  ///< of each object
   std::vector<Mat6> by_V_WO;
 };

@@ -6,8 +6,8 @@
 #include "mesh/convex_clip.h"
 #include "mesh/decomposition.h"
 #include "mesh/decomposition_input.h"
-#include "mesh/surface_cover.h"
-#include "mesh/surface_provenance.h"
+#include "mesh/mesh_coverage.h"
+#include "mesh/patch_surroundings.h"
 
 namespace drake_haptics {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 // Share of a facet that the mesh must cover for the facet to be original.
 constexpr double kCoveredShare = 0.99;
 
-void MarkFacetsOnMesh(const SurfaceCover& mesh, double tolerance,
+void MarkFacetsOnMesh(const MeshCoverage& mesh, double tolerance,
                       Polytope* piece) {
   for (std::size_t f = 0; f < piece->facets.size(); ++f) {
     Polytope::Facet& facet = piece->facets[f];
@@ -40,7 +40,7 @@ Decomposition AdoptConvexPieces(std::span<const Vec3> vertices,
   }
   std::vector<int> all(triangles.size());
   std::iota(all.begin(), all.end(), 0);
-  const SurfaceCover mesh(vertices, triangles, all);
+  const MeshCoverage mesh(vertices, triangles, all);
   Decomposition result;
   result.vertices.assign(vertices.begin(), vertices.end());
   result.triangles.assign(triangles.begin(), triangles.end());

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "convex/affine_basis.h"
 #include "convex/convex_hull.h"
-#include "convex/spanning.h"
 
 namespace drake_haptics {
 namespace {
@@ -15,7 +15,7 @@ constexpr double kConvexTolerance = 1e-6;
 // The boundary of a component's hull, to ask what is near it.
 class HullBoundary {
  public:
-  HullBoundary(std::span<const Vec3> points, const Spanning& spanning) {
+  HullBoundary(std::span<const Vec3> points, const AffineBasis& spanning) {
     const ConvexHull hull(points, spanning.point);
     start_.assign(points.size() + 1, 0);
     hull.ForEachTriangle([&](const HullTriangle& t) {
@@ -87,7 +87,8 @@ std::vector<Plane> FindConvexSolid(const SurfaceMesh& mesh,
   }
   const double tolerance =
       std::max(2 * mesh.tolerance, kConvexTolerance * box.diagonal().norm());
-  const Spanning spanning = FindSpanning(points, kFlatTolerances * tolerance);
+  const AffineBasis spanning =
+      FindAffineBasis(points, kFlatTolerances * tolerance);
   if (spanning.dimension < 3) return {};
 
   const HullBoundary boundary(points, spanning);

@@ -9,7 +9,7 @@
 
 #include "convex/hull_shape.h"
 #include "mesh/decomposition_input.h"
-#include "mesh/hull_departure.h"
+#include "mesh/hull_deviation.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/surface_distance.h"
 #include "mesh/surface_mesh.h"
@@ -24,7 +24,7 @@ constexpr double kNegligible = 0.1;
 // Pieces that have become one.
 struct Group {
   std::vector<int> corners;  // extreme points of the hull, mesh vertices
-  // Neighbours, and a bound below which the hull with them cannot depart: a
+  // Neighbors, and a bound below which the hull with them cannot depart: a
   // hull of more points departs no less.
   std::map<int, double> neighbors;
   int parent = -1;
@@ -215,7 +215,7 @@ void CheckPieces(std::span<const Vec3> vertices,
 bool MeetsFront(const SurfaceDistance& surface, const Vec3& from,
                 const Vec3& way) {
   constexpr double kLeastCosine = 0.17;  // 80 degrees
-  BoxTree::Box box(from);
+  AabbTree::Box box(from);
   box.extend(from + way);
   double first = kInfinity, cosine = 0;
   surface.tree().AnyOverlap(box, [&](int t) {

@@ -14,7 +14,7 @@ struct MergedPieces {
   double departure = 0;  ///< m, a bound on how far any group's hull departs
 };
 
-/// Joins neighbouring pieces of an exact decomposition, the cheapest two first,
+/// Joins neighboring pieces of an exact decomposition, the cheapest two first,
 /// for as long as the hull of what they hold departs from the surface by no
 /// more than `error` (see hull_departure.h). The hulls are of corners of the
 /// mesh: they fill hollows and cut nothing away. Deterministic.

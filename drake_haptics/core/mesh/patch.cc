@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "convex/spanning.h"
+#include "convex/affine_basis.h"
 
 namespace drake_haptics {
 namespace {
@@ -181,15 +181,15 @@ bool Patch::FlatHullIsCovered(std::span<const Vec3> points) const {
 bool Patch::HullIsInside(const Sizes& before) {
   if (vertices_.size() == before.vertices) return true;
   std::optional<ConvexHull> grown = hull_;
-  BoxTree::Box added;
+  AabbTree::Box added;
   if (!grown) {
     std::vector<Vec3> points;
     for (const int v : vertices_) {
       points.push_back(mesh_.vertices[v]);
       added.extend(points.back());
     }
-    const Spanning spanning =
-        FindSpanning(points, kFlatTolerances * mesh_.tolerance);
+    const AffineBasis spanning =
+        FindAffineBasis(points, kFlatTolerances * mesh_.tolerance);
     if (spanning.dimension < 3) return FlatHullIsCovered(points);
     grown.emplace(points, spanning.point);
   } else {

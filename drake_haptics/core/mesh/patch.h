@@ -6,7 +6,7 @@
 
 #include "convex/convex_hull.h"
 #include "convex/flat_hull.h"
-#include "mesh/obstacles.h"
+#include "mesh/solid_containment.h"
 #include "mesh/surface_mesh.h"
 
 namespace drake_haptics {
@@ -16,7 +16,7 @@ struct PatchBuffers {
   explicit PatchBuffers(const SurfaceMesh& mesh);
 
   const SurfaceMesh& mesh;
-  Obstacles obstacles;
+  SolidContainment obstacles;
   std::vector<int> label;         ///< patch of each triangle, -1 for none yet
   std::vector<int> vertex_label;  ///< patch that took each vertex last
 };

@@ -78,7 +78,7 @@ class Growth {
 
   bool HasCavity(std::span<const Plane> planes,
                  std::span<const int> triangles) const {
-    BoxTree::Box box;
+    AabbTree::Box box;
     for (const int t : triangles) {
       for (const int v : mesh_.triangles[t]) box.extend(mesh_.vertices[v]);
     }

@@ -15,9 +15,9 @@ constexpr double kExcess = 1.05;
 // only once their parts are as small.
 constexpr double kNegligibleShare = 1e-4;
 
-std::vector<BoxTree::Box> TriangleBoxes(std::span<const Vec3> vertices,
-                                        std::span<const Triangle> triangles) {
-  std::vector<BoxTree::Box> boxes(triangles.size());
+std::vector<AabbTree::Box> TriangleBoxes(std::span<const Vec3> vertices,
+                                         std::span<const Triangle> triangles) {
+  std::vector<AabbTree::Box> boxes(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (const int v : triangles[t]) boxes[t].extend(vertices[v]);
   }
@@ -32,7 +32,7 @@ double AngleAt(const Vec3& corner, const Vec3& a, const Vec3& b) {
 double Farthest(const SurfaceDistance& surface, std::span<const Vec3> vertices,
                 std::span<const Triangle> triangles) {
   std::vector<std::array<Vec3, 3>> corners;
-  BoxTree::Box box;
+  AabbTree::Box box;
   for (const Triangle& t : triangles) {
     corners.push_back({vertices[t[0]], vertices[t[1]], vertices[t[2]]});
     for (const Vec3& v : corners.back()) box.extend(v);

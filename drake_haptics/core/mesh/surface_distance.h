@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "mesh/box_tree.h"
+#include "mesh/aabb_tree.h"
 #include "mesh/decomposition.h"
-#include "mesh/surface_provenance.h"
+#include "mesh/patch_surroundings.h"
 
 namespace drake_haptics {
 
@@ -36,7 +36,7 @@ class SurfaceDistance {
   double BoundFarthest(std::span<const std::array<Vec3, 3>> triangles,
                        double limit, double negligible) const;
 
-  const BoxTree& tree() const { return tree_; }
+  const AabbTree& tree() const { return tree_; }
   std::array<Vec3, 3> corners_of(int t) const {
     return {topology_.vertices[topology_.triangles[t][0]],
             topology_.vertices[topology_.triangles[t][1]],
@@ -60,7 +60,7 @@ class SurfaceDistance {
   MeshTopology topology_;
   std::span<const std::uint8_t> solid_;
   std::vector<Vec3> area_vectors_;
-  BoxTree tree_;
+  AabbTree tree_;
 };
 
 /// A bound, m, on the largest distance of any point of either surface from the

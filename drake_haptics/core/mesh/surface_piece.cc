@@ -5,7 +5,7 @@
 
 #include "convex/hull_shape.h"
 #include "mesh/convex_clip.h"
-#include "mesh/surface_cover.h"
+#include "mesh/mesh_coverage.h"
 #include "mesh/surface_mesh.h"
 
 namespace drake_haptics {
@@ -51,7 +51,7 @@ void TurnFrontToMesh(const Vec3& normal, HullShape* shape) {
 
 HullShape FindOpenShape(const MeshTopology& mesh, std::span<const int> patch,
                         std::span<const Vec3> points, double tolerance) {
-  const SurfaceCover cover(mesh.vertices, mesh.triangles, patch);
+  const MeshCoverage cover(mesh.vertices, mesh.triangles, patch);
   const auto is_on_surface = [&](const std::array<int, 3>& corners,
                                  const Vec3& normal) {
     const std::array<Vec3, 3> polygon{points[corners[0]], points[corners[1]],

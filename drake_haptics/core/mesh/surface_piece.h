@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/surface_provenance.h"
+#include "mesh/patch_surroundings.h"
 
 namespace drake_haptics {
 

@@ -208,8 +208,8 @@ int CountFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
 
 }  // namespace
 
-bool MayHaveExtent(const PosedPair& pair, const Vec3& n, const Hub& hub,
-                   double layer) {
+bool MayHaveExtent(const PosedPair& pair, const Vec3& n,
+                   const MinkowskiVertex& hub, double layer) {
   const int of_A = CountFlushEdges(pair.A, hub.a, -n, layer);
   if (of_A == 0) return false;
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
@@ -218,7 +218,7 @@ bool MayHaveExtent(const PosedPair& pair, const Vec3& n, const Hub& hub,
 }
 
 PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
-                                const Hub& hub, const Vec3& witness,
+                                const MinkowskiVertex& hub, const Vec3& witness,
                                 double spread, double layer,
                                 PatchWorkspace* workspace) {
   const double point = layer * layer;

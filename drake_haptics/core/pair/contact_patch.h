@@ -20,12 +20,12 @@ inline double PressureLayer(double tolerance) {
 /// Whether edges of both bodies at the hub lie in the contact's plane to within
 /// `layer` (m), and more than one of either: a quick test that rules out most
 /// contacts at a point.
-bool MayHaveExtent(const PosedPair& pair, const Vec3& n, const Hub& hub,
-                   double layer);
+bool MayHaveExtent(const PosedPair& pair, const Vec3& n,
+                   const MinkowskiVertex& hub, double layer);
 
 /// Where a contact acts and over what it is spread.
 struct PressurePatch {
-  /// Centre of pressure, a point of A's support plane in A's frame (m);
+  /// Center of pressure, a point of A's support plane in A's frame (m);
   /// nothing where the contact has no extent.
   std::optional<Vec3> center;
   /// Whether two faces overlap in it.
@@ -44,7 +44,7 @@ struct PressurePatch {
 /// nearly flush: one point of contact would jump from corner to corner as the
 /// faces rock, and the torque with it. The pressure is that of a layer of
 /// thickness `spread` between the two support features: linear, `spread`
-/// where they are nearest, less where they gape. Its centre moves continuously
+/// where they are nearest, less where they gape. Its center moves continuously
 /// with the pose, from the middle of the overlap of parallel faces over the
 /// middle of an edge to a corner; at tilts of 3° to 4° a face gives way to its
 /// edges.
@@ -57,7 +57,7 @@ struct PressurePatch {
 /// @param layer thickness of the layer of any contact that is not just about to
 ///     begin, m.
 PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
-                                const Hub& hub, const Vec3& witness,
+                                const MinkowskiVertex& hub, const Vec3& witness,
                                 double spread, double layer,
                                 PatchWorkspace* workspace);
 

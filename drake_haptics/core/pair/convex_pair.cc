@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "pair/facet_revisit.h"
-#include "pair/pair_answer.h"
+#include "pair/pair_contact_builders.h"
 #include "pair/separation.h"
+#include "pair/warm_facet.h"
 #include "pair/witness.h"
 
 namespace drake_haptics {
@@ -51,7 +51,7 @@ class Query {
     const Depth depth = FindDepth();
     const bool has_facet = depth.status != DepthStatus::kNoFacet;
     if (is_apart) {
-      Hub hub = separation.simplex.hubs[0];
+      MinkowskiVertex hub = separation.simplex.hubs[0];
       const double gap = SupportGap(pair_, separation.n, &hub);
       if (!has_facet || depth.best.h <= gap) return Apart(separation);
     }
@@ -124,7 +124,7 @@ class Query {
       return WalkDepth(pair_, last.hub, SurfaceRule::kWholeBoundary,
                        &last.facet, kNoPromotion, &workspace_.depth);
     }
-    Hub hub = state_.hub;
+    MinkowskiVertex hub = state_.hub;
     SupportGap(pair_, state_.n, &hub);
     return WalkDepth(pair_, hub, SurfaceRule::kWholeBoundary, nullptr,
                      kNoPromotion, &workspace_.depth);

@@ -16,7 +16,7 @@ namespace drake_haptics {
 /// answer, or where `global` is given the least one of all (global_depth.h).
 ///
 /// Where faces or a face and an edge lie flush, to a billionth of the size,
-/// the witness points are at the centre of their overlap (contact_patch.h).
+/// the witness points are at the center of their overlap (contact_patch.h).
 PairContact QueryConvexPair(const PosedPair& pair, PairState* state,
                             PairWorkspace* workspace,
                             GlobalDepthState* global = nullptr);

@@ -6,20 +6,20 @@
 #include <limits>
 #include <span>
 
-#include "pair/gauss_clip.h"
+#include "pair/gauss_overlay_reject.h"
 
 namespace drake_haptics {
 namespace {
 
-using Fan = std::span<const Polytope::Spoke>;
+using Fan = std::span<const Polytope::OneRingEntry>;
 
 // The overlay at one hub. Where an answer is known, its gap is the floor, and
 // what lies below is passed over. Along an arc the gap is largest at an end
 // where it is negative.
 class Overlay {
  public:
-  Overlay(const PosedPair& pair, const Hub& hub, SurfaceRule rule, double floor,
-          DepthWorkspace* workspace)
+  Overlay(const PosedPair& pair, const MinkowskiVertex& hub, SurfaceRule rule,
+          double floor, DepthWorkspace* workspace)
       : pair_(pair),
         hub_(hub),
         rule_(rule),
@@ -98,8 +98,8 @@ class Overlay {
     }
   }
 
-  void AddEdgePair(const Polytope::Spoke& a, const Polytope::Spoke& b,
-                   const Vec3& edge_B) {
+  void AddEdgePair(const Polytope::OneRingEntry& a,
+                   const Polytope::OneRingEntry& b, const Vec3& edge_B) {
     const Vec3 cross = a.along.cross(edge_B);
     const double length_squared = cross.squaredNorm();
     if (!(length_squared > kParallelSine * kParallelSine *
@@ -140,7 +140,7 @@ class Overlay {
            (left >= -slack && right <= slack);
   }
 
-  // n is in the region of A's vertex when no neighbour lies further against n.
+  // n is in the region of A's vertex when no neighbor lies further against n.
   bool IsInRegionOfA(const Vec3& n) const {
     const double slack = kRegionSlack * pair_.A.radius;
     return std::all_of(fan_A_.begin(), fan_A_.end(), [&](const auto& spoke) {
@@ -148,7 +148,7 @@ class Overlay {
     });
   }
 
-  // n is in the region of B's vertex when no neighbour lies further along n.
+  // n is in the region of B's vertex when no neighbor lies further along n.
   bool IsInRegionOfB(const Vec3& n) const {
     const Vec3 n_B = pair_.X_AB.R.transpose() * n;
     const double slack = kRegionSlack * pair_.B.radius;
@@ -158,17 +158,17 @@ class Overlay {
   }
 
   void Append(double h, const Vec3& n, Feature a, Feature b) {
-    const SurfaceSupport support =
+    const NormalConeTest support =
         rule_ == SurfaceRule::kWholeBoundary
-            ? SurfaceSupport::kSupported
+            ? NormalConeTest::kSupported
             : ClassifySupport(pair_.A, a, n, pair_.B, b,
                               pair_.X_AB.R.transpose() * n);
     workspace_.candidates.push_back({h, n, a, b, support});
-    if (support == SurfaceSupport::kSupported) floor_ = h + Tie(pair_);
+    if (support == NormalConeTest::kSupported) floor_ = h + Tie(pair_);
   }
 
   const PosedPair& pair_;
-  const Hub hub_;
+  const MinkowskiVertex hub_;
   const SurfaceRule rule_;
   double floor_;
   DepthWorkspace& workspace_;
@@ -179,7 +179,7 @@ class Overlay {
 
 }  // namespace
 
-void OverlayGaussRegions(const PosedPair& pair, const Hub& hub,
+void OverlayGaussRegions(const PosedPair& pair, const MinkowskiVertex& hub,
                          SurfaceRule rule, double floor,
                          DepthWorkspace* workspace) {
   Overlay(pair, hub, rule, floor, workspace).Run();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pair/depth_walk.h"
+#include "pair/local_penetration_walk.h"
 
 namespace drake_haptics {
 
@@ -20,7 +20,7 @@ inline double Tie(const PosedPair& pair) { return 1e-12 * pair.scale(); }
 /// 5.2.3 steps 1 to 3): the facets of A ⊖ B around that vertex of it. Appends
 /// to workspace->candidates those whose gap exceeds `floor`, which the gap of
 /// a supported one raises.
-void OverlayGaussRegions(const PosedPair& pair, const Hub& hub,
+void OverlayGaussRegions(const PosedPair& pair, const MinkowskiVertex& hub,
                          SurfaceRule rule, double floor,
                          DepthWorkspace* workspace);
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pair/enclosing_hull.h"
-#include "pair/facet_revisit.h"
+#include "pair/enclosing_polytope.h"
+#include "pair/warm_facet.h"
 #include "pair/witness.h"
 
 namespace drake_haptics {
@@ -90,12 +90,12 @@ class Search {
       if (again.facet.h > best_.facet.h) best_ = last_;
       return;
     }
-    Hub hub = last.hub;
+    MinkowskiVertex hub = last.hub;
     const double h = SupportGap(pair_, last.facet.n, &hub);
     if (h > best_.facet.h + tie_) Walk(hub);
   }
 
-  void Walk(const Hub& hub) {
+  void Walk(const MinkowskiVertex& hub) {
     const Depth depth = WalkDepth(pair_, hub, SurfaceRule::kWholeBoundary,
                                   nullptr, {}, &state_.walk);
     if (depth.status != DepthStatus::kNoFacet && depth.best.h > best_.facet.h) {
@@ -119,7 +119,7 @@ class Search {
   }
 
   bool IsFlat() {
-    Hub hub = best_.hub;
+    MinkowskiVertex hub = best_.hub;
     const double behind = -SupportGap(pair_, -best_.facet.n, &hub);
     return !(behind + depth() > kCoplanarShare * pair_.scale());
   }
@@ -131,7 +131,7 @@ class Search {
   }
 
   bool ProveAnew() {
-    if (!GrowEnclosingHull(pair_, best_.facet, &surface_)) return false;
+    if (!GrowEnclosingPolytope(pair_, best_.facet, &surface_)) return false;
     state_.travel = 0;
     state_.near.clear();
     for (int t = 0; t < surface_.num_slots(); ++t) {
@@ -210,7 +210,7 @@ class Search {
   // Raises triangle t, which is at the distance s.
   bool Raise(int t, double s) {
     const Vec3 n = surface_.Nearest(t).n;
-    Hub hub = surface_.hub(t, Farthest(t, n));
+    MinkowskiVertex hub = surface_.hub(t, Farthest(t, n));
     const double h = SupportGap(pair_, -n, &hub);
     if (h > best_.facet.h + tie_) {
       Walk(hub);
@@ -271,7 +271,7 @@ class Search {
 
   const PosedPair& pair_;
   GlobalDepthState& state_;
-  InnerSurface& surface_;
+  DepthCertificate& surface_;
   const double tie_;
   GlobalDepth best_;  // the shallowest facet known
   GlobalDepth last_;  // the last answer, if it still is a facet

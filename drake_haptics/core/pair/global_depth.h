@@ -4,8 +4,8 @@
 
 #include "base/types.h"
 #include "convex/support.h"
-#include "pair/depth_walk.h"
-#include "pair/inner_surface.h"
+#include "pair/depth_certificate.h"
+#include "pair/local_penetration_walk.h"
 
 namespace drake_haptics {
 
@@ -19,7 +19,7 @@ enum class GlobalDepthStatus {
 struct GlobalDepth {
   GlobalDepthStatus status = GlobalDepthStatus::kBounded;
   DepthCandidate facet;  ///< −facet.h is the depth
-  Hub hub;               ///< one hub of the facet
+  MinkowskiVertex hub;   ///< one hub of the facet
 };
 
 /// A triangle of the surface that is nearer than the best facet known.
@@ -32,7 +32,7 @@ struct NearTriangle {
 /// What a pair keeps between queries of its global depth. It belongs to the two
 /// polytopes that it was first used with.
 struct GlobalDepthState {
-  InnerSurface surface;
+  DepthCertificate surface;
   Pose X_AB;                       ///< at the last query
   double travel = 0;               ///< odometer, m
   GlobalDepth last;                ///< features none if there is no last answer

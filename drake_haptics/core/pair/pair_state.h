@@ -3,7 +3,7 @@
 #include "base/types.h"
 #include "convex/support.h"
 #include "pair/contact_patch.h"
-#include "pair/depth_walk.h"
+#include "pair/local_penetration_walk.h"
 #include "pair/simplex.h"
 
 namespace drake_haptics {
@@ -12,7 +12,7 @@ namespace drake_haptics {
 struct PairState {
   SimplexHubs simplex;    ///< of the last separation query
   Vec3 n = Vec3::Zero();  ///< last normal, in A's frame; zero if none
-  Hub hub;                ///< supports along the last normal
+  MinkowskiVertex hub;    ///< supports along the last normal
   Feature feature_A;      ///< features of the last depth; none if the last
   Feature feature_B;      ///< answer was not a depth
 };

@@ -35,7 +35,7 @@ void ClipPolygon(const Value& value, PatchWorkspace* workspace) {
   workspace->polygon.swap(clipped);
 }
 
-/// What presses on a feature: the centre of the pressure and its integral.
+/// What presses on a feature: the center of the pressure and its integral.
 struct Load {
   Vec3 center;
   double integral = 0;  ///< over the area, m³, or over the length, m²

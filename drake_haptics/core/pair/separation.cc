@@ -19,7 +19,7 @@ constexpr double kTouchingShare = 1e-13;
 
 void Start(const PosedPair& pair, const SimplexHubs& start, Simplex* simplex) {
   for (int i = 0; i < start.size; ++i) {
-    const Hub hub = start.hubs[i];
+    const MinkowskiVertex hub = start.hubs[i];
     simplex->Add(hub, pair.a(hub.a) - pair.b(hub.b));
   }
   if (simplex->size == 0) {
@@ -45,7 +45,7 @@ void Straighten(const PosedPair& pair, double scale, Separation* result) {
   constexpr double kNearby = 0.999;  // cosine
   const Vec3 v = result->simplex.Closest();
   const Vec3 tilted = result->n;
-  Hub hub = result->simplex.hubs[0];
+  MinkowskiVertex hub = result->simplex.hubs[0];
   double best = SupportGap(pair, tilted, &hub);
   const auto consider = [&](const Vec3& n) {
     if (n.dot(tilted) < kNearby) return;
@@ -57,7 +57,7 @@ void Straighten(const PosedPair& pair, double scale, Separation* result) {
     result->is_proven = result->distance - gap <= kProvenShare * scale;
   };
   for (int i = 0; i < result->simplex.size; ++i) {
-    const Hub corner = result->simplex.hubs[i];
+    const MinkowskiVertex corner = result->simplex.hubs[i];
     for (const auto& spoke : pair.A.fan_of(corner.a)) consider(-spoke.normal);
     for (const auto& spoke : pair.B.fan_of(corner.b)) {
       consider(pair.X_AB.R * spoke.normal);
@@ -80,7 +80,7 @@ Separation Search(const PosedPair& pair, const SimplexHubs& start, double limit,
   Simplex& simplex = result.simplex;
   Start(pair, start, &simplex);
   const double scale = pair.scale() + simplex.points[0].norm();
-  Hub hub = simplex.hubs[0];
+  MinkowskiVertex hub = simplex.hubs[0];
   for (int round = 0;; ++round) {
     const Vec3 v = simplex.Closest();
     const double length = v.norm();

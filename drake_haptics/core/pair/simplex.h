@@ -10,7 +10,7 @@ namespace drake_haptics {
 /// Up to four vertices of the Minkowski difference A ⊖ B by name: what is left
 /// of a simplex when the pose changes.
 struct SimplexHubs {
-  std::array<Hub, 4> hubs;
+  std::array<MinkowskiVertex, 4> hubs;
   int size = 0;
   bool operator==(const SimplexHubs& other) const;
 };
@@ -22,13 +22,13 @@ struct Simplex : SimplexHubs {
   std::array<double, 4> weights{};  ///< barycentric, of the closest point
   Vec3 normal = Vec3::Zero();       ///< of a triangle, away from the origin, m²
 
-  bool Contains(const Hub& hub) const {
+  bool Contains(const MinkowskiVertex& hub) const {
     for (int i = 0; i < size; ++i) {
       if (hubs[i] == hub) return true;
     }
     return false;
   }
-  void Add(const Hub& hub, const Vec3& point) {
+  void Add(const MinkowskiVertex& hub, const Vec3& point) {
     hubs[size] = hub;
     points[size] = point;
     weights[size] = 1.0;

@@ -116,11 +116,11 @@ double LateralOffset(const PosedPair& pair, Feature feature_A,
 double LateralOffsetOutOfWalls(const PosedPair& pair, Feature feature_A,
                                Feature feature_B, const Vec3& n,
                                const Witness& witness,
-                               std::span<const Vec3> ways_out) {
+                               std::span<const Vec3> translation_vectors) {
   // How far the farthest way out takes A against a direction in its frame.
   const auto back = [&](const Vec3& along) {
     double farthest = 0;
-    for (const Vec3& way : ways_out) {
+    for (const Vec3& way : translation_vectors) {
       if (n.dot(way) > kFlush * way.norm()) continue;
       farthest = std::max(farthest, -along.dot(way));
     }

@@ -32,10 +32,11 @@ double LateralOffset(const PosedPair& pair, Feature feature_A,
 /// The same with A out of the walls that stand upright on the contact's plane,
 /// or lean over it.
 /// @param n of the contact, unit, in A's frame.
-/// @param ways_out translations of A out of one wall each, in its frame, m.
+/// @param translation_vectors translations of A out of one wall each, in its
+/// frame, m.
 double LateralOffsetOutOfWalls(const PosedPair& pair, Feature feature_A,
                                Feature feature_B, const Vec3& n,
                                const Witness& witness,
-                               std::span<const Vec3> ways_out);
+                               std::span<const Vec3> translation_vectors);
 
 }  // namespace drake_haptics

@@ -94,7 +94,7 @@ void EnergyLedger::BookTick() {
 
   const TickEnergy coupling =
       CouplingEnergy(from.coupling, gains_, last_.spring, next_.spring, motion);
-  const double from_hand = -to.F_applied.dot(motion.turn_dp);
+  const double from_hand = -to.F_Ho_W_rendered.dot(motion.turn_dp);
   booked_.device.Flow(from_hand);
   booked_.display.Flow(from_hand);
   booked_.display.Flow(-coupling.from_handle);

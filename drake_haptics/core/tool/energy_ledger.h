@@ -22,7 +22,7 @@ struct SourceReading {
 struct LoopReading {
   ToolState tool;
   PoseVector q_WH;       ///< of the handle
-  Vec6 F_applied;        ///< held on the handle up to now, at Ho in W
+  Vec6 F_Ho_W_rendered;  ///< held on the handle up to now, at Ho in W
   WrenchModel coupling;  ///< of the virtual coupling on the tool
   std::vector<SourceReading> sources;
 };
@@ -31,7 +31,7 @@ struct LoopReading {
 /// loop:
 ///   hand ⇄ display ⇄ coupling ⇄ tool ⇄ each source (contact, friction, …).
 /// tick_energy.h derives what a tick brings to each. All of it balances: what
-/// goes out of one part goes into its neighbour, to the last bit but rounding.
+/// goes out of one part goes into its neighbor, to the last bit but rounding.
 ///
 /// - `coupling` stores what its spring does.
 /// - A source stores what its reading says.
@@ -41,9 +41,9 @@ struct LoopReading {
 ///   that is applied: the device's limits, and passivity control where there
 ///   is. Nothing of it is sampling: its bound is zero.
 /// - `device` is the whole loop as the hand has it in its port:
-///   −F_appliedᵀ [a; Δp] goes in, exact unless the axis about which the handle
-///   turns changes within a tick. It stores, loses and may seem to make what
-///   all parts together do.
+///   −F_Ho_W_renderedᵀ [a; Δp] goes in, exact unless the axis about which the
+///   handle turns changes within a tick. It stores, loses and may seem to make
+///   what all parts together do.
 class EnergyLedger {
  public:
   struct Accounts {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "base/passive_part.h"
+#include "base/positive_semidefinite.h"
 
 namespace drake_haptics {
 namespace {
@@ -35,7 +35,8 @@ HandleSlopes ComputeHandleSlopes(const Vec3& p_HoTo_W,
   length << Vec3::Constant(1 / kHandleLength), Vec3::Ones();
   const auto even = [&length](const Mat6& matrix) -> Mat6 {
     bool changed = false;
-    return length.asDiagonal() * PassivePart(matrix, &changed) *
+    return length.asDiagonal() *
+           ProjectToPositiveSemidefinite(matrix, &changed) *
            length.asDiagonal();
   };
   const Mat6 Kc = even(coupling.K), Kt = even(contact.K);

@@ -21,7 +21,7 @@ struct HandleSlopes {
 /// the static condensation of Guyan, AIAA Journal 3(2), 1965. In free space
 /// both are nothing; at a rigid wall they are the coupling's along the normal.
 /// Both are symmetric and give no energy: what of Kc, Bc, Kt and Bt would is
-/// left out first (`PassivePart`).
+/// left out first (`ProjectToPositiveSemidefinite`).
 /// @param p_HoTo_W from the handle's origin to the tool's, m.
 /// @param coupling the coupling's wrench on the tool, at To in W.
 /// @param contact the sum of all other wrenches on the tool, at To in W.

@@ -35,20 +35,20 @@ T ObserveEnergy(const T& balance, const T& work_on_device,
 }
 
 template <typename T>
-Vec6Of<T> LimitEnergy(const Eigen::Matrix<T, 6, 1>& F_asked, const T& balance,
-                      const Eigen::Matrix<T, 6, 1>& V_WH,
+Vec6Of<T> LimitEnergy(const Eigen::Matrix<T, 6, 1>& F_Ho_W_desired,
+                      const T& balance, const Eigen::Matrix<T, 6, 1>& V_WH,
                       const PassivityBounds& bounds) {
-  if (!(ValueOf(balance) < 0)) return F_asked;
+  if (!(ValueOf(balance) < 0)) return F_Ho_W_desired;
   Vec6Of<T> braking;
   braking << bounds.max_rotational_damping * V_WH.template head<3>(),
       bounds.max_damping * V_WH.template tail<3>();
   // What the largest dampings would dissipate in a tick.
   const T largest = bounds.period * braking.dot(V_WH);
   if (!(ValueOf(largest) > 0 && std::isfinite(ValueOf(largest)))) {
-    return F_asked;
+    return F_Ho_W_desired;
   }
   const T share = std::min(T(1.0), T(T(-balance) / largest));
-  return F_asked - share * braking;
+  return F_Ho_W_desired - share * braking;
 }
 
 template double HeldWrenchWork(const Vec6&, const PoseVector&,

@@ -43,8 +43,8 @@ T ObserveEnergy(const T& balance, const T& work_on_device,
 /// what was asked where nothing lacks or the handle stands still. It never
 /// adds power to the handle.
 template <typename T>
-Vec6Of<T> LimitEnergy(const Eigen::Matrix<T, 6, 1>& F_asked, const T& balance,
-                      const Eigen::Matrix<T, 6, 1>& V_WH,
+Vec6Of<T> LimitEnergy(const Eigen::Matrix<T, 6, 1>& F_Ho_W_desired,
+                      const T& balance, const Eigen::Matrix<T, 6, 1>& V_WH,
                       const PassivityBounds& bounds);
 
 }  // namespace drake_haptics

@@ -27,7 +27,7 @@ void RequirePhysical(const ToolInertia& inertia) {
       !(Eigen::SelfAdjointEigenSolver<Mat3>(I).eigenvalues().minCoeff() > 0)) {
     throw std::invalid_argument(
         "the rotational inertia must be symmetric and positive definite, the "
-        "centre of mass finite");
+        "center of mass finite");
   }
 }
 

@@ -9,7 +9,7 @@ namespace drake_haptics {
 /// Mass properties of the tool.
 struct ToolInertia {
   double mass = 0;  ///< kg
-  Vec3 p_TTcm;      ///< centre of mass, in the tool's frame, m
+  Vec3 p_TTcm;      ///< center of mass, in the tool's frame, m
   Mat3 I_TTcm_T;    ///< rotational inertia about it, in T, kg·m²
 };
 

@@ -18,10 +18,10 @@ namespace drake_haptics {
 double ContactEnergy(const ClusterSet& clusters,
                      const std::vector<double>& stiffness, double tolerance);
 
-/// Potential energy of the tool's weight, J, zero with its centre of mass at
+/// Potential energy of the tool's weight, J, zero with its center of mass at
 /// the world's origin.
 /// @param q_WT pose of the tool.
-/// @param p_TTcm its centre of mass in its frame, m.
+/// @param p_TTcm its center of mass in its frame, m.
 /// @param weight_W m g, N.
 double WeightEnergy(const PoseVector& q_WT, const Vec3& p_TTcm,
                     const Vec3& weight_W);

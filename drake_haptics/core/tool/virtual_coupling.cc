@@ -106,7 +106,8 @@ CouplingWrenchOf<T> ComputeCoupling(const Eigen::Matrix<T, 7, 1>& q_WH,
   result.tool.K.template bottomRightCorner<3, 3>() = force.K;
   result.tool.B.template topLeftCorner<3, 3>() = torque.B;
   result.tool.B.template bottomRightCorner<3, 3>() = force.B;
-  result.F_display << -torque.load - p_HT_W.cross(force.load), -force.load;
+  result.F_Ho_W_commanded << -torque.load - p_HT_W.cross(force.load),
+      -force.load;
   return result;
 }
 

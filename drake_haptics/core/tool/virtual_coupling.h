@@ -21,8 +21,8 @@ struct CouplingGains {
 
 template <typename T>
 struct CouplingWrenchOf {
-  WrenchModelOf<T> tool;  ///< on the tool at To
-  Vec6Of<T> F_display;    ///< its reaction on the handle at Ho, in W
+  WrenchModelOf<T> tool;       ///< on the tool at To
+  Vec6Of<T> F_Ho_W_commanded;  ///< its reaction on the handle at Ho, in W
 };
 using CouplingWrench = CouplingWrenchOf<double>;
 

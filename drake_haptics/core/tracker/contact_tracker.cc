@@ -37,7 +37,7 @@ ContactTracker::ContactTracker(
   const auto shape_of = [&](std::shared_ptr<const Decomposition> pieces) {
     TreedShape& shape = shapes[pieces.get()];
     if (shape.tree == nullptr) {
-      shape.tree = std::make_shared<PieceTree>(pieces->pieces);
+      shape.tree = std::make_shared<PieceBvh>(pieces->pieces);
       shape.decomposition = std::move(pieces);
     }
     return shape;
@@ -77,9 +77,9 @@ void ContactTracker::SetObjectPose(int i, const Pose& X_WO) {
   wake_times_.Wake(i);
 }
 
-void ContactTracker::Query(const Pose& X_WTool, double tolerance,
+void ContactTracker::Query(const Pose& X_WT, double tolerance,
                            ContactSet* out) {
-  RequireFinite(X_WTool, "the pose of the tool");
+  RequireFinite(X_WT, "the pose of the tool");
   if (!(tolerance >= 0 && tolerance <= tolerance_)) {
     throw std::invalid_argument(
         "tolerance must be from 0 m to the tracker's, " +
@@ -88,7 +88,7 @@ void ContactTracker::Query(const Pose& X_WTool, double tolerance,
   const auto start = std::chrono::steady_clock::now();
   out->contacts.clear();
   try {
-    QueryAll(X_WTool, tolerance, out);
+    QueryAll(X_WT, tolerance, out);
   } catch (...) {
     // There was no memory: what is half learnt must not be trusted.
     out->contacts.clear();
@@ -100,11 +100,11 @@ void ContactTracker::Query(const Pose& X_WTool, double tolerance,
   out->query_seconds = elapsed.count();
 }
 
-void ContactTracker::QueryAll(const Pose& X_WTool, double tolerance,
+void ContactTracker::QueryAll(const Pose& X_WT, double tolerance,
                               ContactSet* out) {
-  if (is_first_) last_X_WTool_ = X_WTool;
+  if (is_first_) last_X_WT_ = X_WT;
   is_first_ = false;
-  const Motion motion(last_X_WTool_, X_WTool);
+  const Motion motion(last_X_WT_, X_WT);
   double step = motion.Bound(middle_, radius_);
   if (IsPutElsewhere(motion, step)) {
     StartOver();
@@ -113,9 +113,9 @@ void ContactTracker::QueryAll(const Pose& X_WTool, double tolerance,
   odometer_ += step;
   wake_times_.Collect(odometer_, &awake_);
   for (const int i : awake_) {
-    QueryObject(i, X_WTool, motion, step, tolerance, out);
+    QueryObject(i, X_WT, motion, step, tolerance, out);
   }
-  last_X_WTool_ = X_WTool;
+  last_X_WT_ = X_WT;
 }
 
 // Starts the tool's odometer from zero: after one far pose it would be too
@@ -138,12 +138,12 @@ void ContactTracker::Forget(int i) {
   wake_times_.Wake(i);
 }
 
-void ContactTracker::QueryObject(int i, const Pose& X_WTool,
+void ContactTracker::QueryObject(int i, const Pose& X_WT,
                                  const Motion& tool_motion, double tool_step,
                                  double tolerance, ContactSet* out) {
   Object& object = objects_[i];
-  const Pose X_AB = RelativePose(X_WTool, object.X_WO);
-  const Pose last_X_AB = RelativePose(last_X_WTool_, object.last_X_WO);
+  const Pose X_AB = RelativePose(X_WT, object.X_WO);
+  const Pose last_X_AB = RelativePose(last_X_WT_, object.last_X_WO);
   // Seen from an object at rest the tool moves as in the world.
   Motion motion = tool_motion;
   double step = tool_step;
@@ -159,7 +159,7 @@ void ContactTracker::QueryObject(int i, const Pose& X_WTool,
     object.has_moved = false;
   }
   const std::size_t first = out->contacts.size();
-  object.tracked.Query({tool_, tolerance_, tolerance, depth_, X_WTool, X_AB,
+  object.tracked.Query({tool_, tolerance_, tolerance, depth_, X_WT, X_AB,
                         last_X_AB, motion, step, odometer_ + object.ahead},
                        &workspace_, &out->contacts);
   for (std::size_t k = first; k < out->contacts.size(); ++k) {

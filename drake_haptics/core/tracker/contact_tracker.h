@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "base/deadline_tree.h"
 #include "base/types.h"
-#include "base/wake_times.h"
 #include "mesh/decomposition.h"
 #include "pair/contact.h"
 #include "tracker/tracked_object.h"
@@ -49,14 +49,14 @@ class ContactTracker {
   /// @throws std::invalid_argument for a pose that is not finite, before any
   ///         remembered state is touched; std::bad_alloc, after which nothing
   ///         is remembered.
-  void Query(const Pose& X_WTool, ContactSet* out) {
-    Query(X_WTool, tolerance_, out);
+  void Query(const Pose& X_WT, ContactSet* out) {
+    Query(X_WT, tolerance_, out);
   }
 
   /// The same, of contacts up to a smaller distance `tolerance` (m), for less
   /// work. What is learnt of pairs serves later queries of any.
   /// @throws std::invalid_argument also unless 0 <= tolerance <= tolerance().
-  void Query(const Pose& X_WTool, double tolerance, ContactSet* out);
+  void Query(const Pose& X_WT, double tolerance, ContactSet* out);
 
   /// Forgets everything learnt from earlier ticks.
   void Reset();
@@ -71,7 +71,7 @@ class ContactTracker {
     double ahead = 0;
   };
 
-  void QueryAll(const Pose& X_WTool, double tolerance, ContactSet* out);
+  void QueryAll(const Pose& X_WT, double tolerance, ContactSet* out);
   // Beyond the ball around it, or turned by more than a contact that goes on
   // may turn, 60°: of a side on which it came in then nothing is left.
   bool IsPutElsewhere(const Motion& motion, double step) const {
@@ -79,19 +79,19 @@ class ContactTracker {
   }
   void StartOver();
   void Forget(int i);
-  void QueryObject(int i, const Pose& X_WTool, const Motion& tool_motion,
+  void QueryObject(int i, const Pose& X_WT, const Motion& tool_motion,
                    double tool_step, double tolerance, ContactSet* out);
 
   TreedShape tool_;
   std::vector<Object> objects_;
   double tolerance_;
   DepthSearch depth_;
-  Vec3 middle_;        // of the tool, in its frame, m
-  double radius_;      // of the tool about its middle, m
-  Pose last_X_WTool_;  // at the last query
+  Vec3 middle_;     // of the tool, in its frame, m
+  double radius_;   // of the tool about its middle, m
+  Pose last_X_WT_;  // at the last query
   bool is_first_ = true;
-  double odometer_ = 0;   // of the tool in the world, m
-  WakeTimes wake_times_;  // of the objects, by the tool's odometer
+  double odometer_ = 0;      // of the tool in the world, m
+  DeadlineTree wake_times_;  // of the objects, by the tool's odometer
   std::vector<int> awake_;
   TrackerWorkspace workspace_;
 };

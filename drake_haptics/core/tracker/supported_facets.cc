@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "convex/surface_support.h"
+#include "convex/normal_cone_test.h"
 #include "pair/gauss_overlay.h"
 
 namespace drake_haptics {
@@ -17,7 +17,7 @@ constexpr double kSlack = 10 * kRegionSlack;
 
 class Listing {
  public:
-  Listing(const PosedPair& pair, const Hub& near,
+  Listing(const PosedPair& pair, const MinkowskiVertex& near,
           std::span<const WantedFacets> wanted,
           std::vector<DepthCandidate>* facets)
       : pair_(pair),
@@ -130,7 +130,7 @@ class Listing {
     *hint = SupportVertex(P, outward, *hint);
     visit(*hint);
     const double least = -kSlack * P.radius;
-    for (const Polytope::Spoke& spoke : P.fan_of(*hint)) {
+    for (const Polytope::OneRingEntry& spoke : P.fan_of(*hint)) {
       if (outward.dot(spoke.along) >= least) visit(spoke.neighbor);
     }
   }
@@ -223,9 +223,9 @@ class Listing {
     const Vec3 side = to - from;
     double x = 0;
     for (int crossings = 0; crossings < P.num_vertices(); ++crossings) {
-      const Polytope::Spoke* next = nullptr;
+      const Polytope::OneRingEntry* next = nullptr;
       double first = 1;
-      for (const Polytope::Spoke& spoke : P.fan_of(v)) {
+      for (const Polytope::OneRingEntry& spoke : P.fan_of(v)) {
         const double rise = side.dot(spoke.along);
         if (!(rise > 0)) continue;
         const double at = -from.dot(spoke.along);
@@ -244,9 +244,9 @@ class Listing {
   }
 
   void Append(const Vec3& n, Feature a, Feature b) {
-    const SurfaceSupport support =
+    const NormalConeTest support =
         ClassifySupport(pair_.A, a, n, pair_.B, b, R_BA_ * n);
-    if (support != SurfaceSupport::kSupported) return;
+    if (support != NormalConeTest::kSupported) return;
     const double h = n.dot(pair_.a(pair_.A.first_vertex_of(a)) -
                            pair_.b(pair_.B.first_vertex_of(b)));
     if (IsWanted(n, h)) facets_.push_back({h, n, a, b, support});
@@ -255,7 +255,7 @@ class Listing {
   const PosedPair& pair_;
   const Mat3 R_BA_;
   const DirectionCone of_A_, of_B_;  // along which the surfaces can carry
-  const Hub near_;
+  const MinkowskiVertex near_;
   // Points of B in A's frame and of A in B's, which bound gaps from above.
   const Vec3 center_B_, near_B_, center_A_, near_A_;
   const std::span<const WantedFacets> wanted_;
@@ -265,7 +265,7 @@ class Listing {
 
 }  // namespace
 
-void ListSupportedFacets(const PosedPair& pair, const Hub& near,
+void ListSupportedFacets(const PosedPair& pair, const MinkowskiVertex& near,
                          std::span<const WantedFacets> wanted,
                          std::vector<DepthCandidate>* facets) {
   Listing(pair, near, wanted, facets).Run();

@@ -5,7 +5,7 @@
 
 #include "base/direction_cone.h"
 #include "convex/support.h"
-#include "pair/depth_walk.h"
+#include "pair/local_penetration_walk.h"
 
 namespace drake_haptics {
 
@@ -29,7 +29,7 @@ struct WantedFacets {
 /// facets, of the facets along one normal one at least.
 /// @param near vertices near which the bodies overlap, for speed alone.
 /// @pre Both pieces have facets: dimensions of 2 or 3.
-void ListSupportedFacets(const PosedPair& pair, const Hub& near,
+void ListSupportedFacets(const PosedPair& pair, const MinkowskiVertex& near,
                          std::span<const WantedFacets> wanted,
                          std::vector<DepthCandidate>* facets);
 

@@ -6,7 +6,7 @@
 
 #include "base/motion.h"
 #include "pair/separation.h"
-#include "tracker/facet_press.h"
+#include "tracker/feature_coverage.h"
 #include "tracker/supported_facets.h"
 
 namespace drake_haptics {
@@ -28,7 +28,7 @@ double LeastGap(const PosedPair& pair, const Pose& last_X_AB) {
 // The shallowest of the supported facets down to a gap that count.
 template <typename DoesCount>
 std::optional<DepthCandidate> Shallowest(const PosedPair& pair, double least,
-                                         const Hub& near,
+                                         const MinkowskiVertex& near,
                                          SurfacePairWorkspace* workspace,
                                          const DoesCount& does_count) {
   const WantedFacets wanted{{}, least};
@@ -77,14 +77,14 @@ bool LayInFront(const PosedPair& pair, const DepthCandidate& facet,
   const Vec3 n = facet.feature_A.kind() == FeatureKind::kFacet
                      ? facet.n
                      : Vec3(last_X_AB.R * (pair.X_AB.R.transpose() * facet.n));
-  Hub hub = HubOf(pair, facet);
+  MinkowskiVertex hub = HubOf(pair, facet);
   return SupportGap({pair.A, pair.B, last_X_AB}, n, &hub) >=
          -kTouchShare * pair.scale();
 }
 
 std::optional<DepthCandidate> FindEntry(const PosedPair& pair,
                                         const SurfaceRequest& request,
-                                        const Hub& near,
+                                        const MinkowskiVertex& near,
                                         SurfacePairWorkspace* workspace) {
   if (request.is_any_way_out) {
     return Shallowest(pair, kNoFloor, near, workspace,

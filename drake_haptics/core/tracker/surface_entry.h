@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "convex/support.h"
-#include "pair/depth_walk.h"
+#include "pair/local_penetration_walk.h"
 #include "tracker/surface_pair_state.h"
 #include "tracker/surface_request.h"
 
@@ -32,7 +32,7 @@ bool LayInFront(const PosedPair& pair, const DepthCandidate& facet,
 /// @param near vertices near which the bodies overlap, for speed alone.
 std::optional<DepthCandidate> FindEntry(const PosedPair& pair,
                                         const SurfaceRequest& request,
-                                        const Hub& near,
+                                        const MinkowskiVertex& near,
                                         SurfacePairWorkspace* workspace);
 
 /// The shallowest way out of an overlap of which no earlier pose is known: a

@@ -6,17 +6,17 @@
 #include <limits>
 
 #include "convex/flush_features.h"
-#include "convex/surface_support.h"
-#include "pair/facet_revisit.h"
+#include "convex/normal_cone_test.h"
 #include "pair/gauss_overlay.h"
-#include "pair/pair_answer.h"
+#include "pair/pair_contact_builders.h"
 #include "pair/separation.h"
+#include "pair/warm_facet.h"
 #include "pair/witness.h"
-#include "tracker/carried_facets.h"
-#include "tracker/contact_passage.h"
-#include "tracker/facet_press.h"
-#include "tracker/facet_prospect.h"
-#include "tracker/near_promotion.h"
+#include "tracker/brute_force_supported_facets.h"
+#include "tracker/closest_feature_replacement.h"
+#include "tracker/contact_persistence.h"
+#include "tracker/deeper_overlap_reject.h"
+#include "tracker/feature_coverage.h"
 #include "tracker/surface_entry.h"
 
 namespace drake_haptics {
@@ -56,16 +56,17 @@ class Query {
     state_.is_settled = false;
     std::optional<PairContact> contact;
     if (!state_.in_contact && IsBeyondLastNormal()) {
-      contact = TakenOver();
+      contact = TransferredFrom();
       if (!contact) return contact;
     } else {
       contact = Answer();
     }
     Remember(contact);
     if (!is_refused_) state_.refusals = 0;
-    state_.num_ways_out = contact || !ends_early_
-                              ? -1
-                              : static_cast<int>(request_.ways_out.size());
+    state_.num_ways_out =
+        contact || !ends_early_
+            ? -1
+            : static_cast<int>(request_.translation_vectors.size());
     if (!contact) return contact;
     const bool is_pressed = contact->distance < 0 && facet_hub_;
     const bool is_within = is_pressed && IsWithinSides(pair_, *contact);
@@ -123,7 +124,7 @@ class Query {
         PromoteClosestPoints(pair_, separation_, request_,
                              IsSupported(closest, kFlush), &workspace_.patch);
     ends_early_ = promotion.ends_early;
-    if (promotion.facet.support != SurfaceSupport::kSupported) {
+    if (promotion.facet.support != NormalConeTest::kSupported) {
       if (promotion.is_beside_wall) return closest;
       return std::nullopt;
     }
@@ -133,7 +134,7 @@ class Query {
 
   // No contact of its own: the tool is out of reach, or behind the surface.
   std::optional<PairContact> Behind() {
-    return state_.in_contact ? Held(state_.n) : TakenOver();
+    return state_.in_contact ? Held(state_.n) : TransferredFrom();
   }
 
   bool IsSupported(const PairContact& contact,
@@ -141,7 +142,7 @@ class Query {
     return ClassifySupport(pair_.A, contact.feature_A, contact.n, pair_.B,
                            contact.feature_B,
                            pair_.X_AB.R.transpose() * contact.n,
-                           slack) == SurfaceSupport::kSupported;
+                           slack) == NormalConeTest::kSupported;
   }
 
   std::optional<PairContact> Overlapping() {
@@ -149,7 +150,7 @@ class Query {
     const std::optional<Depth> entry = is_new ? Entry() : std::nullopt;
     if (is_new && !entry && !MayBegin()) {
       is_refused_ = true;
-      return TakenOver();
+      return TransferredFrom();
     }
     Depth depth = entry               ? *entry
                   : state_.in_contact ? WarmDepth()
@@ -161,7 +162,7 @@ class Query {
                         Bounds(kWarmPromotionHubs), &workspace_.depth);
     }
     const bool apart = separation_.status == SeparationStatus::kApart;
-    Hub hub = separation_.simplex.hubs[0];
+    MinkowskiVertex hub = separation_.simplex.hubs[0];
     if (apart && (depth.status == DepthStatus::kNoFacet ||
                   depth.best.h <= SupportGap(pair_, separation_.n, &hub))) {
       const PairContact contact = ContactApart(pair_, separation_);
@@ -182,7 +183,7 @@ class Query {
       }
       Refuse(depth.best.n, depth.hub);
       const auto contact = GoneOn();
-      return contact ? contact : TakenOver();
+      return contact ? contact : TransferredFrom();
     }
     return AtDepth(depth);
   }
@@ -191,7 +192,7 @@ class Query {
     ContactStatus status =
         depth.best.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating;
     if (depth.status == DepthStatus::kBounded &&
-        depth.best.support != SurfaceSupport::kOriginal) {
+        depth.best.support != NormalConeTest::kOriginal) {
       status = ContactStatus::kBounded;
     }
     return AtFacet(depth, status);
@@ -204,13 +205,13 @@ class Query {
   std::optional<Depth> LeastDepth(const Depth& tracked) {
     const Depth least = LeastOfAllFacets(pair_, tracked.hub, global_);
     if (least.status == DepthStatus::kNoFacet) return std::nullopt;
-    if (least.best.support == SurfaceSupport::kSupported &&
+    if (least.best.support == NormalConeTest::kSupported &&
         IsWithinFeatures(least.best)) {
       return least;
     }
     const bool is_tracked = IsPlausible(tracked);
-    ListCarriedFacets(pair_, is_tracked ? tracked.best.h : kNoFloor,
-                      &workspace_.carried);
+    ListSupportedFacetsByBruteForce(
+        pair_, is_tracked ? tracked.best.h : kNoFloor, &workspace_.carried);
     for (const DepthCandidate& facet : workspace_.carried) {
       const Depth depth{DepthStatus::kLocalMinimum, facet, least.best.h,
                         HubOf(pair_, facet)};
@@ -244,13 +245,13 @@ class Query {
   }
 
   double GapAlong(const Vec3& n) const {
-    Hub hub = state_.hub;
+    MinkowskiVertex hub = state_.hub;
     return SupportGap(pair_, n, &hub);
   }
 
   bool MayFind(const WantedFacets* own) {
-    return MayFindFacet(pair_, request_, passage_, state_.hub, own,
-                        &workspace_);
+    return MayOverlapDeeper(pair_, request_, passage_, state_.hub, own,
+                            &workspace_);
   }
 
   // Where the overlap of a pair that was apart began.
@@ -280,14 +281,14 @@ class Query {
   // Of one that was refused at the last tick, and mostly is again: the thorough
   // search is made anew only now and then.
   Depth RefusedDepth() {
-    Hub hub = state_.refused_hub;
+    MinkowskiVertex hub = state_.refused_hub;
     SupportGap(pair_, state_.refused_n, &hub);
     return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
                      Bounds(kRefusedPromotionHubs), &workspace_.depth);
   }
 
   // @param n, hub where the search ended.
-  void Refuse(const Vec3& n, const Hub& hub) {
+  void Refuse(const Vec3& n, const MinkowskiVertex& hub) {
     is_refused_ = true;
     ++state_.refusals;
     state_.refused_n = n;
@@ -306,17 +307,17 @@ class Query {
   // from behind, through its virtual side: its own surface is far then, and the
   // pieces on the near side carry the contact.
   bool IsPlausible(const Depth& depth) {
-    if (depth.best.support == SurfaceSupport::kVirtual) return false;
+    if (depth.best.support == NormalConeTest::kVirtual) return false;
     // What goes on may reach beyond its features: a face wider than the pieces
     // has its deepest corner over another one.
-    if (passage_.GoesOn(depth.best)) return true;
-    if (depth.best.support != SurfaceSupport::kSupported) return false;
+    if (passage_.Continues(depth.best)) return true;
+    if (depth.best.support != NormalConeTest::kSupported) return false;
     // A walk that was cut short may not have come to where the bodies press.
     if (depth.status != DepthStatus::kBounded &&
         !IsWithinFeatures(depth.best)) {
       return false;
     }
-    return passage_.IsHandedOver(depth.best) ||
+    return passage_.IsTransferred(depth.best) ||
            LayInFront(pair_, depth.best, request_.last_X_AB) ||
            (depth.best.n.dot(state_.n) >= kComingFrom &&
             depth.best.h >=
@@ -328,8 +329,8 @@ class Query {
   std::optional<PairContact> GoneOn() {
     const DepthCandidate* best = nullptr;
     for (const DepthCandidate& facet : workspace_.depth.candidates) {
-      if (facet.support == SurfaceSupport::kSupported && facet.h < 0 &&
-          (best == nullptr || facet.h > best->h) && passage_.GoesOn(facet)) {
+      if (facet.support == NormalConeTest::kSupported && facet.h < 0 &&
+          (best == nullptr || facet.h > best->h) && passage_.Continues(facet)) {
         best = &facet;
       }
     }
@@ -341,10 +342,10 @@ class Query {
 
   // A pair that goes on where another one pressed: the tool may be behind this
   // piece altogether.
-  std::optional<PairContact> TakenOver() {
+  std::optional<PairContact> TransferredFrom() {
     // Contacts along one normal lead to the same facet: one of them will do.
     const Vec3* tried = nullptr;
-    for (const PressedContact& last : request_.pressed) {
+    for (const PenetratingContact& last : request_.pressed) {
       if (last.is_kept || !last.IsNear(pair_.A, pair_.B)) continue;
       if (tried == nullptr && !state_.in_contact && !MayFind(nullptr)) {
         return std::nullopt;
@@ -365,13 +366,13 @@ class Query {
   // From the last answer. On coherent motion its facet mostly still is the
   // answer, and one comparison proves it.
   Depth WarmDepth() {
-    Hub hub = state_.hub;
+    MinkowskiVertex hub = state_.hub;
     if (!state_.feature_A.is_none()) {
       const Revisit last =
           RevisitFacet(pair_, SurfaceRule::kSurfaceOnly, state_.feature_A,
                        state_.feature_B, state_.n);
       if (last.status == RevisitStatus::kMinimum &&
-          last.facet.support == SurfaceSupport::kSupported) {
+          last.facet.support == NormalConeTest::kSupported) {
         return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub};
       }
       if (last.status != RevisitStatus::kGone) {
@@ -389,22 +390,23 @@ class Query {
   // way in, n, is negative: it went through a shallow piece. The depth is
   // measured along the surface's own normals, and the way out is the way in.
   std::optional<PairContact> Held(const Vec3& n) {
-    Hub hub = state_.hub;
+    MinkowskiVertex hub = state_.hub;
     if (!(SupportGap(pair_, n, &hub) < 0)) return std::nullopt;
     const Depth depth =
         WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
                   Bounds(kWarmPromotionHubs), &workspace_.depth);
     if (depth.status == DepthStatus::kNoFacet ||
-        depth.best.support != SurfaceSupport::kSupported ||
+        depth.best.support != NormalConeTest::kSupported ||
         !(depth.best.h < 0) ||
-        !(passage_.GoesOn(depth.best) || passage_.IsHandedOver(depth.best)) ||
+        !(passage_.Continues(depth.best) ||
+          passage_.IsTransferred(depth.best)) ||
         !IsWithinFeatures(depth.best)) {
       return std::nullopt;
     }
     return AtFacet(depth, ContactStatus::kHeld);
   }
 
-  PressurePatch FindPatch(const Vec3& n, double h, const Hub& hub,
+  PressurePatch FindPatch(const Vec3& n, double h, const MinkowskiVertex& hub,
                           const Vec3& p_a) {
     return FindSurfacePatch(pair_, n, h, hub, p_a, request_.tolerance,
                             &workspace_.patch);
@@ -432,13 +434,14 @@ class Query {
   const PosedPair& pair_;
   const SurfaceRequest request_;
   SurfacePairState& state_;
-  const ContactPassage passage_;
+  const ContactPersistence passage_;
   SurfacePairWorkspace& workspace_;
   GlobalDepthState* const global_;  // null where the depth is tracked
   Separation separation_;
-  bool is_refused_ = false;       // an overlap had no plausible facet
-  bool ends_early_ = false;       // see Promotion
-  std::optional<Hub> facet_hub_;  // of the facet that is the answer, if one is
+  bool is_refused_ = false;  // an overlap had no plausible facet
+  bool ends_early_ = false;  // see Promotion
+  std::optional<MinkowskiVertex>
+      facet_hub_;  // of the facet that is the answer, if one is
 };
 
 }  // namespace

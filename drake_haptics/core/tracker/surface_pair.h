@@ -26,7 +26,7 @@ namespace drake_haptics {
 /// bodies meet. What has passed behind the surface overlaps with nothing, and
 /// is held by the way in either way.
 ///
-/// The witness points of faces that lie nearly flush are at the centre of
+/// The witness points of faces that lie nearly flush are at the center of
 /// pressure of a layer as thick as `tolerance` − distance, at most a tenth of
 /// the tolerance (contact_patch.h).
 std::optional<PairContact> QuerySurfacePair(const PosedPair& pair,

@@ -4,7 +4,7 @@
 
 #include "base/types.h"
 #include "convex/support.h"
-#include "pair/depth_walk.h"
+#include "pair/local_penetration_walk.h"
 #include "pair/pair_state.h"
 #include "tracker/supported_facets.h"
 
@@ -20,7 +20,7 @@ struct SurfacePairState : PairState {
   bool is_settled = false;
   int refusals = 0;  ///< ticks on end at which an overlap was no contact
   Vec3 refused_n = Vec3::Zero();  ///< where the last search ended, in A's frame
-  Hub refused_hub;
+  MinkowskiVertex refused_hub;
   int press = -1;  ///< its place among the tick's pressed contacts, if any
   /// Set where no contact was found on the features that face each other, for
   /// they end: of how many walls that A presses into was known then.

@@ -4,13 +4,13 @@
 
 #include "base/types.h"
 #include "convex/polytope.h"
-#include "pair/depth_walk.h"
+#include "pair/local_penetration_walk.h"
 
 namespace drake_haptics {
 
 /// A penetrating contact of the last tick between any pieces of the same two
 /// objects, in B's frame.
-struct PressedContact {
+struct PenetratingContact {
   double distance = 0;      ///< m
   Vec3 n = Vec3::UnitX();   ///< unit, from B into A
   Vec3 p_b = Vec3::Zero();  ///< witness point of B, m
@@ -47,10 +47,10 @@ struct SurfaceRequest {
   Pose last_X_AB;
   /// Where the tool presses already. A pair that was not in contact may take
   /// over there.
-  std::span<const PressedContact> pressed{};
+  std::span<const PenetratingContact> pressed{};
   /// Translations of A (m, in its frame), each out of one of the walls that it
   /// presses into at this tick, as far as these are known by now.
-  std::span<const Vec3> ways_out{};
+  std::span<const Vec3> translation_vectors{};
   /// Bound on the steps of a walk. The search for a first facet that both
   /// surfaces carry has bounds of its own, so that no contact is lost for want
   /// of it.

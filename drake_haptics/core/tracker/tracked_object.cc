@@ -40,19 +40,20 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
   // Who begins has missed nothing, whatever the odometer stood at before.
   if (is_first_) odometer_ = tick.odometer - tick.step;
   double deepest = 0;
-  for (PressedContact& last : pressed_) {
+  for (PenetratingContact& last : pressed_) {
     last.Advance(tick.X_AB, tick.last_X_AB);
     deepest = std::max(deepest, -last.distance);
   }
   // Where the tool presses, pieces beside may take over from as far as it is
   // deep.
   const double reach = tick.watched + deepest;
-  const PosedBoxes boxes(tick.X_AB);
-  const PairFront::Tick front_tick{*tick.tool.tree, *shape_.tree, boxes,
+  const ObbGap boxes(tick.X_AB);
+  const BvttFront::Tick front_tick{*tick.tool.tree, *shape_.tree, boxes,
                                    tick.odometer, reach};
   workspace->entered.clear();
   front_.Advance(front_tick, &workspace->entered);
-  if (!workspace->entered.empty()) Admit(tick.watched, &workspace->entered);
+  if (!workspace->entered.empty())
+    InsertPairs(tick.watched, &workspace->entered);
 
   const std::size_t first = out->size();
   if (is_first_) {
@@ -82,7 +83,7 @@ Pose TrackedObject::FindPoseBefore(const Tick& tick,
   for (int k = 0; k < kMaxWaysOut; ++k) {
     std::optional<DepthCandidate> least;
     double beyond = 0;
-    for (const WatchedPair& watched : watched_) {
+    for (const ActivePair& watched : watched_) {
       PosedPair pair = Posed(tick, watched.pieces);
       pair.X_AB = X_AB;
       const auto way = FindWayOut(pair, tick.tolerance, &workspace->pair);
@@ -105,9 +106,9 @@ void TrackedObject::AskForAnyWayOut(const Tick& tick,
                                     std::vector<Contact>* out) {
   SurfaceRequest any;
   any.is_any_way_out = true;
-  WatchedPair* shallowest = nullptr;
+  ActivePair* shallowest = nullptr;
   double largest = -kForever;
-  for (WatchedPair& watched : watched_) {
+  for (ActivePair& watched : watched_) {
     const PosedPair pair = Posed(tick, watched.pieces);
     if (pair.A.dimension < 2 || pair.B.dimension < 2 || !DoSurfacesCross(pair))
       continue;
@@ -119,23 +120,23 @@ void TrackedObject::AskForAnyWayOut(const Tick& tick,
   }
   if (shallowest == nullptr) return;
   states_[shallowest->state] = {};
-  Ask(tick, workspace, shallowest, out, true);
+  QueryPair(tick, workspace, shallowest, out, true);
 }
 
-void TrackedObject::AskAll(const Tick& tick, const PairFront::Tick& front_tick,
+void TrackedObject::AskAll(const Tick& tick, const BvttFront::Tick& front_tick,
                            TrackerWorkspace* workspace,
                            std::vector<Contact>* out) {
   workspace->pressed.clear();
-  workspace->ways_out.clear();
+  workspace->translation_vectors.clear();
   AskPairsInContact(tick, workspace, out);
   is_any_left_ =
       std::any_of(pressed_.begin(), pressed_.end(),
-                  [](const PressedContact& last) { return !last.is_kept; });
+                  [](const PenetratingContact& last) { return !last.is_kept; });
   double least_slack = kForever;
   auto kept = watched_.begin();
   for (auto pair = watched_.begin(); pair != watched_.end(); ++pair) {
     if (!pair->was_in_contact &&
-        !Tend(tick, front_tick, workspace, &*pair, out)) {
+        !UpdatePair(tick, front_tick, workspace, &*pair, out)) {
       free_states_.push_back(pair->state);
       continue;
     }
@@ -144,7 +145,7 @@ void TrackedObject::AskAll(const Tick& tick, const PairFront::Tick& front_tick,
     ++kept;
   }
   watched_.erase(kept, watched_.end());
-  AskPairsBeside(tick, workspace, out);
+  RequeryBesideWalls(tick, workspace, out);
   quiet_until_ = least_slack > 0 ? std::min(tick.odometer + least_slack,
                                             front_.mark() - tick.watched)
                                  : -kForever;
@@ -162,7 +163,7 @@ void TrackedObject::AskPairsInContact(const Tick& tick,
   odometer_ = tick.odometer;
   int piece = -1;
   double motion = 0;
-  for (WatchedPair& pair : watched_) {
+  for (ActivePair& pair : watched_) {
     if (pair.pieces.a != piece) {
       piece = pair.pieces.a;
       const Polytope& A = tick.tool.decomposition->pieces[piece];
@@ -171,19 +172,21 @@ void TrackedObject::AskPairsInContact(const Tick& tick,
     pair.slack -= missed + motion;
     pair.was_in_contact = states_[pair.state].in_contact;
     states_[pair.state].num_ways_out = -1;
-    if (pair.was_in_contact) Ask(tick, workspace, &pair, out);
+    if (pair.was_in_contact) QueryPair(tick, workspace, &pair, out);
   }
 }
 
 // Asks again the pairs that may be in contact by what the tool presses into
 // elsewhere, which is not known before all pairs are asked.
-void TrackedObject::AskPairsBeside(const Tick& tick,
-                                   TrackerWorkspace* workspace,
-                                   std::vector<Contact>* out) {
-  const int num_ways_out = static_cast<int>(workspace->ways_out.size());
-  for (WatchedPair& pair : watched_) {
+void TrackedObject::RequeryBesideWalls(const Tick& tick,
+                                       TrackerWorkspace* workspace,
+                                       std::vector<Contact>* out) {
+  const int num_ways_out =
+      static_cast<int>(workspace->translation_vectors.size());
+  for (ActivePair& pair : watched_) {
     const int known = states_[pair.state].num_ways_out;
-    if (known >= 0 && known < num_ways_out) Ask(tick, workspace, &pair, out);
+    if (known >= 0 && known < num_ways_out)
+      QueryPair(tick, workspace, &pair, out);
   }
 }
 
@@ -191,7 +194,7 @@ void TrackedObject::AskPairsBeside(const Tick& tick,
 bool TrackedObject::MayTakeOver(const Tick& tick,
                                 const PiecePair& pieces) const {
   return std::any_of(
-      pressed_.begin(), pressed_.end(), [&](const PressedContact& last) {
+      pressed_.begin(), pressed_.end(), [&](const PenetratingContact& last) {
         return !last.is_kept &&
                last.IsNear(tick.tool.decomposition->pieces[pieces.a],
                            shape_.decomposition->pieces[pieces.b]);
@@ -199,7 +202,8 @@ bool TrackedObject::MayTakeOver(const Tick& tick,
 }
 
 // Merges the pairs into those under watch, from behind and in place.
-void TrackedObject::Admit(double watched, std::vector<EnteredPair>* entered) {
+void TrackedObject::InsertPairs(double watched,
+                                std::vector<EnteredPair>* entered) {
   const auto by_pieces = [](const auto& p, const auto& q) {
     return p.pieces < q.pieces;
   };
@@ -233,9 +237,10 @@ int TrackedObject::NewState() {
 
 // Asks the pair unless it is sure to have no contact. Returns whether it stays
 // under watch.
-bool TrackedObject::Tend(const Tick& tick, const PairFront::Tick& front_tick,
-                         TrackerWorkspace* workspace, WatchedPair* pair,
-                         std::vector<Contact>* out) {
+bool TrackedObject::UpdatePair(const Tick& tick,
+                               const BvttFront::Tick& front_tick,
+                               TrackerWorkspace* workspace, ActivePair* pair,
+                               std::vector<Contact>* out) {
   const bool may_take_over = is_any_left_ && MayTakeOver(tick, pair->pieces);
   if (pair->slack > 0 && !may_take_over) return true;
   SurfacePairState& state = states_[pair->state];
@@ -253,13 +258,13 @@ bool TrackedObject::Tend(const Tick& tick, const PairFront::Tick& front_tick,
     front_.Return(pair->node, gap, tick.odometer);
     return false;
   }
-  Ask(tick, workspace, pair, out);
+  QueryPair(tick, workspace, pair, out);
   return true;
 }
 
-void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
-                        WatchedPair* pair, std::vector<Contact>* out,
-                        bool is_any_way_out) {
+void TrackedObject::QueryPair(const Tick& tick, TrackerWorkspace* workspace,
+                              ActivePair* pair, std::vector<Contact>* out,
+                              bool is_any_way_out) {
   SurfacePairState& state = states_[pair->state];
   const int last_press = state.press;
   GlobalDepthState* global = nullptr;
@@ -272,11 +277,11 @@ void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
                              ? PoseBeforeOf(posed, tick.tolerance,
                                             tick.last_X_AB, &workspace->pair)
                              : tick.last_X_AB;
-  const auto answer =
-      QuerySurfacePair(posed,
-                       {tick.tolerance, is_any_way_out, last_X_AB, pressed_,
-                        workspace->ways_out, tick.depth.max_walk_steps},
-                       &state, &workspace->pair, global);
+  const auto answer = QuerySurfacePair(
+      posed,
+      {tick.tolerance, is_any_way_out, last_X_AB, pressed_,
+       workspace->translation_vectors, tick.depth.max_walk_steps},
+      &state, &workspace->pair, global);
   pair->slack = 0;
   state.press = -1;
   if (!answer) return;
@@ -284,12 +289,12 @@ void TrackedObject::Ask(const Tick& tick, TrackerWorkspace* workspace,
     if (last_press >= 0 && state.is_settled)
       pressed_[last_press].is_kept = true;
     state.press = static_cast<int>(workspace->pressed.size());
-    PressedContact press;
+    PenetratingContact press;
     press.distance = answer->distance;
     press.n = tick.X_AB.R.transpose() * answer->n;
     press.p_b = tick.X_AB.inverse() * answer->p_b;
     workspace->pressed.push_back(press);
-    workspace->ways_out.push_back(-answer->distance * answer->n);
+    workspace->translation_vectors.push_back(-answer->distance * answer->n);
   }
   Contact contact = InWorld(*answer, tick.X_WA);
   contact.piece_A = pair->pieces.a;
@@ -304,7 +309,7 @@ PosedPair TrackedObject::Posed(const Tick& tick,
 }
 
 void TrackedObject::WatchFarther(double growth) {
-  for (WatchedPair& pair : watched_) pair.slack -= growth;
+  for (ActivePair& pair : watched_) pair.slack -= growth;
 }
 
 void TrackedObject::Reset() {

@@ -8,8 +8,8 @@
 #include "base/types.h"
 #include "mesh/decomposition.h"
 #include "pair/contact.h"
-#include "tracker/pair_front.h"
-#include "tracker/piece_tree.h"
+#include "tracker/bvtt_front.h"
+#include "tracker/piece_bvh.h"
 #include "tracker/surface_pair.h"
 
 namespace drake_haptics {
@@ -17,7 +17,7 @@ namespace drake_haptics {
 /// A decomposition with the tree over its pieces; shared by all that use it.
 struct TreedShape {
   std::shared_ptr<const Decomposition> decomposition;
-  std::shared_ptr<const PieceTree> tree;
+  std::shared_ptr<const PieceBvh> tree;
 };
 
 /// Which depth a pair of pieces in overlap has, and what it may cost.
@@ -32,8 +32,9 @@ struct DepthSearch {
 struct TrackerWorkspace {
   SurfacePairWorkspace pair;
   std::vector<EnteredPair> entered;
-  std::vector<PressedContact> pressed;
-  std::vector<Vec3> ways_out;  ///< of the pressed ones, see SurfaceRequest
+  std::vector<PenetratingContact> pressed;
+  std::vector<Vec3>
+      translation_vectors;  ///< of the pressed ones, see SurfaceRequest
 };
 
 /// One object that the tool may touch: which pairs of pieces are within reach,
@@ -71,7 +72,7 @@ class TrackedObject {
 
  private:
   // A pair of pieces whose boxes are near, or which is in contact.
-  struct WatchedPair {
+  struct ActivePair {
     PiecePair pieces;
     int node;  // in the front
     // The motion of the tool's piece for which the pair is sure to stay apart
@@ -81,33 +82,34 @@ class TrackedObject {
     bool was_in_contact = false;
   };
 
-  void AskAll(const Tick& tick, const PairFront::Tick& front_tick,
+  void AskAll(const Tick& tick, const BvttFront::Tick& front_tick,
               TrackerWorkspace* workspace, std::vector<Contact>* out);
   Pose FindPoseBefore(const Tick& tick, TrackerWorkspace* workspace) const;
   void AskForAnyWayOut(const Tick& tick, TrackerWorkspace* workspace,
                        std::vector<Contact>* out);
-  void Admit(double watched, std::vector<EnteredPair>* entered);
-  bool Tend(const Tick& tick, const PairFront::Tick& front_tick,
-            TrackerWorkspace* workspace, WatchedPair* pair,
-            std::vector<Contact>* out);
+  void InsertPairs(double watched, std::vector<EnteredPair>* entered);
+  bool UpdatePair(const Tick& tick, const BvttFront::Tick& front_tick,
+                  TrackerWorkspace* workspace, ActivePair* pair,
+                  std::vector<Contact>* out);
   void AskPairsInContact(const Tick& tick, TrackerWorkspace* workspace,
                          std::vector<Contact>* out);
-  void AskPairsBeside(const Tick& tick, TrackerWorkspace* workspace,
-                      std::vector<Contact>* out);
+  void RequeryBesideWalls(const Tick& tick, TrackerWorkspace* workspace,
+                          std::vector<Contact>* out);
   bool MayTakeOver(const Tick& tick, const PiecePair& pieces) const;
   int NewState();
-  void Ask(const Tick& tick, TrackerWorkspace* workspace, WatchedPair* pair,
-           std::vector<Contact>* out, bool is_any_way_out = false);
+  void QueryPair(const Tick& tick, TrackerWorkspace* workspace,
+                 ActivePair* pair, std::vector<Contact>* out,
+                 bool is_any_way_out = false);
   PosedPair Posed(const Tick& tick, const PiecePair& pieces) const;
 
   TreedShape shape_;
-  PairFront front_;
-  std::vector<WatchedPair> watched_;  // sorted by pieces
+  BvttFront front_;
+  std::vector<ActivePair> watched_;  // sorted by pieces
   std::vector<SurfacePairState> states_;
   std::vector<GlobalDepthState> global_states_;  // of states_, where needed
   std::vector<int> free_states_;
-  std::vector<PressedContact> pressed_;  // last tick's
-  double odometer_ = 0;                  // at the last tick, m
+  std::vector<PenetratingContact> pressed_;  // last tick's
+  double odometer_ = 0;                      // at the last tick, m
   double quiet_until_ = 0;
   bool is_first_ = true;  // nothing is known of an earlier tick
   // Of the pressed ones, by the pairs that were in contact.

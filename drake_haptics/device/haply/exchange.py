@@ -258,19 +258,19 @@ class HaplyExchange:
         self._fail_after_silence(now_ns)
         self._heard_ns = now_ns
         X_BH, V_BH = self._calc_motion(state, 1e-9 * now_ns)
-        F_BH = self._pass(command, X_BH, V_BH, now_ns)
+        F_Ho_B = self._pass(command, X_BH, V_BH, now_ns)
         self.reading = DeviceReading(
             sequence=1 if self.reading is None else self.reading.sequence + 1,
             time_s=1e-9 * now_ns,
             X_BH=X_BH,
             V_BH=V_BH,
-            F_BH=F_BH,
+            F_Ho_B=F_Ho_B,
             buttons=state.buttons,
             gate=self._gate.state,
             fault=self._gate.fault,
         )
         self._named = state.device_id
-        return self._format(F_BH)
+        return self._format(F_Ho_B)
 
     def end(self) -> str:
         """Ends all force at once and returns the message that says so.
@@ -297,8 +297,8 @@ class HaplyExchange:
             self._obeyed = command  # What is asked of nobody is never shown.
         # For a while the handle is taken to be where it was: one message that is lost
         # must not be felt.
-        F_BH = self._pass(command, reading.X_BH, reading.V_BH, now_ns)
-        return ASK_FOR_DEVICES if is_silent else self._format(F_BH)
+        F_Ho_B = self._pass(command, reading.X_BH, reading.V_BH, now_ns)
+        return ASK_FOR_DEVICES if is_silent else self._format(F_Ho_B)
 
     def _fail_after_silence(self, now_ns: int) -> bool:
         """Returns whether the service was silent; then force ends, and is a fault."""
@@ -335,12 +335,12 @@ class HaplyExchange:
         elif command is not self._obeyed:
             self._obeyed = command
             if command is not None:
-                self._gate.show(command.F_BH, now_ns)
-        F_BH = self._gate.step(X_BH, V_BH, now_ns)
+                self._gate.show(command.F_Ho_B, now_ns)
+        F_Ho_B = self._gate.step(X_BH, V_BH, now_ns)
         if self._gate.state is GateState.IDLE:
             self._releases = False
-        return F_BH
+        return F_Ho_B
 
-    def _format(self, F_BH: np.ndarray) -> str:
+    def _format(self, F_Ho_B: np.ndarray) -> str:
         """Returns the message that shows a wrench's force."""
-        return format_force(self._named, F_BH[3:].tolist(), self._force_field)
+        return format_force(self._named, F_Ho_B[3:].tolist(), self._force_field)

@@ -12,7 +12,7 @@ import numpy as np
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import ClientConnection, connect
 
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceCommand,
@@ -103,7 +103,7 @@ class HaplyDevice(DeviceBackend):
             grip_id,
             force_field,
         )
-        self._clock = TickClock(1.0 / rate_hz)
+        self._clock = RealTimePacer(1.0 / rate_hz)
         # Handed to the thread; replaced as a whole, never changed.
         self._command: DeviceCommand | None = None
         self._closes = False
@@ -162,8 +162,8 @@ class HaplyDevice(DeviceBackend):
         Raises:
             ValueError: The wrench is not of six numbers.
         """
-        if np.shape(command.F_BH) != (6,):
-            raise ValueError(f"F_BH must be (6,), is {np.shape(command.F_BH)}")
+        if np.shape(command.F_Ho_B) != (6,):
+            raise ValueError(f"F_Ho_B must be (6,), is {np.shape(command.F_Ho_B)}")
         self._command = command
 
     def recover(self) -> None:

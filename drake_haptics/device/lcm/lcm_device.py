@@ -233,13 +233,13 @@ class LcmDevice(DeviceBackend):
         Raises:
             ValueError: The wrench is not of six numbers.
         """
-        if np.shape(command.F_BH) != (6,):
-            raise ValueError(f"F_BH must be (6,), is {np.shape(command.F_BH)}")
+        if np.shape(command.F_Ho_B) != (6,):
+            raise ValueError(f"F_Ho_B must be (6,), is {np.shape(command.F_Ho_B)}")
         if self._is_closed:
             return
         enable = self._handshake.choose(self._sequence + 1)
         if enable is not None:
-            self._send(np.asarray(command.F_BH) if enable else np.zeros(6), enable)
+            self._send(np.asarray(command.F_Ho_B) if enable else np.zeros(6), enable)
 
     def recover(self) -> None:
         """Leaves a fault; the next writes release the device and enable it again."""
@@ -261,7 +261,7 @@ class LcmDevice(DeviceBackend):
             rejected=self._rejected + refused,
         )
 
-    def _send(self, F_BH: np.ndarray, enable: bool) -> None:
+    def _send(self, F_Ho_B: np.ndarray, enable: bool) -> None:
         """Sends a command."""
         self._sequence += 1
         message = lcmt_haptic_command(
@@ -270,7 +270,7 @@ class LcmDevice(DeviceBackend):
             sequence=self._sequence,
             time_to_live=self._time_to_live,
             enable=enable,
-            wrench=tuple(F_BH.tolist()),
+            wrench=tuple(F_Ho_B.tolist()),
         )
         self._lcm.Publish(self._channel, message.encode())
 
@@ -300,7 +300,7 @@ class LcmDevice(DeviceBackend):
             time_s=1e-6 * status.utime,
             X_BH=_normalize(status.pose),
             V_BH=np.array(status.velocity),
-            F_BH=np.array(status.wrench),
+            F_Ho_B=np.array(status.wrench),
             buttons=status.buttons,
             gate=gate,
             fault=fault,

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.accuracy.combinations import (
     Combination,
     list_combinations,
@@ -194,7 +194,7 @@ def _try_out(
         begin_run(i)
         try:
             own.append(measure_p99(changed))
-        except UserError:
+        except HapticsError:
             return Trial(combination, (math.inf,), tuple(scenes))
         scenes.append(measure_p99(scene))
     return Trial(combination, tuple(own), tuple(scenes))

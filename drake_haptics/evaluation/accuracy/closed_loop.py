@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_loop import analyze_held_scene
 from drake_haptics.analysis.held_scene import HeldScene, hold_scene
 from drake_haptics.analysis.stability_limit import find_stability_limit
-from drake_haptics.evaluation.accuracy.costs import build_once
+from drake_haptics.evaluation.accuracy.costs import cached_build
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.run import RunError, run
 
@@ -31,12 +31,12 @@ class PressedPlace:
         time_s: When it stops on its path, s; None where the tool rests nowhere.
         near_N_per_m: The scene's own largest stable stiffness there, from which those
             of other settings are not far, N/m.
-        why_not: Why there is none; empty where there is one.
+        failure_reason: Why there is none; empty where there is one.
     """
 
     time_s: float | None
     near_N_per_m: float = math.inf
-    why_not: str = ""
+    failure_reason: str = ""
 
 
 @dataclass(frozen=True)
@@ -46,11 +46,11 @@ class StableStiffness:
     Attributes:
         stiffness_N_per_m: N/m; infinite where there is no limit, None where it is not
             known.
-        why_not: Why; empty where it is known.
+        failure_reason: Why; empty where it is known.
     """
 
     stiffness_N_per_m: float | None
-    why_not: str = ""
+    failure_reason: str = ""
 
 
 def measure_created_energy(scene: Scene, duration_s: float) -> float:
@@ -72,7 +72,7 @@ def measure_created_energy(scene: Scene, duration_s: float) -> float:
         KeyboardInterrupt: At Ctrl-C.
     """
     try:
-        statistics = run(build_once(scene), duration_s, energy=True)
+        statistics = run(cached_build(scene), duration_s, energy=True)
     except RunError:
         return math.inf
     books = statistics.to_dict()["energy_J"]
@@ -88,7 +88,7 @@ def find_pressed_place(scene: Scene) -> PressedPlace:
         held = hold_scene(scene)
         limit = _find_limit(scene, held, scene.coupling.stiffness_N_per_m)
     except (ValueError, RunError) as error:
-        return PressedPlace(None, why_not=str(error))
+        return PressedPlace(None, failure_reason=str(error))
     return PressedPlace(held.time_s, limit)
 
 
@@ -102,7 +102,7 @@ def find_stable_stiffness(scene: Scene, place: PressedPlace) -> StableStiffness:
         place: Where its hand stops.
     """
     if place.time_s is None:
-        return StableStiffness(None, place.why_not)
+        return StableStiffness(None, place.failure_reason)
     if scene.contact.query_rate_hz is not None:
         return StableStiffness(None, _TWO_RATES)
     try:
@@ -125,7 +125,7 @@ def _find_limit(scene: Scene, held: HeldScene, near_N_per_m: float) -> float:
     def growth(value: float) -> float:
         coupling = replace(scene.coupling, stiffness_N_per_m=value)
         try:
-            return analyse_held_scene(held, coupling).growth
+            return analyze_held_scene(held, coupling).growth
         except ValueError as error:
             # Where it is stable below, that is the limit.
             reasons.append(str(error))

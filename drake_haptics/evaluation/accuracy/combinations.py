@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Row
 from drake_haptics.evaluation.accuracy.setting import Setting, apply_checked, is_effect
 from drake_haptics.loop.device_placement import find_device_site
@@ -127,7 +127,7 @@ def _fits(rows: tuple[Row, ...], scene: Scene) -> bool:
         return False
     try:
         apply_checked(Setting("several", "", changes), scene)
-    except UserError:
+    except HapticsError:
         return False
     return True
 

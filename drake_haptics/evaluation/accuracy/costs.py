@@ -16,10 +16,10 @@ from typing import cast
 
 import numpy as np
 
-from drake_haptics.analysis.held_scene import build_quietly
-from drake_haptics.common.errors import UserError
+from drake_haptics.analysis.held_scene import build_without_scene_warnings
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.evaluation.accuracy.native_part import NativePart
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.measuring.timing import CallTimer, TickTimes, typical
@@ -42,7 +42,7 @@ _FAR_M = 1e3
 _LONGEST_LAP_S = 5.0
 
 
-def build_once(scene: Scene) -> HapticDiagram:
+def cached_build(scene: Scene) -> HapticDiagram:
     """Returns the diagram of a scene, the same one for the same scene.
 
     All that a run changes is in its context, so that runs know nothing of each other.
@@ -50,7 +50,7 @@ def build_once(scene: Scene) -> HapticDiagram:
     """
     key = repr(asdict(scene))  # all of it: a scene's own repr is a line
     if key not in _BUILT:
-        _BUILT[key] = build_quietly(scene)
+        _BUILT[key] = build_without_scene_warnings(scene)
     return _BUILT[key]
 
 
@@ -64,8 +64,8 @@ def time_ticks(scene: Scene, duration_s: float) -> TickTimes:
         RunError: The loop diverges.
         KeyboardInterrupt: At Ctrl-C.
     """
-    haptic = build_once(scene)
-    pace = TickClock(haptic.period_s)
+    haptic = cached_build(scene)
+    pace = RealTimePacer(haptic.period_s)
     times = run(haptic, duration_s, pace=pace).to_dict()["tick_us"]
     assert isinstance(times, dict)
     return TickTimes(times["median"], times["p99"], times["p99_9"])
@@ -138,11 +138,11 @@ def time_native(part: NativePart, motion: RecordedMotion) -> TickTimes:
         passes.append(np.zeros(len(motion)))
         search = part.make_search()
         carry = CallTimer(search.carry, (nothing, far))
-        for tick, X_WTool in enumerate(motion.X_WTool):
-            found, query_s = search.look(X_WTool)
-            contacts, carry_s = carry.call((found, X_WTool))
+        for tick, X_WT in enumerate(motion.X_WT):
+            found, query_s = search.look(X_WT)
+            contacts, carry_s = carry.call((found, X_WT))
             clusters, cluster_s = cluster.call((contacts,))
-            _, force_s = force.call((clusters, X_WTool[4:], motion.V_WTool[tick]))
+            _, force_s = force.call((clusters, X_WT[4:], motion.V_WT[tick]))
             # A call without contacts is the least there is, but for the clock's ticks.
             passes[-1][tick] = query_s + carry_s + cluster_s + force_s
     return TickTimes.of(np.maximum(typical(np.array(passes)), 0.0))
@@ -155,7 +155,7 @@ def measure_p99(scene: Scene) -> float:
     scene. It runs one lap of the hand's path, at most 5 s of it.
 
     Raises:
-        UserError: The scene cannot be built or diverges.
+        HapticsError: The scene cannot be built or diverges.
     """
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "scene.yaml"
@@ -168,7 +168,7 @@ def measure_p99(scene: Scene) -> float:
         )
     if done.returncode != 0:
         lines = done.stderr.strip().splitlines()
-        raise UserError(f"the scene does not run: {lines[-1] if lines else '?'}")
+        raise HapticsError(f"the scene does not run: {lines[-1] if lines else '?'}")
     return float(done.stdout)
 
 
@@ -178,7 +178,7 @@ def _main(file: str) -> None:
     lap_s = make_hand_path(scene.hand.path).duration_s
     try:
         times = time_ticks(scene, min(lap_s, _LONGEST_LAP_S))
-    except (UserError, RunError) as error:
+    except (HapticsError, RunError) as error:
         sys.exit(str(error))
     print(repr(times.p99_us))
 

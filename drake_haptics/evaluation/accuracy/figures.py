@@ -77,7 +77,7 @@ class Row:
         cost: What it takes; None where it could not be measured.
         errors: How wrong it is; None where it could not be measured.
         pieces: Convex pieces of the tool and of all objects.
-        why_not: Why it could not be measured, empty otherwise.
+        failure_reason: Why it could not be measured, empty otherwise.
     """
 
     setting: Setting
@@ -85,7 +85,7 @@ class Row:
     cost: Cost | None
     errors: Errors | None
     pieces: tuple[int, int] = (0, 0)
-    why_not: str = ""
+    failure_reason: str = ""
 
 
 @dataclass(frozen=True)
@@ -97,14 +97,14 @@ class PeerRow:
         method: What it was asked for, in words.
         native: Time inside the library per tick.
         errors: As for ours; without energy and stiffness (NaN, None).
-        why_not: Why there are no figures, empty otherwise.
+        failure_reason: Why there are no figures, empty otherwise.
     """
 
     library: str
     method: str
     native: TickTimes | None
     errors: Errors | None
-    why_not: str = ""
+    failure_reason: str = ""
 
 
 @dataclass(frozen=True)

@@ -94,46 +94,46 @@ class ContactSearch:
         )
         for i, X_WO in enumerate(part.X_WO):
             self._tracker.set_object_pose(i, X_WO)
-        self._carrier = _core.ContactCarrier(
+        self._carrier = _core.ContactExtrapolation(
             part.tool.core, [item.core for item in part.objects], list(part.X_WO)
         )
         self._tick = 0
         self._sample = self._found_at = _REST
         self._found: _core.ContactSet | None = None
 
-    def look(self, X_WTool: np.ndarray) -> tuple[_core.ContactSet, float]:
+    def look(self, X_WT: np.ndarray) -> tuple[_core.ContactSet, float]:
         """Looks for contacts if it is time to.
 
         Args:
-            X_WTool: (7,) pose of the tool at the next tick.
+            X_WT: (7,) pose of the tool at the next tick.
 
         Returns:
             What was found last, and the seconds that this look took in the core.
         """
         if self._every is None:
-            found = self._tracker.query(X_WTool)
+            found = self._tracker.query(X_WT)
             return found, found.query_seconds
         tick, query_s = self._tick, 0.0
         self._tick += 1
         if tick == 0:
-            self._sample = X_WTool
+            self._sample = X_WT
         # What is sampled at a tick is known from the next one on.
         if self._found is None or (tick - 1) % self._every == 0:
             self._found_at = self._sample
             self._found = self._tracker.query(self._found_at)
             query_s = self._found.query_seconds
         if tick % self._every == 0:
-            self._sample = X_WTool
+            self._sample = X_WT
         return self._found, query_s
 
-    def carry(self, found: _core.ContactSet, X_WTool: np.ndarray) -> _core.ContactSet:
+    def carry(self, found: _core.ContactSet, X_WT: np.ndarray) -> _core.ContactSet:
         """Returns contacts that were found where the tool is now."""
         if self._every is None:
             return found
-        return self._carrier.advance(found, self._found_at, X_WTool)
+        return self._carrier.advance(found, self._found_at, X_WT)
 
 
-def count_native(part: NativePart, X_WTool: np.ndarray, V_WTool: np.ndarray) -> float:
+def count_native(part: NativePart, X_WT: np.ndarray, V_WT: np.ndarray) -> float:
     """Returns how many instructions query, clusters and wrench take in a tick.
 
     What the same calls take far from everything is taken off: Python, the binding and
@@ -141,8 +141,8 @@ def count_native(part: NativePart, X_WTool: np.ndarray, V_WTool: np.ndarray) -> 
 
     Args:
         part: What the core is asked.
-        X_WTool: (n, 7) poses of the tool.
-        V_WTool: (n, 6) its velocities.
+        X_WT: (n, 7) poses of the tool.
+        V_WT: (n, 6) its velocities.
 
     Returns:
         The mean over all ticks.
@@ -151,18 +151,18 @@ def count_native(part: NativePart, X_WTool: np.ndarray, V_WTool: np.ndarray) -> 
         subprocess.CalledProcessError: The program failed.
         RuntimeError: valgrind counted nothing.
     """
-    far = X_WTool + _FAR_M * np.eye(7)[4]
-    near, base = (count_with_data(__name__, (part, X, V_WTool)) for X in (X_WTool, far))
-    return (near - base) / len(X_WTool)
+    far = X_WT + _FAR_M * np.eye(7)[4]
+    near, base = (count_with_data(__name__, (part, X, V_WT)) for X in (X_WT, far))
+    return (near - base) / len(X_WT)
 
 
 def main() -> None:
     """Moves the tool as a file says, counted."""
-    part, X_WTool, V_WTool = read_data()
+    part, X_WT, V_WT = read_data()
     search, cluster = part.make_search(), part.make_clustering()
     force = part.make_force()
     with counted():
-        for X, V in zip(X_WTool, V_WTool, strict=True):
+        for X, V in zip(X_WT, V_WT, strict=True):
             found, _ = search.look(X)
             force(cluster(search.carry(found, X)), X[4:], V)
 

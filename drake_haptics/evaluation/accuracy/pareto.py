@@ -35,21 +35,21 @@ class Front:
 def get_native_us(row: Row) -> float:
     """Returns the median of a measured row's time inside the core, µs."""
     if row.cost is None:
-        raise ValueError(f"{row.setting.label} was not measured: {row.why_not}")
+        raise ValueError(f"{row.setting.label} was not measured: {row.failure_reason}")
     return row.cost.native.median_us
 
 
 def get_tick_us(row: Row) -> float:
     """Returns the median of a measured row's whole tick, µs."""
     if row.cost is None:
-        raise ValueError(f"{row.setting.label} was not measured: {row.why_not}")
+        raise ValueError(f"{row.setting.label} was not measured: {row.failure_reason}")
     return row.cost.tick.median_us
 
 
 def get_force_error_N(row: Row) -> float:
     """Returns a measured row's force error, root mean square, at least the floor, N."""
     if row.errors is None:
-        raise ValueError(f"{row.setting.label} was not measured: {row.why_not}")
+        raise ValueError(f"{row.setting.label} was not measured: {row.failure_reason}")
     return max(row.errors.force_rms_N, ERROR_FLOOR_N)
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from pydrake.systems.framework import Context
 
-from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.simulated_device import make_hand_path
@@ -32,21 +32,21 @@ class RecordedMotion:
 
     Attributes:
         period_s: The tick, s.
-        X_WTool: (n, 7) poses of the tool.
-        V_WTool: (n, 6) its spatial velocities.
+        X_WT: (n, 7) poses of the tool.
+        V_WT: (n, 6) its spatial velocities.
         X_WH: (n, 7) poses of the handle.
         V_WH: (n, 6) its spatial velocities.
     """
 
     period_s: float
-    X_WTool: np.ndarray
-    V_WTool: np.ndarray
+    X_WT: np.ndarray
+    V_WT: np.ndarray
     X_WH: np.ndarray
     V_WH: np.ndarray
 
     def __len__(self) -> int:
         """Returns the number of ticks n."""
-        return len(self.X_WTool)
+        return len(self.X_WT)
 
     @property
     def times_s(self) -> np.ndarray:
@@ -77,7 +77,7 @@ class RecordedMotion:
         return self._take(list(range(first, end)), self.period_s)
 
     def _take(self, rows: list[int], period_s: float) -> RecordedMotion:
-        arrays = (self.X_WTool, self.V_WTool, self.X_WH, self.V_WH)
+        arrays = (self.X_WT, self.V_WT, self.X_WH, self.V_WH)
         return RecordedMotion(period_s, *(array[rows] for array in arrays))
 
 
@@ -105,13 +105,13 @@ def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMoti
     """
     if duration_s is None:
         duration_s = choose_duration(scene)
-    haptic = build_quietly(scene)
+    haptic = build_without_scene_warnings(scene)
     loop = haptic.loop
     ports = [
-        loop.haptic_tool.get_pose_output_port(),
-        loop.haptic_tool.get_velocity_output_port(),
-        loop.device.get_handle_pose_output_port(),
-        loop.device.get_handle_velocity_output_port(),
+        loop.haptic_tool.GetOutputPort("X_WT"),
+        loop.haptic_tool.GetOutputPort("V_WT"),
+        loop.device.GetOutputPort("X_WH"),
+        loop.device.GetOutputPort("V_WH"),
     ]
     readers = [(port, port.get_system().GetMyContextFromRoot) for port in ports]
     rows: list[np.ndarray] = []
@@ -120,8 +120,8 @@ def record_motion(scene: Scene, duration_s: float | None = None) -> RecordedMoti
         rows.append(np.concatenate([port.Eval(find(root)) for port, find in readers]))
 
     run(haptic, duration_s, on_tick=note)
-    X_WTool, V_WTool, X_WH, V_WH = np.split(np.array(rows), [7, 13, 20], axis=1)
-    return RecordedMotion(haptic.period_s, X_WTool, V_WTool, X_WH, V_WH)
+    X_WT, V_WT, X_WH, V_WH = np.split(np.array(rows), [7, 13, 20], axis=1)
+    return RecordedMotion(haptic.period_s, X_WT, V_WT, X_WH, V_WH)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,13 +129,13 @@ class ToolReplay:
     """What the contacts of a scene answer to a recorded motion, at its n ticks.
 
     Attributes:
-        F_Tool_W: (n, 6) wrench [τ; f] at the tool's origin in the world, N·m and N: of
+        F_To_W: (n, 6) wrench [τ; f] at the tool's origin in the world, N·m and N: of
             contact and of all effects that push the tool.
         distance: (n,) of the deepest contact, m; infinite where there is none nearer
             than the scene's tolerance.
     """
 
-    F_Tool_W: np.ndarray
+    F_To_W: np.ndarray
     distance: np.ndarray
 
 
@@ -168,13 +168,13 @@ def replay_tool(scene: Scene, motion: RecordedMotion) -> ToolReplay:
         SceneError: The scene cannot be built.
         MeshError: A mesh cannot be treated.
     """
-    F_Tool_W = np.zeros((len(motion), 6))
+    F_To_W = np.zeros((len(motion), 6))
     distance = np.full(len(motion), np.inf)
     for tick in walk_tool(scene, motion):
         # All rows up to the scene's next tick.
-        F_Tool_W[tick.row :] = _read_wrench(tick)
+        F_To_W[tick.row :] = _read_wrench(tick)
         distance[tick.row :] = _read_distance(tick, scene.contact.tolerance_m)
-    return ToolReplay(F_Tool_W, distance)
+    return ToolReplay(F_To_W, distance)
 
 
 def walk_tool(scene: Scene, motion: RecordedMotion) -> Iterator[ReplayedTick]:
@@ -186,7 +186,7 @@ def walk_tool(scene: Scene, motion: RecordedMotion) -> Iterator[ReplayedTick]:
     simulator = make_simulator(haptic)
     root = simulator.get_mutable_context()
     tool = haptic.loop.haptic_tool.GetMyMutableContextFromRoot(root)
-    states = np.hstack([motion.X_WTool, motion.V_WTool])
+    states = np.hstack([motion.X_WT, motion.V_WT])
     for row, number in motion.find_ticks(haptic.period_s):
         if row > 0:
             simulator.AdvanceTo(number * haptic.period_s)

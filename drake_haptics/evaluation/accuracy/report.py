@@ -252,7 +252,11 @@ def describe_models(study: AccuracyStudy) -> list[str]:
 
 def describe_missing(study: AccuracyStudy) -> list[str]:
     """Says what was not measured, and why."""
-    rows = [f"{name_setting(row)}: {row.why_not}" for row in study.rows if row.why_not]
+    rows = [
+        f"{name_setting(row)}: {row.failure_reason}"
+        for row in study.rows
+        if row.failure_reason
+    ]
     # Many rows have the same reason.
     reasons: dict[str, dict[str, None]] = {}
     for row in study.rows:
@@ -260,9 +264,9 @@ def describe_missing(study: AccuracyStudy) -> list[str]:
         if reason not in ("", NOT_SOUGHT):
             reasons.setdefault(reason, {})[name_setting(row)] = None
     peers = [
-        f"{peer.library}, {peer.method}: {peer.why_not}"
+        f"{peer.library}, {peer.method}: {peer.failure_reason}"
         for peer in study.peers
-        if peer.why_not
+        if peer.failure_reason
     ]
     stiffness = [
         f"stable stiffness of {', '.join(names)}: {reason}"

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, is_dataclass
 from typing import Any, get_args, get_type_hints
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.scene.schema import EnvironmentObject, Scene
 from drake_haptics.scene.settings import list_keys
 from drake_haptics.scene.validation import check_values
@@ -141,17 +141,17 @@ def parse_setting(words: Sequence[str], known: Iterable[Setting] = ()) -> Settin
         known: Settings with labels; the first with the same changes is returned.
 
     Raises:
-        UserError: A word is no such thing, or a key is there twice.
+        HapticsError: A word is no such thing, or a key is there twice.
     """
     changes: dict[str, Any] = {}
     for word in words if list(words) != [_NO_CHANGE] else ():
         key, sign, text = word.partition("=")
         if not sign or not key:
-            raise UserError(
+            raise HapticsError(
                 f"'{word}' is not KEY=VALUE, as in contact.tolerance_m=0.0005"
             )
         if key in changes:
-            raise UserError(f"{key} is given twice")
+            raise HapticsError(f"{key} is given twice")
         changes[key] = _parse_value(text)
     for setting in known:
         if dict(setting.changes) == changes:
@@ -174,26 +174,26 @@ def apply_checked(setting: Setting, scene: Scene) -> Scene:
     """Returns a copy of a scene with a setting, if that is a scene.
 
     Raises:
-        UserError: A key is none of the scene's, or a value cannot be.
+        HapticsError: A key is none of the scene's, or a value cannot be.
     """
     known = [*list_keys(Scene), *list_keys(EnvironmentObject, "environment.")]
     for key in setting.changes:
         if not any(name == key or name.startswith(f"{key}.") for name in known):
             near = difflib.get_close_matches(key, known, n=1)
             hint = f"; did you mean '{near[0]}'?" if near else ""
-            raise UserError(f"{key} is no key of a scene{hint}")
+            raise HapticsError(f"{key} is no key of a scene{hint}")
     try:
         changed = setting.apply(scene)
     except AttributeError as error:  # Of a part that the scene leaves out.
         keys = [key for key in setting.changes if key.startswith("effects.")]
         names = ", ".join(dict.fromkeys(key.rpartition(".")[0] for key in keys))
-        raise UserError(
+        raise HapticsError(
             f"the scene has no {names or 'such part'}; give the part as a"
             " whole, like effects.friction='{\"coefficient\": 0.3}'"
         ) from error
     except TypeError as error:
         names = " and ".join(setting.changes)
-        raise UserError(f"{names}: {error}") from error
+        raise HapticsError(f"{names}: {error}") from error
     check_keys(Scene, _without_none(dataclasses.asdict(changed)))
     check_values(changed)
     return changed

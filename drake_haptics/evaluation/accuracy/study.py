@@ -12,7 +12,7 @@ from typing import Any
 from drake_haptics.analysis.jobs.blas_threads import one_blas_thread
 from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.analysis.jobs.study import run_study
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.accuracy.closed_loop import (
     PressedPlace,
     StableStiffness,
@@ -21,7 +21,7 @@ from drake_haptics.evaluation.accuracy.closed_loop import (
     measure_created_energy,
 )
 from drake_haptics.evaluation.accuracy.costs import (
-    build_once,
+    cached_build,
     combine,
     make_native_part,
     time_native,
@@ -96,8 +96,8 @@ class Measurement:
         try:
             result: dict[str, Any] = measure(scene)
         # Drake raises RuntimeError, as a run that diverges does.
-        except (UserError, ValueError, RuntimeError, SubprocessError) as error:
-            return {"why_not": str(error)}
+        except (HapticsError, ValueError, RuntimeError, SubprocessError) as error:
+            return {"failure_reason": str(error)}
         return result
 
     @property
@@ -106,7 +106,7 @@ class Measurement:
         return len(self.motion) * self.motion.period_s
 
     def _measure_errors(self, scene: Scene) -> dict[str, Any]:
-        haptic = build_once(scene)
+        haptic = cached_build(scene)
         stiffness = StableStiffness(None, NOT_SOUGHT)
         if self.place is not None:
             stiffness = find_stable_stiffness(scene, self.place)
@@ -114,7 +114,7 @@ class Measurement:
             measure_open_loop(scene, self.motion, self.truth),
             energy_created_J=measure_created_energy(scene, self.duration_s),
             stable_stiffness_N_per_m=stiffness.stiffness_N_per_m,
-            stiffness_why_not=stiffness.why_not,
+            stiffness_why_not=stiffness.failure_reason,
         )
         num_objects = sum(len(part.pieces) for part in haptic.environment)
         pieces = [len(haptic.tool.pieces), num_objects]
@@ -124,14 +124,14 @@ class Measurement:
         return asdict(time_ticks(scene, self.duration_s))
 
     def _measure_instructions(self, scene: Scene) -> dict[str, Any]:
-        haptic = build_once(scene)
+        haptic = cached_build(scene)
         busiest = self.motion.cut(*self.truth.find_busiest(_COUNTED_TICKS))
         motion = busiest.sample(haptic.period_s)
         part = make_native_part(haptic)
-        return {"instructions": count_native(part, motion.X_WTool, motion.V_WTool)}
+        return {"instructions": count_native(part, motion.X_WT, motion.V_WT)}
 
     def _measure_native(self, scene: Scene) -> dict[str, Any]:
-        haptic = build_once(scene)
+        haptic = cached_build(scene)
         motion = self.motion.sample(haptic.period_s)
         return asdict(time_native(make_native_part(haptic), motion))
 
@@ -187,10 +187,10 @@ def make_row(
         if task["setting"] == measured.to_dict():
             own[task["what"]].append(result)
     reasons = [
-        result["why_not"]
+        result["failure_reason"]
         for results in own.values()
         for result in results
-        if "why_not" in result
+        if "failure_reason" in result
     ]
     return Row(
         setting=setting,
@@ -198,13 +198,16 @@ def make_row(
         cost=_make_cost(own),
         errors=_make_errors(own["errors"]),
         pieces=_read_pieces(own["errors"]),
-        why_not=reasons[0] if reasons else "",
+        failure_reason=reasons[0] if reasons else "",
     )
 
 
 def _make_cost(own: Mapping[str, Sequence[Mapping[str, Any]]]) -> Cost | None:
     counts = own["instructions"]
-    if any("why_not" in result for result in [*own["native"], *own["ticks"], *counts]):
+    if any(
+        "failure_reason" in result
+        for result in [*own["native"], *own["ticks"], *counts]
+    ):
         return None
     return Cost(
         tick=combine([TickTimes(**result) for result in own["ticks"]]),
@@ -215,7 +218,7 @@ def _make_cost(own: Mapping[str, Sequence[Mapping[str, Any]]]) -> Cost | None:
 
 def _make_errors(results: Sequence[Mapping[str, Any]]) -> Errors | None:
     (result,) = results
-    return None if "why_not" in result else Errors(**result["errors"])
+    return None if "failure_reason" in result else Errors(**result["errors"])
 
 
 def _read_pieces(results: Sequence[Mapping[str, Any]]) -> tuple[int, int]:
@@ -284,7 +287,7 @@ def run_accuracy_study(
         stability: Whether to look for the largest stable stiffness of each setting.
 
     Raises:
-        UserError: Instructions are asked for, but valgrind is not installed.
+        HapticsError: Instructions are asked for, but valgrind is not installed.
         SceneError: The scene itself cannot be built.
         drake_haptics.simulation.run.RunError: It diverges.
         KeyboardInterrupt: At Ctrl-C; what is done is in the store.

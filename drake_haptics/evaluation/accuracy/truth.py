@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
-from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.evaluation.accuracy.figures import Errors
 from drake_haptics.evaluation.accuracy.recorded_motion import (
@@ -21,7 +21,7 @@ from drake_haptics.scene.schema import Scene
 _FIRM_SHARE = 0.1
 
 
-def calc_exact_distance(haptic: HapticDiagram, X_WTool: np.ndarray) -> np.ndarray:
+def calc_exact_distance(haptic: HapticDiagram, X_WT: np.ndarray) -> np.ndarray:
     """Returns the signed distance of the deepest pair of convex pieces at each pose.
 
     For each pair whose bounding spheres come near, all poses at which they do are
@@ -29,18 +29,18 @@ def calc_exact_distance(haptic: HapticDiagram, X_WTool: np.ndarray) -> np.ndarra
     another, and none of what a tracker holds or leaves out. Where tool and objects are
     one convex piece each that is the exact penetration depth. Of a mesh in many pieces
     the hulls have faces that the mesh has not: a contact never leaves by such a face,
-    and can so be some micrometres deeper than the pair.
+    and can so be some micrometers deeper than the pair.
 
     Args:
         haptic: Whose pieces, and objects where they stand.
-        X_WTool: (n, 7) poses of the tool, m.
+        X_WT: (n, 7) poses of the tool, m.
 
     Returns:
         (n,) distances, m, negative in depth; infinite beyond the contact's tolerance.
     """
     tolerance_m = haptic.scene.contact.tolerance_m
-    R_WTool = np.array([vector_to_pose(X).rotation().matrix() for X in X_WTool])
-    best = np.full(len(X_WTool), np.inf)
+    R_WT = np.array([vector_to_pose(X).rotation().matrix() for X in X_WT])
+    best = np.full(len(X_WT), np.inf)
     objects = [
         (piece, item.pose.to_rigid_transform())
         for item, part in zip(haptic.scene.environment, haptic.environment, strict=True)
@@ -49,12 +49,12 @@ def calc_exact_distance(haptic: HapticDiagram, X_WTool: np.ndarray) -> np.ndarra
     centers_W = np.array([X_WO @ piece.centroid for piece, X_WO in objects])
     reach_m = tolerance_m + np.array([piece.radius for piece, _ in objects])
     for tool_piece in haptic.tool.pieces:
-        p_WC = X_WTool[:, 4:] + R_WTool @ tool_piece.centroid
+        p_WC = X_WT[:, 4:] + R_WT @ tool_piece.centroid
         for i in _find_near(p_WC, centers_W, reach_m + tool_piece.radius):
             piece, X_WO = objects[i]
             apart_m = np.linalg.norm(p_WC - centers_W[i], axis=1)
             near = np.flatnonzero(apart_m < reach_m[i] + tool_piece.radius)
-            found = _query(tool_piece, piece, X_WTool[near], pose_to_vector(X_WO))
+            found = _query(tool_piece, piece, X_WT[near], pose_to_vector(X_WO))
             best[near] = np.minimum(best[near], found)
     return np.where(best < tolerance_m, best, np.inf)
 
@@ -125,36 +125,34 @@ def find_truth(reference: Scene, motion: RecordedMotion) -> Truth:
         reference: The scene with its finest exact setting.
         motion: Of its tool.
     """
-    haptic = build_quietly(reference)
+    haptic = build_without_scene_warnings(reference)
     p_TTcm = haptic.loop.haptic_tool.dynamics.p_TTcm
-    F_Tool_W = replay_tool(reference, motion).F_Tool_W
+    F_To_W = replay_tool(reference, motion).F_To_W
     return Truth(
-        F_Tcm_W=shift_wrench(F_Tool_W, motion.X_WTool, p_TTcm),
+        F_Tcm_W=shift_wrench(F_To_W, motion.X_WT, p_TTcm),
         p_TTcm=p_TTcm,
-        distance=calc_exact_distance(haptic, motion.X_WTool),
+        distance=calc_exact_distance(haptic, motion.X_WT),
         tolerance_m=reference.contact.tolerance_m,
     )
 
 
-def shift_wrench(
-    F_Tool_W: np.ndarray, X_WTool: np.ndarray, p_TP: np.ndarray
-) -> np.ndarray:
+def shift_wrench(F_To_W: np.ndarray, X_WT: np.ndarray, p_TP: np.ndarray) -> np.ndarray:
     """Returns wrenches on the tool at another of its points.
 
     Args:
-        F_Tool_W: (n, 6) wrenches [τ; f] at the tool's origin in the world.
-        X_WTool: (n, 7) poses of the tool.
+        F_To_W: (n, 6) wrenches [τ; f] at the tool's origin in the world.
+        X_WT: (n, 7) poses of the tool.
         p_TP: (3,) the point in the tool's frame, m.
 
     Returns:
         (n, 6) [τ; f] at P: the force is the same, τ_P = τ - p × f.
     """
-    w, xyz = X_WTool[:, :1], X_WTool[:, 1:4]
+    w, xyz = X_WT[:, :1], X_WT[:, 1:4]
     # A unit quaternion turns p to p + 2 w (q × p) + 2 q × (q × p).
     turned = np.cross(xyz, p_TP)
     p_TP_W = p_TP + 2.0 * (w * turned + np.cross(xyz, turned))
-    force = F_Tool_W[:, 3:]
-    return np.hstack([F_Tool_W[:, :3] - np.cross(p_TP_W, force), force])
+    force = F_To_W[:, 3:]
+    return np.hstack([F_To_W[:, :3] - np.cross(p_TP_W, force), force])
 
 
 def measure_open_loop(scene: Scene, motion: RecordedMotion, truth: Truth) -> Errors:
@@ -164,7 +162,7 @@ def measure_open_loop(scene: Scene, motion: RecordedMotion, truth: Truth) -> Err
         The errors; energy and stiffness, which are the closed loop's, are NaN and None.
     """
     replay = replay_tool(scene, motion)
-    F_Tcm_W = shift_wrench(replay.F_Tool_W, motion.X_WTool, truth.p_TTcm)
+    F_Tcm_W = shift_wrench(replay.F_To_W, motion.X_WT, truth.p_TTcm)
     return compare(F_Tcm_W, replay.distance, scene.contact.tolerance_m, truth)
 
 

@@ -127,7 +127,7 @@ def run_benchmarks(
         progress: Called before each step.
 
     Raises:
-        UserError: The folder has none of the meshes.
+        HapticsError: The folder has none of the meshes.
     """
     makers = scene_makers(effort.motions, meshes)  # first, as it may refuse the folder
     figures = BenchFigures(machine=describe_machine())

@@ -39,7 +39,7 @@ COAL = "coal, dynamic AABB tree"
 class SceneQuery(Protocol):
     """A scene in a library, ready to be queried."""
 
-    def run(self, X_WTool: np.ndarray) -> SceneAnswers:
+    def run(self, X_WT: np.ndarray) -> SceneAnswers:
         """Answers one pose of the tool, (n, 4, 4) in all, after the other."""
         ...
 
@@ -53,13 +53,13 @@ class DrakeHapticsScene:
         for i, X_WO in enumerate(problem.X_WO):
             self._tracker.set_object_pose(i, X_WO)
 
-    def run(self, X_WTool: np.ndarray) -> SceneAnswers:
+    def run(self, X_WT: np.ndarray) -> SceneAnswers:
         """See `SceneQuery.run`; forgets earlier queries first."""
         self._tracker.reset()
-        contacts = self._tracker.query_trajectory(X_WTool)
+        contacts = self._tracker.query_trajectory(X_WT)
         count = np.diff(contacts.start)
-        tick = np.repeat(np.arange(len(X_WTool)), count)
-        nearest = np.full(len(X_WTool), self._tolerance_m)
+        tick = np.repeat(np.arange(len(X_WT)), count)
+        nearest = np.full(len(X_WT), self._tolerance_m)
         np.minimum.at(nearest, tick, contacts.distance)
         return SceneAnswers(count, nearest, contacts.seconds - clock_interval())
 
@@ -94,9 +94,9 @@ class CoalScene:
             add_pieces(add, scene, 0, decomposition, X_WO)
         self._native.coal_scene_setup(self._scene)
 
-    def run(self, X_WTool: np.ndarray) -> SceneAnswers:
+    def run(self, X_WT: np.ndarray) -> SceneAnswers:
         """Answers one pose of the tool, (n, 4, 4) in all, after the other."""
-        n = len(X_WTool)
+        n = len(X_WT)
         contacts = np.empty(n, dtype=np.int32)
         nearest, seconds = np.empty(n), np.empty(n)
         self._native.coal_scene_run(
@@ -104,7 +104,7 @@ class CoalScene:
             self._tolerance_m,
             self._start,
             n,
-            np.ascontiguousarray(X_WTool),
+            np.ascontiguousarray(X_WT),
             contacts,
             nearest,
             seconds,
@@ -171,11 +171,11 @@ def run_scene(
     names = list(queries)
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}
     answers: dict[str, list[SceneAnswers]] = {name: [] for name in names}
-    for X_WTool in problem.motions:
+    for X_WT in problem.motions:
         repeated: dict[str, list[np.ndarray]] = {name: [] for name in names}
         last: dict[str, SceneAnswers] = {}
         for name in take_turns(names, repeats):
-            last[name] = queries[name].run(X_WTool)
+            last[name] = queries[name].run(X_WT)
             repeated[name].append(last[name].seconds[1:])
         for name in names:
             seconds[name].append(typical(np.array(repeated[name])))

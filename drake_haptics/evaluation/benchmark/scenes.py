@@ -105,42 +105,42 @@ def _touch(
     search: SceneTracker,
     rng: np.random.Generator,
 ) -> np.ndarray:
-    R_WTool = rotation(unit(rng.normal(size=3)), rng.uniform(0, 2 * np.pi))
+    R_WT = rotation(unit(rng.normal(size=3)), rng.uniform(0, 2 * np.pi))
     way_W = unit(rng.normal(size=3))
     side_W = unit(np.cross(way_W, rng.normal(size=3)))
     # A random point of the tool comes in on a random point of the target.
     p_ToolP, p_WQ = (rng.choice(body.mesh.vertices) for body in (tool, target))
-    start_W = p_WQ - R_WTool @ p_ToolP
-    touch_m = _first_touch(search, R_WTool, start_W, way_W, _size(tool) + _size(target))
+    start_W = p_WQ - R_WT @ p_ToolP
+    touch_m = _first_touch(search, R_WT, start_W, way_W, _size(tool) + _size(target))
 
     phase = np.linspace(0, 2 * np.pi, round(_SECONDS * RATE_HZ))
     press = np.clip(1.5 * np.sin(phase / 2), 0, 1)
     press = press**2 * (3 - 2 * press)
     along_m = touch_m + _AWAY_M - (_AWAY_M + _DEEP_M) * press
     sway = np.sin(phase)
-    X_WTool = np.tile(np.eye(4), (len(phase), 1, 1))
-    for X, along, s in zip(X_WTool, along_m, sway, strict=True):
+    X_WT = np.tile(np.eye(4), (len(phase), 1, 1))
+    for X, along, s in zip(X_WT, along_m, sway, strict=True):
         R_sway = rotation(way_W, _SWAY_RAD * s)
-        X[:3, :3] = R_sway @ R_WTool
+        X[:3, :3] = R_sway @ R_WT
         # Swaying turns the tool about the point that comes in.
         X[:3, 3] = p_WQ + along * way_W + _SLIDE_M * s * side_W - X[:3, :3] @ p_ToolP
-    return X_WTool
+    return X_WT
 
 
 def _first_touch(
     search: SceneTracker,
-    R_WTool: np.ndarray,
+    R_WT: np.ndarray,
     start_W: np.ndarray,
     way_W: np.ndarray,
     far_m: float,
 ) -> float:
     """Returns how far out along the way the tool touches first, m, from afar."""
-    X_WTool = np.eye(4)
-    X_WTool[:3, :3] = R_WTool
+    X_WT = np.eye(4)
+    X_WT[:3, :3] = R_WT
     along_m = far_m
     while along_m > -far_m:
-        X_WTool[:3, 3] = start_W + along_m * way_W
-        distance = search.query(X_WTool).distance
+        X_WT[:3, 3] = start_W + along_m * way_W
+        distance = search.query(X_WT).distance
         if len(distance):
             return along_m - float(distance.min())
         along_m -= _SEARCH_STEP_M / 2
@@ -164,7 +164,7 @@ def scene_makers(
             out without it.
 
     Raises:
-        UserError: The folder has none of them.
+        HapticsError: The folder has none of them.
     """
     check_folder(meshes)
     pairs = [

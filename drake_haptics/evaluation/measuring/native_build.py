@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.geometry.decomposition.cache import cache_folder
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 
@@ -35,7 +35,7 @@ PIECE = (HANDLE, INTEGER, REALS, INTEGER, INTEGERS, INTEGER, REALS)
 _SOURCES = Path(__file__).parent / "native"
 
 
-class NativeBuildError(UserError):
+class NativeBuildError(HapticsError):
     """There is no C++ compiler, or it cannot build an adapter."""
 
 

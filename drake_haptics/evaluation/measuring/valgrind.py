@@ -18,17 +18,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 
 
 def require_valgrind() -> None:
     """Checks that instructions can be counted.
 
     Raises:
-        UserError: valgrind is not installed.
+        HapticsError: valgrind is not installed.
     """
     if shutil.which("valgrind") is None:
-        raise UserError(
+        raise HapticsError(
             "instructions are counted with valgrind, which is not installed here:"
             " install it (apt-get install valgrind), or do without instructions"
         )

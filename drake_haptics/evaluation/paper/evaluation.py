@@ -151,7 +151,7 @@ def evaluate_paper(
         progress: Called with what is done and its share, in [0, 1].
 
     Raises:
-        UserError: The folder has none of them.
+        HapticsError: The folder has none of them.
     """
     check_folder(meshes)
     effort = effort or Effort()

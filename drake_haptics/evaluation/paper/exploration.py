@@ -16,7 +16,7 @@ from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.geometry.mesh.mesh import calc_mass_properties
 from drake_haptics.loop.builder import AddHapticLoop, HapticDiagram
-from drake_haptics.scene.schema import Contact, Coupling, Scene
+from drake_haptics.scene.schema import ContactParameters, CouplingParameters, Scene
 from drake_haptics.systems.arm.hand_path import HandPath
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.device.haptic_device import HapticDevice
@@ -37,12 +37,12 @@ class Place:
     """Where the tool comes in, and how far the hand goes on after first touch.
 
     Attributes:
-        X_WTool: Pose before it comes in, free of contact.
+        X_WT: Pose before it comes in, free of contact.
         toward_W: (3,) unit, the direction in which it comes in.
         press_m: How far beyond first touch the hand aims, m; negative to stay off.
     """
 
-    X_WTool: RigidTransform
+    X_WT: RigidTransform
     toward_W: np.ndarray
     press_m: float
 
@@ -62,7 +62,7 @@ def plan_exploration(
         reach_m: How far the tool may come in before it touches, m.
 
     Returns:
-        X_WTool over time, below about 0.15 m/s and 1.5 rad/s.
+        X_WT over time, below about 0.15 m/s and 1.5 rad/s.
 
     Raises:
         ValueError: The tool begins in contact somewhere, or passes by.
@@ -83,17 +83,17 @@ def plan_exploration(
 
 def _press(search: SceneTracker, place: Place, reach_m: float) -> RigidTransform:
     """Returns the pose at which the hand aims."""
-    R_WTool, start_W = place.X_WTool.rotation(), place.X_WTool.translation()
+    R_WT, start_W = place.X_WT.rotation(), place.X_WT.translation()
     along_m = 0.0
     while along_m < reach_m:
-        X_WTool = RigidTransform(R_WTool, start_W + along_m * place.toward_W)
-        distance = search.query(X_WTool).distance
+        X_WT = RigidTransform(R_WT, start_W + along_m * place.toward_W)
+        distance = search.query(X_WT).distance
         if len(distance):
             nearest_m = float(distance.min())
             if along_m == 0.0 and nearest_m < 0.0:
                 raise ValueError(f"the tool begins in contact at {start_W}")
             aim_m = along_m + nearest_m + place.press_m
-            return RigidTransform(R_WTool, start_W + aim_m * place.toward_W)
+            return RigidTransform(R_WT, start_W + aim_m * place.toward_W)
         along_m += _SEARCH_STEP_M / 2
     raise ValueError(f"the tool passes by from {start_W} along {place.toward_W}")
 
@@ -120,7 +120,7 @@ class Scenario:
     p_TH: np.ndarray
     objects: tuple[ContactObject, ...]
     path: HandPath
-    contact: Contact
+    contact: ContactParameters
 
 
 def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
@@ -151,7 +151,7 @@ def build_loop(scenario: Scenario, seconds: float) -> HapticDiagram:
         tool_dynamics=_core.RigidToolDynamics(mass_kg, p_TTcm, I_TTcm_T),
         objects=scenario.objects,
         contact=scenario.contact,
-        coupling=Coupling(),
+        coupling=CouplingParameters(),
         X_HT=X_TH.inverse(),
         X_WT=scenario.path.start,
         period_s=PERIOD_S,
@@ -173,7 +173,7 @@ def sample_handle(
     """Returns the handle's motion tick by tick while it leads the tool along a path.
 
     Args:
-        path: X_WTool over time.
+        path: X_WT over time.
         X_TH: Where the tool is held.
         seconds: How long, s.
 

@@ -58,9 +58,9 @@ def calc_sphere_contact(
     corners = vertices[triangles]
     nearest_W = np.empty((len(X_WA), 3))
     for k, X in enumerate(X_WA):
-        p_ACentre = -X[:3, :3].T @ X[:3, 3]
-        points = _find_nearest(corners, p_ACentre)
-        nearest_A = points[np.linalg.norm(points - p_ACentre, axis=1).argmin()]
+        p_ACenter = -X[:3, :3].T @ X[:3, 3]
+        points = _find_nearest(corners, p_ACenter)
+        nearest_A = points[np.linalg.norm(points - p_ACenter, axis=1).argmin()]
         nearest_W[k] = X[:3, :3] @ nearest_A + X[:3, 3]
     far_m = np.linalg.norm(nearest_W, axis=1)
     normal_W = nearest_W / far_m[:, None]

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 _PROFILE_INCH = (10.0, 5.6)
 _PERIOD_US = 1000.0
-_PENETRATING_COLOUR = "#fdecea"
+_PENETRATING_COLOR = "#fdecea"
 # Narrower intervals have no room for their letter, as a share of the run.
 _NARROWEST_LETTER = 0.012
 _PEN_INCH = (12.0, 6.8)
 _THIN, _THICK = 0.8, 2.8
-_AXIS_COLOURS = {"x": "#1f5fa8", "y": "#d9822b", "z": "#2f8f5b"}
+_AXIS_COLORS = {"x": "#1f5fa8", "y": "#d9822b", "z": "#2f8f5b"}
 _ANALYSIS_INCH = (12.0, 3.8)
 _OURS, _PAPER = "#1f5fa8", "#b03030"
 _METHOD = {
@@ -90,7 +90,7 @@ def _mark_intervals(
         if interval.start > 0:
             axes.axvline(begin_s, color="#777777", lw=0.5)
         if interval.penetrating:
-            axes.axvspan(begin_s, end_s, color=_PENETRATING_COLOUR, lw=0, zorder=0)
+            axes.axvspan(begin_s, end_s, color=_PENETRATING_COLOR, lw=0, zorder=0)
 
 
 def _write_letters(
@@ -122,7 +122,7 @@ def draw_pen_pass(passed: PenPass) -> Figure:
     panels = figure.subplots(rows, 3, sharex=True, sharey="col", squeeze=False)
     for row, (name, curves) in zip(panels, passed.curves.items(), strict=True):
         inside = curves.distance_m < 0.0
-        for i, axis in enumerate(_AXIS_COLOURS):
+        for i, axis in enumerate(_AXIS_COLORS):
             _draw_curve(row[0], passed.time_s, 1e3 * curves.p_WC[:, i], inside, axis)
             _draw_curve(row[1], passed.time_s, curves.nhat_BA_W[:, i], inside, axis)
         _draw_curve(row[2], passed.time_s, 1e3 * curves.distance_m, inside, "")
@@ -162,7 +162,7 @@ def _draw_curve(
         axes.plot(
             time_s[shown],
             values[shown],
-            color=_AXIS_COLOURS.get(name, "#222222"),
+            color=_AXIS_COLORS.get(name, "#222222"),
             lw=_THICK if interval.penetrating else _THIN,
             solid_capstyle="butt",
             label=label,

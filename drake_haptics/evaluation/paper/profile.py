@@ -131,8 +131,8 @@ def _run_once(scenario: Scenario, duration_s: float) -> _Pass:
     with CallbackTimer() as timer:
         haptic = build_loop(scenario, duration_s)
     loop = haptic.loop
-    contacts_port = loop.contact_query.get_contacts_output_port()
-    clusters_port = loop.contact_clustering.get_clusters_output_port()
+    contacts_port = loop.contact_query.GetOutputPort("contacts")
+    clusters_port = loop.contact_clustering.GetOutputPort("clusters")
     ever: set[int] = set()
     notes: list[tuple[float, ...]] = []
 

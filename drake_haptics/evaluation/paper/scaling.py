@@ -105,7 +105,7 @@ def make_plate() -> Decomposition:
 
 
 def plan_slide(ticks: int) -> np.ndarray:
-    """Returns X_WTool (ticks, 4, 4): round in a circle of 10 mm, 0.5 mm deep."""
+    """Returns X_WT (ticks, 4, 4): round in a circle of 10 mm, 0.5 mm deep."""
     angle = np.linspace(0.0, 2.0 * np.pi, ticks)
     X_WT = np.tile(np.eye(4), (ticks, 1, 1))
     X_WT[:, 0, 3], X_WT[:, 1, 3] = 0.01 * np.cos(angle), 0.01 * np.sin(angle)

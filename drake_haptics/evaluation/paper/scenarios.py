@@ -21,7 +21,7 @@ from drake_haptics.evaluation.shapes.models import (
 )
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
-from drake_haptics.scene.schema import Contact
+from drake_haptics.scene.schema import ContactParameters
 from drake_haptics.systems.contact.contact_query import ContactObject
 
 # How far beyond first touch the hand aims, mm: off, lightly, firmly, and so on.
@@ -73,9 +73,9 @@ def scenario_makers(meshes: Path | None) -> dict[str, Callable[[], Scenario]]:
     return makers
 
 
-def _soft_contact(tolerance_m: float, stiffness_N_per_m: float) -> Contact:
+def _soft_contact(tolerance_m: float, stiffness_N_per_m: float) -> ContactParameters:
     """Returns the paper's clustering; so soft that a few newtons penetrate."""
-    return Contact(
+    return ContactParameters(
         tolerance_m=tolerance_m,
         stiffness_N_per_m=stiffness_N_per_m,
         damping_Ns_per_m=1.0,

@@ -377,7 +377,7 @@ def wrench_path(num_poses: int) -> np.ndarray:
         num_poses: Number of poses, at equal times.
 
     Returns:
-        X_WTool (num_poses, 4, 4).
+        X_WT (num_poses, 4, 4).
     """
     s = np.linspace(0, 1, num_poses)
     press = np.clip(np.minimum(s, 1 - s) / 0.2, 0, 1)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.shapes import SHAPES, Surface
 from drake_haptics.evaluation.shapes.organ import make_organ
 from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
@@ -60,11 +60,11 @@ def check_folder(meshes: Path | None) -> None:
     """Checks that a folder of real meshes has at least one.
 
     Raises:
-        UserError: It has none of them.
+        HapticsError: It has none of them.
     """
     files = [source.file for source in MODELS.values()]
     if meshes is not None and not any((meshes / file).is_file() for file in files):
-        raise UserError(f"the folder {meshes} has none of {', '.join(files)}")
+        raise HapticsError(f"the folder {meshes} has none of {', '.join(files)}")
 
 
 def load_model(model: str, source: str, meshes: Path | None) -> Mesh:

@@ -11,7 +11,7 @@ import numpy as np
 
 from drake_haptics.geometry.mesh.mesh import Mesh
 
-# Shipped coordinates are rounded to a nanometre, so that the last digit of a
+# Shipped coordinates are rounded to a nanometer, so that the last digit of a
 # platform's sine does not show in the files.
 _DECIMALS = 9
 # A quad whose corners are closer to a plane than this needs no choice of diagonal.

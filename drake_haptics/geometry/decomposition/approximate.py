@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from drake_haptics import _core
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.geometry.decomposition.pieces import MergedPatches
 from drake_haptics.geometry.mesh.mesh import Mesh
 
@@ -37,17 +37,17 @@ def check_error(method: str, error_m: float | None) -> None:
     """Checks that an error is given where, and only where, there is one.
 
     Raises:
-        UserError: It is missing, means nothing or is out of range.
+        HapticsError: It is missing, means nothing or is out of range.
     """
     if (method == "merged") != (error_m is not None):
-        raise UserError(
+        raise HapticsError(
             "the method merged needs an error_m, how far its pieces may depart from"
             " the mesh, m"
             if error_m is None
             else f"error_m is for the method merged; {method} has none"
         )
     if error_m is not None and not 0.0 <= error_m < np.inf:
-        raise UserError(f"error_m must be zero or more, in m, is {error_m}")
+        raise HapticsError(f"error_m must be zero or more, in m, is {error_m}")
 
 
 def merge_patches(
@@ -86,12 +86,12 @@ def coacd_parameters() -> dict[str, Any]:
     """Returns all that the result depends on besides the mesh.
 
     Raises:
-        UserError: if CoACD is not installed.
+        HapticsError: if CoACD is not installed.
     """
     try:
         return {"coacd": version("coacd"), "concavity": CONCAVITY}
     except PackageNotFoundError as error:
-        raise UserError(_HOW_TO_INSTALL) from error
+        raise HapticsError(_HOW_TO_INSTALL) from error
 
 
 def coacd_hulls(mesh: Mesh, progress: Callable[[float], None]) -> list[np.ndarray]:
@@ -103,12 +103,12 @@ def coacd_hulls(mesh: Mesh, progress: Callable[[float], None]) -> list[np.ndarra
         The points (n_i, 3) of each piece, m.
 
     Raises:
-        UserError: if CoACD is not installed.
+        HapticsError: if CoACD is not installed.
     """
     try:
         import coacd
     except ImportError as error:
-        raise UserError(_HOW_TO_INSTALL) from error
+        raise HapticsError(_HOW_TO_INSTALL) from error
     coacd.set_log_level("error")
     hulls: list[np.ndarray] = []
     for index, component in enumerate(mesh.components):

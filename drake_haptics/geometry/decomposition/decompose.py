@@ -13,7 +13,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from drake_haptics import _core
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.one_line import count
 from drake_haptics.geometry.decomposition.approximate import (
     check_error,
@@ -63,7 +63,7 @@ class Decomposition:
     """
 
     mesh: Mesh
-    core: _core.Decomposition
+    core: _core.ConvexPieces
     method: Method
     report: DecompositionReport
     _data: PieceData
@@ -135,11 +135,11 @@ def decompose(
             `drake_haptics.geometry.decomposition.cache`.
 
     Raises:
-        UserError: if the mesh is none, the method is unknown, its error is missing or
-            its optional package is.
+        HapticsError: if the mesh is none, the method is unknown, its error is missing
+            or its optional package is.
     """
     if not isinstance(mesh, Mesh):
-        raise UserError(
+        raise HapticsError(
             f"mesh must be a Mesh, got {type(mesh).__name__}; see load_mesh() and "
             f"Mesh.from_arrays()"
         )
@@ -172,7 +172,7 @@ def decompose(
 def _checked_method(method: str) -> Method:
     if method not in METHODS:
         known = ", ".join(METHODS)
-        raise UserError(f"unknown decomposition method {method!r}; known: {known}")
+        raise HapticsError(f"unknown decomposition method {method!r}; known: {known}")
     return method
 
 

@@ -25,7 +25,7 @@ class PatchLabels:
     piece_of_triangle: np.ndarray
     seconds: float
 
-    def assemble(self, mesh: Mesh) -> _core.Decomposition:
+    def assemble(self, mesh: Mesh) -> _core.ConvexPieces:
         """Makes the pieces, without the search."""
         return _core.assemble_surface_pieces(
             mesh.vertices, mesh.triangles, self.piece_of_triangle
@@ -54,7 +54,7 @@ class MergedPatches:
     departure_m: float
     seconds: float
 
-    def assemble(self, mesh: Mesh) -> _core.Decomposition:
+    def assemble(self, mesh: Mesh) -> _core.ConvexPieces:
         """Makes the pieces, without the search."""
         return _core.assemble_merged_pieces(
             mesh.vertices,
@@ -106,7 +106,7 @@ class ConvexHulls:
         points = np.ascontiguousarray(np.concatenate(hulls), dtype=np.float64)
         return ConvexHulls(points, start, tolerance, seconds)
 
-    def assemble(self, mesh: Mesh) -> _core.Decomposition:
+    def assemble(self, mesh: Mesh) -> _core.ConvexPieces:
         """Makes the pieces and finds out which of their facets are on the mesh."""
         hulls = [
             self.points[a:b]

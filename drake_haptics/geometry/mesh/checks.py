@@ -129,7 +129,7 @@ def check_components(
 
 def check_size(
     extent: np.ndarray,
-    metres_per_unit: float,
+    meters_per_unit: float,
     ignored_unit: str | None,
     findings: list[Finding],
 ) -> None:
@@ -137,7 +137,7 @@ def check_size(
 
     Args:
         extent: (3,) of the bounding box, m.
-        metres_per_unit: that was used.
+        meters_per_unit: that was used.
         ignored_unit: that the file states where the user stated none.
         findings: appended to.
     """
@@ -156,7 +156,7 @@ def check_size(
         return
     size = "large" if largest > LARGEST_USUAL_EXTENT_M else "small"
     unit = guess_unit(
-        largest / metres_per_unit, SMALLEST_USUAL_EXTENT_M, LARGEST_USUAL_EXTENT_M
+        largest / meters_per_unit, SMALLEST_USUAL_EXTENT_M, LARGEST_USUAL_EXTENT_M
     )
     findings.append(
         Finding(
@@ -164,7 +164,7 @@ def check_size(
             Severity.QUESTION,
             1,
             f"{length(largest)} is {size} for something to touch "
-            f"(1 unit of the file was taken as {length(metres_per_unit)})",
+            f"(1 unit of the file was taken as {length(meters_per_unit)})",
             "nothing was changed; is the unit right?"
             if unit is None
             else f"nothing was changed; state the unit {unit} if the file is in {unit}",
@@ -173,7 +173,7 @@ def check_size(
 
 
 def checked_arrays(
-    vertices: Any, triangles: Any, metres_per_unit: float
+    vertices: Any, triangles: Any, meters_per_unit: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Returns (n, 3) float64 vertices in meters and (m, 3) int64 triangles.
 
@@ -196,7 +196,7 @@ def checked_arrays(
         raise MeshError(f"vertices must be real numbers, not {V.dtype}")
     if F.dtype.kind not in "iu":
         raise MeshError(f"triangles must be integer indices, not {F.dtype}")
-    V = V.astype(np.float64) * metres_per_unit
+    V = V.astype(np.float64) * meters_per_unit
     bad = ~np.isfinite(V).all(axis=1)
     if bad.any():
         raise MeshError(

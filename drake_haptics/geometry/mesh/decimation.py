@@ -151,7 +151,7 @@ def _report_error(mesh: Mesh, fewer: Mesh) -> Mesh:
     findings = (*mesh.report.findings, finding)
     report = replace(
         fewer.report,
-        metres_per_unit=mesh.report.metres_per_unit,
+        meters_per_unit=mesh.report.meters_per_unit,
         findings=findings,
         decimation_error_m=error_m,
     )

@@ -34,7 +34,7 @@ from drake_haptics.geometry.mesh.repair import (
     separate_components,
 )
 from drake_haptics.geometry.mesh.report import Finding, MeshReport, Severity
-from drake_haptics.geometry.mesh.units import metres_per_unit
+from drake_haptics.geometry.mesh.units import meters_per_unit
 from drake_haptics.geometry.mesh.winding import Winding, wind_components
 
 
@@ -133,7 +133,7 @@ def load_mesh(
     Raises:
         MeshError: if the file cannot be read, or as `Mesh.from_arrays`.
     """
-    factor = metres_per_unit(unit, scale)
+    factor = meters_per_unit(unit, scale)
     raw = read_mesh_file(path)
     findings: list[Finding] = []
     if raw.parts > 1:
@@ -218,7 +218,7 @@ def _freeze(
     x, y, z = extent.tolist()
     report = MeshReport(
         source=name,
-        metres_per_unit=factor,
+        meters_per_unit=factor,
         vertices=len(V),
         triangles=len(F),
         components=len(components),

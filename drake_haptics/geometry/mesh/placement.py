@@ -154,7 +154,7 @@ def center(mesh: Mesh) -> Mesh:
     )
     report = replace(
         moved.report,
-        metres_per_unit=mesh.report.metres_per_unit,
+        meters_per_unit=mesh.report.meters_per_unit,
         findings=(*mesh.report.findings, finding),
     )
     return replace(moved, report=report)

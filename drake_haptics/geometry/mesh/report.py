@@ -83,7 +83,7 @@ class MeshReport:
 
     Attributes:
         source: file or name of the mesh.
-        metres_per_unit: factor from the file's unit to meters.
+        meters_per_unit: factor from the file's unit to meters.
         vertices: count after intake.
         triangles: count after intake.
         components: count of connected parts.
@@ -98,7 +98,7 @@ class MeshReport:
     """
 
     source: str
-    metres_per_unit: float
+    meters_per_unit: float
     vertices: int
     triangles: int
     components: int
@@ -148,7 +148,7 @@ class MeshReport:
         """Returns plain data for JSON; lengths in m, areas in m², volumes in m³."""
         return {
             "source": self.source,
-            "metres_per_unit": self.metres_per_unit,
+            "meters_per_unit": self.meters_per_unit,
             "vertices": self.vertices,
             "triangles": self.triangles,
             "components": self.components,
@@ -168,7 +168,7 @@ class MeshReport:
         x, y, z = data["extent_m"]
         return MeshReport(
             source=data["source"],
-            metres_per_unit=data["metres_per_unit"],
+            meters_per_unit=data["meters_per_unit"],
             vertices=data["vertices"],
             triangles=data["triangles"],
             components=data["components"],
@@ -243,7 +243,7 @@ def _power(value: float, exponent: int) -> str:
         exponent: 2 or 3.
     """
     mark = {2: "²", 3: "³"}[exponent]
-    # From a litre on, 1000 cm³ are better said as 0.001 m³.
+    # From a liter on, 1000 cm³ are better said as 0.001 m³.
     for least_m, unit, per_m in ((0.1, "m", 1), (0.01, "cm", 100)):
         if value >= least_m**exponent or value == 0:
             return f"{value * per_m**exponent:.4g} {unit}{mark}"

@@ -6,7 +6,7 @@ import math
 
 from drake_haptics.common.errors import MeshError
 
-METRES_PER_UNIT: dict[str, float] = {
+METERS_PER_UNIT: dict[str, float] = {
     "m": 1.0,
     "dm": 0.1,
     "cm": 0.01,
@@ -42,7 +42,7 @@ _LONG_NAMES = {
 }
 
 
-def metres_per_unit(unit: str | None, scale: float | None) -> float:
+def meters_per_unit(unit: str | None, scale: float | None) -> float:
     """Returns the factor that turns a file's coordinates into meters.
 
     Args:
@@ -62,10 +62,10 @@ def metres_per_unit(unit: str | None, scale: float | None) -> float:
         )
     if unit is not None:
         short = _LONG_NAMES.get(unit, unit)
-        if short not in METRES_PER_UNIT:
-            known = ", ".join(METRES_PER_UNIT)
+        if short not in METERS_PER_UNIT:
+            known = ", ".join(METERS_PER_UNIT)
             raise MeshError(f"unknown unit {unit!r}; known units: {known}")
-        return METRES_PER_UNIT[short]
+        return METERS_PER_UNIT[short]
     if scale is None:
         return 1.0
     if not (math.isfinite(scale) and scale > 0):
@@ -86,7 +86,7 @@ def guess_unit(extent: float, smallest_m: float, largest_m: float) -> str | None
     """
     for low_m, high_m in (_OF_A_HAND_M, (smallest_m, largest_m)):
         for unit in _LIKELY_UNITS:
-            if low_m <= extent * METRES_PER_UNIT[unit] <= min(high_m, largest_m):
+            if low_m <= extent * METERS_PER_UNIT[unit] <= min(high_m, largest_m):
                 return unit
     return None
 
@@ -96,4 +96,4 @@ def unit_of_name(name: str | None) -> str | None:
     if name is None:
         return None
     short = _LONG_NAMES.get(name.lower(), name.lower())
-    return short if short in METRES_PER_UNIT else None
+    return short if short in METERS_PER_UNIT else None

@@ -65,7 +65,7 @@ def decompose_body(
     role: Role = Role.kProximity,
     chord_error_m: float = 1e-4,
     progress: Progress | None = None,
-) -> _core.Decomposition:
+) -> _core.ConvexPieces:
     """Returns all shapes of a body as one set of convex pieces in the body's frame.
 
     A `Mesh` keeps its true, possibly non-convex shape, where Drake's point contact
@@ -127,7 +127,7 @@ def _decompose_shape(
     X_BG: np.ndarray,
     chord_error_m: float,
     progress: Progress | None,
-) -> _core.Decomposition:
+) -> _core.ConvexPieces:
     """Returns the pieces of one shape at X_BG (4, 4)."""
     if not isinstance(shape, Mesh):
         p_GV = _find_corners(shape, chord_error_m)
@@ -178,7 +178,7 @@ def _find_hull_corners(shape: Convex) -> np.ndarray:
     return np.array([hull.vertex(i) for i in range(hull.num_vertices())])
 
 
-def _make_convex(corners: np.ndarray) -> _core.Decomposition:
+def _make_convex(corners: np.ndarray) -> _core.ConvexPieces:
     """Returns the hull of points (n, 3), m, as one piece."""
     hull = _core.ConvexPolytope(corners)
     if hull.dimension < 3:
@@ -195,7 +195,7 @@ def _make_convex(corners: np.ndarray) -> _core.Decomposition:
     )
 
 
-def _unite(parts: list[_core.Decomposition]) -> _core.Decomposition:
+def _unite(parts: list[_core.ConvexPieces]) -> _core.ConvexPieces:
     """Returns all pieces as those of one object."""
     first_vertex = np.cumsum([0, *(len(part.vertices) for part in parts)])
     first_piece = np.cumsum([0, *(len(part.pieces) for part in parts)])

@@ -34,9 +34,9 @@ typedef struct dh_gate {
   uint32_t session;          /* served while active, else 0 */
   uint32_t command_sequence; /* of the newest command that was accepted */
   uint8_t enabled;           /* while active: what the newest command asks */
-  double command_F_BH[6];    /* the newest wrench to show, within the limits */
+  double command_F_Ho_B[6];  /* the newest wrench to show, within the limits */
   double scale;              /* of it that is shown, 0 to 1 */
-  double F_BH[6];            /* the wrench that is shown */
+  double F_Ho_B[6];          /* the wrench that is shown */
   uint64_t now_ns;           /* the latest time that was told */
   uint64_t received_ns;      /* when the newest command came, while active */
   uint64_t ttl_ns;           /* its time to live */
@@ -71,8 +71,8 @@ static inline void dh_gate_release(dh_gate* gate, dh_gate_state state,
   gate->session = 0;
   gate->enabled = 0;
   gate->scale = 0;
-  memset(gate->command_F_BH, 0, sizeof gate->command_F_BH);
-  memset(gate->F_BH, 0, sizeof gate->F_BH);
+  memset(gate->command_F_Ho_B, 0, sizeof gate->command_F_Ho_B);
+  memset(gate->F_Ho_B, 0, sizeof gate->F_Ho_B);
 }
 
 /* From now on no host may enable before it has disabled once more. */
@@ -112,7 +112,8 @@ static inline void dh_gate_ramp(dh_gate* gate, uint64_t passed_ns) {
     gate->scale -= 1e-9 * (double)passed_ns / gate->limits.ramp_out_s;
     if (gate->scale < 1e-9) gate->scale = 0; /* it is round-off */
   }
-  for (i = 0; i < 6; ++i) gate->F_BH[i] = gate->scale * gate->command_F_BH[i];
+  for (i = 0; i < 6; ++i)
+    gate->F_Ho_B[i] = gate->scale * gate->command_F_Ho_B[i];
   if (gate->scale > 0) return;
   if (!gate->enabled) dh_gate_release(gate, DH_IDLE, DH_FAULT_NONE);
   if (gate->enabled && !fresh) dh_gate_enter_fault(gate, DH_FAULT_STALE);
@@ -168,7 +169,7 @@ static inline dh_verdict dh_gate_judge(const dh_gate* gate,
       !(known && gate->sessions[place].may_enable)) {
     return DH_NOT_DISABLED_FIRST;
   }
-  return dh_are_finite(command->F_BH, 6) ? DH_ACCEPTED : DH_NOT_FINITE;
+  return dh_are_finite(command->F_Ho_B, 6) ? DH_ACCEPTED : DH_NOT_FINITE;
 }
 
 static inline void dh_gate_obey(dh_gate* gate, const dh_command* command) {
@@ -188,9 +189,10 @@ static inline void dh_gate_obey(dh_gate* gate, const dh_command* command) {
   if ((double)gate->ttl_ns > 1e9 * gate->limits.max_ttl_s) {
     gate->ttl_ns = (uint64_t)(1e9 * gate->limits.max_ttl_s);
   }
-  dh_clamp_norm(command->F_BH, gate->limits.max_torque_Nm, gate->command_F_BH);
-  dh_clamp_norm(command->F_BH + 3, gate->limits.max_force_N,
-                gate->command_F_BH + 3);
+  dh_clamp_norm(command->F_Ho_B, gate->limits.max_torque_Nm,
+                gate->command_F_Ho_B);
+  dh_clamp_norm(command->F_Ho_B + 3, gate->limits.max_force_N,
+                gate->command_F_Ho_B + 3);
 }
 
 /* Takes a packet in. What is refused changes nothing but the counts, except
@@ -219,7 +221,7 @@ static inline dh_verdict dh_gate_receive(dh_gate* gate, uint64_t now_ns,
  * to show. Call it in each tick, in all states. */
 static inline void dh_gate_step(dh_gate* gate, uint64_t now_ns,
                                 const double X_BH[7], const double V_BH[6],
-                                double F_BH[6]) {
+                                double F_Ho_B[6]) {
   dh_gate_advance(gate, now_ns);
   if (!dh_are_finite(X_BH, 7) || !dh_are_finite(V_BH, 6)) {
     dh_gate_enter_fault(gate, DH_FAULT_NOT_FINITE);
@@ -229,14 +231,14 @@ static inline void dh_gate_step(dh_gate* gate, uint64_t now_ns,
        dh_exceeds(V_BH + 3, gate->limits.max_speed_m_per_s))) {
     dh_gate_enter_fault(gate, DH_FAULT_OVERSPEED);
   }
-  memcpy(F_BH, gate->F_BH, sizeof gate->F_BH);
+  memcpy(F_Ho_B, gate->F_Ho_B, sizeof gate->F_Ho_B);
 }
 
 /* Fills in what a gate knows of a state: whom it serves, what it shows, its
  * limits and how it stands. The rest is the driver's. */
 static inline void dh_gate_tell(const dh_gate* gate, dh_state* state) {
   state->session = gate->session;
-  memcpy(state->F_BH, gate->F_BH, sizeof gate->F_BH);
+  memcpy(state->F_Ho_B, gate->F_Ho_B, sizeof gate->F_Ho_B);
   state->command_sequence = gate->command_sequence;
   state->rejected = (uint32_t)(dh_gate_rejected(gate) & 0xffffffff);
   state->max_force_N = (float)gate->limits.max_force_N;

@@ -69,7 +69,7 @@ typedef struct dh_state {
   uint64_t time_ns;  /* of the sample, by the driver's monotonic clock */
   double X_BH[7];    /* the handle's pose, m */
   double V_BH[6];    /* its spatial velocity, rad/s and m/s */
-  double F_BH[6];    /* the wrench shown at Ho, N m and N */
+  double F_Ho_B[6];  /* the wrench shown at Ho, N m and N */
   uint32_t boot;     /* random in each run of the driver, never 0 */
   uint32_t command_sequence; /* of the newest command that was accepted */
   uint32_t buttons;          /* bit i is set while button i is held */
@@ -85,7 +85,7 @@ typedef struct dh_command {
   uint32_t session;        /* random in each run of the host, never 0 */
   uint32_t sequence;       /* rises by one from packet to packet, and wraps */
   uint64_t time_ns;        /* of sending, by the host's monotonic clock */
-  double F_BH[6];          /* the wrench to show at Ho, N m and N */
+  double F_Ho_B[6];        /* the wrench to show at Ho, N m and N */
   uint32_t state_sequence; /* of the state that this answers */
   uint32_t ttl_us;         /* time to live: it is stale after this, us */
   uint8_t enable;          /* 1 to show force, 0 to show none */
@@ -214,7 +214,7 @@ static inline void dh_pack_state(const dh_state* state, uint8_t* bytes) {
                 state->time_ns, bytes);
   dh_put_reals(state->X_BH, 7, bytes + 24);
   dh_put_reals(state->V_BH, 6, bytes + 80);
-  dh_put_reals(state->F_BH, 6, bytes + 128);
+  dh_put_reals(state->F_Ho_B, 6, bytes + 128);
   dh_put(state->boot, 4, bytes + 176);
   dh_put(state->command_sequence, 4, bytes + 180);
   dh_put(state->buttons, 4, bytes + 184);
@@ -243,7 +243,7 @@ static inline dh_verdict dh_unpack_state(const uint8_t* bytes, size_t size,
   state->time_ns = dh_get(bytes + 16, 8);
   dh_get_reals(bytes + 24, 7, state->X_BH);
   dh_get_reals(bytes + 80, 6, state->V_BH);
-  dh_get_reals(bytes + 128, 6, state->F_BH);
+  dh_get_reals(bytes + 128, 6, state->F_Ho_B);
   state->boot = dh_get_u32(bytes + 176);
   state->command_sequence = dh_get_u32(bytes + 180);
   state->buttons = dh_get_u32(bytes + 184);
@@ -259,7 +259,7 @@ static inline dh_verdict dh_unpack_state(const uint8_t* bytes, size_t size,
 static inline void dh_pack_command(const dh_command* command, uint8_t* bytes) {
   dh_put_header(DH_KIND_COMMAND, DH_COMMAND_SIZE, command->session,
                 command->sequence, command->time_ns, bytes);
-  dh_put_reals(command->F_BH, 6, bytes + 24);
+  dh_put_reals(command->F_Ho_B, 6, bytes + 24);
   dh_put(command->state_sequence, 4, bytes + 72);
   dh_put(command->ttl_us, 4, bytes + 76);
   dh_put(command->enable ? DH_FLAG_ENABLE : 0, 4, bytes + 80);
@@ -279,7 +279,7 @@ static inline dh_verdict dh_unpack_command(const uint8_t* bytes, size_t size,
   command->session = dh_get_u32(bytes + 8);
   command->sequence = dh_get_u32(bytes + 12);
   command->time_ns = dh_get(bytes + 16, 8);
-  dh_get_reals(bytes + 24, 6, command->F_BH);
+  dh_get_reals(bytes + 24, 6, command->F_Ho_B);
   command->state_sequence = dh_get_u32(bytes + 72);
   command->ttl_us = dh_get_u32(bytes + 76);
   command->enable = (uint8_t)dh_get_u32(bytes + 80);

@@ -7,7 +7,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from drake_haptics.analysis import (
     SampledWall,
-    analyse_held_scene,
+    analyze_held_scene,
     calc_delay_bounds,
     calc_delay_margin,
     calc_felt_impedance,
@@ -66,11 +66,11 @@ def held():
 
 @pytest.fixture(scope="module")
 def loop(held):
-    return analyse_held_scene(held)
+    return analyze_held_scene(held)
 
 
 @pytest.mark.parametrize(
-    "analyse",
+    "analyze",
     [
         lambda loop: find_modes(loop.linearization),
         calc_delay_margin,
@@ -80,13 +80,13 @@ def loop(held):
         lambda loop: loop.measure_growth(),
     ],
 )
-def test_what_is_asked_of_a_loop_takes_one_thread(analyse, loop, threads):
-    analyse(loop)
+def test_what_is_asked_of_a_loop_takes_one_thread(analyze, loop, threads):
+    analyze(loop)
     assert set(threads) == {1}
 
 
 @pytest.mark.parametrize(
-    "analyse",
+    "analyze",
     [
         calc_largest_stiffness,
         calc_largest_delay,
@@ -94,8 +94,8 @@ def test_what_is_asked_of_a_loop_takes_one_thread(analyse, loop, threads):
         calc_delay_bounds,
     ],
 )
-def test_what_is_asked_of_a_wall_takes_one_thread(analyse, threads):
-    analyse(WALL)
+def test_what_is_asked_of_a_wall_takes_one_thread(analyze, threads):
+    analyze(WALL)
     assert set(threads) == {1}
 
 
@@ -108,7 +108,7 @@ def test_what_is_asked_of_a_scene_takes_one_thread(held, threads):
     hold_scene(held.scene, held.time_s)
     assert set(threads) == {1}
     threads.clear()
-    analyse_held_scene(held)
+    analyze_held_scene(held)
     assert set(threads) == {1}
 
 

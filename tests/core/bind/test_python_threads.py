@@ -61,7 +61,7 @@ def busy() -> Iterator[BusyThread]:
         thread.close()
 
 
-def body(half_m: float) -> _core.Decomposition:
+def body(half_m: float) -> _core.ConvexPieces:
     mesh = trimesh.creation.box([2.0 * half_m] * 3)
     return _core.decompose_surface(
         mesh.vertices, mesh.faces.astype(np.int32), np.ones(12, dtype=np.uint8)

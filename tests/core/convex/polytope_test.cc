@@ -39,8 +39,8 @@ std::vector<Vec3> Cube(int points_per_edge) {
 }
 
 // The spoke from one vertex to another, or null.
-const Polytope::Spoke* SpokeTo(const Polytope& P, int from, int to) {
-  for (const Polytope::Spoke& spoke : P.fan_of(from)) {
+const Polytope::OneRingEntry* SpokeTo(const Polytope& P, int from, int to) {
+  for (const Polytope::OneRingEntry& spoke : P.fan_of(from)) {
     if (spoke.neighbor == to) return &spoke;
   }
   return nullptr;
@@ -58,7 +58,7 @@ void CheckLoops(const Polytope& P) {
                 ? edge.v0 == from && edge.v1 == to
                 : edge.right == f && edge.v0 == to && edge.v1 == from);
       // Counter-clockwise about a vertex its edge comes before its facet.
-      const Polytope::Spoke* spoke = SpokeTo(P, from, to);
+      const Polytope::OneRingEntry* spoke = SpokeTo(P, from, to);
       CHECK(spoke != nullptr && spoke->facet == f &&
             spoke->normal == P.facets[f].normal);
     }

@@ -85,7 +85,7 @@ def test_a_needle_keeps_its_six_facets(seed):
     assert_valid(piece, points)
 
 
-def test_a_cube_a_million_metres_away_is_the_same_cube():
+def test_a_cube_a_million_meters_away_is_the_same_cube():
     points = grid(4) + 1e6
     piece = polytope(points)
     assert len(piece.vertices) == 8

@@ -380,7 +380,7 @@ def test_a_long_life_is_cut_to_what_the_device_allows() -> None:
 
 def test_hardware_at_fault_is_zero_at_once(active: GateRig) -> None:
     active.gate.fail()
-    assert not active.gate.F_BH.any()
+    assert not active.gate.F_Ho_B.any()
     assert not active.step().any()
     assert_latched(active, Fault.DEVICE)
 

@@ -63,7 +63,7 @@ class GateMachine(RuleBasedStateMachine):
         assert told.receive(self.now_us * US, packet) == verdict
         for name in ("state", "fault", "session", "scale", "command_sequence"):
             assert getattr(told, name) == getattr(self.gate, name)
-        np.testing.assert_array_equal(told.F_BH, self.gate.F_BH)
+        np.testing.assert_array_equal(told.F_Ho_B, self.gate.F_Ho_B)
         self.received += 1
         if verdict not in ("accepted", "not_finite"):
             assert (GateState(self.gate.state), self.gate.session) == (found, session)
@@ -153,12 +153,12 @@ class GateMachine(RuleBasedStateMachine):
     @rule(wait_us=waits_us)
     def step(self, wait_us):
         """A tick, some time later: it changes by no more than its time allows."""
-        before = self.gate.F_BH
-        scale, command = self.gate.scale, self.gate.command_F_BH
+        before = self.gate.F_Ho_B
+        scale, command = self.gate.scale, self.gate.command_F_Ho_B
         state = GateState(self.gate.state)
         self.now_us += wait_us
         F = self.gate.step(self.now_us * US, X_BH, AT_REST)
-        np.testing.assert_array_equal(F, self.gate.F_BH)
+        np.testing.assert_array_equal(F, self.gate.F_Ho_B)
         rise = min(1e-6 * wait_us / RAMP_IN_S, 0.05)
         fall = 1e-6 * wait_us / RAMP_OUT_S
         assert -fall - 1e-9 <= self.gate.scale - scale <= rise + 1e-9
@@ -201,7 +201,7 @@ class GateMachine(RuleBasedStateMachine):
     @invariant()
     def limits_hold(self):
         """Force and torque are finite and within the limits."""
-        F = self.gate.F_BH
+        F = self.gate.F_Ho_B
         assert np.isfinite(F).all()
         assert np.linalg.norm(F[:3]) <= MAX_TORQUE_NM
         assert np.linalg.norm(F[3:]) <= MAX_FORCE_N
@@ -212,7 +212,7 @@ class GateMachine(RuleBasedStateMachine):
         """Idle and at fault there is none."""
         state = GateState(self.gate.state)
         if state is not GateState.ACTIVE:
-            assert not self.gate.F_BH.any()
+            assert not self.gate.F_Ho_B.any()
             assert self.gate.session == 0
         assert (state is GateState.FAULT) == (self.gate.fault != 0)
 

@@ -28,7 +28,7 @@ int main(void) {
   dh_gate_receive(&gate, 0, bytes, sizeof bytes);
   command.sequence = 1;
   command.enable = 1;
-  memcpy(&command.F_BH[4], &bits, sizeof bits);
+  memcpy(&command.F_Ho_B[4], &bits, sizeof bits);
   dh_pack_command(&command, bytes);
   printf("%d ", (int)dh_gate_receive(&gate, 0, bytes, sizeof bytes));
   printf("%d %d\\n", (int)gate.state, (int)gate.fault);

@@ -68,7 +68,7 @@ def test_it_asks_for_a_driver_and_enables_nothing(driver, servo):
     first, second = driver.receive(), driver.receive()
     for command in (first, second):
         assert not command.enable
-        assert command.F_BH == (0.0,) * 6
+        assert command.F_Ho_B == (0.0,) * 6
         assert command.session != 0
         assert command.ttl_us == 5_000_000
         assert command.state_sequence == 0
@@ -100,7 +100,7 @@ def test_it_reads_every_field(driver, servo):
     driver.exchange(
         X_BH=(0.8, 0.6, 0, 0, 1, 2, 3),
         V_BH=(4, 5, 6, 7, 8, 9),
-        F_BH=(10, 11, 12, 13, 14, 15),
+        F_Ho_B=(10, 11, 12, 13, 14, 15),
         buttons=5,
         max_force_N=3.5,
         max_torque_Nm=0.25,
@@ -109,7 +109,7 @@ def test_it_reads_every_field(driver, servo):
     state = servo.read()
     np.testing.assert_allclose(state.X_BH, [0.8, 0.6, 0, 0, 1, 2, 3], rtol=1e-15)
     np.testing.assert_array_equal(state.V_BH, [4, 5, 6, 7, 8, 9])
-    np.testing.assert_array_equal(state.F_BH, [10, 11, 12, 13, 14, 15])
+    np.testing.assert_array_equal(state.F_Ho_B, [10, 11, 12, 13, 14, 15])
     assert (state.buttons, state.max_force_N, state.max_torque_Nm) == (5, 3.5, 0.25)
     assert (state.gate, state.fault) == (IDLE, 0)
     assert 0 <= time.monotonic() - state.time_s < 60
@@ -122,7 +122,7 @@ def test_it_answers_each_state_with_the_local_wrench(driver, servo):
     engage(driver, servo, gate=ACTIVE)
     for x in (0.0, 0.01, -0.02):
         command = driver.exchange(X_BH=(1, 0, 0, 0, x, 0, 0))
-        np.testing.assert_allclose(command.F_BH, [0, 0, 0, 2 - 100 * x, 0, 0])
+        np.testing.assert_allclose(command.F_Ho_B, [0, 0, 0, 2 - 100 * x, 0, 0])
     assert servo.status().is_active
 
 
@@ -131,9 +131,9 @@ def test_the_device_says_what_the_limits_are(driver, servo):
     publish(servo, F=np.array([3.0, 0, 4, 0, 30, -40]))
     engage(driver, servo, gate=ACTIVE)
     command = driver.exchange(max_force_N=2.0, max_torque_Nm=0.5)
-    np.testing.assert_allclose(command.F_BH, [0.3, 0, 0.4, 0, 1.2, -1.6])
+    np.testing.assert_allclose(command.F_Ho_B, [0.3, 0, 0.4, 0, 1.2, -1.6])
     command = driver.exchange(max_force_N=float("nan"), max_torque_Nm=-1.0)
-    assert command.F_BH == (0.0,) * 6
+    assert command.F_Ho_B == (0.0,) * 6
 
 
 def test_the_host_may_allow_less_than_the_device(driver):
@@ -146,11 +146,11 @@ def test_the_host_may_allow_less_than_the_device(driver):
         publish(servo, F=np.array([0, 0, 0, 1.4, 0, 0]), K=1e3 * np.eye(6))
         engage(driver, servo, gate=ACTIVE)
         command = driver.exchange(X_BH=(1, 0, 0, 0, -0.01, 0, 0))
-        np.testing.assert_allclose(command.F_BH, [0, 0, 0, 1.5, 0, 0])
+        np.testing.assert_allclose(command.F_Ho_B, [0, 0, 0, 1.5, 0, 0])
         command = driver.exchange(X_BH=(np.cos(0.1), np.sin(0.1), 0, 0, 0, 0, 0))
-        np.testing.assert_allclose(command.F_BH, [-0.1, 0, 0, 1.4, 0, 0], atol=1e-12)
+        np.testing.assert_allclose(command.F_Ho_B, [-0.1, 0, 0, 1.4, 0, 0], atol=1e-12)
         command = driver.exchange(max_force_N=float("nan"), max_torque_Nm=float("nan"))
-        assert command.F_BH == (0.0,) * 6
+        assert command.F_Ho_B == (0.0,) * 6
     finally:
         servo.close()
 
@@ -159,11 +159,11 @@ def test_a_wrench_that_is_not_renewed_is_released(driver):
     servo = UdpServo("127.0.0.1", driver.port, ttl_s=5.0, hold_s=0.2)
     try:
         connect(driver, servo)
-        wait_for(lambda: publish(servo) or driver.exchange().F_BH[3] > 0.0)
-        wait_for(lambda: driver.exchange().F_BH[3] == 0.0)
+        wait_for(lambda: publish(servo) or driver.exchange().F_Ho_B[3] > 0.0)
+        wait_for(lambda: driver.exchange().F_Ho_B[3] == 0.0)
         time.sleep(0.05)
         command = driver.exchange()
-        assert command.F_BH == (0.0,) * 6
+        assert command.F_Ho_B == (0.0,) * 6
         assert command.enable
     finally:
         servo.close()
@@ -219,7 +219,7 @@ def test_a_fault_stays_until_it_is_recovered(driver, servo):
         command = driver.exchange(gate=FAULT, fault=OVERSPEED)
         # It is left at fault: a command that disables would clear that.
         assert command.enable
-        assert command.F_BH == (0.0,) * 6
+        assert command.F_Ho_B == (0.0,) * 6
     wait_for(lambda: servo.read().gate == FAULT)
     assert servo.read().fault == OVERSPEED
     # Nor does the device's own way out of the fault enable it again.
@@ -231,7 +231,7 @@ def test_a_fault_stays_until_it_is_recovered(driver, servo):
     wait_for(lambda: not driver.exchange(gate=FAULT).enable)
     assert driver.exchange(gate=IDLE, fault=0).enable
     command = driver.exchange(gate=ACTIVE)
-    assert 0.0 < command.F_BH[3] < 0.5  # engages anew
+    assert 0.0 < command.F_Ho_B[3] < 0.5  # engages anew
 
 
 def test_a_driver_that_was_restarted_is_not_enabled(driver, servo):
@@ -239,7 +239,7 @@ def test_a_driver_that_was_restarted_is_not_enabled(driver, servo):
     late = driver.state
     command = driver.exchange(boot=8, gate=IDLE, sequence=0)
     assert not command.enable
-    assert command.F_BH == (0.0,) * 6
+    assert command.F_Ho_B == (0.0,) * 6
     # One of the former run that comes late is no further restart.
     driver.socket.sendto(late.pack(), driver.peer)
     assert not driver.exchange().enable
@@ -308,7 +308,7 @@ def test_closing_disables_several_times_and_may_be_repeated(driver, servo):
     servo.close()
     commands = driver.receive_all()
     assert [command.enable for command in commands[-5:]] == [False] * 5
-    assert all(command.F_BH == (0.0,) * 6 for command in commands[-5:])
+    assert all(command.F_Ho_B == (0.0,) * 6 for command in commands[-5:])
     servo.close()
     servo.recover()
     publish(servo)

@@ -26,7 +26,7 @@ COMMANDS = st.fixed_dictionaries(
         "session": st.integers(1, 2**32 - 1),
         "sequence": u32,
         "time_ns": u64,
-        "F_BH": st.lists(real, min_size=6, max_size=6),
+        "F_Ho_B": st.lists(real, min_size=6, max_size=6),
         "state_sequence": u32,
         "ttl_us": u32,
         "enable": st.booleans(),
@@ -39,7 +39,7 @@ STATES = st.fixed_dictionaries(
         "time_ns": u64,
         "X_BH": st.lists(real, min_size=7, max_size=7),
         "V_BH": st.lists(real, min_size=6, max_size=6),
-        "F_BH": st.lists(real, min_size=6, max_size=6),
+        "F_Ho_B": st.lists(real, min_size=6, max_size=6),
         "boot": st.integers(1, 2**32 - 1),
         "command_sequence": u32,
         "buttons": u32,
@@ -65,7 +65,7 @@ def state_bytes(s: dict[str, Any]) -> bytes:
         struct.pack(
             STATE,
             *(b"DHAP", 1, 1, 208, s["session"], s["sequence"], s["time_ns"]),
-            *(*s["X_BH"], *s["V_BH"], *s["F_BH"]),
+            *(*s["X_BH"], *s["V_BH"], *s["F_Ho_B"]),
             *(*numbers, *limits, s["gate"], s["fault"], s.get("zero", 0)),
         )
     )
@@ -80,7 +80,7 @@ def command_bytes(c: dict[str, Any], **header: Any) -> bytes:
         struct.pack(
             COMMAND,
             *(*start, c["session"], c["sequence"], c["time_ns"]),
-            *(*c["F_BH"], c["state_sequence"], c["ttl_us"], h["flags"]),
+            *(*c["F_Ho_B"], c["state_sequence"], c["ttl_us"], h["flags"]),
         )
     )
 
@@ -100,7 +100,7 @@ def test_the_sizes_are_those_documented() -> None:
 @given(COMMANDS)
 def test_a_command_has_the_documented_bytes_and_comes_back(command: Any) -> None:
     packet = command_bytes(command)
-    if not np.isnan(command["F_BH"]).any():  # which has many bit patterns
+    if not np.isnan(command["F_Ho_B"]).any():  # which has many bit patterns
         assert _core.pack_command(**command) == packet
     assert_same(_core.unpack_command(packet), command)
 
@@ -109,7 +109,7 @@ def test_a_command_has_the_documented_bytes_and_comes_back(command: Any) -> None
 @given(STATES)
 def test_a_state_has_the_documented_bytes_and_comes_back(state: Any) -> None:
     packet = state_bytes(state)
-    reals = [*state["X_BH"], *state["V_BH"], *state["F_BH"]]
+    reals = [*state["X_BH"], *state["V_BH"], *state["F_Ho_B"]]
     if not np.isnan([*reals, state["max_force_N"], state["max_torque_Nm"]]).any():
         assert _core.pack_state(**state) == packet
     assert_same(_core.unpack_state(packet), state)
@@ -175,8 +175,8 @@ def test_a_state_of_another_version_is_refused(change: dict[str, int]) -> None:
         ("sequence", -1, "must be from 0 to 4294967295, got -1"),
         ("time_ns", 2**64, "must be from 0 to 18446744073709551615"),
         ("ttl_us", 2**32, "must be from 0 to 4294967295, got 4294967296"),
-        ("F_BH", [0.0] * 5, r"must be \(6,\); got shape \(5,\)"),
-        ("F_BH", ["a"] * 6, "must be an array of real numbers"),
+        ("F_Ho_B", [0.0] * 5, r"must be \(6,\); got shape \(5,\)"),
+        ("F_Ho_B", ["a"] * 6, "must be an array of real numbers"),
     ],
 )
 def test_a_number_that_does_not_fit_is_refused_by_name(

@@ -73,7 +73,7 @@ class Driver {
   }
 
   void Hold(const dh_command& command) {
-    const double* F = command.F_BH;
+    const double* F = command.F_Ho_B;
     const double force = std::hypot(F[3], F[4], F[5]);
     CHECK(force <= kMaxForce * (1 + 1e-12));
     CHECK(std::hypot(F[0], F[1], F[2]) <= kMaxTorque * (1 + 1e-12));

@@ -36,15 +36,15 @@ Shape Heap(int seed) {
 /// A tool and an object, and what they do.
 struct Scene {
   Shape tool = Heap(1), object = Heap(2);
-  PoseVector q_WTool{0.9, 0.3, -0.2, 0.25, 0.013, 0.006, 0.004};
-  Vec6 V_WTool{0.3, 0.2, -0.1, -0.2, 0.1, 0.05};
+  PoseVector q_WT{0.9, 0.3, -0.2, 0.25, 0.013, 0.006, 0.004};
+  Vec6 V_WT{0.3, 0.2, -0.1, -0.2, 0.1, 0.05};
   std::vector<ContactMaterial> materials{{1000, 3}};
 
   ContactSet Query(const PoseVector& q) const {
     ContactTracker tracker(tool, {object}, kTolerance);
     ContactSet contacts;
     // The nearby answer that others start from.
-    tracker.Query(PoseFromVector(q_WTool, "q"), &contacts);
+    tracker.Query(PoseFromVector(q_WT, "q"), &contacts);
     tracker.Query(PoseFromVector(q, "q"), &contacts);
     return contacts;
   }
@@ -64,8 +64,7 @@ struct Scene {
   template <typename T>
   PenaltyWrenchOf<T> Wrench(const ClusterSetOf<T>& clusters,
                             const PoseVectorOf<T>& q) const {
-    const MovingFrameOf<T> frame{q.template tail<3>(),
-                                 V_WTool.template cast<T>()};
+    const MovingFrameOf<T> frame{q.template tail<3>(), V_WT.template cast<T>()};
     return ComputePenaltyWrench<T>(clusters, frame, {MovingFrameOf<T>{}},
                                    materials);
   }
@@ -77,8 +76,8 @@ struct Scene {
   AutoDiffContactSet Differentiate(const AutoDiffVector& q) const {
     const AutoDiffVector world{PoseVector::Unit(0),
                                Eigen::MatrixXd::Zero(7, q.num_derivatives())};
-    return {DifferentiateContacts(Query(q_WTool), kTolerance,
-                                  DisplaceShape(tool.get(), q, "X_WTool"),
+    return {DifferentiateContacts(Query(q_WT), kTolerance,
+                                  DisplaceShape(tool.get(), q, "X_WT"),
                                   {DisplaceShape(object.get(), world, "X_WO")}),
             q.num_derivatives()};
   }
@@ -86,20 +85,20 @@ struct Scene {
 
 void TheChainHasItsDerivatives() {
   const Scene scene;
-  const AutoDiffVector q{scene.q_WTool, Eigen::MatrixXd::Identity(7, 7)};
+  const AutoDiffVector q{scene.q_WT, Eigen::MatrixXd::Identity(7, 7)};
   const AutoDiffContactSet contacts = scene.Differentiate(q);
   CHECK(contacts.set.contacts.size() > 4);
   for (const bool is_shared : {false, true}) {
     const auto clusters = Scene::Cluster(contacts.set.contacts, is_shared);
     const AutoDiffVector model = ToAutoDiffVector(
         ToVector(scene.Wrench(clusters, ToScalars<7>(q, "q")).tool), 7);
-    const WrenchModelVector value = scene.Model(scene.q_WTool, is_shared);
+    const WrenchModelVector value = scene.Model(scene.q_WT, is_shared);
     CHECK(model.value.isApprox(value, 1e-9));
     for (int i = 0; i < 7; ++i) {
       const PoseVector by = 1e-7 * PoseVector::Unit(i);
       const WrenchModelVector slope =
-          (scene.Model(scene.q_WTool + by, is_shared) -
-           scene.Model(scene.q_WTool - by, is_shared)) /
+          (scene.Model(scene.q_WT + by, is_shared) -
+           scene.Model(scene.q_WT - by, is_shared)) /
           2e-7;
       CHECK((model.gradient.col(i) - slope).norm() <
             1e-5 * slope.norm() + 1e-5);
@@ -110,7 +109,7 @@ void TheChainHasItsDerivatives() {
 void ConstantsGetDerivativesThatAreZero() {
   const Scene scene;
   const AutoDiffContactSet plain =
-      scene.Differentiate({scene.q_WTool, Eigen::MatrixXd(7, 0)});
+      scene.Differentiate({scene.q_WT, Eigen::MatrixXd(7, 0)});
   const AutoDiffContactSet padded = WithVariables(plain, 3);
   CHECK(padded.num_derivatives == 3);
   for (const bool is_shared : {false, true}) {

@@ -31,7 +31,7 @@ COLUMNS = (
 
 
 @pytest.fixture(scope="module")
-def pairs() -> dict[str, tuple[_core.Decomposition, _core.Decomposition]]:
+def pairs() -> dict[str, tuple[_core.ConvexPieces, _core.ConvexPieces]]:
     return {
         "box on box": (box([0.02, 0.03, 0.01]), box([0.03, 0.02, 0.02])),
         "spoon in cup": (shipped("spoon"), shipped("cup")),

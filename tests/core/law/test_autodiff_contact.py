@@ -21,7 +21,7 @@ COLUMNS = ("distance", "nhat_BA_W", "p_WCa", "p_WCb", "p_WC", "extent", "flushne
 
 
 @pytest.fixture(scope="module")
-def pairs() -> dict[str, tuple[_core.Decomposition, _core.Decomposition]]:
+def pairs() -> dict[str, tuple[_core.ConvexPieces, _core.ConvexPieces]]:
     return {
         "box on box": (box([0.02, 0.03, 0.01]), box([0.03, 0.02, 0.02])),
         "spoon in cup": (shipped("spoon"), shipped("cup")),
@@ -57,7 +57,7 @@ def test_values_are_those_of_the_query(pairs) -> None:
                 )
 
 
-def one(pair: tuple[_core.Decomposition, _core.Decomposition]) -> State:
+def one(pair: tuple[_core.ConvexPieces, _core.ConvexPieces]) -> State:
     return random_states(*pair, "shared", 1)[0]
 
 
@@ -164,7 +164,7 @@ def test_what_does_not_belong_together_is_refused(pairs) -> None:
         _core.differentiate_contacts(
             contacts, T, tool, q, [ground], [constant(world.value, 3)]
         )
-    with pytest.raises(ValueError, match="X_WTool must have 7 entries"):
+    with pytest.raises(ValueError, match="X_WT must have 7 entries"):
         _core.differentiate_contacts(contacts, T, tool, seeded([1]), [], [])
     with pytest.raises(ValueError, match="X_WO must be finite"):
         _core.differentiate_contacts(

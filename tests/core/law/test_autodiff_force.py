@@ -22,7 +22,7 @@ from contact_state import (
 from drake_haptics import _core
 
 STEP = 5e-7
-COLUMNS = ("wrench_model", "F_Tool_W", "F_objects_W", "f_cluster_W")
+COLUMNS = ("wrench_model", "F_To_W", "F_objects_W", "f_cluster_W")
 # Rows of the wrench model that have one unit: force, and K, B by halves.
 _MATRIX = np.arange(36).reshape(6, 6)
 BLOCKS = {
@@ -40,7 +40,7 @@ BLOCKS = {
 
 
 @pytest.fixture(scope="module")
-def pairs() -> dict[str, tuple[_core.Decomposition, _core.Decomposition]]:
+def pairs() -> dict[str, tuple[_core.ConvexPieces, _core.ConvexPieces]]:
     return {
         "box on box": (box([0.02, 0.03, 0.01]), box([0.03, 0.02, 0.02])),
         "spoon in cup": (shipped("spoon"), shipped("cup")),
@@ -78,7 +78,7 @@ def test_every_variable_reaches_the_wrench(pairs) -> None:
     for state in random_states(*pairs["spoon in cup"], "shared", 20):
         found = state.differentiate_wrench()
         assert np.isfinite(found.wrench_model.gradient).all()
-        of_state = found.F_Tool_W.gradient.any(axis=0)
+        of_state = found.F_To_W.gradient.any(axis=0)
         for body in (1, 2):
             by_object = of_state[13 * body : 13 * body + 13]
             assert by_object.any() == found.value.F_objects_W[body - 1].any()
@@ -90,7 +90,7 @@ def test_every_variable_reaches_the_wrench(pairs) -> None:
 def test_the_jacobian_is_read_from_it(pairs) -> None:
     """A turn by a rotation vector changes the quaternion by half of it."""
     state = random_states(*pairs["peg in torus"], "shared", 1)[0]
-    by_x = state.differentiate_wrench().F_Tool_W.gradient
+    by_x = state.differentiate_wrench().F_To_W.gradient
     contacts = state.contacts()
     found = _core.wrench_jacobian(
         contacts,
@@ -111,8 +111,8 @@ def test_the_jacobian_is_read_from_it(pairs) -> None:
         columns = by_x[:, 13 * body : 13 * body + 13]
         by_X = np.hstack([columns[:, :4] @ by_turn, columns[:, 4:7]])
         rows = slice(6 * body - 6, 6 * body)
-        expected_X = found.by_X_WO[rows] if body else found.by_X_WTool
-        expected_V = found.by_V_WO[rows] if body else found.by_V_WTool
+        expected_X = found.by_X_WO[rows] if body else found.by_X_WT
+        expected_V = found.by_V_WO[rows] if body else found.by_V_WT
         np.testing.assert_allclose(by_X, expected_X, atol=1e-9)
         np.testing.assert_allclose(columns[:, 7:], expected_V, atol=1e-9)
 
@@ -123,7 +123,7 @@ def test_arguments_of_other_sizes_are_refused(pairs) -> None:
     D = clusters.num_derivatives
     good = {
         "p_WTo": constant(np.zeros(3), D),
-        "V_WTool": constant(np.zeros(6), D),
+        "V_WT": constant(np.zeros(6), D),
         "p_WO": constant(np.zeros(6), D),
         "V_WO": constant(np.zeros(12), D),
     }

@@ -19,7 +19,7 @@ AT_REST = np.zeros(6)
 UP, DOWN = np.eye(6)[5], -np.eye(6)[5]
 
 
-def make_ball() -> _core.Decomposition:
+def make_ball() -> _core.ConvexPieces:
     """Many vertices on a sphere of 20 mm."""
     points = np.random.default_rng(0).normal(size=(150, 3))
     return hull(0.02 * points / np.linalg.norm(points, axis=1)[:, None])

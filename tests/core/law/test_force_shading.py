@@ -26,7 +26,7 @@ RADIUS = 0.02
 
 
 @pytest.fixture(scope="module")
-def sphere() -> _core.Decomposition:
+def sphere() -> _core.ConvexPieces:
     return core_of(trimesh.creation.icosphere(2, RADIUS))
 
 
@@ -35,7 +35,7 @@ def sphere() -> _core.Decomposition:
 
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, -1e-3])
 def test_the_normal_on_a_tessellated_sphere_is_that_of_the_sphere(
-    sphere: _core.Decomposition, distance: float
+    sphere: _core.ConvexPieces, distance: float
 ) -> None:
     corners = plain_corner_normals(sphere.vertices, sphere.triangles, CREASE)
     radial = sphere.vertices[sphere.triangles] / RADIUS
@@ -97,7 +97,7 @@ def test_a_point_slides_without_jumps(name: str, distance: float) -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_near_contact_and_depth_join(sphere: _core.Decomposition, seed: int) -> None:
+def test_near_contact_and_depth_join(sphere: _core.ConvexPieces, seed: int) -> None:
     """Down through the surface beside an edge, where the closest point stays."""
     tool = spike([0, 0, 0])
     a, b = sphere.vertices[sphere.pieces[0].edges[7 * seed]]
@@ -113,10 +113,8 @@ def test_near_contact_and_depth_join(sphere: _core.Decomposition, seed: int) -> 
 
 
 @pytest.mark.parametrize("distance", [5e-4, -1e-4, -1e-3])
-def test_ball_on_ball_and_on_a_peg(
-    sphere: _core.Decomposition, distance: float
-) -> None:
-    """Both sides count: the line of centres, whatever the features."""
+def test_ball_on_ball_and_on_a_peg(sphere: _core.ConvexPieces, distance: float) -> None:
+    """Both sides count: the line of centers, whatever the features."""
     ball = core_of(trimesh.creation.icosphere(2, 8e-3))
     turn = np.linspace(0, 0.3, 300)
     x, y, z, w = Rotation.from_rotvec(np.outer(turn, [1, -0.3, 0.4])).as_quat().T
@@ -132,7 +130,7 @@ def test_ball_on_ball_and_on_a_peg(
 
 @pytest.mark.parametrize("distance", [1e-3, 1e-4])
 def test_a_ball_in_a_hollow_cylinder(distance: float) -> None:
-    """A vertex of the ball points where it may; its centre tells where it is."""
+    """A vertex of the ball points where it may; its center tells where it is."""
     cup = core_of(trimesh.creation.annulus(0.02, 0.03, 0.04, sections=32))
     ball = core_of(trimesh.creation.icosphere(2, 8e-3))
     turn = np.linspace(0, 0.3, 300)
@@ -144,7 +142,7 @@ def test_a_ball_in_a_hollow_cylinder(distance: float) -> None:
     assert angles(facet, -out).max() > 4.0
 
 
-def test_the_tool_is_shaded_too(sphere: _core.Decomposition) -> None:
+def test_the_tool_is_shaded_too(sphere: _core.ConvexPieces) -> None:
     """The other way round: a ball comes down on a spike."""
     needle = spike([0, 0, 0])
     for out in Rotation.random(20, random_state=2).apply([0, 0, 1.0]):
@@ -157,7 +155,7 @@ def test_the_tool_is_shaded_too(sphere: _core.Decomposition) -> None:
         assert angles(facet[0], shaded[0]) > angles(shaded[0], [0, 0, -1.0])
 
 
-def test_a_plane_prevails_over_a_ball(sphere: _core.Decomposition) -> None:
+def test_a_plane_prevails_over_a_ball(sphere: _core.ConvexPieces) -> None:
     plate = box([0.2, 0.2, 0.02], [0, 0, -0.01])
     x, y, z, w = Rotation.random(40, random_state=3).as_quat().T
     height = np.full(40, RADIUS - 3e-4)
@@ -271,7 +269,7 @@ def test_a_shaded_normal_never_pulls() -> None:
 
 @pytest.mark.parametrize("distance", [5e-4, -5e-4])
 def test_a_closed_path_makes_little_energy(
-    sphere: _core.Decomposition, distance: float
+    sphere: _core.ConvexPieces, distance: float
 ) -> None:
     """A turning ball led round the sphere: work per cycle over ½ k (t − d)²."""
     count = 8001
@@ -314,7 +312,7 @@ def test_a_closed_path_makes_little_energy(
 # --- the call -----------------------------------------------------------------------
 
 
-def test_only_normals_change(sphere: _core.Decomposition) -> None:
+def test_only_normals_change(sphere: _core.ConvexPieces) -> None:
     tool = spike([0, 0, 0])
     X = np.concatenate([turned(np.array([0.36, 0.48, 0.8])), [7e-3, 9.5e-3, 0.0159]])
     contacts = _core.SceneTracker(tool, [sphere], T).query(X)
@@ -336,7 +334,7 @@ def test_pieces_that_are_not_of_triangles_keep_their_normals() -> None:
     np.testing.assert_allclose(shaded, facet, atol=1e-15)
 
 
-def test_all_moves_with_the_bodies(sphere: _core.Decomposition) -> None:
+def test_all_moves_with_the_bodies(sphere: _core.ConvexPieces) -> None:
     tool = spike([0, 0, 0])
     X = np.concatenate([turned(np.array([0.36, 0.48, 0.8])), [7e-3, 9.5e-3, 0.0159]])
     _, at_rest = directions(tool, sphere, X[None])
@@ -344,22 +342,22 @@ def test_all_moves_with_the_bodies(sphere: _core.Decomposition) -> None:
     x, y, z, w = move.as_quat()
     q_WO = pose([0.1, 0.2, -0.3], (w, x, y, z))
     x, y, z, w = (move * Rotation.from_quat(X[[1, 2, 3, 0]])).as_quat()
-    X_WTool = pose(move.apply(X[4:]) + q_WO[4:], (w, x, y, z))
+    X_WT = pose(move.apply(X[4:]) + q_WO[4:], (w, x, y, z))
     tracker = _core.SceneTracker(tool, [sphere], T)
     tracker.set_object_pose(0, q_WO)
-    contacts = tracker.query(X_WTool)
-    shaded = shading(tool, sphere).shade(contacts, X_WTool, q_WO[None])
+    contacts = tracker.query(X_WT)
+    shaded = shading(tool, sphere).shade(contacts, X_WT, q_WO[None])
     np.testing.assert_allclose(shaded.nhat_BA_W, move.apply(at_rest), atol=1e-12)
 
 
-def test_what_does_not_belong_together_is_refused(sphere: _core.Decomposition) -> None:
+def test_what_does_not_belong_together_is_refused(sphere: _core.ConvexPieces) -> None:
     tool = spike([0, 0, 0])
     X = pose([0, 0, RADIUS - 2e-4])
     contacts = _core.SceneTracker(tool, [sphere], T).query(X)
     shade = shading(tool, sphere)
     with pytest.raises(ValueError, match="one pose for each of the 1 objects"):
         shade.shade(contacts, X, np.vstack([REST, REST]))
-    with pytest.raises(ValueError, match="q_WTool"):
+    with pytest.raises(ValueError, match="q_WT"):
         shade.shade(contacts, np.full(7, np.nan), REST)
     with pytest.raises(IndexError, match="feature"):
         shading(tool, box([1, 1, 1])).shade(contacts, X, REST)

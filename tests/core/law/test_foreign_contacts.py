@@ -47,7 +47,7 @@ def test_each_pushes_along_its_normal() -> None:
         np.array([1e3]),
         np.array([0.0]),
     )
-    np.testing.assert_allclose(wrench.F_Tool_W[3:], [0.5, 0.0, 1.1], atol=1e-12)
+    np.testing.assert_allclose(wrench.F_To_W[3:], [0.5, 0.0, 1.1], atol=1e-12)
 
 
 def test_two_at_one_place_are_as_stiff_as_one() -> None:
@@ -88,7 +88,7 @@ def test_what_would_give_no_force_is_refused(
 _AT_REST = np.array([1.0, 0, 0, 0, 0, 0, 0])
 
 
-def _cube() -> _core.Decomposition:
+def _cube() -> _core.ConvexPieces:
     corners = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
     hull = ConvexHull(corners)
     return _core.decompose_surface(
@@ -119,7 +119,7 @@ def test_what_needs_their_features_refuses_them() -> None:
         _core.differentiate_contacts(
             contacts, _TOLERANCE_M, cube, moving, [cube], [moving]
         )
-    carrier = _core.ContactCarrier(cube, [cube], [_AT_REST])
+    carrier = _core.ContactExtrapolation(cube, [cube], [_AT_REST])
     with pytest.raises(ValueError, match="names no features"):
         carrier.advance(contacts, _AT_REST, _AT_REST)
     surface = _core.SurfaceShading(cube, 0.5)

@@ -35,13 +35,13 @@ def test_a_relieved_foot_grips_again() -> None:
     stretch = b / r  # z while sliding
     at(rig, 0, 0, N)
     assert at(rig, 5 * b, 0, N).friction.sliding.all()
-    for relief, grip in ((0.02, 0.2), (0.05, 0.5), (0.1, 1.0), (0.5, 1.0)):
-        x = rig.state[4] - relief * stretch
+    for load_shedding, grip in ((0.02, 0.2), (0.05, 0.5), (0.1, 1.0), (0.5, 1.0)):
+        x = rig.state[4] - load_shedding * stretch
         f = at(rig, x, 0, N).friction_force[0]
-        assert f == pytest.approx(-mu * N * (1 - relief), abs=1e-9)
+        assert f == pytest.approx(-mu * N * (1 - load_shedding), abs=1e-9)
         # Drawn on until just before and just after it slips.
         limit = 1 + grip * (r - 1)
-        at_limit = x + (relief + limit - 1) * stretch
+        at_limit = x + (load_shedding + limit - 1) * stretch
         held = at(rig, at_limit - 1e-9, 0, N)
         assert not held.friction.sliding.any()
         assert -held.friction_force[0] == pytest.approx(limit * mu * N, rel=1e-4)

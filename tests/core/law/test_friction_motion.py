@@ -17,7 +17,7 @@ FEET_M = 0.02 * np.array([[-1, -1, 0], [-1, 1, 0], [1, -1, 0], [1, 1, 0]])
 
 
 def block(moves: bool = False, ratio: float = RATIO) -> FrictionRig:
-    """A sled on a floor, its centre of mass between its four tips."""
+    """A sled on a floor, its center of mass between its four tips."""
     model = _core.StickSlipModel([MU], [moves], ratio, BREAK_AWAY_M, 5e-3)
     inertia = MASS_KG * 0.02**2 * np.eye(3)
     dynamics = _core.RigidToolDynamics(MASS_KG, np.zeros(3), inertia)

@@ -51,9 +51,9 @@ def test_the_chain_agrees_with_the_equations(method: str, seed: int) -> None:
     found = _core.penalty_force(cluster(contacts, method), p_WTo, V, p_WO, V_WO, k, kv)
     F, F_objects = wrenches(written_down(contacts, method), p_WTo, V, p_WO, V_WO, k, kv)
     assert np.abs(F).max() > 0.01
-    np.testing.assert_allclose(found.F_Tool_W, F, atol=1e-11)
+    np.testing.assert_allclose(found.F_To_W, F, atol=1e-11)
     np.testing.assert_allclose(found.F_objects_W, F_objects, atol=1e-11)
-    np.testing.assert_allclose(found.wrench_model[:6], found.F_Tool_W)
+    np.testing.assert_allclose(found.wrench_model[:6], found.F_To_W)
     np.testing.assert_allclose(found.f_cluster_W.sum(axis=0), F[3:], atol=1e-11)
 
 
@@ -94,7 +94,7 @@ def test_a_box_on_a_plane_has_the_force_of_hookes_law() -> None:
                 np.zeros(1),
             )
             np.testing.assert_allclose(
-                wrench.F_Tool_W,
+                wrench.F_To_W,
                 [0, 0, 0, 0, 0, K[0] * (T - (height - 0.01))],
                 atol=1e-9,
             )
@@ -122,7 +122,7 @@ def test_the_linear_model_is_the_derivative_with_frozen_normals(method: str) -> 
     np.testing.assert_allclose(K6, K * G.T @ clusters.coupling @ G, atol=1e-9)
     numeric = slope(
         lambda dV: (
-            _core.penalty_force(clusters, p_WTo, V + dV, ORIGIN, STILL, K, KV).F_Tool_W
+            _core.penalty_force(clusters, p_WTo, V + dV, ORIGIN, STILL, K, KV).F_To_W
         ),
         1e-5,
     )

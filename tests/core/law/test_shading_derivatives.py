@@ -26,8 +26,8 @@ class Shaded:
 
     def __init__(
         self,
-        tool: _core.Decomposition,
-        body: _core.Decomposition,
+        tool: _core.ConvexPieces,
+        body: _core.ConvexPieces,
         rng: np.random.Generator,
     ):
         """Brings two random vertices together."""
@@ -62,8 +62,8 @@ class Shaded:
 
     def differentiate(self) -> tuple[_core.AutoDiffVector, np.ndarray]:
         """Returns the shaded normals, and the gradient of those that are not."""
-        contacts, X_WTool, X_WO = self.differentiate_query()
-        shaded = self.shade.shade(contacts, X_WTool, X_WO)
+        contacts, X_WT, X_WO = self.differentiate_query()
+        shaded = self.shade.shade(contacts, X_WT, X_WO)
         return shaded.nhat_BA_W, contacts.nhat_BA_W.gradient
 
     def differentiate_query(
@@ -71,15 +71,15 @@ class Shaded:
     ) -> tuple[_core.AutoDiffContactSet, _core.AutoDiffVector, _core.AutoDiffVector]:
         """Returns the contacts and both poses, with derivatives by both."""
         X = seeded(self.x)
-        X_WTool, X_WO = (
+        X_WT, X_WO = (
             _core.AutoDiffVector(X.value[rows], X.gradient[rows])
             for rows in (slice(0, 7), slice(7, 14))
         )
         tool, body = self.bodies
         contacts = _core.differentiate_contacts(
-            self.query(self.x), T, tool, X_WTool, [body], [X_WO]
+            self.query(self.x), T, tool, X_WT, [body], [X_WO]
         )
-        return contacts, X_WTool, X_WO
+        return contacts, X_WT, X_WO
 
 
 def moved(turn: np.ndarray, way: np.ndarray, q: np.ndarray) -> np.ndarray:
@@ -128,10 +128,10 @@ def test_normals_turn_as_the_differences_say(
 
 def test_what_has_no_derivatives_by_these_variables_is_refused() -> None:
     state = Shaded(core_of(CUBE), core_of(BALL), np.random.default_rng(1))
-    contacts, X_WTool, X_WO = state.differentiate_query()
+    contacts, X_WT, X_WO = state.differentiate_query()
     by_other = seeded(X_WO.value)
     with pytest.raises(ValueError, match="by the same variables"):
-        state.shade.shade(contacts, X_WTool, by_other)
+        state.shade.shade(contacts, X_WT, by_other)
     with pytest.raises(ValueError, match="variables of the contacts"):
         state.shade.shade(contacts, by_other, by_other)
     with pytest.raises(ValueError, match="7 numbers"):

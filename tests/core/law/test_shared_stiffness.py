@@ -113,7 +113,7 @@ def test_one_contact_is_equation_6() -> None:
     np.testing.assert_allclose(beginning.damping_share, [0.5])
 
 
-def cut_block(nx: int, ny: int) -> _core.Decomposition:
+def cut_block(nx: int, ny: int) -> _core.ConvexPieces:
     """A block of 20 x 20 x 5 mm on z = 0, cut into columns."""
     mesh = cell_mesh(product(range(nx), range(ny), (0,)), [0.02 / nx, 0.02 / ny, 5e-3])
     corners = mesh.vertices[mesh.triangles]

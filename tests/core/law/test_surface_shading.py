@@ -26,7 +26,7 @@ def terrain(seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def needle_on(
-    body: _core.Decomposition, triangle: int, point: np.ndarray, crease: float
+    body: _core.ConvexPieces, triangle: int, point: np.ndarray, crease: float
 ) -> np.ndarray:
     """The shaded normal where the tip of an upright needle nearly touches a body."""
     tip = np.array([[0, 0, 0], [1, 0, 99], [-1, 1, 99], [-1, -1, 99]]) * 1e-4

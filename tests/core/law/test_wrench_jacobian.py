@@ -22,7 +22,7 @@ FAR = np.array([0.3, -0.2, 0.5])
 
 
 def wrench(state: State) -> np.ndarray:
-    return state.wrench().F_Tool_W
+    return state.wrench().F_To_W
 
 
 def jacobian(state: State) -> _core.WrenchJacobian:
@@ -61,7 +61,7 @@ def error(found: np.ndarray, expected: np.ndarray) -> float:
 
 
 @pytest.fixture(scope="module")
-def pairs() -> dict[str, tuple[_core.Decomposition, _core.Decomposition]]:
+def pairs() -> dict[str, tuple[_core.ConvexPieces, _core.ConvexPieces]]:
     return {
         "box on box": (box([0.02, 0.03, 0.01]), box([0.03, 0.02, 0.02])),
         "spoon in cup": (shipped("spoon"), shipped("cup")),
@@ -85,7 +85,7 @@ def test_by_the_pose_of_the_tool(pairs, name: str, method: str) -> None:
     for state in random_states(*pairs[name], method, 40):
         move = differences(state, lambda by, s=state: s.displaced(0, by), STEP)
         if move is not None:
-            errors.append(error(jacobian(state).by_X_WTool, move))
+            errors.append(error(jacobian(state).by_X_WT, move))
     assert len(errors) >= 35
     errors.sort()
     assert np.median(errors) < 1e-8
@@ -118,7 +118,7 @@ def test_by_the_velocities(pairs, method: str) -> None:
         found = jacobian(state)
         for body in range(3):
             move = differences(state, lambda by, s=state, b=body: s.faster(b, by), 1e-6)
-            by_V = found.by_V_WO[6 * body - 6 : 6 * body] if body else found.by_V_WTool
+            by_V = found.by_V_WO[6 * body - 6 : 6 * body] if body else found.by_V_WT
             np.testing.assert_allclose(by_V, move, atol=1e-6)
         # The wrench model's B is minus that by the tool's velocity.
         contacts = state.contacts()
@@ -131,9 +131,7 @@ def test_by_the_velocities(pairs, method: str) -> None:
             K,
             KV,
         ).wrench_model
-        np.testing.assert_allclose(
-            found.by_V_WTool, -model[42:].reshape(6, 6), atol=1e-12
-        )
+        np.testing.assert_allclose(found.by_V_WT, -model[42:].reshape(6, 6), atol=1e-12)
 
 
 def test_one_vertex_on_a_face_is_the_frozen_model_and_what_turns() -> None:
@@ -166,12 +164,12 @@ def test_one_vertex_on_a_face_is_the_frozen_model_and_what_turns() -> None:
     # The vertex turns with the tool: d(r × n) = (δ × r) × n, a force 1 mm thick.
     for i, e in enumerate(np.eye(3)):
         expected[:3, i] += K[0] * 1e-3 * np.cross(np.cross(e, arm), up)
-    np.testing.assert_allclose(found.by_X_WTool, expected, atol=1e-9)
+    np.testing.assert_allclose(found.by_X_WT, expected, atol=1e-9)
     # Moved together nothing changes but the direction of what is seen.
     shift = np.eye(6)
     p = q[0, 4:]
     shift[3:, :3] = -np.array([[0, -p[2], p[1]], [p[2], 0, -p[0]], [-p[1], p[0], 0]])
-    together = found.by_X_WTool + found.by_X_WO @ np.linalg.inv(shift)
+    together = found.by_X_WT + found.by_X_WO @ np.linalg.inv(shift)
     np.testing.assert_allclose(together[:, 3:], 0, atol=1e-9)
 
 
@@ -195,13 +193,13 @@ def test_a_face_exactly_flush_has_a_finite_answer() -> None:
             K[:1],
             KV[:1],
         )
-        assert np.isfinite(found.by_X_WTool).all()
+        assert np.isfinite(found.by_X_WT).all()
         np.testing.assert_allclose(
-            found.by_X_WTool[3:, 3:], np.diag([0, 0, -K[0]]), atol=1e-6
+            found.by_X_WT[3:, 3:], np.diag([0, 0, -K[0]]), atol=1e-6
         )
         # The layer resists rocking, to either side.
-        assert found.by_X_WTool[0, 0] < 0
-        assert found.by_X_WTool[1, 1] < 0
+        assert found.by_X_WT[0, 0] < 0
+        assert found.by_X_WT[1, 1] < 0
 
 
 def test_nothing_near_changes_nothing(pairs) -> None:
@@ -225,7 +223,7 @@ def test_nothing_near_changes_nothing(pairs) -> None:
             K[:1],
             KV[:1],
         )
-        assert not found.by_X_WTool.any()
+        assert not found.by_X_WT.any()
         assert not found.by_X_WO.any()
 
 

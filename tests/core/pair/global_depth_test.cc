@@ -86,7 +86,7 @@ std::vector<Polytope> Shapes() {
 Depth LocalDepth(const PosedPair& pair, DepthWorkspace* workspace) {
   Vec3 n = pair.A.centroid - pair.X_AB * pair.B.centroid;
   if (!(n.norm() > 1e-12 * pair.scale())) n = Vec3::UnitX();
-  Hub hub;
+  MinkowskiVertex hub;
   SupportGap(pair, n, &hub);
   return WalkDepth(pair, hub, SurfaceRule::kWholeBoundary, nullptr, {1},
                    workspace);
@@ -149,7 +149,7 @@ void Teleports() {
   CHECK(num_global > 20);
 }
 
-// All pairs of shapes in slow motion, in turning and through the centre, where
+// All pairs of shapes in slow motion, in turning and through the center, where
 // the facets of all sides are equally deep.
 void Tumbling() {
   const std::vector<Polytope> shapes = Shapes();

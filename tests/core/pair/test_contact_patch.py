@@ -31,7 +31,7 @@ def tilted(
 def sampled_patch(
     q: np.ndarray, R: Rotation, height: float, edge_x: float
 ) -> tuple[np.ndarray, float]:
-    """Centre (2,) and area under the layer's pressure at the bottom, by brute force."""
+    """Center (2,) and area under the layer's pressure at the bottom, by brute force."""
     s = (np.arange(400) + 0.5) / 400 * 2 - 1
     bottom = np.stack(np.meshgrid(s * HALF[0], s * HALF[1], [-HALF[2]]), -1)
     points = R.apply(bottom.reshape(-1, 3)) + q[4:]
@@ -55,7 +55,7 @@ def sampled_patch(
         ((0.01, -0.02), 0.045),
     ],
 )
-def test_the_centre_is_that_of_a_sampled_layer(
+def test_the_center_is_that_of_a_sampled_layer(
     height: float, tilt: tuple[float, float], x: float
 ) -> None:
     ground = box([0.1, 0.1, 0.02], [0, 0, -0.01])
@@ -75,7 +75,7 @@ def test_the_centre_is_that_of_a_sampled_layer(
     )
 
 
-def test_the_centre_moves_continuously_as_the_box_rocks_through_flush() -> None:
+def test_the_center_moves_continuously_as_the_box_rocks_through_flush() -> None:
     ground = box([0.1, 0.1, 0.02], [0, 0, -0.01])
     tracker = _core.SceneTracker(box(2 * HALF), [ground], T)
     step = 1e-5
@@ -84,7 +84,7 @@ def test_the_centre_moves_continuously_as_the_box_rocks_through_flush() -> None:
         q, _ = tilted(1e-3, np.array([0.3 * tilt, tilt]))
         centers.append(tracker.query(q).p_WC[0])
     moved = np.linalg.norm(np.diff(centers, axis=0), axis=1)
-    # A layer of thickness s under a face of length L moves its centre by L² / (12 s)
+    # A layer of thickness s under a face of length L moves its center by L² / (12 s)
     # per radian in one direction, 0.7 m/rad here; a jump would be some 0.02 m.
     assert moved.max() < 5 * step * 0.04**2 / (12 * LAYER)
     # From close to one corner to close to the other.
@@ -92,7 +92,7 @@ def test_the_centre_moves_continuously_as_the_box_rocks_through_flush() -> None:
     np.testing.assert_allclose(np.abs(centers[-1][:2]), HALF[:2], atol=3e-3)
 
 
-def test_an_edge_on_a_face_is_centred_too() -> None:
+def test_an_edge_on_a_face_is_centered_too() -> None:
     ground = box([0.1, 0.1, 0.02], [0, 0, -0.01])
     roof = hull(
         [

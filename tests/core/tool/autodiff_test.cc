@@ -11,7 +11,7 @@
 #include "base/rotation.h"
 #include "check.h"
 #include "law/penalty_force.h"
-#include "tool/held_arm.h"
+#include "tool/arm_dynamics.h"
 #include "tool/rigid_tool.h"
 
 namespace drake_haptics {
@@ -73,7 +73,7 @@ void HalfATurnHasFiniteSlope() {
   CHECK(ToAutoDiffVector(RotationLog<AutoDiff>(q), 3).gradient.allFinite());
 }
 
-HeldArm MakeArm(double period) {
+ArmDynamics MakeArm(double period) {
   Mat6 J_WH;
   for (int i = 0; i < 6; ++i) {
     const Vec3 direction = Vec3(1 + i, i * i - 3, 2 - i).normalized();
@@ -95,7 +95,7 @@ HeldArm MakeArm(double period) {
 
 /// By time, state and wrench at once; then by time alone, all else constant.
 void ArmsHaveTheirSlope() {
-  const HeldArm arm = MakeArm(0.7);
+  const ArmDynamics arm = MakeArm(0.7);
   Eigen::Matrix<double, 19, 1> x;
   x << 1.3, 0.1, -0.2, 0.3, 0.4, -0.5, 0.6, 1, 2, 3, -1, -2, -3, 0.1, 0.2, 0.3,
       1, 2, 3;

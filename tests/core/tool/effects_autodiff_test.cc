@@ -128,8 +128,8 @@ void FrictionHasItsSlope() {
         [&](const auto& x) {
           using T = typename std::decay_t<decltype(x)>::Scalar;
           std::vector<T> state(model.state_size(), T(0));
-          PoseVectorOf<T> q_WTool = PoseVector::Unit(0).template cast<T>();
-          PoseVectorOf<T> q_WO = q_WTool;
+          PoseVectorOf<T> q_WT = PoseVector::Unit(0).template cast<T>();
+          PoseVectorOf<T> q_WO = q_WT;
           VectorOf<T> out;
           for (int tick = 0; tick < 2; ++tick) {
             std::vector<ClusterOf<T>> clusters(2);
@@ -142,7 +142,7 @@ void FrictionHasItsSlope() {
             }
             const T load = 2 + x[6];
             const FrictionStepOf<T> step = model.Step<T>(
-                state.data(), clusters, {load, T(1.5)}, q_WTool, q_WO.data());
+                state.data(), clusters, {load, T(1.5)}, q_WT, q_WO.data());
             state = step.next_state;
             out.resize(78 + 1 + 12);
             out << ToVector(step.tool), step.stored, step.f_cluster_W[0],
@@ -150,8 +150,8 @@ void FrictionHasItsSlope() {
                 Part<6>(VectorOf<T>(Eigen::Map<VectorOf<T>>(state.data(),
                                                             state.size())),
                         24);
-            q_WTool[4] += T(way);
-            q_WTool[1] += 1e-3 * x[7];
+            q_WT[4] += T(way);
+            q_WT[1] += 1e-3 * x[7];
             q_WO[5] += 0.1 * way * x[8];
           }
           return out;

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "any_values.h"
-#include "base/passive_part.h"
+#include "base/positive_semidefinite.h"
 #include "base/wrench_limit.h"
 #include "check.h"
 #include "tool/handle_model.h"
@@ -34,13 +34,14 @@ void NoSlopeGivesEnergy() {
   for (int k = 0; k < 300; ++k) {
     const Mat6 any = Mat6::NullaryExpr([&] { return normal(generator); });
     bool changed = false;
-    const Mat6 passive = PassivePart(any, &changed);
+    const Mat6 passive = ProjectToPositiveSemidefinite(any, &changed);
     CHECK(changed);
     CHECK(passive.isApprox(passive.transpose(), 1e-12));
     const Eigen::SelfAdjointEigenSolver<Mat6> eigen(passive);
     CHECK(eigen.eigenvalues().minCoeff() > -1e-12 * passive.norm());
     changed = false;
-    CHECK(PassivePart(passive, &changed).isApprox(passive, 1e-9));
+    CHECK(ProjectToPositiveSemidefinite(passive, &changed)
+              .isApprox(passive, 1e-9));
     CHECK(!changed);
   }
 }

@@ -34,11 +34,11 @@ def hand_moves(
             before = handles[i - 1]
             turn = (rotation_of(q_WH) * rotation_of(before).inv()).as_rotvec()
             V_WH = np.concatenate([turn, q_WH[4:] - before[4:]]) / H
-        wrench, F_display = coupling_model(q_WH, V_WH, q_HT, state, gains)
+        wrench, F_Ho_W_commanded = coupling_model(q_WH, V_WH, q_HT, state, gains)
         if explicit:
             wrench[6:] = 0.0
-        add(ledger, state, q_WH=q_WH, F_applied=F_held, coupling=wrench)
-        F_held = shown * F_display
+        add(ledger, state, q_WH=q_WH, F_Ho_W_rendered=F_held, coupling=wrench)
+        F_held = shown * F_Ho_W_commanded
 
 
 def test_a_sampled_wall_makes_half_k_dx_squared_a_tick_and_no_more():

@@ -27,7 +27,7 @@ from drake_haptics import _core
 
 
 def kinetic_energy(state, c):
-    """From the velocity of the centre of mass and the principal inertia."""
+    """From the velocity of the center of mass and the principal inertia."""
     R = rotation_of(state).as_matrix()
     w, v = state[7:10], state[10:]
     w_T = R.T @ w
@@ -149,14 +149,16 @@ def test_the_device_has_the_sum_of_the_parts():
     for i in range(300):
         x = 0.01 * np.sin(0.05 * i)
         q_WH = pose(Rotation.from_rotvec([0, 0.3 * x, 0]), [x, 0, 0])
-        coupling, F_display = coupling_model(q_WH, np.zeros(6), IDENTITY, state, gains)
+        coupling, F_Ho_W_commanded = coupling_model(
+            q_WH, np.zeros(6), IDENTITY, state, gains
+        )
         contact = random_model(rng, 0.1)
         add(
             ledger, state, [contact], [0.01 * rng.random()],
-            q_WH=q_WH, F_applied=F_held, coupling=coupling,
+            q_WH=q_WH, F_Ho_W_rendered=F_held, coupling=coupling,
         )  # fmt: skip
         state = tool.step(state, coupling + contact, H)
-        F_held = 0.9 * F_display
+        F_held = 0.9 * F_Ho_W_commanded
     books = ledger.accounts
     assert list(books) == ["device", "display", "coupling", "tool", "contact"]
     parts = [account for name, account in books.items() if name != "device"]

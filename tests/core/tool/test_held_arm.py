@@ -5,7 +5,7 @@ import pytest
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.tree import JacobianWrtVariable
 
-from drake_haptics._core import CouplingGains, HeldArm, PosePath, coupling_wrench
+from drake_haptics._core import ArmDynamics, CouplingGains, PosePath, coupling_wrench
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.systems.arm.simulated_arm import make_arm_plant
@@ -52,7 +52,7 @@ def path():
 @pytest.fixture(scope="module")
 def arm(plant, path):
     X_WH, J_WH = kinematics(plant, np.zeros(12))
-    return HeldArm(J_WH, pose_to_vector(X_WH), path, pose_to_vector(X_PH), GAINS)
+    return ArmDynamics(J_WH, pose_to_vector(X_WH), path, pose_to_vector(X_PH), GAINS)
 
 
 def random_states(count):
@@ -71,7 +71,7 @@ def test_the_handle_is_where_the_plant_has_it(plant, arm):
 
 
 def test_torques_do_the_work_of_hand_and_wrench(plant, arm, path):
-    F_applied = np.array([0.1, -0.2, 0.3, 4.0, -5.0, 6.0])
+    F_Ho_W_rendered = np.array([0.1, -0.2, 0.3, 4.0, -5.0, 6.0])
     for time_s, state in enumerate(random_states(20)):
         X_WH, J_WH = kinematics(plant, state)
         q_WP, V_WP = path.evaluate(0.1 * time_s)
@@ -84,8 +84,8 @@ def test_torques_do_the_work_of_hand_and_wrench(plant, arm, path):
             GAINS,
         )[:6]
         np.testing.assert_allclose(
-            arm.calc_joint_torques(0.1 * time_s, state, F_applied),
-            J_WH.T @ (F_applied + F_hand),
+            arm.calc_joint_torques(0.1 * time_s, state, F_Ho_W_rendered),
+            J_WH.T @ (F_Ho_W_rendered + F_hand),
             rtol=1e-12,
             atol=1e-12,
         )

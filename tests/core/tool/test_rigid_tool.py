@@ -49,7 +49,7 @@ def test_a_torque_about_a_principal_axis_turns_the_tool_by_half_a_t_squared() ->
     assert np.linalg.norm(state[:4]) == pytest.approx(1, abs=1e-14)
 
 
-def test_an_eccentric_tool_pushed_at_its_centre_of_mass_does_not_turn() -> None:
+def test_an_eccentric_tool_pushed_at_its_center_of_mass_does_not_turn() -> None:
     c = np.array([0.03, -0.02, 0.05])
     tool = _core.RigidToolDynamics(MASS, c, INERTIA)
     f = np.array([0.3, 0.2, -0.4])
@@ -60,13 +60,13 @@ def test_an_eccentric_tool_pushed_at_its_centre_of_mass_does_not_turn() -> None:
     np.testing.assert_allclose(state[10:], f / MASS * 50 * H)
 
 
-def test_a_free_spin_about_an_eccentric_frame_keeps_the_centre_at_rest() -> None:
+def test_a_free_spin_about_an_eccentric_frame_keeps_the_center_at_rest() -> None:
     c = np.array([0.02, 0.0, 0.0])
     tool = _core.RigidToolDynamics(MASS, c, INERTIA)
     w = np.array([0, 0, 5.0])
     state = at_rest()
     state[7:10] = w
-    state[10:] = -np.cross(w, c)  # the centre of mass stands still
+    state[10:] = -np.cross(w, c)  # the center of mass stands still
     h = 1e-4
     for _ in range(2000):
         state = tool.step(state, model(), h)

@@ -14,7 +14,7 @@ from drake_haptics import _core
 def test_the_weight_s_energy_is_that_of_its_height():
     q = pose(Rotation.from_euler("y", 90, degrees=True), [1, 2, 3])
     weight = np.array([0, 0, -0.5])
-    # The centre of mass, on the tool's x axis, hangs 0.1 below its origin.
+    # The center of mass, on the tool's x axis, hangs 0.1 below its origin.
     energy = _core.weight_energy(q, np.array([0.1, 0, 0]), weight)
     assert energy == pytest.approx(0.5 * 2.9)
 

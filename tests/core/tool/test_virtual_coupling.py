@@ -58,14 +58,14 @@ def random_case(seed: int) -> tuple[np.ndarray, ...]:
 def test_both_wrenches_do_the_work_that_the_spring_gives(seed: int) -> None:
     q_WH, q_HT, q_WT, V_WH, V_WT = random_case(seed)
     out = _core.coupling_wrench(q_WH, V_WH, q_HT, q_WT, V_WT, SPRING)
-    F_tool, F_display = out[:6], out[78:]
+    F_tool, F_Ho_W_commanded = out[:6], out[78:]
     step = 1e-6
 
     def at(s: float) -> float:
         return energy(displaced(q_WH, s * V_WH), q_HT, displaced(q_WT, s * V_WT))
 
     rate = (at(step) - at(-step)) / (2 * step)
-    assert F_tool @ V_WT + F_display @ V_WH == pytest.approx(-rate, rel=1e-6)
+    assert F_tool @ V_WT + F_Ho_W_commanded @ V_WH == pytest.approx(-rate, rel=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(8))

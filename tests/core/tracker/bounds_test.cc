@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "check.h"
-#include "pair/gauss_clip.h"
-#include "pair/pair_answer.h"
+#include "pair/gauss_overlay_reject.h"
+#include "pair/pair_contact_builders.h"
 #include "pair/separation.h"
-#include "tracker/piece_tree.h"
+#include "tracker/piece_bvh.h"
 
 namespace drake_haptics {
 namespace {
@@ -71,15 +71,15 @@ void ClippingHasRoomForItsCorners() {
         Eigen::AngleAxisd(0.3 * uniform(generator), axis).toRotationMatrix();
     X_AB.p = Vec3(0, 0, 0.5);
     const PosedPair pair{A, B, X_AB};
-    Hub hub;
+    MinkowskiVertex hub;
     SupportGap(pair, -Vec3::UnitZ(), &hub);
     const Vec3 w = 0.3 * RandomDirection();
     OverlayMayExceed(pair, hub, w, -1e-3);
   }
 }
 
-int Depth(const PieceTree& tree, int node) {
-  const PieceTree::Node& at = tree.node(node);
+int Depth(const PieceBvh& tree, int node) {
+  const PieceBvh::Node& at = tree.node(node);
   if (at.is_leaf()) return 0;
   return 1 + std::max(Depth(tree, at.left), Depth(tree, at.right));
 }
@@ -101,7 +101,7 @@ void TreesAreNoDeeperThanALogarithm() {
     for (int i = 0; i < count; ++i) {
       pieces.push_back(moved(power == 0 ? 0 : std::pow(i, power)));
     }
-    const PieceTree tree(pieces);
+    const PieceBvh tree(pieces);
     CHECK(Depth(tree, tree.root()) <= 4 * std::log2(count));
     // Nothing is lost on the way.
     for (int i = 0; i < count; ++i) {

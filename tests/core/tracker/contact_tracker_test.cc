@@ -73,16 +73,16 @@ class PlainTracker {
         tolerance_(tolerance) {
     for (std::size_t i = 0; i < objects.size(); ++i) {
       objects_[i].shape = objects[i];
-      objects_[i].tree = PieceTree(objects[i]->pieces);
+      objects_[i].tree = PieceBvh(objects[i]->pieces);
     }
   }
 
   void SetObjectPose(int i, const Pose& X_WO) { objects_[i].X_WO = X_WO; }
 
-  std::vector<Contact> Query(const Pose& X_WTool) {
+  std::vector<Contact> Query(const Pose& X_WT) {
     std::vector<Contact> contacts;
     for (std::size_t i = 0; i < objects_.size(); ++i) {
-      QueryObject(static_cast<int>(i), X_WTool, &contacts);
+      QueryObject(static_cast<int>(i), X_WT, &contacts);
     }
     return contacts;
   }
@@ -99,25 +99,25 @@ class PlainTracker {
  private:
   struct Object {
     Shape shape;
-    PieceTree tree;
+    PieceBvh tree;
     Pose X_WO, X_AB;
     std::map<PiecePair, SurfacePairState> states;
-    std::vector<PressedContact> pressed;
+    std::vector<PenetratingContact> pressed;
     bool is_first = true;
   };
 
-  void QueryObject(int i, const Pose& X_WTool, std::vector<Contact>* contacts) {
+  void QueryObject(int i, const Pose& X_WT, std::vector<Contact>* contacts) {
     Object& object = objects_[i];
-    const Pose X_AB = RelativePose(X_WTool, object.X_WO);
-    const PieceTree &A = tree_, &B = object.tree;
-    const PosedBoxes boxes(X_AB);
+    const Pose X_AB = RelativePose(X_WT, object.X_WO);
+    const PieceBvh &A = tree_, &B = object.tree;
+    const ObbGap boxes(X_AB);
     double reach = tolerance_;
     for (auto& p : object.pressed) {
       p.Advance(X_AB, object.X_AB);
       reach = std::max(reach, tolerance_ - p.distance);
     }
     const std::size_t first = contacts->size();
-    std::vector<PressedContact> pressed;
+    std::vector<PenetratingContact> pressed;
     const auto ask = [&](const PiecePair& pieces) {
       SurfacePairState& state = object.states[pieces];
       const PosedPair pair{tool_->pieces[pieces.a],
@@ -133,12 +133,12 @@ class PlainTracker {
           object.pressed[last_press].is_kept = true;
         }
         state.press = static_cast<int>(pressed.size());
-        PressedContact& press = pressed.emplace_back();
+        PenetratingContact& press = pressed.emplace_back();
         press.distance = answer->distance;
         press.n = X_AB.R.transpose() * answer->n;
         press.p_b = X_AB.inverse() * answer->p_b;
       }
-      contacts->push_back(InWorld(*answer, X_WTool));
+      contacts->push_back(InWorld(*answer, X_WT));
       contacts->back().object = i;
       contacts->back().piece_A = pieces.a;
       contacts->back().piece_B = pieces.b;
@@ -168,7 +168,7 @@ class PlainTracker {
   }
 
   Shape tool_;
-  PieceTree tree_;
+  PieceBvh tree_;
   std::vector<Object> objects_;
   double tolerance_;
   SurfacePairWorkspace workspace_;

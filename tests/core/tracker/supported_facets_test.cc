@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "check.h"
-#include "convex/surface_support.h"
+#include "convex/normal_cone_test.h"
 #include "mesh/decomposition.h"
-#include "tracker/carried_facets.h"
+#include "tracker/brute_force_supported_facets.h"
 
 namespace drake_haptics {
 namespace {
@@ -62,7 +62,7 @@ bool IsListed(const DepthCandidate& facet,
 // All facets, and those of a cone down to a depth.
 int CompareAt(const PosedPair& pair) {
   std::vector<DepthCandidate> all, listed, some;
-  ListCarriedFacets(pair, -1.0, &all);
+  ListSupportedFacetsByBruteForce(pair, -1.0, &all);
   const WantedFacets anything{{Vec3::UnitX(), -1.0}, -1.0};
   ListSupportedFacets(pair, {0, 0}, {&anything, 1}, &listed);
   const WantedFacets wanted{{RandomDirection(), Uniform(-0.5, 0.9)},
@@ -137,7 +137,7 @@ void TestBlades() {
     X_AB.p = Uniform(0, 0.01) * RandomDirection();
     const PosedPair pair{blade.pieces[0], blade.pieces[0], X_AB};
     std::vector<DepthCandidate> all, listed;
-    ListCarriedFacets(pair, -1.0, &all);
+    ListSupportedFacetsByBruteForce(pair, -1.0, &all);
     const WantedFacets anything{{Vec3::UnitX(), -1.0}, -1.0};
     ListSupportedFacets(pair, {0, 0}, {&anything, 1}, &listed);
     for (const DepthCandidate& facet : all) {

@@ -16,7 +16,7 @@ from drake_haptics import _core
 T = 5e-3
 
 
-def pieces_of(mesh: trimesh.Trimesh) -> _core.Decomposition:
+def pieces_of(mesh: trimesh.Trimesh) -> _core.ConvexPieces:
     return _core.decompose_surface(
         mesh.vertices,
         mesh.faces.astype(np.int32),
@@ -75,7 +75,7 @@ def test_the_nearest_contact_is_the_distance_of_the_meshes() -> None:
     assert found > 10
 
 
-def swarm(rng: np.random.Generator, count: int) -> _core.Decomposition:
+def swarm(rng: np.random.Generator, count: int) -> _core.ConvexPieces:
     """Many convex bodies in one mesh."""
     bodies = [
         trimesh.convex.convex_hull(0.01 * rng.normal(size=(8, 3)) + center)
@@ -132,7 +132,7 @@ def test_warm_and_cold_answers_agree_while_apart() -> None:
     assert compared > 50
 
 
-def strip_plate(xs: np.ndarray) -> _core.Decomposition:
+def strip_plate(xs: np.ndarray) -> _core.ConvexPieces:
     """A closed plate 10 mm thick whose long sides are cut at xs, a flat piece each."""
     section = np.array([[-25, -5], [25, -5], [25, 5], [-25, 5]]) * 1e-3
     vertices = np.array([[x, y, z] for x in xs for y, z in section])
@@ -255,7 +255,7 @@ def test_a_bad_pose_changes_nothing_and_a_copy_goes_its_own_way() -> None:
     q = pose([0, 0, 0.501])
     before = tracker.query(q)
     for bad in (np.full(7, np.nan), np.zeros(7), pose([np.inf, 0, 0])):
-        with pytest.raises(ValueError, match="X_WTool"):
+        with pytest.raises(ValueError, match="X_WT"):
             tracker.query(bad)
     twin = copy.deepcopy(tracker)
     twin.query(pose([0, 0, 5.0]))
@@ -351,7 +351,7 @@ def test_a_query_reaches_no_farther_than_its_tracker(bad: float) -> None:
         tracker.query(IDENTITY, bad)
 
 
-def slab(half_m: list[float], center_m: list[float]) -> _core.Decomposition:
+def slab(half_m: list[float], center_m: list[float]) -> _core.ConvexPieces:
     mesh = trimesh.creation.box(2.0 * np.array(half_m))
     mesh.apply_translation(center_m)
     return pieces_of(mesh)

@@ -30,7 +30,7 @@ from drake_haptics import (
     load_mesh,
 )
 from drake_haptics.geometry.mesh.mesh import Mesh
-from drake_haptics.scene.schema import Contact
+from drake_haptics.scene.schema import ContactParameters
 
 TILTS = [0.0, 1e-9, 1e-6, 1e-5, 1e-4, 1e-3]
 FLOOR_M = 0.003
@@ -185,7 +185,7 @@ def test_first_after_a_step_and_global_agree(name):
 def test_a_box_that_skips_the_skin_lands_on_the_floor(tmp_path):
     """A plant's step carries it past the tolerance: it lands, and gains no energy."""
     mass, half_m, stiffness, start_m, speed = 0.1, 0.01, 5e3, 2e-3, 0.3
-    contact = Contact(
+    contact = ContactParameters(
         tolerance_m=1e-5, stiffness_N_per_m=stiffness, damping_Ns_per_m=10.0
     )
     path = tmp_path / "tray.obj"

@@ -18,7 +18,7 @@ from drake_haptics import (
     decompose,
     load_mesh,
 )
-from drake_haptics._core import ConvexPolytope, Decomposition, decompose_surface
+from drake_haptics._core import ConvexPieces, ConvexPolytope, decompose_surface
 from drake_haptics.geometry.mesh.mesh import Mesh
 
 T = 1e-3
@@ -42,17 +42,17 @@ def sphere(rng: np.random.Generator, count: int, radius: float) -> np.ndarray:
     return radius * points / np.linalg.norm(points, axis=1)[:, None]
 
 
-def polytope(decomposition: Decomposition) -> ConvexPolytope:
+def polytope(decomposition: ConvexPieces) -> ConvexPolytope:
     (piece,) = decomposition.pieces
     return piece
 
 
-def model(name: str) -> Decomposition:
+def model(name: str) -> ConvexPieces:
     return decompose(load_mesh(MODELS / name)).core
 
 
 @pytest.fixture(scope="module")
-def bodies() -> list[Decomposition]:
+def bodies() -> list[ConvexPieces]:
     rng = np.random.default_rng(1)
     return [
         box(CUBE),
@@ -63,7 +63,7 @@ def bodies() -> list[Decomposition]:
 
 
 def test_the_global_depth_of_two_solids_is_that_of_a_pair(
-    bodies: list[Decomposition],
+    bodies: list[ConvexPieces],
 ) -> None:
     rng = np.random.default_rng(2)
     overlaps = 0

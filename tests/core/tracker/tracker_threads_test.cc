@@ -38,12 +38,12 @@ std::vector<double> Distances(ContactTracker tracker) {
   ContactSet found;
   for (int k = 0; k < 150; ++k) {
     const double t = 0.02 * k;
-    Pose X_WTool;
-    X_WTool.R =
+    Pose X_WT;
+    X_WT.R =
         Eigen::AngleAxisd(t, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-    X_WTool.p = Vec3(0.03 * std::sin(2 * t), 0, k % 50 == 49 ? 1 : 0.03);
+    X_WT.p = Vec3(0.03 * std::sin(2 * t), 0, k % 50 == 49 ? 1 : 0.03);
     tracker.SetObjectPose(1, {Mat3::Identity(), Vec3(0, 0.01 * t, 0)});
-    tracker.Query(X_WTool, &found);
+    tracker.Query(X_WT, &found);
     for (const Contact& contact : found.contacts) {
       distances.push_back(contact.distance);
     }

@@ -20,7 +20,7 @@ RAMP_IN_S, RAMP_OUT_S = 0.2, 0.02
 
 def command(force):
     return DeviceCommand(
-        F_BH=np.array([0.1, 0.2, 0.3, *force]), X_BH=np.zeros(7), V_BH=np.zeros(6)
+        F_Ho_B=np.array([0.1, 0.2, 0.3, *force]), X_BH=np.zeros(7), V_BH=np.zeros(6)
     )
 
 
@@ -84,7 +84,7 @@ def test_force_ramps_in_and_is_what_was_asked():
     scale = np.minimum(np.arange(300) / (1e3 * RAMP_IN_S), 1.0)
     assert shown == pytest.approx(np.outer(scale, [0.0, 1.0, -1.0]), abs=1e-9)
     assert talk.state == (GateState.ACTIVE, Fault.NONE)
-    assert talk.reading.F_BH == pytest.approx([0.0, 0.0, 0.0, 0.0, 1.0, -1.0])
+    assert talk.reading.F_Ho_B == pytest.approx([0.0, 0.0, 0.0, 0.0, 1.0, -1.0])
     assert talk.reading.sequence == 301
 
 
@@ -159,7 +159,7 @@ def test_when_nothing_usable_comes_the_device_is_at_fault(text):
         shown.append(talk.tick(text))
     assert shown[-1] is None
     assert talk.state == (GateState.FAULT, Fault.DEVICE)
-    assert not talk.reading.F_BH.any()
+    assert not talk.reading.F_Ho_B.any()
     assert not talk.reading.V_BH.any()
     check_comes_back_when_wanted(talk)
 

@@ -48,7 +48,7 @@ def press(device, stiffness=STIFFNESS_N_PER_M):
     force = [0.0, 0.0, max(-stiffness * reading.X_BH[6], 0.0)]
     device.write(
         DeviceCommand(
-            F_BH=np.array([0.0, 0.0, 0.0, *force]),
+            F_Ho_B=np.array([0.0, 0.0, 0.0, *force]),
             X_BH=reading.X_BH,
             V_BH=reading.V_BH,
         )
@@ -68,7 +68,7 @@ def test_closed_loop_against_a_floor():
             wait_until(
                 lambda: (
                     is_in(device, GateState.ACTIVE)
-                    and abs(device.read().F_BH[5] - 1.0) < 0.01
+                    and abs(device.read().F_Ho_B[5] - 1.0) < 0.01
                     and abs(mass.p[2] + 1.0 / STIFFNESS_N_PER_M) < 1e-5
                     and abs(mass.v[2]) < 1e-5
                 ),
@@ -124,7 +124,7 @@ def test_a_service_that_went_is_felt_again_only_when_it_is_wanted(how):
                 lambda: press(device),
             )
             count = len(mass.forces)
-            assert not device.read().F_BH.any()
+            assert not device.read().F_Ho_B.any()
             service.start() if how == "restarted" else service.answers.set()
             # A first answer after the silence, then more.
             wait_until(lambda: len(mass.forces) > count + 100, lambda: press(device))
@@ -269,5 +269,5 @@ def test_arguments_out_of_range(argument, value):
 
 def test_what_is_not_a_wrench_is_refused():
     with make_service() as service, open_device(service) as device:
-        with pytest.raises(ValueError, match=r"F_BH must be \(6,\), is \(3,\)"):
+        with pytest.raises(ValueError, match=r"F_Ho_B must be \(6,\), is \(3,\)"):
             device.write(DeviceCommand(np.zeros(3), np.zeros(7), np.zeros(6)))

@@ -39,7 +39,7 @@ REST = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 def command(force):
     return DeviceCommand(
-        F_BH=np.array([0.0, 0.0, 0.0, force, 0.0, 0.0]),
+        F_Ho_B=np.array([0.0, 0.0, 0.0, force, 0.0, 0.0]),
         X_BH=np.array(REST),
         V_BH=np.zeros(6),
     )
@@ -86,7 +86,7 @@ class Loop:
             reading = self.device.read()
             x = 0.0 if reading is None else reading.X_BH[4]
             reading = self.tick(push_N - STIFFNESS_N_PER_M * x)
-            shown.append(0.0 if reading is None else np.linalg.norm(reading.F_BH[3:]))
+            shown.append(0.0 if reading is None else np.linalg.norm(reading.F_Ho_B[3:]))
         return np.array(shown)
 
     @property
@@ -111,7 +111,7 @@ def test_closed_loop_with_a_spring():
     reading = loop.device.read()
     assert loop.state == (GateState.ACTIVE, Fault.NONE)
     assert reading.X_BH[4] == pytest.approx(1.0 / STIFFNESS_N_PER_M, rel=1e-6)
-    assert reading.F_BH == pytest.approx(np.zeros(6), abs=1e-6)
+    assert reading.F_Ho_B == pytest.approx(np.zeros(6), abs=1e-6)
     assert shown.max() <= MAX_FORCE_N
     link = loop.device.get_link_status()
     assert link.received == reading.sequence >= 3000
@@ -149,7 +149,7 @@ def test_a_wrench_that_is_not_finite_is_a_fault():
     loop.tick(math.nan)
     loop.press(5)
     assert loop.state == (GateState.FAULT, Fault.NOT_FINITE)
-    assert not loop.device.read().F_BH.any()
+    assert not loop.device.read().F_Ho_B.any()
 
 
 def test_a_device_that_starts_again_shows_nothing_before_somebody_wants_it():
@@ -182,7 +182,7 @@ def test_a_device_that_says_nothing_is_at_fault_until_somebody_wants_it():
     before = loop.device.read()
     silent = fall_silent(loop)
     assert (silent.gate, silent.fault) == (GateState.FAULT, Fault.DEVICE)
-    assert not silent.F_BH.any()
+    assert not silent.F_Ho_B.any()
     assert not silent.V_BH.any()
     assert silent.X_BH is before.X_BH
     assert silent.sequence == before.sequence
@@ -276,7 +276,7 @@ def test_what_a_status_says_is_what_is_read():
     assert reading.time_s == 1.5
     assert reading.X_BH == pytest.approx([0.5, 0.5, -0.5, 0.5, 0.1, 0.2, 0.3])
     assert reading.V_BH.tolist() == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
-    assert reading.F_BH.tolist() == [6.0, 5.0, 4.0, 3.0, 2.0, 1.0]
+    assert reading.F_Ho_B.tolist() == [6.0, 5.0, 4.0, 3.0, 2.0, 1.0]
     assert (reading.buttons, reading.gate, reading.fault) == (5, 2, 3)
 
 
@@ -314,5 +314,5 @@ def test_arguments_out_of_range():
     for wrong in (0.0, -1.0, 11.0, math.nan):
         with pytest.raises(ValueError, match="ttl_s must be in"):
             LcmDevice(DrakeLcm("memq://"), ttl_s=wrong)
-    with pytest.raises(ValueError, match=r"F_BH must be \(6,\), is \(3,\)"):
+    with pytest.raises(ValueError, match=r"F_Ho_B must be \(6,\), is \(3,\)"):
         Loop().device.write(DeviceCommand(np.zeros(3), np.zeros(7), np.zeros(6)))

@@ -26,5 +26,5 @@ def test_peers_get_the_motion_and_the_truth_of_the_study(monkeypatch):
     with_peers = module.add_peers(study, scene)
     assert with_peers == replace(study, peers=make_peers())
     ((motion, truth),) = asked
-    np.testing.assert_array_equal(motion.X_WTool, record_motion(scene, 0.04).X_WTool)
+    np.testing.assert_array_equal(motion.X_WT, record_motion(scene, 0.04).X_WT)
     assert len(motion) == 40 and truth.tolerance_m == 3e-3

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from accuracy_samples import make_row, make_study
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.accuracy.budget import (
     Trial,
     choose_setting,
@@ -175,7 +175,7 @@ def test_an_impossible_budget_is_told(scene):
 def test_what_cannot_be_run_holds_nothing(scene):
     def run(changed):
         if changed.tool.decomposition == "hull" and changed.effects.shading is not None:
-            raise UserError("the hull is flat")
+            raise HapticsError("the hull is flat")
         return Machine()(changed)
 
     choice = choose(scene, 100.0, run)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from box_scenes import over_a_plate
 
-from drake_haptics.analysis.held_loop import analyse_held_scene
+from drake_haptics.analysis.held_loop import analyze_held_scene
 from drake_haptics.analysis.held_scene import hold_scene
 from drake_haptics.evaluation.accuracy import closed_loop
 from drake_haptics.evaluation.accuracy.closed_loop import (
@@ -65,10 +65,10 @@ def test_motions_die_out_below_the_limit_and_grow_above(tmp_path):
     # From anywhere; here from where it is a little too stiff.
     place = PressedPlace(0.3, 1e6)
     found = find_stable_stiffness(scene, place)
-    assert found.why_not == ""
+    assert found.failure_reason == ""
     held = hold_scene(scene, place.time_s)
     below, above = (
-        analyse_held_scene(
+        analyze_held_scene(
             held,
             dataclasses.replace(
                 scene.coupling, stiffness_N_per_m=share * found.stiffness_N_per_m
@@ -82,17 +82,20 @@ def test_motions_die_out_below_the_limit_and_grow_above(tmp_path):
 def test_the_pressed_place_is_where_the_tool_is_pressed(tmp_path):
     place = find_pressed_place(over_a_plate(tmp_path, PRESS))
     # Before 0.05 s it is farther than the tolerance.
-    assert place.why_not == "" and 0.05 < place.time_s <= 0.3
+    assert place.failure_reason == "" and 0.05 < place.time_s <= 0.3
 
 
 def test_says_why_there_is_no_limit(tmp_path):
     scene = over_a_plate(tmp_path, PRESS)
     nowhere = find_stable_stiffness(
-        scene, PressedPlace(None, why_not="it rocks for ever")
+        scene, PressedPlace(None, failure_reason="it rocks for ever")
     )
-    assert nowhere.stiffness_N_per_m is None and nowhere.why_not == "it rocks for ever"
+    assert (
+        nowhere.stiffness_N_per_m is None
+        and nowhere.failure_reason == "it rocks for ever"
+    )
     late = find_stable_stiffness(scene, PressedPlace(7.0))
-    assert late.stiffness_N_per_m is None and "time_s must be on" in late.why_not
+    assert late.stiffness_N_per_m is None and "time_s must be on" in late.failure_reason
 
 
 def test_a_loop_of_two_rates_has_no_limit_that_could_be_told(tmp_path):
@@ -100,4 +103,4 @@ def test_a_loop_of_two_rates_has_no_limit_that_could_be_told(tmp_path):
     scene.contact.query_rate_hz = 500.0
     found = find_stable_stiffness(scene, PressedPlace(0.3, 1e5))
     assert found.stiffness_N_per_m is None
-    assert "another rate than the tick's" in found.why_not
+    assert "another rate than the tick's" in found.failure_reason

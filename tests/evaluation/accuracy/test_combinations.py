@@ -86,7 +86,7 @@ NEVER = {
     "no saving": make_row("x", "g", 99.0, 1.0, 0.0, tool__decomposition="hull"),
     "no scene": make_row("x", "h", 50.0, 1.0, 0.0, tool__decomposition="hull",
                          contact__cluster_size_m=1.0),
-    "no figures": Row(Setting("x", "i", {}), False, None, None, why_not="none"),
+    "no figures": Row(Setting("x", "i", {}), False, None, None, failure_reason="none"),
 }  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from drake_haptics.evaluation.accuracy.costs import (
-    build_once,
+    cached_build,
     combine,
     make_native_part,
     time_native,
@@ -18,7 +18,7 @@ from drake_haptics.evaluation.accuracy.study import list_timing_tasks
 from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import Braking, Material
+from drake_haptics.scene.schema import BrakingParameters, Material
 
 
 def test_of_several_runs_each_figure_is_the_middle():
@@ -67,26 +67,26 @@ def _load(clustering):
 def test_the_native_part_gives_the_loops_wrench(clustering, changes):
     scene = Setting("", "", changes).apply(_load(clustering))
     motion = record_motion(_load(clustering), 0.7)
-    part = make_native_part(build_once(scene))
+    part = make_native_part(cached_build(scene))
     search, cluster, force = (
         part.make_search(),
         part.make_clustering(),
         part.make_force(),
     )
     wrenches = []
-    for X, V in zip(motion.X_WTool, motion.V_WTool, strict=True):
+    for X, V in zip(motion.X_WT, motion.V_WT, strict=True):
         found, _ = search.look(X)
         contacts = search.carry(found, X)
-        wrenches.append(force(cluster(contacts), X[4:], V).F_Tool_W)
-    expected = replay_tool(scene, motion).F_Tool_W
+        wrenches.append(force(cluster(contacts), X[4:], V).F_To_W)
+    expected = replay_tool(scene, motion).F_To_W
     assert np.abs(expected).max() > 0.1
     np.testing.assert_allclose(wrenches, expected, rtol=1e-12, atol=1e-12)
 
 
 def test_the_native_part_looks_as_far_as_braking_does():
     scene = _load("shared")
-    scene.effects.braking = Braking(distance_m=7e-3)
-    assert make_native_part(build_once(scene)).search_m == 7e-3
+    scene.effects.braking = BrakingParameters(distance_m=7e-3)
+    assert make_native_part(cached_build(scene)).search_m == 7e-3
 
 
 def test_a_slower_loop_is_timed_at_its_own_ticks():
@@ -94,10 +94,10 @@ def test_a_slower_loop_is_timed_at_its_own_ticks():
     motion = record_motion(scene, 0.1)
     slow = motion.sample(4e-3)
     assert len(slow) == 25 and slow.period_s == 4e-3
-    np.testing.assert_array_equal(slow.X_WTool, motion.X_WTool[::4])
+    np.testing.assert_array_equal(slow.X_WT, motion.X_WT[::4])
     fast = motion.sample(0.5e-3)
-    np.testing.assert_array_equal(fast.X_WTool, motion.X_WTool)
-    times = time_native(make_native_part(build_once(scene)), slow)
+    np.testing.assert_array_equal(fast.X_WT, motion.X_WT)
+    times = time_native(make_native_part(cached_build(scene)), slow)
     assert 0.0 <= times.median_us <= times.p99_us <= times.p99_9_us
 
 
@@ -105,7 +105,7 @@ def test_a_slower_loop_is_timed_at_its_own_ticks():
 def test_only_what_the_contacts_take_is_counted():
     scene = _load("shared")
     motion = record_motion(scene, 0.7)
-    part = make_native_part(build_once(scene))
+    part = make_native_part(cached_build(scene))
     touching = slice(650, 670)
-    X, V = motion.X_WTool[touching], motion.V_WTool[touching]
+    X, V = motion.X_WT[touching], motion.V_WT[touching]
     assert 1e3 < count_native(part, X, V) < 1e7

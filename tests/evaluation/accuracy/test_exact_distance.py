@@ -29,16 +29,16 @@ def _make_haptic(folder):
 def test_is_the_least_of_all_pairs(tmp_path):
     haptic = _make_haptic(tmp_path)
     rng = np.random.default_rng(5)
-    X_WTool = np.hstack(
+    X_WT = np.hstack(
         [rng.normal(size=(40, 4)), rng.uniform(-1, 1, (40, 3)) * [0.05, 0.05, 0.03]]
     )
-    X_WTool[:, :4] /= np.linalg.norm(X_WTool[:, :4], axis=1)[:, np.newaxis]
-    found = calc_exact_distance(haptic, X_WTool)
+    X_WT[:, :4] /= np.linalg.norm(X_WT[:, :4], axis=1)[:, np.newaxis]
+    found = calc_exact_distance(haptic, X_WT)
     X_WO = haptic.scene.environment[0].pose.to_rigid_transform().GetAsMatrix4()
     pieces = haptic.environment[0].pieces
     assert len(pieces) == 2
     (cube,) = haptic.tool.pieces
-    for X, distance in zip(X_WTool, found, strict=True):
+    for X, distance in zip(X_WT, found, strict=True):
         a_W = place(cube.vertices, vector_to_pose(X).GetAsMatrix4())
         exact = min(signed_distance(a_W, place(B.vertices, X_WO)) for B in pieces)
         if exact < 5e-3:
@@ -50,9 +50,9 @@ def test_is_the_least_of_all_pairs(tmp_path):
 
 def test_does_not_remember_the_way(tmp_path):
     haptic = _make_haptic(tmp_path)
-    X_WTool = np.zeros((30, 7))
-    X_WTool[:, 0] = 1.0
-    X_WTool[:, 6] = np.linspace(0.03, -0.03, 30)
-    there = calc_exact_distance(haptic, X_WTool)
-    back = calc_exact_distance(haptic, X_WTool[::-1])[::-1]
+    X_WT = np.zeros((30, 7))
+    X_WT[:, 0] = 1.0
+    X_WT[:, 6] = np.linspace(0.03, -0.03, 30)
+    there = calc_exact_distance(haptic, X_WT)
+    back = calc_exact_distance(haptic, X_WT[::-1])[::-1]
     np.testing.assert_allclose(there, back, atol=1e-15)

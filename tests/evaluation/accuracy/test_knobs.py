@@ -15,7 +15,7 @@ from drake_haptics.evaluation.accuracy.knobs import (
 )
 from drake_haptics.scene.library import find_scene, list_scenes
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import Gravity, Scene
+from drake_haptics.scene.schema import GravityParameters, Scene
 from drake_haptics.scene.validation import check_values
 
 SCENES = list(list_scenes())
@@ -136,7 +136,7 @@ def test_values_of_ones_own_are_among_the_settings():
     scene.device.tick_budget_us = 300.0
     scene.tool.max_triangles = 100
     scene.tool.decomposition, scene.tool.decomposition_error_m = "merged", 2e-4
-    scene.effects.gravity = Gravity([0.0, 1.0, -3.0])
+    scene.effects.gravity = GravityParameters([0.0, 1.0, -3.0])
     for knob in KNOBS:
         settings = knob.list_settings(scene)
         if settings:

@@ -4,7 +4,7 @@ import shlex
 
 import pytest
 
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.accuracy.setting import (
     Setting,
     apply_checked,
@@ -53,12 +53,12 @@ def test_a_known_setting_brings_its_words():
 
 @pytest.mark.parametrize("words", [["contact.depth"], ["=3"], ["scene", "a=1"], [""]])
 def test_a_word_that_is_no_setting(words):
-    with pytest.raises(UserError, match="is not KEY=VALUE"):
+    with pytest.raises(HapticsError, match="is not KEY=VALUE"):
         parse_setting(words)
 
 
 def test_a_key_that_is_there_twice():
-    with pytest.raises(UserError, match=r"contact\.depth is given twice"):
+    with pytest.raises(HapticsError, match=r"contact\.depth is given twice"):
         parse_setting(["contact.depth=global", "contact.depth=tracked"])
 
 
@@ -76,7 +76,7 @@ def test_a_key_that_is_there_twice():
     ],
 )
 def test_a_setting_that_makes_no_scene(scene, word, complaint):
-    with pytest.raises(UserError, match=complaint):
+    with pytest.raises(HapticsError, match=complaint):
         apply_checked(parse_setting([word]), scene)
 
 
@@ -90,7 +90,7 @@ def test_a_setting_is_applied_to_a_copy(scene):
 
 def test_an_effect_that_the_scene_leaves_out_is_to_be_given_whole():
     bare = load_scene(find_scene("sphere_pen"))
-    with pytest.raises(UserError, match=r"has no effects\.friction; .*as a whole"):
+    with pytest.raises(HapticsError, match=r"has no effects\.friction; .*as a whole"):
         apply_checked(parse_setting(["effects.friction.coefficient=0.3"]), bare)
     whole = parse_setting(['effects.friction={"coefficient": 0.3}'])
     assert apply_checked(whole, bare).effects.friction.coefficient == 0.3

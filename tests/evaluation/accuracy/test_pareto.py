@@ -121,7 +121,7 @@ def test_errors_below_the_floor_are_alike():
 
 
 def test_what_was_not_measured_is_not_on_the_front():
-    missing = Row(Setting("a", "b"), False, None, None, why_not="not installed")
+    missing = Row(Setting("a", "b"), False, None, None, failure_reason="not installed")
     row = make_row("a", "c", 1.0, 1.0, 1.0)
     assert find_front(make_study(missing, row)).rows == (row,)
     with pytest.raises(ValueError, match="b was not measured: not installed"):

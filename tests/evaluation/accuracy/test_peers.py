@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.evaluation.accuracy.peers.problem import (
     PeerAnswers,
     PeerProblem,
@@ -25,10 +25,10 @@ from drake_haptics.evaluation.accuracy.peers.run import (
 from drake_haptics.evaluation.accuracy.recorded_motion import RecordedMotion
 from drake_haptics.evaluation.accuracy.truth import Truth
 from drake_haptics.scene.schema import (
-    Contact,
+    ContactParameters,
     EnvironmentObject,
-    Friction,
-    Gravity,
+    FrictionParameters,
+    GravityParameters,
     Scene,
     Tool,
     Waypoint,
@@ -48,7 +48,7 @@ def _scene(folder: Path, tool: trimesh.Trimesh) -> Scene:
     scene = Scene(
         tool=Tool(mesh=str(folder / "tool.obj"), scale=1.0),
         environment=[EnvironmentObject("block", str(folder / "block.obj"))],
-        contact=Contact(_TOLERANCE_M, _STIFFNESS, 0.0),
+        contact=ContactParameters(_TOLERANCE_M, _STIFFNESS, 0.0),
     )
     scene.hand.path.waypoints = [Waypoint(0.0, [0.0, 0.0, 0.1])]
     return scene
@@ -57,14 +57,14 @@ def _scene(folder: Path, tool: trimesh.Trimesh) -> Scene:
 def _problem(folder: Path, tool: trimesh.Trimesh) -> tuple[PeerProblem, np.ndarray]:
     """The tool going down into the block, and how deep its lowest point is (n,), m."""
     depth = np.linspace(-1e-4, _DEEPEST_M, _TICKS)
-    X_WTool = np.zeros((_TICKS, 7))
-    X_WTool[:, 0] = 1.0
+    X_WT = np.zeros((_TICKS, 7))
+    X_WT[:, 0] = 1.0
     # Not in the middle: ties between directions are no closed form.
-    X_WTool[:, 4:6] = 0.011, -0.007
-    X_WTool[:, 6] = _TOP_M - depth - tool.vertices[:, 2].min()
+    X_WT[:, 4:6] = 0.011, -0.007
+    X_WT[:, 6] = _TOP_M - depth - tool.vertices[:, 2].min()
     rest = np.zeros((_TICKS, 6))
-    motion = RecordedMotion(1e-3, X_WTool, rest, X_WTool, rest)
-    haptic = build_quietly(_scene(folder, tool))
+    motion = RecordedMotion(1e-3, X_WT, rest, X_WT, rest)
+    haptic = build_without_scene_warnings(_scene(folder, tool))
     return make_peer_problem(haptic, motion, _truth(depth)), depth
 
 
@@ -105,7 +105,7 @@ def test_a_box_on_a_box_is_one_spring(
     answers = _answer(method, problem)
     wanted = _truth(depth).F_Tcm_W[:, 3:]
     np.testing.assert_allclose(
-        answers.F_Tool_W[:, 3:], wanted, rtol=0, atol=0.02 * wanted.max()
+        answers.F_To_W[:, 3:], wanted, rtol=0, atol=0.02 * wanted.max()
     )
     if np.isfinite(answers.distance).any():
         pressed = depth > 0.0
@@ -126,7 +126,7 @@ def test_a_ball_on_a_plane_is_one_spring_at_its_lowest_corner(
     answers = _answer(method, problem)
     truth = _truth(depth)
     bound = 0.02 * truth.F_Tcm_W.max()
-    np.testing.assert_allclose(answers.F_Tool_W, truth.F_Tcm_W, rtol=0, atol=bound)
+    np.testing.assert_allclose(answers.F_To_W, truth.F_Tcm_W, rtol=0, atol=bound)
     pressed = depth > 0.0
     np.testing.assert_allclose(
         answers.distance[pressed], -depth[pressed], rtol=0, atol=1e-6
@@ -139,7 +139,7 @@ def test_the_modulus_makes_forces_like_the_references(
     problem, _ = box
     hull = next(m for m in METHODS if m.function == "answer_with_hull").load()
     once, twice = hull(problem), hull(replace(problem, f_W=2.0 * problem.f_W))
-    np.testing.assert_allclose(twice.F_Tool_W, 2.0 * once.F_Tool_W, rtol=1e-12)
+    np.testing.assert_allclose(twice.F_To_W, 2.0 * once.F_To_W, rtol=1e-12)
     with pytest.raises(ValueError, match="against the reference's"):
         hull(replace(problem, f_W=-problem.f_W))
 
@@ -147,14 +147,14 @@ def test_the_modulus_makes_forces_like_the_references(
 def test_rows_have_figures_or_say_why_not(tmp_path: Path) -> None:
     scene = _scene(tmp_path, trimesh.creation.box([0.02, 0.03, 0.04]))
     # An effect that no library has: the truth is found again without it.
-    scene.effects.gravity = Gravity()
-    scene.effects.friction = Friction()
+    scene.effects.gravity = GravityParameters()
+    scene.effects.friction = FrictionParameters()
     scene.environment[0].material.friction_coefficient = 0.5
     depth = np.linspace(-1e-4, _DEEPEST_M, _TICKS)
-    X_WTool = np.tile([1.0, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0], (_TICKS, 1))
-    X_WTool[:, 6] = 2 * _TOP_M - depth
+    X_WT = np.tile([1.0, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0], (_TICKS, 1))
+    X_WT[:, 6] = 2 * _TOP_M - depth
     rest = np.zeros((_TICKS, 6))
-    motion = RecordedMotion(1e-3, X_WTool, rest, X_WTool, rest)
+    motion = RecordedMotion(1e-3, X_WT, rest, X_WT, rest)
     seen: list[float] = []
     weighed = replace(_truth(depth), F_Tcm_W=np.ones((_TICKS, 6)))
     rows = run_peers(
@@ -164,7 +164,7 @@ def test_rows_have_figures_or_say_why_not(tmp_path: Path) -> None:
     for row, method in zip(rows, METHODS, strict=True):
         assert row.library.startswith(method.library)
         assert row.method.startswith(method.words)
-        assert (row.native is None) == (row.errors is None) == bool(row.why_not)
+        assert (row.native is None) == (row.errors is None) == bool(row.failure_reason)
         if row.errors is not None:
             assert row.errors.force_max_N < 0.02 * _STIFFNESS * _DEEPEST_M
             assert np.isnan(row.errors.energy_created_J)
@@ -175,9 +175,9 @@ def test_what_fails_says_why(box: tuple[PeerProblem, np.ndarray]) -> None:
     absent = PeerMethod("abacus", "no-such-abacus", "with_abacus", "answer", "beads")
     row = run_peer(absent, problem, _truth(depth))
     assert row.library == "abacus" and row.native is row.errors is None
-    assert row.why_not == "no-such-abacus is not installed"
+    assert row.failure_reason == "no-such-abacus is not installed"
     broken = replace(absent, package="numpy")
-    assert "with_abacus" in run_peer(broken, problem, _truth(depth)).why_not
+    assert "with_abacus" in run_peer(broken, problem, _truth(depth)).failure_reason
 
 
 def test_drake_has_one_stiffness_for_a_surface(
@@ -187,4 +187,4 @@ def test_drake_has_one_stiffness_for_a_surface(
     part = replace(problem.part, stiffness_N_per_m=np.array([1e3, 2e3]))
     on_pieces = next(m for m in METHODS if m.function == "answer_on_pieces")
     row = run_peer(on_pieces, replace(problem, part=part), _truth(depth))
-    assert row.errors is None and "differ in stiffness" in row.why_not
+    assert row.errors is None and "differ in stiffness" in row.failure_reason

@@ -12,7 +12,7 @@ from drake_haptics.evaluation.accuracy.recorded_motion import (
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.scene.schema import HandPath
+from drake_haptics.scene.schema import HandPathParameters
 from drake_haptics.simulation.run import make_simulator
 
 
@@ -30,15 +30,15 @@ def test_has_a_row_for_each_tick(scene, motion):
     assert len(motion) == 300
     assert motion.period_s == 1.0 / scene.device.rate_hz
     np.testing.assert_allclose(motion.times_s, np.arange(300) / 1000.0, atol=1e-12)
-    for X in (motion.X_WTool, motion.X_WH):
+    for X in (motion.X_WT, motion.X_WH):
         assert X.shape == (300, 7)
         np.testing.assert_allclose(np.linalg.norm(X[:, :4], axis=1), 1.0, atol=1e-9)
-    assert motion.V_WTool.shape == motion.V_WH.shape == (300, 6)
+    assert motion.V_WT.shape == motion.V_WH.shape == (300, 6)
 
 
 def test_is_the_same_again(scene, motion):
     again = record_motion(scene, 0.3)
-    np.testing.assert_array_equal(again.X_WTool, motion.X_WTool)
+    np.testing.assert_array_equal(again.X_WT, motion.X_WT)
     np.testing.assert_array_equal(again.V_WH, motion.V_WH)
 
 
@@ -47,8 +47,8 @@ def test_is_where_a_simulator_has_tool_and_handle(scene, motion):
     simulator = make_simulator(haptic)
     simulator.AdvanceTo(0.25)
     for port, X_WF in [
-        (haptic.loop.haptic_tool.get_pose_output_port(), motion.X_WTool[249]),
-        (haptic.loop.device.get_handle_pose_output_port(), motion.X_WH[249]),
+        (haptic.loop.haptic_tool.GetOutputPort("X_WT"), motion.X_WT[249]),
+        (haptic.loop.device.GetOutputPort("X_WH"), motion.X_WH[249]),
     ]:
         context = port.get_system().GetMyContextFromRoot(simulator.get_context())
         np.testing.assert_allclose(port.Eval(context), X_WF, atol=1e-12)
@@ -57,8 +57,8 @@ def test_is_where_a_simulator_has_tool_and_handle(scene, motion):
 def test_velocity_is_the_change_of_the_pose(motion):
     # Linearized backward Euler: the tick's displacement is the period times the
     # velocity at its end.
-    moved = np.diff(motion.X_WTool[:, 4:], axis=0)
-    v = motion.V_WTool[1:, 3:]
+    moved = np.diff(motion.X_WT[:, 4:], axis=0)
+    v = motion.V_WT[1:, 3:]
     np.testing.assert_allclose(moved, motion.period_s * v, atol=2e-6)
     assert np.abs(moved).max() > 2e-5
 
@@ -68,7 +68,7 @@ def test_a_long_lap_is_cut_and_a_hand_at_rest_is_watched(scene):
     assert choose_duration(scene, 0.4) == 0.4
     assert choose_duration(scene, 100.0) == lap_s
     still = copy.deepcopy(scene)
-    still.hand.path = HandPath(waypoints=[scene.hand.path.waypoints[0]])
+    still.hand.path = HandPathParameters(waypoints=[scene.hand.path.waypoints[0]])
     assert choose_duration(still, 0.4) == 0.4
 
 

@@ -7,7 +7,7 @@ import pytest
 from box_scenes import over_a_plate
 
 from drake_haptics.analysis.jobs.pool import SerialExecutor
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy
 from drake_haptics.evaluation.accuracy.knobs import AS_IT_IS
 from drake_haptics.evaluation.accuracy.setting import Setting
@@ -44,7 +44,9 @@ def study(scene):
 
 
 def _errors(study):
-    return [(row.setting, row.errors, row.pieces, row.why_not) for row in study.rows]
+    return [
+        (row.setting, row.errors, row.pieces, row.failure_reason) for row in study.rows
+    ]
 
 
 def test_has_the_scene_first_and_a_row_for_each_setting(study):
@@ -82,7 +84,7 @@ def test_costs_are_those_of_ticks(study):
 def test_a_setting_that_cannot_be_says_why(study):
     row = study.rows[-1]
     assert row.cost is None and row.errors is None
-    assert "tool.decomposition is 'cubes'" in row.why_not
+    assert "tool.decomposition is 'cubes'" in row.failure_reason
 
 
 def test_goes_through_json(study):
@@ -127,5 +129,5 @@ def test_tells_how_far_it_is(scene):
 
 def test_without_valgrind_it_says_so_at_once(scene, monkeypatch):
     monkeypatch.setattr(valgrind.shutil, "which", lambda name: None)
-    with pytest.raises(UserError, match="not installed"):
+    with pytest.raises(HapticsError, match="not installed"):
         _study(scene, count_instructions=True)

@@ -64,7 +64,7 @@ def test_round_off_is_zero_and_what_there_is_none_of_a_dash():
 
 
 def test_a_row_without_figures_has_dashes():
-    missing = replace(ROW, cost=None, why_not="not installed")
+    missing = replace(ROW, cost=None, failure_reason="not installed")
     assert set(cells_of(missing, make_study(ROW, missing)).values()) == {"–"}
 
 

@@ -52,13 +52,13 @@ def test_a_scene_that_is_the_reference_is_exact():
 
 def test_a_scene_without_figures_has_no_verdict():
     scene = make_row("the scene", "as it is", 150.0, 24.0, 1e-9, is_scene=True)
-    broken = replace(scene, cost=None, errors=None, why_not="it diverges")
+    broken = replace(scene, cost=None, errors=None, failure_reason="it diverges")
     words = describe_verdict(make_study(broken))
     assert words == ["The scene as it is could not be measured."]
     assert describe_missing(make_study(broken)) == ["the scene as it is: it diverges"]
 
 
-def test_a_knee_is_compared_with_the_scene_and_its_neighbours():
+def test_a_knee_is_compared_with_the_scene_and_its_neighbors():
     (words,) = describe_knees(STUDY)
     # 2.1 µs and 2.4 N on one side: 5.9 µs for 1.68 decades; 24 µs and 4 mN on the
     # other: 16 µs for 1.10.

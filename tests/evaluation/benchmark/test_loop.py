@@ -75,16 +75,14 @@ def test_our_loop_repeats_the_recorded_run(
 ) -> None:
     course = courses[OURS]
     assert course.num_contacts[0] == 0 and course.num_contacts[-1] > 0
-    np.testing.assert_allclose(
-        course.X_WTool, problem.motion.X_WTool, rtol=0, atol=1e-9
-    )
+    np.testing.assert_allclose(course.X_WT, problem.motion.X_WT, rtol=0, atol=1e-9)
 
 
 def test_the_native_part_computes_what_the_whole_loop_does(
     courses: dict[str, LoopCourse],
 ) -> None:
     ours, native = courses[OURS], courses[NATIVE]
-    np.testing.assert_allclose(native.X_WTool, ours.X_WTool, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(native.X_WT, ours.X_WT, rtol=0, atol=1e-9)
     np.testing.assert_array_equal(native.num_contacts, ours.num_contacts)
     np.testing.assert_allclose(native.nearest_m, ours.nearest_m, rtol=0, atol=1e-9)
 
@@ -99,7 +97,7 @@ def test_others_are_pressed_with_a_like_force_at_a_like_place(
     pressed = ours.force_N > 0.75 * ours.force_N.max()
     assert theirs.num_contacts[pressed].min() > 0
     # They are pressed later, by the tolerance; both hands go on alike.
-    apart_m = np.linalg.norm(theirs.X_WTool[:, 4:] - ours.X_WTool[:, 4:], axis=1)
+    apart_m = np.linalg.norm(theirs.X_WT[:, 4:] - ours.X_WT[:, 4:], axis=1)
     assert apart_m.max() < 2e-3
     mean_N = theirs.force_N[pressed].mean()
     assert mean_N == pytest.approx(ours.force_N[pressed].mean(), rel=0.4)
@@ -108,8 +106,8 @@ def test_others_are_pressed_with_a_like_force_at_a_like_place(
 def test_every_loop_starts_anew_each_time(loops: dict[str, Loop]) -> None:
     for loop in loops.values():
         first = loop.observe()
-        assert len(loop.time()) == len(first.X_WTool)
-        np.testing.assert_array_equal(loop.observe().X_WTool, first.X_WTool)
+        assert len(loop.time()) == len(first.X_WT)
+        np.testing.assert_array_equal(loop.observe().X_WT, first.X_WT)
 
 
 def test_a_paced_loop_waits_for_the_clock_and_waiting_belongs_to_no_tick() -> None:

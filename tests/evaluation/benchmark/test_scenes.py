@@ -40,13 +40,13 @@ def problem() -> SceneProblem:
 
 
 def test_touches_start_apart_touch_lightly_and_stay_slow(problem) -> None:
-    for X_WTool in problem.motions:
-        steps = np.linalg.norm(np.diff(X_WTool[:, :3, 3], axis=0), axis=1)
-        R = X_WTool[:, :3, :3]
+    for X_WT in problem.motions:
+        steps = np.linalg.norm(np.diff(X_WT[:, :3, 3], axis=0), axis=1)
+        R = X_WT[:, :3, :3]
         turns = Rotation.from_matrix(np.swapaxes(R[:-1], 1, 2) @ R[1:]).magnitude()
         assert steps.max() * 1000 < 0.1 and turns.max() * 1000 < 1
         alone = SceneTracker(problem.tool, problem.objects[:1], 0.02)
-        trajectory = alone.query_trajectory(X_WTool)
+        trajectory = alone.query_trajectory(X_WT)
         assert 0.004 < trajectory[0].distance.min() <= 0.010 + 1e-9
         assert 0 > trajectory.distance.min() > -0.01
 
@@ -54,8 +54,8 @@ def test_touches_start_apart_touch_lightly_and_stay_slow(problem) -> None:
 def test_coal_finds_the_same_nearest_distance(problem) -> None:
     pytest.importorskip("coal")
     ours, theirs = DrakeHapticsScene(problem), CoalScene(problem)
-    for X_WTool in problem.motions:
-        mine, its = ours.run(X_WTool), theirs.run(X_WTool)
+    for X_WT in problem.motions:
+        mine, its = ours.run(X_WT), theirs.run(X_WT)
         apart = its.nearest_m > 0
         assert apart.any() and not apart.all()
         np.testing.assert_allclose(
@@ -86,7 +86,7 @@ class Scripted:
             np.array(contacts), np.full(len(contacts), -1e-3), np.array(seconds)
         )
 
-    def run(self, X_WTool: np.ndarray) -> SceneAnswers:
+    def run(self, X_WT: np.ndarray) -> SceneAnswers:
         """Gives the same answers whatever the motion."""
         return self._answers
 
@@ -112,8 +112,8 @@ def test_an_object_of_many_pieces_is_touched_too() -> None:
     V, F = l_prism()
     body = pieces(0.05 * V, F)
     tool = pieces(*box(size=(0.01, 0.01, 0.01)))
-    for X_WTool in make_touches(tool, body, 2, seed=3):
-        found = SceneTracker(tool, [body], 0.002).query_trajectory(X_WTool)
+    for X_WT in make_touches(tool, body, 2, seed=3):
+        found = SceneTracker(tool, [body], 0.002).query_trajectory(X_WT)
         assert found.distance.min() < 0
 
 

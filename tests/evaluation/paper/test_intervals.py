@@ -37,7 +37,7 @@ def test_known_intervals_are_found():
         ("DDDDPPDPPP", "DDDDPPPPPP"),
     ],
 )
-def test_intervals_that_are_too_short_are_joined_with_their_neighbours(given, told):
+def test_intervals_that_are_too_short_are_joined_with_their_neighbors(given, told):
     assert spell(find_intervals(signal(given), shortest=3)) == told
 
 

@@ -86,7 +86,7 @@ def test_ours_is_near_the_perfect_sphere(passed):
     assert smooth.crossing_step_m <= smooth.true_distance_step_m
 
 
-def test_the_corner_is_the_largest_between_neighbours(passed):
+def test_the_corner_is_the_largest_between_neighbors(passed):
     """By another library."""
     trimesh = pytest.importorskip("trimesh")
     sphere = make_sphere()

@@ -131,7 +131,7 @@ def follow_tool(haptic, seconds):
     """Returns the tool's poses as the simulator's monitor sees them."""
     from drake_haptics.simulation.run import run
 
-    port = haptic.loop.haptic_tool.get_pose_output_port()
+    port = haptic.loop.haptic_tool.GetOutputPort("X_WT")
     poses = []
 
     def note(context):

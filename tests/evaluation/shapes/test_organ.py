@@ -63,7 +63,7 @@ def test_it_is_folded_and_branches(organ, mesh):
 
 
 def test_it_is_curved_everywhere(mesh):
-    """Nothing flat: no two neighbours of more than a few share a plane."""
+    """Nothing flat: no two neighbors of more than a few share a plane."""
     flat = mesh.face_adjacency_angles < 1e-5
     assert flat.mean() < 0.01
 

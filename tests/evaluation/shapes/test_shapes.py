@@ -49,7 +49,7 @@ def test_one_component_of_the_right_genus(name):
 
 
 def test_vertices_are_manifold(name):
-    # Around each vertex the triangles form one fan: its neighbours are linked in a
+    # Around each vertex the triangles form one fan: its neighbors are linked in a
     # single cycle.
     triangles = SHAPES[name]().triangles
     links: dict[int, dict[int, int]] = {}
@@ -91,7 +91,7 @@ def test_convex_shapes_are_convex(name):
     assert (proud < 2e-9) == (name in CONVEX)
 
 
-def test_sizes_are_hand_sized_and_in_metres(name):
+def test_sizes_are_hand_sized_and_in_meters(name):
     extent = as_trimesh(SHAPES[name]()).extents.max()
     assert 0.05 < extent < 0.16
 
@@ -134,7 +134,7 @@ def test_shipped_files_are_what_the_code_makes(name):
     mesh = trimesh.load(str(shipped), process=False)
     surface = SHAPES[name]()
     np.testing.assert_array_equal(mesh.faces, surface.triangles)
-    # Another platform's sine may round the last nanometre differently.
+    # Another platform's sine may round the last nanometer differently.
     np.testing.assert_allclose(mesh.vertices, surface.vertices, atol=2e-9)
 
 

@@ -10,7 +10,7 @@ import pytest
 from mesh_samples import box, joined, l_prism, real_mesh
 
 from drake_haptics import SceneTracker
-from drake_haptics.common.errors import DecompositionFileError, UserError
+from drake_haptics.common.errors import DecompositionFileError, HapticsError
 from drake_haptics.geometry.decomposition import decompose as decomposition
 from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
 from drake_haptics.geometry.decomposition.storage import read_archive, write_archive
@@ -97,18 +97,18 @@ def test_without_coacd_the_error_says_what_to_install(monkeypatch):
     monkeypatch.setattr(
         "drake_haptics.geometry.decomposition.approximate.version", missing
     )
-    with pytest.raises(UserError, match=r"pip install 'drake_haptics\[coacd\]'"):
+    with pytest.raises(HapticsError, match=r"pip install 'drake_haptics\[coacd\]'"):
         decompose(Mesh.from_arrays(*box()), "coacd", cache=False)
 
 
 def test_an_unknown_method_is_refused():
-    with pytest.raises(UserError, match=r"'convex'.*surface, merged, hull, coacd"):
+    with pytest.raises(HapticsError, match=r"'convex'.*surface, merged, hull, coacd"):
         decompose(Mesh.from_arrays(*box()), "convex")
 
 
 @pytest.mark.parametrize("bad", [None, "cup.obj", box()])
 def test_what_is_no_mesh_is_refused(bad):
-    with pytest.raises(UserError, match=r"^mesh must be a Mesh, got .* load_mesh"):
+    with pytest.raises(HapticsError, match=r"^mesh must be a Mesh, got .* load_mesh"):
         decompose(bad)
 
 

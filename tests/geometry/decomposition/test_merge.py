@@ -14,7 +14,7 @@ from solid_surface import Overlap, Surface
 from surface_distance import distances
 
 from drake_haptics import _core
-from drake_haptics.common.errors import UserError
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.shapes import SHAPES
 from drake_haptics.geometry.decomposition.decompose import Decomposition, decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
@@ -197,7 +197,7 @@ def test_the_cache_tells_errors_apart(tmp_path, monkeypatch):
     ],
 )
 def test_an_error_goes_with_the_method(method, error_m, complaint):
-    with pytest.raises(UserError, match=complaint):
+    with pytest.raises(HapticsError, match=complaint):
         decompose(Mesh.from_arrays(*box()), method, error_m=error_m)
 
 

@@ -1,4 +1,4 @@
-"""The viewer: every facet drawn once, in its colour, on a page that stands alone."""
+"""The viewer: every facet drawn once, in its color, on a page that stands alone."""
 
 from contextlib import closing
 

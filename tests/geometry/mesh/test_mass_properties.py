@@ -1,4 +1,4 @@
-"""Centre of mass and inertia of meshes whose values are known."""
+"""Center of mass and inertia of meshes whose values are known."""
 
 import numpy as np
 import pytest

@@ -88,8 +88,8 @@ def test_holes_come_with_what_closes_them(count, words):
 
 
 @pytest.mark.parametrize(
-    ("metres", "text"),
+    ("meters", "text"),
     [(0, "0 m"), (1.5, "1.5 m"), (0.25, "250 mm"), (2e-3, "2 mm"), (5e-5, "50 µm")],
 )
-def test_length(metres, text):
-    assert length(metres) == text
+def test_length(meters, text):
+    assert length(meters) == text

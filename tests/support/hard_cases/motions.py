@@ -66,7 +66,7 @@ def over_an_edge() -> Iterator[Passage]:
 
 @hard_case("tight peg in hole")
 def peg() -> Iterator[Passage]:
-    """A peg beside each wall of a hole at micrometres of clearance, rocking in it."""
+    """A peg beside each wall of a hole at micrometers of clearance, rocking in it."""
     rng = np.random.default_rng(10)
     clearance = 1e-6
     pegs = (box(0.01, 0.01, 0.05), disc(16, 0.01, 0.05))
@@ -95,7 +95,7 @@ def plate() -> Iterator[Passage]:
 
 
 @hard_case("through the symmetric center")
-def through_centre() -> Iterator[Passage]:
+def through_center() -> Iterator[Passage]:
     """A body goes straight through the center of its like."""
     for A, B in (
         (cube(), cube()),
@@ -123,7 +123,7 @@ def grazing() -> Iterator[Passage]:
 
 @hard_case("micrometer jitter")
 def jitter() -> Iterator[Passage]:
-    """A resting body shakes by micrometres in place and microradians in turn."""
+    """A resting body shakes by micrometers in place and microradians in turn."""
     rng = np.random.default_rng(11)
     for A in (cube(0.05), disc(16, 0.05, 0.01), blob(rng) * 0.05):
         rest = -A[:, 2].min() + 1

@@ -66,7 +66,7 @@ def unlike_sizes() -> Iterator[Passage]:
 
 @hard_case("offset 1e6 m")
 def offset() -> Iterator[Passage]:
-    """Both bodies a thousand kilometres from the origin."""
+    """Both bodies a thousand kilometers from the origin."""
     for passage in mixture(7):
         X_WA, X_WB = passage.X_WA.copy(), passage.X_WB.copy()
         for X in (X_WA, X_WB):

@@ -39,7 +39,7 @@ def containment() -> Iterator[Passage]:
         yield from both_ways(moved(A, B, poses))
 
 
-def about_centre(
+def about_center(
     A: np.ndarray, B: np.ndarray, turn: object = (0, 0, 0)
 ) -> Iterator[Passage]:
     """A at B's center exactly, and within fractions of round-off about it."""
@@ -55,24 +55,24 @@ def about_centre(
 @hard_case("concentric cubes")
 def concentric_cubes() -> Iterator[Passage]:
     """Identical cubes, and cubes turned against each other, at one center."""
-    yield from about_centre(cube(), cube())
-    yield from about_centre(cube(), cube(), [0, 0, np.pi / 4])
-    yield from about_centre(cube(), cube(), [0.3, 0.5, -0.2])
-    yield from about_centre(cube(0.5), cube())
+    yield from about_center(cube(), cube())
+    yield from about_center(cube(), cube(), [0, 0, np.pi / 4])
+    yield from about_center(cube(), cube(), [0.3, 0.5, -0.2])
+    yield from about_center(cube(0.5), cube())
 
 
 @hard_case("concentric balls")
 def concentric_balls() -> Iterator[Passage]:
     """Identical and unlike balls at one center."""
-    yield from about_centre(ball(0), ball(0))
-    yield from about_centre(ball(0), ball(0, 0.5), [0.1, 0.2, 0.3])
+    yield from about_center(ball(0), ball(0))
+    yield from about_center(ball(0), ball(0, 0.5), [0.1, 0.2, 0.3])
     yield moved(ball(1), ball(1), [pose(), pose([1e-9, 0, 0]), pose([0, 1e-3, 0])])
 
 
 @hard_case("concentric boxes")
 def concentric_boxes() -> Iterator[Passage]:
     """Identical boxes, discs and tetrahedra at one center."""
-    yield from about_centre(box(1, 0.5, 0.25), box(1, 0.5, 0.25))
-    yield from about_centre(box(1, 0.5, 0.25), box(1, 0.5, 0.25), [0, 0, np.pi / 2])
-    yield from about_centre(disc(8), disc(8))
-    yield from about_centre(tetrahedron(), tetrahedron())
+    yield from about_center(box(1, 0.5, 0.25), box(1, 0.5, 0.25))
+    yield from about_center(box(1, 0.5, 0.25), box(1, 0.5, 0.25), [0, 0, np.pi / 2])
+    yield from about_center(disc(8), disc(8))
+    yield from about_center(tetrahedron(), tetrahedron())

@@ -65,7 +65,7 @@ for _first in FLAT:
 
 @hard_case("near-duplicate vertices")
 def near_duplicates() -> Iterator[Passage]:
-    """Each vertex twice, at distances from a micrometre down to round-off."""
+    """Each vertex twice, at distances from a micrometer down to round-off."""
     rng = np.random.default_rng(4)
     for k, apart in enumerate((1e-6, 1e-9, 1e-12, 1e-15, 1e-16)):
         A = np.concatenate([cube(), cube() + apart * rng.normal(size=(8, 3))])

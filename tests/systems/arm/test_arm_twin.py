@@ -29,11 +29,11 @@ from drake_haptics.common.pose_vector import vector_to_pose
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
-    Encoder,
-    ForceDelay,
-    JointFriction,
-    Saturation,
-    Twin,
+    DeviceImperfections,
+    EncoderParameters,
+    ForceDelayParameters,
+    JointFrictionParameters,
+    SaturationParameters,
 )
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.arm.hand_impedance import HandImpedance
@@ -54,10 +54,10 @@ PARTS = {
     ),
 }
 SCENE_PARTS = {
-    "encoder": Encoder(),
-    "friction": JointFriction(),
-    "delay": ForceDelay(),
-    "saturation": Saturation(),
+    "encoder": EncoderParameters(),
+    "friction": JointFrictionParameters(),
+    "delay": ForceDelayParameters(),
+    "saturation": SaturationParameters(),
 }
 STILL = (0.0, 0.0, 0.0, 0.05)
 GAINS = (800.0, 2.0, 1.0, 0.004)
@@ -73,7 +73,7 @@ def test_a_part_is_in_the_diagram_once_it_is_named(part):
 @pytest.mark.parametrize("part", SCENE_PARTS)
 def test_a_scene_names_it_and_the_preset_has_its_figures(tmp_path, part):
     scene = over_a_plate(tmp_path, [STILL])
-    scene.device.twin = Twin(**{part: SCENE_PARTS[part]})
+    scene.device.twin = DeviceImperfections(**{part: SCENE_PARTS[part]})
     haptic = BuildHapticDiagram(scene)
     assert names(haptic.diagram) == SYSTEMS
     arm = haptic.loop.device.GetSubsystemByName("simulated_arm")
@@ -83,7 +83,7 @@ def test_a_scene_names_it_and_the_preset_has_its_figures(tmp_path, part):
 def test_a_scene_that_names_none_has_the_systems_it_always_had(tmp_path):
     haptic = BuildHapticDiagram(over_a_plate(tmp_path, [STILL]))
     device = haptic.loop.device
-    assert names(device) == {"display_force_hold", "simulated_arm"}
+    assert names(device) == {"rendered_force_hold", "simulated_arm"}
     assert names(device.GetSubsystemByName("simulated_arm")) == ALWAYS
 
 
@@ -103,14 +103,14 @@ class PlainArm(Diagram):
             "hand_impedance",
             HandImpedance(plant, handle, HANDLE_PATH, RigidTransform(), None),
         )
-        builder.Connect(plant.get_state_output_port(), hand.get_arm_state_input_port())
+        builder.Connect(plant.get_state_output_port(), hand.GetInputPort("arm_state"))
         builder.Connect(
-            hand.get_generalized_force_output_port(),
+            hand.GetOutputPort("generalized_force"),
             plant.get_applied_generalized_force_input_port(),
         )
-        builder.ExportInput(hand.get_applied_wrench_input_port(), "F_applied")
+        builder.ExportInput(hand.GetInputPort("F_Ho_W_rendered"), "F_Ho_W_rendered")
         export_parts(
-            builder, hand.get_handle_state_output_port(), {"X_WH": 7, "V_WH": 6}
+            builder, hand.GetOutputPort("handle_state"), {"X_WH": 7, "V_WH": 6}
         )
         builder.BuildInto(self)
 
@@ -162,7 +162,7 @@ def test_the_loop_feels_counted_angles():
         inner.GetMyMutableContextFromRoot(context),
         [0.013, 0.021, -0.026, 0.004, 0.006, -0.004],
     )
-    arm.GetInputPort("F_applied").FixValue(context, np.zeros(6))
+    arm.GetInputPort("F_Ho_W_rendered").FixValue(context, np.zeros(6))
     simulator.Initialize()
     truth = plant.CreateDefaultContext()
     # In motors: 0.013, 0.021 and 0.021 - 0.026 = -0.005, which is nearer to 0.
@@ -186,7 +186,7 @@ def test_what_has_no_derivative_is_refused_by_name(tmp_path, part, words):
     with pytest.raises(ValueError, match=path):
         linearize_sampled(loop.diagram, loop.diagram.CreateDefaultContext())
     scene = over_a_plate(tmp_path, [STILL, (0.1, 0, 0, TOOL_HALF_HEIGHT - 1e-3)])
-    scene.device.twin = Twin(**{part: SCENE_PARTS[part]})
+    scene.device.twin = DeviceImperfections(**{part: SCENE_PARTS[part]})
     with pytest.raises(ValueError, match=path):
         hold_scene(scene)
 
@@ -194,19 +194,21 @@ def test_what_has_no_derivative_is_refused_by_name(tmp_path, part, words):
 def test_a_figure_that_nobody_gives_is_asked_for(tmp_path):
     scene = over_a_plate(tmp_path, [STILL])
     scene.device.preset = str(write_preset(tmp_path, PRESET))
-    scene.device.twin = Twin(saturation=Saturation())
+    scene.device.twin = DeviceImperfections(saturation=SaturationParameters())
     with pytest.raises(
         SceneError, match=r"device\.twin\.saturation\.peak_torque_Nm is"
     ):
         BuildHapticDiagram(scene)
-    scene.device.twin = Twin(saturation=Saturation([0.5] * 6), encoder=Encoder())
+    scene.device.twin = DeviceImperfections(
+        saturation=SaturationParameters([0.5] * 6), encoder=EncoderParameters()
+    )
     BuildHapticDiagram(scene)
 
 
 def test_the_bounds_of_the_coupling_know_of_the_delay(tmp_path):
     scene = over_a_plate(tmp_path, [STILL])
     assert calc_force_delay(scene) == 0.0
-    scene.device.twin = Twin(delay=ForceDelay(3))
+    scene.device.twin = DeviceImperfections(delay=ForceDelayParameters(3))
     scene.device.rate_hz = 500.0
     assert calc_force_delay(scene) == 0.006
 
@@ -241,7 +243,7 @@ def test_a_bad_twin_is_named_with_its_key(tmp_path, twin, complaint):
 
 def test_all_parts_together_run(tmp_path):
     scene = over_a_plate(tmp_path, [STILL, (0.1, 0, 0, TOOL_HALF_HEIGHT - 0.01)])
-    scene.device.twin = Twin(**SCENE_PARTS)
+    scene.device.twin = DeviceImperfections(**SCENE_PARTS)
     figures = run(BuildHapticDiagram(scene), 0.3).to_dict()
     assert 1.0 < figures["max_force_N"] <= 8.5 * (1.0 + 1e-12)
     assert figures["non_finite_events"] == 0

@@ -9,14 +9,14 @@ from twin_check import check_twin
 from twin_rig import PERIOD, make_simulator
 
 from drake_haptics.systems.arm.force_delay import ForceDelay
-from drake_haptics.systems.device.display_force_hold import DisplayForceHold
+from drake_haptics.systems.device.rendered_force_hold import RenderedForceHold
 
 TICKS = 20
 
 
 def test_topology():
     delay = ForceDelay(PERIOD, 2)
-    assert delay.GetInputPort("F_applied").size() == 6
+    assert delay.GetInputPort("F_Ho_W_rendered").size() == 6
     assert delay.GetOutputPort("F_delayed").size() == 6
     assert not delay.HasAnyDirectFeedthrough()
 
@@ -29,10 +29,10 @@ def test_it_is_the_hold_shifted_by_as_many_ticks(samples):
     )
     builder = DiagramBuilder()
     source = builder.AddSystem(TrajectorySource(asked))
-    hold = builder.AddSystem(DisplayForceHold(PERIOD, 1e9, 1e9))
+    hold = builder.AddSystem(RenderedForceHold(PERIOD, 1e9, 1e9))
     delay = builder.AddSystem(ForceDelay(PERIOD, samples))
     builder.Connect(source.get_output_port(), hold.get_input_port())
-    shown = hold.get_applied_wrench_output_port()
+    shown = hold.GetOutputPort("F_Ho_W_rendered")
     builder.Connect(shown, delay.get_input_port())
     simulator = make_simulator(builder.Build())
     ticks = []
@@ -56,7 +56,7 @@ def test_its_twin_passes_derivatives_on():
     rng = np.random.default_rng(2)
     jacobian = check_twin(
         ForceDelay(PERIOD, 3),
-        {"F_applied": rng.normal(size=6)},
+        {"F_Ho_W_rendered": rng.normal(size=6)},
         state=rng.normal(size=18),
     )
     # What leaves is the oldest sample; what comes in is the newest one next.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from drake_haptics.scene.schema import Hand
+from drake_haptics.scene.schema import HandParameters
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS
 
 PAGE = Path(__file__).parents[3] / "docs" / "device-twin.md"
@@ -37,7 +37,9 @@ def test_the_page_has_every_grip_and_all_of_its_figures():
 
 
 def test_the_docstring_of_a_scenes_hand_names_the_springs():
-    said = re.search(r"springs of (\d+), (\d+) and (\d+) N/m", Hand.__doc__ or "")
+    said = re.search(
+        r"springs of (\d+), (\d+) and (\d+) N/m", HandParameters.__doc__ or ""
+    )
     springs = [grip.stiffness_N_per_m for grip in HAND_GRIPS.values() if grip]
     assert said is not None
     assert [float(number) for number in said.groups()] == springs

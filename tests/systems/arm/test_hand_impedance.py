@@ -45,8 +45,8 @@ def hand_on(plant, path, gains):
 
 
 def set_arm(hand, context, q, v=AT_REST, F=NO_WRENCH):
-    hand.get_arm_state_input_port().FixValue(context, np.concatenate([q, v]))
-    hand.get_applied_wrench_input_port().FixValue(context, F)
+    hand.GetInputPort("arm_state").FixValue(context, np.concatenate([q, v]))
+    hand.GetInputPort("F_Ho_W_rendered").FixValue(context, F)
 
 
 def handle_pose(q):
@@ -68,7 +68,7 @@ def test_topology(plant):
     for name, size in sizes.items():
         assert hand.GetOutputPort(name).size() == size
     assert hand.GetInputPort("arm_state").size() == 12
-    assert hand.GetInputPort("F_applied").size() == 6
+    assert hand.GetInputPort("F_Ho_W_rendered").size() == 6
     # The pose must not depend on the wrench, or the loop would be algebraic.
     assert not hand.HasDirectFeedthrough(1, 1)
 
@@ -76,7 +76,7 @@ def test_topology(plant):
 def test_the_handle_is_where_the_joints_put_it(plant):
     hand, context = hand_on(plant, HandPath([0.0], [RigidTransform()]), None)
     set_arm(hand, context, Q)
-    X_WH = vector_to_pose(hand.get_handle_state_output_port().Eval(context)[:7])
+    X_WH = vector_to_pose(hand.GetOutputPort("handle_state").Eval(context)[:7])
     assert X_WH.IsNearlyEqualTo(handle_pose(Q), 1e-13)
 
 
@@ -91,7 +91,7 @@ def test_the_handle_moves_as_its_pose_does(plant):
         [turn.angle() * turn.axis(), after.translation() - before.translation()]
     ) / (2 * h)
     np.testing.assert_allclose(
-        hand.get_handle_state_output_port().Eval(context)[7:], rate, atol=1e-7
+        hand.GetOutputPort("handle_state").Eval(context)[7:], rate, atol=1e-7
     )
 
 
@@ -108,7 +108,7 @@ def test_a_wrench_on_the_handle_works_as_it_does_at_the_joints(plant):
         expected[i] = F[:3] @ (turn.angle() * turn.axis()) + F[3:] @ (
             after.translation() - before.translation()
         )
-    torque = hand.get_generalized_force_output_port().Eval(context)
+    torque = hand.GetOutputPort("generalized_force").Eval(context)
     np.testing.assert_allclose(torque, expected / (2 * h), atol=1e-8)
 
 
@@ -122,8 +122,8 @@ def test_the_hand_pulls_to_its_path(plant):
     set_arm(hand, context, Q)
     set_arm(free, free_context, Q, F=np.concatenate([np.zeros(3), K * offset]))
     np.testing.assert_allclose(
-        hand.get_generalized_force_output_port().Eval(context),
-        free.get_generalized_force_output_port().Eval(free_context),
+        hand.GetOutputPort("generalized_force").Eval(context),
+        free.GetOutputPort("generalized_force").Eval(free_context),
         atol=1e-10,
     )
 
@@ -135,7 +135,7 @@ def test_the_hand_moves_with_time(plant):
         plant, HandPath([0.0, 1.0], [aim, up]), CouplingGains(K, B, KR, BR)
     )
     set_arm(hand, context, Q)
-    port = hand.get_generalized_force_output_port()
+    port = hand.GetOutputPort("generalized_force")
     np.testing.assert_allclose(port.Eval(context), 0.0, atol=1e-9)
     context.SetTime(1.0)
     assert np.linalg.norm(port.Eval(context)) > 0.1
@@ -167,7 +167,7 @@ def test_a_state_that_is_not_finite_is_an_error_and_no_crash(plant):
     hand, context = hand_on(plant, HandPath([0.0], [RigidTransform()]), None)
     set_arm(hand, context, np.full(6, np.nan))
     with pytest.raises(FloatingPointError, match="arm's state is not finite"):
-        hand.get_handle_state_output_port().Eval(context)
+        hand.GetOutputPort("handle_state").Eval(context)
 
 
 def test_an_arm_that_slides_is_refused():
@@ -214,7 +214,7 @@ def test_its_twin_has_derivatives_by_arm_wrench_and_time(plant, time_s, periodic
         hand,
         {
             "arm_state": np.concatenate([Q, rng.normal(size=6)]),
-            "F_applied": rng.normal(size=6),
+            "F_Ho_W_rendered": rng.normal(size=6),
         },
         time_s=time_s,
         step=1e-3,

@@ -49,8 +49,8 @@ def follow(encoder):
     state = PiecewisePolynomial.FirstOrderHold(times, np.vstack([q, 0 * q + 99.0]))
     source = builder.AddSystem(TrajectorySource(state))
     hold = builder.AddSystem(ZeroOrderHold(PERIOD, 13))
-    builder.Connect(source.get_output_port(), encoder.get_arm_state_input_port())
-    builder.Connect(encoder.get_handle_state_output_port(), hold.get_input_port())
+    builder.Connect(source.get_output_port(), encoder.GetInputPort("arm_state"))
+    builder.Connect(encoder.GetOutputPort("handle_state"), hold.get_input_port())
     simulator = make_simulator(builder.Build())
     rows = []
     context = hold.GetMyContextFromRoot(simulator.get_context())
@@ -76,8 +76,8 @@ def calc_expected(window):
 
 def test_topology():
     encoder = make_encoder()
-    assert encoder.get_arm_state_input_port().size() == 12
-    assert encoder.get_handle_state_output_port().size() == 13
+    assert encoder.GetInputPort("arm_state").size() == 12
+    assert encoder.GetOutputPort("handle_state").size() == 13
     assert not encoder.HasAnyDirectFeedthrough()
 
 

@@ -24,7 +24,7 @@ def make_motors(peak=PEAK):
 def calc_torque(motors, state, F):
     context = motors.CreateDefaultContext()
     motors.GetInputPort("arm_state").FixValue(context, state)
-    motors.GetInputPort("F_applied").FixValue(context, F)
+    motors.GetInputPort("F_Ho_W_rendered").FixValue(context, F)
     return motors.get_output_port().Eval(context)
 
 
@@ -74,11 +74,11 @@ def test_below_the_limits_the_arm_gets_what_it_gets_without_them():
     for state in sample_states(10):
         F = 0.05 * np.random.default_rng(5).normal(size=6)
         context = hand.CreateDefaultContext()
-        hand.get_arm_state_input_port().FixValue(context, state)
-        hand.get_applied_wrench_input_port().FixValue(context, F)
+        hand.GetInputPort("arm_state").FixValue(context, state)
+        hand.GetInputPort("F_Ho_W_rendered").FixValue(context, F)
         np.testing.assert_allclose(
             calc_torque(make_motors(), state, F),
-            hand.get_generalized_force_output_port().Eval(context),
+            hand.GetOutputPort("generalized_force").Eval(context),
             rtol=1e-13,
             atol=1e-16,
         )
@@ -127,7 +127,7 @@ def test_its_twin_has_the_derivatives_of_the_motors_below_their_limits(size, lim
     asked = S.T @ calc_jacobian(state[:6]).T @ F
     assert np.sum(np.abs(asked) > PEAK) == limited
     jacobian = check_twin(
-        make_motors(), {"arm_state": state, "F_applied": F}, rtol=1e-8
+        make_motors(), {"arm_state": state, "F_Ho_W_rendered": F}, rtol=1e-8
     )
     assert np.linalg.matrix_rank(jacobian[:, 12:18], tol=1e-9) == 6 - limited
 

@@ -67,10 +67,10 @@ def test_shared_keeps_each_contact_and_each_object_by_itself(contacts):
 
 def relieved(contacts, method, reach_share, cell):
     delta = 5e-3 if method == "octree" else None
-    clustering = ContactClustering(method, TOLERANCE, delta, sheds_load=True)
+    clustering = ContactClustering(method, TOLERANCE, delta, enable_load_shedding=True)
     context = clustering.CreateDefaultContext()
     clustering.GetInputPort("contacts").FixValue(context, Value[object](contacts))
-    clustering.get_relief_input_port().FixValue(context, [2.0, reach_share, cell])
+    clustering.GetInputPort("load_shedding").FixValue(context, [2.0, reach_share, cell])
     return clustering.GetOutputPort("clusters").Eval(context)
 
 

@@ -31,7 +31,7 @@ def test_topology(tool, plate):
         TOLERANCE,
     )
     names = [query.get_input_port(i).get_name() for i in range(query.num_input_ports())]
-    assert names == ["X_WTool", "X_WO_cart"]
+    assert names == ["X_WT", "X_WO_cart"]
     assert query.num_output_ports() == 1
     assert query.GetOutputPort("contacts").get_name() == "contacts"
     assert query.CreateDefaultContext().num_total_states() == 0
@@ -59,7 +59,7 @@ def test_beyond_the_tolerance_there_is_nothing(tool, plate):
 def test_an_object_that_moves_is_followed(tool, plate):
     query = ContactQuery(tool, [ContactObject("cart", plate)], TOLERANCE)
     context = query.CreateDefaultContext()
-    port = query.get_object_pose_input_port("cart")
+    port = query.GetInputPort("X_WO_cart")
     port.FixValue(context, at_height(0.0))
     assert len(query_at(query, context, 1.0205)) == 0
     port.FixValue(context, at_height(1.0))
@@ -78,7 +78,7 @@ def test_contexts_do_not_share_what_was_found(tool, plate):
     query_at(query, second, 0.0210)
     clone = first.Clone()
     np.testing.assert_array_equal(
-        query.get_contacts_output_port().Eval(clone).distance, before.distance
+        query.GetOutputPort("contacts").Eval(clone).distance, before.distance
     )
     # A later answer leaves an earlier one alone.
     query_at(query, first, 0.0210)
@@ -107,9 +107,9 @@ def make_twin(query, context):
     return twin, of_twin
 
 
-def twin_at(twin, context, q_WTool):
-    seeds = InitializeAutoDiff(q_WTool).ravel()
-    twin.GetInputPort("X_WTool").FixValue(context, seeds)
+def twin_at(twin, context, q_WT):
+    seeds = InitializeAutoDiff(q_WT).ravel()
+    twin.GetInputPort("X_WT").FixValue(context, seeds)
     return twin.GetOutputPort("contacts").Eval(context)
 
 
@@ -128,7 +128,7 @@ def test_its_twin_has_the_same_ports_a_hint_and_a_tolerance(tool, plate):
     assert context.get_abstract_parameter(1).get_value() == TOLERANCE
     twin = query.ToScalarType[AutoDiffXd]()
     names = [twin.get_input_port(i).get_name() for i in range(twin.num_input_ports())]
-    assert names == ["X_WTool", "X_WO_cart"]
+    assert names == ["X_WT", "X_WO_cart"]
     assert twin.GetOutputPort("contacts").get_name() == "contacts"
     assert twin.CreateDefaultContext().num_abstract_parameters() == 2
 
@@ -138,9 +138,9 @@ def test_its_twin_answers_with_derivatives(tool, plate, tilted):
         tool, [ContactObject("plate", plate, RigidTransform())], TOLERANCE
     )
     context = query.CreateDefaultContext()
-    port = query.get_tool_pose_input_port()
+    port = query.GetInputPort("X_WT")
     port.FixValue(context, tilted)
-    expected = query.get_contacts_output_port().Eval(context)
+    expected = query.GetOutputPort("contacts").Eval(context)
     assert len(expected) == 1
     contacts = twin_at(*make_twin(query, context), tilted)
     assert isinstance(contacts, AutoDiffContactSet)
@@ -148,9 +148,9 @@ def test_its_twin_answers_with_derivatives(tool, plate, tilted):
     np.testing.assert_array_equal(contacts.value.feature_A, expected.feature_A)
 
     def column(name):
-        def at(q_WTool):
-            port.FixValue(context, q_WTool)
-            return getattr(query.get_contacts_output_port().Eval(context), name)
+        def at(q_WT):
+            port.FixValue(context, q_WT)
+            return getattr(query.GetOutputPort("contacts").Eval(context), name)
 
         return at
 
@@ -175,12 +175,12 @@ def test_its_twin_knows_what_the_query_learnt(tool):
     query, context, expected = pressed_through(tool, box_core(0.2, 0.2, 1e-3))
     assert expected.nhat_BA_W[0, 2] == pytest.approx(1.0)
     twin, of_twin = make_twin(query, context)
-    q_WTool = at_height(-0.004)
+    q_WT = at_height(-0.004)
     np.testing.assert_allclose(
-        twin_at(twin, of_twin, q_WTool).value.distance, expected.distance, atol=1e-12
+        twin_at(twin, of_twin, q_WT).value.distance, expected.distance, atol=1e-12
     )
     # Without the hint it starts anew, and leaves by the nearer side.
-    anew = twin_at(twin, twin.CreateDefaultContext(), q_WTool).value
+    anew = twin_at(twin, twin.CreateDefaultContext(), q_WT).value
     assert anew.nhat_BA_W[0, 2] == pytest.approx(-1.0)
 
 
@@ -212,8 +212,8 @@ def test_preparing_a_conversion_leaves_the_query_as_it_is(tool, plate):
             query_at(query, clone, z).distance, query_at(query, context, z).distance
         )
     # Nor does the query go on with what the hint is.
-    q_WTool = at_height(0.0196)
-    np.testing.assert_array_equal(hint.query(q_WTool).p_WC, kept.query(q_WTool).p_WC)
+    q_WT = at_height(0.0196)
+    np.testing.assert_array_equal(hint.query(q_WT).p_WC, kept.query(q_WT).p_WC)
 
 
 def test_a_new_context_starts_from_the_hint(tool):

@@ -38,16 +38,16 @@ def make_shading(tool, objects, shaded, crease_angle_deg=40.0):
     return shading, shading.CreateDefaultContext()
 
 
-def shade(shading, context, contacts, X_WTool):
-    shading.get_contacts_input_port().FixValue(context, Value[object](contacts))
-    shading.get_tool_pose_input_port().FixValue(context, pose_to_vector(X_WTool))
-    return shading.get_contacts_output_port().Eval(context)
+def shade(shading, context, contacts, X_WT):
+    shading.GetInputPort("contacts").FixValue(context, Value[object](contacts))
+    shading.GetInputPort("X_WT").FixValue(context, pose_to_vector(X_WT))
+    return shading.GetOutputPort("contacts").Eval(context)
 
 
-def contacts_at(tool, ball, X_WTool, X_WO):
+def contacts_at(tool, ball, X_WT, X_WO):
     tracker = SceneTracker(tool, [ball], TOLERANCE)
     tracker.set_object_pose(0, X_WO)
-    return tracker.query(X_WTool)
+    return tracker.query(X_WT)
 
 
 def degrees_between(u, v):
@@ -62,7 +62,7 @@ def test_topology(tool, ball):
     )
     inputs = range(shading.num_input_ports())
     names = [shading.get_input_port(i).get_name() for i in inputs]
-    assert names == ["contacts", "X_WTool", "X_WO_cart"]
+    assert names == ["contacts", "X_WT", "X_WO_cart"]
     assert shading.num_output_ports() == 1
     assert shading.GetOutputPort("contacts").get_name() == "contacts"
     assert context.num_total_states() == 0
@@ -71,14 +71,14 @@ def test_topology(tool, ball):
 @pytest.mark.parametrize("moves", [False, True])
 def test_the_normal_of_a_tessellated_ball_is_that_of_the_sphere(tool, ball, moves):
     X_WO = RigidTransform([0.3, -0.1, 0.5])
-    X_WTool = RigidTransform(X_WO.translation() + (RADIUS - 1e-4) * OUT)
-    contacts = contacts_at(tool, ball, X_WTool, X_WO)
+    X_WT = RigidTransform(X_WO.translation() + (RADIUS - 1e-4) * OUT)
+    contacts = contacts_at(tool, ball, X_WT, X_WO)
     item = ContactObject("ball", ball, None if moves else X_WO)
     shading, context = make_shading(tool, [item], [True])
     if moves:
         pose = pose_to_vector(X_WO)
-        shading.get_object_pose_input_port("ball").FixValue(context, pose)
-    shaded = shade(shading, context, contacts, X_WTool)
+        shading.GetInputPort("X_WO_ball").FixValue(context, pose)
+    shaded = shade(shading, context, contacts, X_WT)
     assert len(shaded) == len(contacts) == 1
     # The corner of the tool that is deepest is not quite at its origin.
     out = contacts.p_WCa[0] - X_WO.translation()
@@ -89,13 +89,13 @@ def test_the_normal_of_a_tessellated_ball_is_that_of_the_sphere(tool, ball, move
 
 def test_an_object_that_is_not_shaded_keeps_its_facets(tool, ball):
     X_WO = RigidTransform()
-    X_WTool = RigidTransform((RADIUS - 1e-4) * OUT)
-    contacts = contacts_at(tool, ball, X_WTool, X_WO)
+    X_WT = RigidTransform((RADIUS - 1e-4) * OUT)
+    contacts = contacts_at(tool, ball, X_WT, X_WO)
     other = ContactObject("other", ball, RigidTransform([1.0, 0, 0]))
     shading, context = make_shading(
         tool, [ContactObject("ball", ball, X_WO), other], [False, True]
     )
-    shaded = shade(shading, context, contacts, X_WTool)
+    shaded = shade(shading, context, contacts, X_WT)
     np.testing.assert_array_equal(shaded.nhat_BA_W, contacts.nhat_BA_W)
 
 
@@ -104,13 +104,13 @@ def test_its_twin_turns_the_force_with_place_and_poses(tool, ball, moves):
     """The way of the tool turns the normal: with facets it would not."""
     X_WO = RigidTransform(RotationMatrix.MakeXRotation(0.3), [0.3, -0.1, 0.5])
     turn = RotationMatrix.MakeYRotation(0.2)
-    X_WTool = RigidTransform(
+    X_WT = RigidTransform(
         turn, X_WO.translation() + (RADIUS - 1e-4) * (X_WO.rotation() @ OUT)
     )
     item = ContactObject("ball", ball, None if moves else X_WO)
     inputs = {
-        "X_WTool": pose_to_vector(X_WTool),
-        "V_WTool": np.array([0.1, 0.2, -0.3, 0.01, -0.02, 0.03]),
+        "X_WT": pose_to_vector(X_WT),
+        "V_WT": np.array([0.1, 0.2, -0.3, 0.01, -0.02, 0.03]),
     }
     if moves:
         inputs["X_WO_ball"] = 1.0 * pose_to_vector(X_WO)

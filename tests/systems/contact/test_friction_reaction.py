@@ -53,7 +53,7 @@ def evaluate(system, p_WC, f, q_WO):
     system.GetInputPort("friction_force").FixValue(context, Value[object](friction))
     for name, q in zip(("cart", "door"), q_WO, strict=True):
         system.GetInputPort(f"X_WO_{name}").FixValue(context, q)
-    return system.get_object_wrenches_output_port().Eval(context)
+    return system.GetOutputPort("F_O_W").Eval(context)
 
 
 def test_topology(system):

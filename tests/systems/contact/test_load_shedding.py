@@ -45,18 +45,18 @@ class Loop:
         self._time_s = 0.0
 
     def run(self, ticks, takes_s):
-        """Runs ticks that take so long; returns `relief` after each, (ticks, 3)."""
+        """Runs ticks that take so long; returns `load_shedding` of each, (ticks, 3)."""
         self._work.takes_s = takes_s
-        relief = []
-        port = self._shedding.get_relief_output_port()
+        load_shedding = []
+        port = self._shedding.GetOutputPort("load_shedding")
         for _ in range(ticks):
             self._time_s += PERIOD_S
             self._simulator.AdvanceTo(self._time_s)
             # What lies between two ticks is no work of theirs.
             self._clock.now_s += 10 * PERIOD_S
             context = self._shedding.GetMyContextFromRoot(self._simulator.get_context())
-            relief.append(port.Eval(context))
-        return np.array(relief)
+            load_shedding.append(port.Eval(context))
+        return np.array(load_shedding)
 
 
 @pytest.fixture
@@ -99,9 +99,11 @@ def test_between_budget_and_well_below_it_stays(loop):
 
 def test_one_late_tick_is_felt_by_no_one(loop):
     loop.run(10, 0.5 * BUDGET_S)
-    relief = np.vstack([loop.run(1, 1000 * BUDGET_S), loop.run(3, 0.5 * BUDGET_S)])
-    assert 0.0 < relief[:, 0].max() < 0.05
-    assert (relief[:, 1:] == [1.0, 0.0]).all()
+    load_shedding = np.vstack(
+        [loop.run(1, 1000 * BUDGET_S), loop.run(3, 0.5 * BUDGET_S)]
+    )
+    assert 0.0 < load_shedding[:, 0].max() < 0.05
+    assert (load_shedding[:, 1:] == [1.0, 0.0]).all()
 
 
 @pytest.mark.parametrize("name", ["period_s", "budget_s", "largest_cell_m"])

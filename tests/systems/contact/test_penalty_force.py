@@ -46,18 +46,18 @@ def make_force(objects):
     return force, force.CreateDefaultContext()
 
 
-def fix(force, context, clusters, V_WTool=AT_REST):
-    force.get_clusters_input_port().FixValue(context, Value[object](clusters))
-    force.get_tool_pose_input_port().FixValue(context, at_height(HEIGHT))
-    force.get_tool_velocity_input_port().FixValue(context, V_WTool)
+def fix(force, context, clusters, V_WT=AT_REST):
+    force.GetInputPort("clusters").FixValue(context, Value[object](clusters))
+    force.GetInputPort("X_WT").FixValue(context, at_height(HEIGHT))
+    force.GetInputPort("V_WT").FixValue(context, V_WT)
 
 
 def test_topology(plate):
     force, _ = make_force([ContactObject("cart", plate)])
     names = [force.get_input_port(i).get_name() for i in range(force.num_input_ports())]
-    assert names == ["clusters", "X_WTool", "V_WTool", "X_WO_cart", "V_WO_cart"]
+    assert names == ["clusters", "X_WT", "V_WT", "X_WO_cart", "V_WO_cart"]
     assert force.GetOutputPort("wrench_model").size() == 78
-    assert force.GetOutputPort("F_Tool_W").size() == 6
+    assert force.GetOutputPort("F_To_W").size() == 6
     assert force.GetOutputPort("F_O_W").size() == 6
     assert force.CreateDefaultContext().num_total_states() == 0
 
@@ -67,12 +67,12 @@ def test_a_pressed_box_is_pushed_up(plate, clusters):
     force, context = make_force([ContactObject("plate", plate, RigidTransform())])
     fix(force, context, clusters)
     expected = K * (TOLERANCE + 5e-4)
-    F = force.get_tool_wrench_output_port().Eval(context)
+    F = force.GetOutputPort("F_To_W").Eval(context)
     np.testing.assert_allclose(F[3:], [0, 0, expected], atol=1e-9)
-    wrench = force.get_contact_wrench_output_port().Eval(context)
+    wrench = force.GetOutputPort("contact_wrench").Eval(context)
     np.testing.assert_allclose(wrench.f_cluster_W, [[0, 0, expected]], atol=1e-9)
     np.testing.assert_allclose(wrench.F_objects_W[0, 3:], -F[3:], atol=1e-9)
-    model = force.get_wrench_model_output_port().Eval(context)
+    model = force.GetOutputPort("wrench_model").Eval(context)
     np.testing.assert_allclose(model[:6], F)
     assert model[6:42].reshape(6, 6)[5, 5] == pytest.approx(K)
 
@@ -82,9 +82,9 @@ def test_objects_that_move_feel_the_reaction(plate, clusters):
     force, context = make_force(objects)
     fix(force, context, clusters)
     p_WO = np.array([0.3, -0.2, 0.1])
-    force.get_object_pose_input_port("cart").FixValue(context, [1, 0, 0, 0, *p_WO])
-    force.get_object_velocity_input_port("cart").FixValue(context, AT_REST)
-    F_O_W = force.get_object_wrenches_output_port().Eval(context)
+    force.GetInputPort("X_WO_cart").FixValue(context, [1, 0, 0, 0, *p_WO])
+    force.GetInputPort("V_WO_cart").FixValue(context, AT_REST)
+    F_O_W = force.GetOutputPort("F_O_W").Eval(context)
     f = K * (TOLERANCE + 5e-4) * np.array([0, 0, -1])
     np.testing.assert_allclose(F_O_W[3:], f, atol=1e-9)
     np.testing.assert_allclose(
@@ -95,20 +95,20 @@ def test_objects_that_move_feel_the_reaction(plate, clusters):
 def test_tool_and_objects_share_one_answer(plate, clusters, monkeypatch):
     force, context = make_force([ContactObject("cart", plate)])
     fix(force, context, clusters)
-    force.get_object_pose_input_port("cart").FixValue(context, at_height(0.0))
-    force.get_object_velocity_input_port("cart").FixValue(context, AT_REST)
+    force.GetInputPort("X_WO_cart").FixValue(context, at_height(0.0))
+    force.GetInputPort("V_WO_cart").FixValue(context, AT_REST)
     calls = []
     monkeypatch.setattr(
         "drake_haptics.systems.contact.penalty_force.penalty_force",
         lambda *inputs: calls.append(0) or penalty_force(*inputs),
     )
-    first = force.get_tool_wrench_output_port().Eval(context).copy()
-    force.get_object_wrenches_output_port().Eval(context)
-    force.get_contact_wrench_output_port().Eval(context)
+    first = force.GetOutputPort("F_To_W").Eval(context).copy()
+    force.GetOutputPort("F_O_W").Eval(context)
+    force.GetOutputPort("contact_wrench").Eval(context)
     assert len(calls) == 1
     # Until an input changes.
-    force.get_tool_velocity_input_port().FixValue(context, [0, 0, 0, 0, 0, -0.1])
-    later = force.get_tool_wrench_output_port().Eval(context)
+    force.GetInputPort("V_WT").FixValue(context, [0, 0, 0, 0, 0, -0.1])
+    later = force.GetOutputPort("F_To_W").Eval(context)
     assert later[5] == pytest.approx(first[5] + 0.1 * B)
     assert len(calls) == 2
 
@@ -127,7 +127,7 @@ def test_of_many_objects_at_rest_a_tick_reads_none(plate, clusters, monkeypatch)
         "drake_haptics.systems.contact.penalty_force.penalty_wrench_model",
         lambda *inputs: asked.append(inputs[3:]) or penalty_wrench_model(*inputs),
     )
-    port = force.get_wrench_model_output_port()
+    port = force.GetOutputPort("wrench_model")
     for speed in (0.0, -0.1):
         fix(force, context, clusters, [0, 0, 0, 0, 0, speed])
         model = port.Eval(context)
@@ -135,7 +135,7 @@ def test_of_many_objects_at_rest_a_tick_reads_none(plate, clusters, monkeypatch)
     assert later[0] is frames
     assert later[1] is materials
     assert len(frames) == len(materials) == 900
-    wrench = force.get_contact_wrench_output_port().Eval(context)
+    wrench = force.GetOutputPort("contact_wrench").Eval(context)
     np.testing.assert_array_equal(wrench.wrench_model, model)
     assert wrench.F_objects_W.shape == (900, 6)
     assert wrench.F_objects_W[0].any()
@@ -144,7 +144,7 @@ def test_of_many_objects_at_rest_a_tick_reads_none(plate, clusters, monkeypatch)
 
 def test_approach_is_damped_and_departure_is_not(plate, clusters):
     force, context = make_force([ContactObject("plate", plate, RigidTransform())])
-    port = force.get_tool_wrench_output_port()
+    port = force.GetOutputPort("F_To_W")
     fix(force, context, clusters)
     still = port.Eval(context)[5]
     fix(force, context, clusters, [0, 0, 0, 0, 0, -0.1])
@@ -157,12 +157,12 @@ def test_only_the_motion_between_the_two_counts(plate, clusters):
     force, context = make_force([ContactObject("cart", plate)])
     down = np.array([0, 0, 0, 0, 0, -0.1])
     fix(force, context, clusters, down)
-    force.get_object_pose_input_port("cart").FixValue(context, at_height(0.0))
-    velocity = force.get_object_velocity_input_port("cart")
+    force.GetInputPort("X_WO_cart").FixValue(context, at_height(0.0))
+    velocity = force.GetInputPort("V_WO_cart")
     velocity.FixValue(context, down)
-    together = force.get_tool_wrench_output_port().Eval(context)[5]
+    together = force.GetOutputPort("F_To_W").Eval(context)[5]
     velocity.FixValue(context, np.zeros(6))
-    approaching = force.get_tool_wrench_output_port().Eval(context)[5]
+    approaching = force.GetOutputPort("F_To_W").Eval(context)[5]
     assert approaching - together == pytest.approx(0.1 * B)
 
 
@@ -176,7 +176,7 @@ def test_each_object_has_its_own_gains(plate):
     context = force.CreateDefaultContext()
     down = [0, 0, 0, 0, 0, -0.1]
     fix(force, context, cluster_contacts(contacts, 0.1, TOLERANCE), down)
-    wrench = force.get_contact_wrench_output_port().Eval(context)
+    wrench = force.GetOutputPort("contact_wrench").Eval(context)
     one = K * (TOLERANCE + 5e-4) + 0.1 * B
     two = 2 * K * (TOLERANCE + 5e-4) + 0.3 * B
     np.testing.assert_allclose(wrench.F_objects_W[:, 5], [-one, -two], atol=1e-9)
@@ -192,7 +192,7 @@ def test_bad_gains_are_refused_by_name(plate, name, gains):
 
 
 STEP = 5e-7
-OUTPUTS = ("wrench_model", "F_Tool_W", "F_O_W")
+OUTPUTS = ("wrench_model", "F_To_W", "F_O_W")
 
 
 @pytest.fixture(scope="module")
@@ -233,7 +233,7 @@ def test_every_input_reaches_the_wrench(states):
     reached = np.zeros(39, dtype=bool)
     for state in states["shared"]:
         chain = ContactChain(state, (True, True))
-        found = chain.differentiate("F_Tool_W", chain.variables(state))
+        found = chain.differentiate("F_To_W", chain.variables(state))
         reached |= found.gradient.any(axis=0)
     # But the lengths of quaternions; of the objects, at the identity, real parts.
     assert np.flatnonzero(~reached).tolist() == [13, 26]
@@ -249,11 +249,9 @@ def test_velocities_alone_may_be_what_is_asked_by(states):
         chain.query.GetMyMutableContextFromRoot(chain.context)
     )
     context.SetTimeStateAndParametersFrom(chain.context)
-    q_WTool = np.array([AutoDiffXd(entry) for entry in state.q[0]])
-    twin.GetInputPort("X_WTool").FixValue(context, q_WTool)
-    twin.GetInputPort("V_WTool").FixValue(
-        context, InitializeAutoDiff(state.V[0]).ravel()
-    )
+    q_WT = np.array([AutoDiffXd(entry) for entry in state.q[0]])
+    twin.GetInputPort("X_WT").FixValue(context, q_WT)
+    twin.GetInputPort("V_WT").FixValue(context, InitializeAutoDiff(state.V[0]).ravel())
     model = twin.GetOutputPort("wrench_model").Eval(context)
     B = np.array([entry.value() for entry in model[42:]]).reshape(6, 6)
     assert B.any()
@@ -288,7 +286,7 @@ def test_its_twin_refuses_clusters_without_derivatives(plate, clusters):
     context = force.CreateDefaultContext()
     force.GetInputPort("clusters").FixValue(context, Value[object](clusters))
     pose = InitializeAutoDiff(at_height(HEIGHT)).ravel()
-    force.GetInputPort("X_WTool").FixValue(context, pose)
-    force.GetInputPort("V_WTool").FixValue(context, pose[:6])
+    force.GetInputPort("X_WT").FixValue(context, pose)
+    force.GetInputPort("V_WT").FixValue(context, pose[:6])
     with pytest.raises(ValueError, match="carries no derivatives"):
         force.GetOutputPort("wrench_model").Eval(context)

@@ -39,18 +39,18 @@ def test_topology(plate):
     braking = make_braking([ContactObject("cart", plate)])
     count = braking.num_input_ports()
     names = [braking.get_input_port(i).get_name() for i in range(count)]
-    assert names == ["contacts", "X_WTool", "V_WTool", "X_WO_cart", "V_WO_cart"]
+    assert names == ["contacts", "X_WT", "V_WT", "X_WO_cart", "V_WO_cart"]
     assert braking.num_output_ports() == 2
     assert braking.GetOutputPort("wrench_model").size() == 78
     assert braking.GetOutputPort("F_O_W").size() == 6
     assert braking.CreateDefaultContext().num_total_states() == 0
 
 
-def fixed(braking, contacts, height, V_WTool):
+def fixed(braking, contacts, height, V_WT):
     context = braking.CreateDefaultContext()
-    braking.get_contacts_input_port().FixValue(context, Value[object](contacts))
-    braking.get_tool_pose_input_port().FixValue(context, at_height(height))
-    braking.get_tool_velocity_input_port().FixValue(context, V_WTool)
+    braking.GetInputPort("contacts").FixValue(context, Value[object](contacts))
+    braking.GetInputPort("X_WT").FixValue(context, at_height(height))
+    braking.GetInputPort("V_WT").FixValue(context, V_WT)
     return context
 
 
@@ -60,7 +60,7 @@ def test_a_box_that_comes_down_on_a_plate_is_pushed_up(cube, plate):
     height = TOUCH + 0.25 * D
     contacts = query_at(query, query.CreateDefaultContext(), height)
     context = fixed(braking, contacts, height, 0.2 * DOWN)
-    model = braking.get_wrench_model_output_port().Eval(context)
+    model = braking.GetOutputPort("wrench_model").Eval(context)
     np.testing.assert_allclose(model[3:6], [0, 0, 0.75 * B * 0.2], atol=1e-9)
     assert not model[6:42].any()
     assert model[42:].reshape(6, 6)[5, 5] == pytest.approx(0.75 * B)
@@ -69,13 +69,13 @@ def test_a_box_that_comes_down_on_a_plate_is_pushed_up(cube, plate):
 def test_a_loop_that_sheds_load_brakes_later(cube, plate):
     objects = [ContactObject("plate", plate, RigidTransform())]
     query = ContactQuery(cube, objects, D)
-    braking = make_braking(objects, sheds_load=True)
+    braking = make_braking(objects, enable_load_shedding=True)
     # Half-way to the surface of half the distance, the profile is at its top.
     height = TOUCH + 0.25 * D
     contacts = query_at(query, query.CreateDefaultContext(), height)
     context = fixed(braking, contacts, height, 0.2 * DOWN)
-    braking.get_relief_input_port().FixValue(context, [1.5, 0.5, 0.0])
-    model = braking.get_wrench_model_output_port().Eval(context)
+    braking.GetInputPort("load_shedding").FixValue(context, [1.5, 0.5, 0.0])
+    model = braking.GetOutputPort("wrench_model").Eval(context)
     np.testing.assert_allclose(model[3:6], [0, 0, B * 0.2], atol=1e-9)
 
 
@@ -84,14 +84,14 @@ def test_only_the_motion_between_the_two_counts(cube, plate):
     query, braking = ContactQuery(cube, cart, D), make_braking(cart)
     height = TOUCH + 0.5 * D
     query_context = query.CreateDefaultContext()
-    query.get_object_pose_input_port("cart").FixValue(query_context, at_height(0.0))
+    query.GetInputPort("X_WO_cart").FixValue(query_context, at_height(0.0))
     contacts = query_at(query, query_context, height)
     context = fixed(braking, contacts, height, 0.2 * DOWN)
-    braking.get_object_pose_input_port("cart").FixValue(context, at_height(0.0))
-    velocity = braking.get_object_velocity_input_port("cart")
+    braking.GetInputPort("X_WO_cart").FixValue(context, at_height(0.0))
+    velocity = braking.GetInputPort("V_WO_cart")
     for speed, force in [(0.2, 0.0), (0.0, 0.2 * B), (-0.1, 0.3 * B)]:
         velocity.FixValue(context, speed * DOWN)
-        model = braking.get_wrench_model_output_port().Eval(context)
+        model = braking.GetOutputPort("wrench_model").Eval(context)
         assert model[5] == pytest.approx(force, abs=1e-12)
 
 
@@ -113,18 +113,18 @@ def test_what_moves_is_pushed_on_and_what_does_not_has_no_place(
     above = 2 * TOUCH + D
     X_WCart = at_height(above)
     X_WCart[4] = 0.03
-    query.get_object_pose_input_port("cart").FixValue(query_context, X_WCart)
+    query.GetInputPort("X_WO_cart").FixValue(query_context, X_WCart)
     contacts = query_at(query, query_context, TOUCH + 0.5 * D)
     context = fixed(braking, contacts, TOUCH + 0.5 * D, -0.2 * DOWN)
-    braking.get_object_pose_input_port("cart").FixValue(context, X_WCart)
-    braking.get_object_velocity_input_port("cart").FixValue(context, np.zeros(6))
+    braking.GetInputPort("X_WO_cart").FixValue(context, X_WCart)
+    braking.GetInputPort("V_WO_cart").FixValue(context, np.zeros(6))
     calls = []
     monkeypatch.setattr(
         "drake_haptics.systems.contact.pre_contact_braking.pre_contact_braking",
         lambda *inputs: calls.append(0) or pre_contact_braking(*inputs),
     )
-    F = braking.get_wrench_model_output_port().Eval(context)[:6]
-    F_O_W = braking.get_object_wrenches_output_port().Eval(context)
+    F = braking.GetOutputPort("wrench_model").Eval(context)[:6]
+    F_O_W = braking.GetOutputPort("F_O_W").Eval(context)
     np.testing.assert_allclose(F[3:], [0, 0, -0.2 * B], atol=1e-9)
     np.testing.assert_allclose(F_O_W[3:], [0, 0, 0.2 * B], atol=1e-9)
     assert len(calls) == 1
@@ -146,14 +146,12 @@ def approach(cube, plate, speed, mass, period, ticks):
     )
     query = builder.AddSystem(ContactQuery(cube, objects, D))
     braking = builder.AddSystem(make_braking(objects))
-    X_WTool, V_WTool = tool.get_pose_output_port(), tool.get_velocity_output_port()
-    builder.Connect(X_WTool, query.get_tool_pose_input_port())
-    builder.Connect(query.get_contacts_output_port(), braking.get_contacts_input_port())
-    builder.Connect(X_WTool, braking.get_tool_pose_input_port())
-    builder.Connect(V_WTool, braking.get_tool_velocity_input_port())
-    builder.Connect(
-        braking.get_wrench_model_output_port(), tool.get_wrench_input_port("braking")
-    )
+    X_WT, V_WT = tool.GetOutputPort("X_WT"), tool.GetOutputPort("V_WT")
+    builder.Connect(X_WT, query.GetInputPort("X_WT"))
+    builder.Connect(query.GetOutputPort("contacts"), braking.GetInputPort("contacts"))
+    builder.Connect(X_WT, braking.GetInputPort("X_WT"))
+    builder.Connect(V_WT, braking.GetInputPort("V_WT"))
+    builder.Connect(braking.GetOutputPort("wrench_model"), tool.GetInputPort("braking"))
     simulator = Simulator(builder.Build())
     context = tool.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     state = context.get_discrete_state_vector().CopyToVector()
@@ -207,9 +205,9 @@ def test_its_twin_has_the_derivatives_of_poses_and_velocities(seed):
     jacobian = check_twin(
         make_chain(tool, cart, D, braking=make_braking(cart)),
         {
-            "X_WTool": near(rng, 0.01, 1e-3),
+            "X_WT": near(rng, 0.01, 1e-3),
             "X_WO_cart": near(rng, 0.01, 1e-3),
-            "V_WTool": rng.normal(size=6),
+            "V_WT": rng.normal(size=6),
             "V_WO_cart": rng.normal(size=6),
         },
         step=1e-6,
@@ -228,8 +226,8 @@ def test_contacts_without_derivatives_are_refused(cube, plate):
     twin = braking.ToAutoDiffXd()
     context = twin.CreateDefaultContext()
     twin.GetInputPort("contacts").FixValue(context, Value[object](contacts))
-    twin.GetInputPort("X_WTool").FixValue(context, at_height(TOUCH))
-    twin.GetInputPort("V_WTool").FixValue(context, DOWN)
+    twin.GetInputPort("X_WT").FixValue(context, at_height(TOUCH))
+    twin.GetInputPort("V_WT").FixValue(context, DOWN)
     with pytest.raises(ValueError, match="ContactSet, which carries no derivatives"):
         twin.GetOutputPort("wrench_model").Eval(context)
 

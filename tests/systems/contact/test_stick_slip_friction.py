@@ -31,7 +31,7 @@ PERIOD, TOLERANCE, STIFFNESS = 1e-3, 1e-3, 2e4
 MU, RATIO, BREAK_AWAY = 0.5, 1.2, 1e-4
 SIZE, MASS, G = 0.02, 0.1, 9.81
 FLOOR = box([1, 1, 0.1], [0, 0, -0.05])
-# Its origin and centre of mass in the middle of its base.
+# Its origin and center of mass in the middle of its base.
 TOOL = box([SIZE] * 3, [0, 0, SIZE / 2])
 RESTING_Z = TOLERANCE - MASS * G / STIFFNESS
 
@@ -66,9 +66,9 @@ def look(x):
 
 def fix(friction, context, x):
     clusters, wrench = look(x)
-    friction.get_clusters_input_port().FixValue(context, Value[object](clusters))
-    friction.get_contact_wrench_input_port().FixValue(context, Value[object](wrench))
-    friction.get_tool_pose_input_port().FixValue(context, tool_at(x))
+    friction.GetInputPort("clusters").FixValue(context, Value[object](clusters))
+    friction.GetInputPort("contact_wrench").FixValue(context, Value[object](wrench))
+    friction.GetInputPort("X_WT").FixValue(context, tool_at(x))
 
 
 def advance(friction, context):
@@ -76,7 +76,7 @@ def advance(friction, context):
 
 
 def force(friction, context):
-    return friction.get_wrench_model_output_port().Eval(context)[3]
+    return friction.GetOutputPort("wrench_model").Eval(context)[3]
 
 
 def test_topology():
@@ -84,10 +84,10 @@ def test_topology():
     friction = make([fixed(), cart])
     names = [friction.get_input_port(i).get_name() for i in range(4)]
     assert friction.num_input_ports() == 4
-    assert names == ["clusters", "contact_wrench", "X_WTool", "X_WO_cart"]
+    assert names == ["clusters", "contact_wrench", "X_WT", "X_WO_cart"]
     assert friction.GetOutputPort("wrench_model").size() == 78
     assert friction.GetOutputPort("friction_force").get_name() == "friction_force"
-    assert friction.get_object_pose_input_port("cart").size() == 7
+    assert friction.GetInputPort("X_WO_cart").size() == 7
 
 
 def test_its_state_is_what_linearization_accepts():
@@ -123,10 +123,10 @@ def test_outputs_and_state_are_those_of_the_core():
         step = model.step(state, *look(x), tool_at(x), none)
         state = step.next_state
         np.testing.assert_array_equal(
-            friction.get_wrench_model_output_port().Eval(context), step.wrench_model
+            friction.GetOutputPort("wrench_model").Eval(context), step.wrench_model
         )
         np.testing.assert_array_equal(
-            friction.get_friction_force_output_port().Eval(context).f_cluster_W,
+            friction.GetOutputPort("friction_force").Eval(context).f_cluster_W,
             step.f_cluster_W,
         )
         advance(friction, context)
@@ -151,7 +151,7 @@ def test_a_copied_context_goes_its_own_way():
 def test_what_moves_with_its_object_feels_no_friction():
     friction = make([ContactObject("cart", FLOOR)])
     context = friction.CreateDefaultContext()
-    cart = friction.get_object_pose_input_port("cart")
+    cart = friction.GetInputPort("X_WO_cart")
     for x in (0.0, 0.3):
         fix(friction, context, x)
         cart.FixValue(context, pose_to_vector(RigidTransform([x, 0, 0])))
@@ -187,30 +187,26 @@ def test_a_block_on_a_slope_rests_or_slides(tangent):
         )
     )
     for port in (query, contact, friction, gravity):
-        builder.Connect(tool.get_pose_output_port(), port.get_tool_pose_input_port())
+        builder.Connect(tool.GetOutputPort("X_WT"), port.GetInputPort("X_WT"))
+    builder.Connect(tool.GetOutputPort("V_WT"), contact.GetInputPort("V_WT"))
     builder.Connect(
-        tool.get_velocity_output_port(), contact.get_tool_velocity_input_port()
-    )
-    builder.Connect(
-        query.get_contacts_output_port(), clustering.get_contacts_input_port()
+        query.GetOutputPort("contacts"), clustering.GetInputPort("contacts")
     )
     for port in (contact, friction):
         builder.Connect(
-            clustering.get_clusters_output_port(), port.get_clusters_input_port()
+            clustering.GetOutputPort("clusters"), port.GetInputPort("clusters")
         )
     builder.Connect(
-        contact.get_contact_wrench_output_port(),
-        friction.get_contact_wrench_input_port(),
+        contact.GetOutputPort("contact_wrench"),
+        friction.GetInputPort("contact_wrench"),
     )
     for name, system in (
         ("contact", contact),
         ("friction", friction),
         ("gravity", gravity),
     ):
-        builder.Connect(
-            system.get_wrench_model_output_port(), tool.get_wrench_input_port(name)
-        )
-    log = LogVectorOutput(tool.get_velocity_output_port(), builder, PERIOD)
+        builder.Connect(system.GetOutputPort("wrench_model"), tool.GetInputPort(name))
+    log = LogVectorOutput(tool.GetOutputPort("V_WT"), builder, PERIOD)
     simulator = Simulator(builder.Build())
     simulator.AdvanceTo(0.3)
     speed = log.FindLog(simulator.get_context()).data()[3]
@@ -253,9 +249,9 @@ def on_a_cart(rng, way):
     # Slope and pose of the world, so that no entry is small by symmetry.
     X_WS = RigidTransform(RollPitchYaw(rng.uniform(-1, 1, 3)), rng.normal(size=3) / 10)
     inputs = {
-        "X_WTool": pose_to_vector(X_WS @ RigidTransform([0, 0, 4e-4])),
+        "X_WT": pose_to_vector(X_WS @ RigidTransform([0, 0, 4e-4])),
         "X_WO_cart": pose_to_vector(X_WS),
-        "V_WTool": 0.1 * rng.normal(size=6),
+        "V_WT": 0.1 * rng.normal(size=6),
         "V_WO_cart": 0.1 * rng.normal(size=6),
     }
     context = chain.CreateDefaultContext()
@@ -267,7 +263,7 @@ def on_a_cart(rng, way):
     # Some feet are pressed harder, others less: with neither there is a kink.
     turn = RotationMatrix(RollPitchYaw(4e-4, 3e-4, 1e-3))
     now = RigidTransform(turn, 0.7 * aside + [0, 0, 4e-4])
-    inputs["X_WTool"] = pose_to_vector(X_WS @ now)
+    inputs["X_WT"] = pose_to_vector(X_WS @ now)
     inputs["X_WO_cart"] = pose_to_vector(X_WS @ RigidTransform(-0.3 * aside))
     return chain, inputs, state
 
@@ -301,7 +297,7 @@ def test_its_twin_has_all_derivatives_as_it_sticks_and_slides(seed, way, slides,
         chain.GetInputPort(name).FixValue(context, value)
     context.SetDiscreteState(state)
     friction = chain.GetSubsystemByName("friction")
-    step = friction.get_friction_force_output_port().Eval(
+    step = friction.GetOutputPort("friction_force").Eval(
         friction.GetMyContextFromRoot(context)
     )
     assert len(step.sliding) == 4

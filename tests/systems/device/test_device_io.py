@@ -21,7 +21,7 @@ class Spring(LeafSystem):
         super().__init__()
         self._stiffness = stiffness
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
-        self.DeclareVectorOutputPort("F_display", 6, self._calc)
+        self.DeclareVectorOutputPort("F_Ho_W_commanded", 6, self._calc)
 
     def _calc(self, context, output):
         force = -self._stiffness * self._X_WH.Eval(context)[4:]
@@ -38,9 +38,9 @@ def test_the_handle_is_shown_in_the_world():
     simulator = Simulator(diagram)
     simulator.AdvanceTo(PERIOD / 2)
     context = device.GetMyContextFromRoot(simulator.get_context())
-    X_WH = vector_to_pose(device.get_handle_pose_output_port().Eval(context))
+    X_WH = vector_to_pose(device.GetOutputPort("X_WH").Eval(context))
     assert X_WH.IsNearlyEqualTo(X_WB @ vector_to_pose(reading.X_BH), 1e-14)
-    V_WH = device.get_handle_velocity_output_port().Eval(context)
+    V_WH = device.GetOutputPort("V_WH").Eval(context)
     R_WB = X_WB.rotation().matrix()
     np.testing.assert_allclose(V_WH[:3], R_WB @ [3.0, 1.0, -1.0], atol=1e-14)
     np.testing.assert_allclose(V_WH[3:], R_WB @ [1.0, -2.0, 0.5], atol=1e-14)
@@ -53,7 +53,7 @@ def test_the_wrench_is_written_in_the_base_frame():
     Simulator(diagram).AdvanceTo(2 * PERIOD)
     R_BW = X_WB.rotation().inverse()
     F_B = SpatialForce(F_W).Rotate(R_BW).get_coeffs()
-    np.testing.assert_allclose(backend.commands[-1].F_BH, F_B, atol=1e-14)
+    np.testing.assert_allclose(backend.commands[-1].F_Ho_B, F_B, atol=1e-14)
 
 
 def test_a_tick_answers_the_handle_that_it_read():
@@ -63,14 +63,14 @@ def test_a_tick_answers_the_handle_that_it_read():
     diagram, _ = make_diagram(backend, X_WB=RigidTransform(), source=Spring(stiffness))
     simulator = Simulator(diagram)
     simulator.Initialize()
-    assert [c.F_BH[3] for c in backend.commands] == [0.0], "enabled with no force"
+    assert [c.F_Ho_B[3] for c in backend.commands] == [0.0], "enabled with no force"
     simulator.AdvanceTo(5 * PERIOD)
     # The update of tick k reads position k; its wrench is out before tick k + 1 reads.
     assert backend.reads == 5
-    forces = [command.F_BH[3] for command in backend.commands[1:]]
+    forces = [command.F_Ho_B[3] for command in backend.commands[1:]]
     np.testing.assert_allclose(forces, [-stiffness * 1e-3 * k for k in range(1, 6)])
     for command in backend.commands[1:]:
-        assert command.F_BH[3] == pytest.approx(-stiffness * command.X_BH[4])
+        assert command.F_Ho_B[3] == pytest.approx(-stiffness * command.X_BH[4])
 
 
 def test_slopes_are_turned_into_the_base_frame():
@@ -109,7 +109,7 @@ def test_a_device_with_nothing_new_stays_where_it_was():
     simulator.AdvanceTo(3 * PERIOD)
     context = device.GetMyContextFromRoot(simulator.get_context())
     np.testing.assert_allclose(
-        device.get_handle_pose_output_port().Eval(context),
+        device.GetOutputPort("X_WH").Eval(context),
         pose_to_vector(X_WB @ vector_to_pose(first.X_BH)),
         atol=1e-14,
     )

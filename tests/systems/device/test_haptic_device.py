@@ -18,8 +18,8 @@ from drake_haptics.scene.scene_file import load_scene
 
 def test_topology():
     device = make_device()
-    assert [device.GetInputPort("F_display").size()] == [6]
-    sizes = {"X_WH": 7, "V_WH": 6, "F_applied": 6, "status": 1}
+    assert [device.GetInputPort("F_Ho_W_commanded").size()] == [6]
+    sizes = {"X_WH": 7, "V_WH": 6, "F_Ho_W_rendered": 6, "status": 1}
     assert {
         device.get_output_port(i).get_name(): device.get_output_port(i).size()
         for i in range(device.num_output_ports())
@@ -32,7 +32,7 @@ def test_it_shows_a_wrench_from_its_sample_until_the_next():
     builder = DiagramBuilder()
     builder.AddSystem(device)
     source = builder.AddSystem(ConstantVectorSource([0, 0, 0, 0, 0, 1.0]))
-    builder.Connect(source.get_output_port(), device.get_display_wrench_input_port())
+    builder.Connect(source.get_output_port(), device.GetInputPort("F_Ho_W_commanded"))
     diagram = builder.Build()
     simulator = Simulator(diagram)
     ResetIntegratorFromFlags(simulator, "runge_kutta3", PERIOD)
@@ -42,17 +42,17 @@ def test_it_shows_a_wrench_from_its_sample_until_the_next():
     simulator.AdvanceTo(PERIOD)
     rate = DAMPING / MASS
     speed = 1.0 / DAMPING * (1 - np.exp(-rate * PERIOD))
-    velocity = device.get_handle_velocity_output_port().Eval(context)
+    velocity = device.GetOutputPort("V_WH").Eval(context)
     assert velocity[5] == pytest.approx(speed, rel=1e-7)
     # A new value is not shown before the next sample.
     source.get_mutable_source_value(
         source.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     ).SetFromVector([0, 0, 0, 0, 0, 100.0])
-    applied = device.get_applied_wrench_output_port()
+    applied = device.GetOutputPort("F_Ho_W_rendered")
     assert applied.Eval(context)[5] == 1.0
     simulator.AdvanceTo(1.5 * PERIOD)
     assert applied.Eval(context)[5] == 8.5
-    assert device.get_status_output_port().Eval(context)[0] == 1.0
+    assert device.GetOutputPort("status").Eval(context)[0] == 1.0
 
 
 def growth(stiffness):
@@ -61,7 +61,7 @@ def growth(stiffness):
     device = make_device()
     gains = CouplingGains(stiffness, 0.0, 0.0, 0.0)
     add_device_on_fixed_tool(builder, device, gains, RigidTransform())
-    log = LogVectorOutput(device.get_handle_pose_output_port(), builder, PERIOD)
+    log = LogVectorOutput(device.GetOutputPort("X_WH"), builder, PERIOD)
     diagram = builder.Build()
     simulator = Simulator(diagram)
     ResetIntegratorFromFlags(simulator, "runge_kutta3", PERIOD)
@@ -90,7 +90,7 @@ def test_its_twin_has_the_derivatives_of_hold_hand_and_arm():
     arm = context.get_continuous_state_vector().CopyToVector()
     check_twin(
         device,
-        {"F_display": np.array([0.01, 0.02, -0.03, 1.0, 2.0, -1.0])},
+        {"F_Ho_W_commanded": np.array([0.01, 0.02, -0.03, 1.0, 2.0, -1.0])},
         continuous=arm + 0.1 * rng.normal(size=arm.size),
         state=rng.normal(size=7),
         time_s=0.3,

@@ -24,7 +24,7 @@ def test_each_tick_has_its_own_row(period_s):
     X_WH, V_WH = make_motion(20_000)
     handle = ReplayedHandle(X_WH, V_WH, period_s)
     context = handle.CreateDefaultContext()
-    handle.GetInputPort("F_applied").FixValue(context, np.ones(6))
+    handle.GetInputPort("F_Ho_W_rendered").FixValue(context, np.ones(6))
     for k in [0, 1, 2, *range(3, 20_000, 7)]:
         context.SetTime(k * period_s)
         pose, velocity = read(handle, context)

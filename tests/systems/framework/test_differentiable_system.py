@@ -392,7 +392,7 @@ def test_the_core_refuses_arguments_by_different_variables():
         coupling_wrench(
             vector(7, 3), vector(6, 3), pose, vector(7, 3), vector(6, 2), gains
         )
-    with pytest.raises(ValueError, match="V_WTool must have 6 entries, has 5"):
+    with pytest.raises(ValueError, match="V_WT must have 6 entries, has 5"):
         coupling_wrench(
             vector(7, 3), vector(6, 3), pose, vector(7, 3), vector(5, 3), gains
         )

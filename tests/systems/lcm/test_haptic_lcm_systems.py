@@ -54,12 +54,12 @@ def test_topology():
         "lcmt_haptic_status": 0,
         "X_BH": 7,
         "V_BH": 6,
-        "F_BH": 6,
+        "F_Ho_B": 6,
         "gate": 1,
         "fault": 1,
     }
     assert list_ports(HapticCommandSender(PERIOD_S)) == {
-        "F_BH": 6,
+        "F_Ho_B": 6,
         "enable": 1,
         "lcmt_haptic_command": 0,
     }
@@ -68,7 +68,7 @@ def test_topology():
         "lcmt_haptic_command": 0,
         "X_BH": 7,
         "V_BH": 6,
-        "F_BH": 6,
+        "F_Ho_B": 6,
         "gate_status": 0,
     }
     assert not receiver.HasAnyDirectFeedthrough()
@@ -101,9 +101,9 @@ def test_the_loop_over_messages_is_the_direct_one_two_samples_later():
     add_host(builder, lcm, make_spring())
     through_lcm, simulator = calc_motion(builder.Build(), arm)
     context = gate.GetMyContextFromRoot(simulator.get_context())
-    status = gate.get_gate_status_output_port().Eval(context)
+    status = gate.GetOutputPort("gate_status").Eval(context)
     assert (status.state, status.rejected) == (GateState.ACTIVE, 0)
-    assert status.F_BH[5] == pytest.approx(1.47, abs=0.02)
+    assert status.F_Ho_B[5] == pytest.approx(1.47, abs=0.02)
     differences = []
     for samples in (1, 2, 3):
         builder, arm, spring = DiagramBuilder(), make_arm(), make_spring()
@@ -112,7 +112,7 @@ def test_the_loop_over_messages_is_the_direct_one_two_samples_later():
             builder.AddSystem(system)
         builder.Connect(arm.GetOutputPort("X_WH"), spring.get_input_port())
         builder.Connect(spring.get_output_port(), delay.get_input_port())
-        builder.Connect(delay.get_output_port(), arm.GetInputPort("F_applied"))
+        builder.Connect(delay.get_output_port(), arm.GetInputPort("F_Ho_W_rendered"))
         direct, _ = calc_motion(builder.Build(), arm)
         differences.append(np.abs(through_lcm - direct).max())
     assert differences[1] == 0.0
@@ -137,7 +137,7 @@ class Gate:
         self.simulator.Initialize()
 
     def tick(self, force=None, **fields):
-        """A tick; with a force, after a command for it along x. Returns F_BH."""
+        """A tick; with a force, after a command for it along x. Returns F_Ho_B."""
         if force is not None:
             self.sequence += 1
             command = {
@@ -151,7 +151,7 @@ class Gate:
         # Between two events, where round-off cannot tell on which side of one.
         self.ticks += 1
         self.simulator.AdvanceTo((self.ticks + 0.5) * PERIOD_S)
-        return self.get_status().F_BH
+        return self.get_status().F_Ho_B
 
     def start(self, force=1.0, ticks=300):
         """Releases, then asks for a force until it is shown."""
@@ -162,7 +162,7 @@ class Gate:
     def get_status(self):
         """What the gate has decided."""
         context = self.receiver.GetMyContextFromRoot(self.simulator.get_context())
-        return self.receiver.get_gate_status_output_port().Eval(context)
+        return self.receiver.GetOutputPort("gate_status").Eval(context)
 
     @property
     def state(self):
@@ -205,7 +205,7 @@ def test_silence_is_a_fault_that_only_a_release_leaves():
     assert shown[75] == 0.0
     assert gate.state == (GateState.FAULT, Fault.STALE)
     gate.start()
-    assert gate.get_status().F_BH[3] == pytest.approx(1.0)
+    assert gate.get_status().F_Ho_B[3] == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
@@ -237,7 +237,7 @@ def test_what_is_foreign_old_or_dead_is_not_shown(fields):
     for _ in range(200):
         gate.tick(-1.0, **fields)
     assert gate.state == (GateState.FAULT, Fault.STALE)
-    assert gate.get_status().F_BH[3] == 0.0
+    assert gate.get_status().F_Ho_B[3] == 0.0
     assert "time_to_live" in fields or gate.get_status().rejected >= rejected + 100
 
 
@@ -268,18 +268,18 @@ def test_a_message_that_is_shown_for_many_ticks_is_taken_once():
     gate.start()
     for i in range(100):
         gate.tick(1.0 if i % 10 == 0 else None)
-    assert gate.get_status().F_BH[3] == pytest.approx(1.0)
+    assert gate.get_status().F_Ho_B[3] == pytest.approx(1.0)
     assert gate.get_status().rejected == 0
 
 
 def test_a_command_is_released_at_first_and_while_it_is_not_enabled():
     sender = HapticCommandSender(PERIOD_S, ttl_s=0.02)
     context = sender.CreateDefaultContext()
-    sender.get_wrench_input_port().FixValue(context, np.arange(6.0))
+    sender.GetInputPort("F_Ho_B").FixValue(context, np.arange(6.0))
 
     def send(time_s):
         context.SetTime(time_s)
-        return sender.get_command_output_port().Eval(context)
+        return sender.GetOutputPort("lcmt_haptic_command").Eval(context)
 
     first, later = send(0.0), send(0.05)
     assert (first.enable, first.sequence, first.utime) == (False, 1, 0)
@@ -288,7 +288,7 @@ def test_a_command_is_released_at_first_and_while_it_is_not_enabled():
     assert later.time_to_live == 20_000
     assert 0 < later.session == first.session < 2**32
     for value, enable in [(0.0, False), (1.0, True)]:
-        sender.get_enable_input_port().FixValue(context, [value])
+        sender.GetInputPort("enable").FixValue(context, [value])
         assert send(0.06).enable is enable
 
 
@@ -297,13 +297,13 @@ def test_a_status_as_it_is_sent_and_received():
     context = sender.CreateDefaultContext()
     context.SetTime(0.004)
     pose = [0.5, 0.5, -0.5, 0.5, 0.1, 0.2, 0.3]
-    sender.get_handle_pose_input_port().FixValue(context, pose)
-    sender.get_handle_velocity_input_port().FixValue(context, np.arange(6.0))
-    sender.get_buttons_input_port().FixValue(context, [5.0])
-    sender.get_gate_status_input_port().FixValue(
+    sender.GetInputPort("X_BH").FixValue(context, pose)
+    sender.GetInputPort("V_BH").FixValue(context, np.arange(6.0))
+    sender.GetInputPort("buttons").FixValue(context, [5.0])
+    sender.GetInputPort("gate_status").FixValue(
         context,
         GateStatus(
-            F_BH=-np.arange(6.0),
+            F_Ho_B=-np.arange(6.0),
             session=7,
             command_sequence=8,
             rejected=9,
@@ -313,7 +313,7 @@ def test_a_status_as_it_is_sent_and_received():
             max_torque_Nm=4.0,
         ),
     )
-    status = sender.get_status_output_port().Eval(context)
+    status = sender.GetOutputPort("lcmt_haptic_status").Eval(context)
     assert 0 < status.boot < 2**32
     assert status == lcmt_haptic_status(
         utime=4000,
@@ -334,7 +334,7 @@ def test_a_status_as_it_is_sent_and_received():
     assert receive(status) == {
         "X_BH": pose,
         "V_BH": [0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
-        "F_BH": [0.0, -1.0, -2.0, -3.0, -4.0, -5.0],
+        "F_Ho_B": [0.0, -1.0, -2.0, -3.0, -4.0, -5.0],
         "gate": [2.0],
         "fault": [3.0],
     }
@@ -344,13 +344,13 @@ def receive(status):
     """All outputs of a receiver, by name."""
     receiver = HapticStatusReceiver()
     context = receiver.CreateDefaultContext()
-    receiver.get_status_input_port().FixValue(context, status)
+    receiver.GetInputPort("lcmt_haptic_status").FixValue(context, status)
     ports = [
-        receiver.get_handle_pose_output_port(),
-        receiver.get_handle_velocity_output_port(),
-        receiver.get_shown_wrench_output_port(),
-        receiver.get_gate_output_port(),
-        receiver.get_fault_output_port(),
+        receiver.GetOutputPort("X_BH"),
+        receiver.GetOutputPort("V_BH"),
+        receiver.GetOutputPort("F_Ho_B"),
+        receiver.GetOutputPort("gate"),
+        receiver.GetOutputPort("fault"),
     ]
     return {port.get_name(): port.Eval(context).tolist() for port in ports}
 
@@ -358,7 +358,7 @@ def receive(status):
 def test_before_the_first_message_the_handle_rests():
     got = receive(lcmt_haptic_status())
     assert got["X_BH"] == list(REST)
-    assert not any(got["V_BH"] + got["F_BH"] + got["gate"] + got["fault"])
+    assert not any(got["V_BH"] + got["F_Ho_B"] + got["gate"] + got["fault"])
 
 
 @pytest.mark.parametrize(

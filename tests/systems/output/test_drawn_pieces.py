@@ -19,7 +19,7 @@ class Sheets:
         self.meshes, self.opacity = {}, {}
 
     def SetTriangleColorMesh(self, path, vertices, faces, colors):
-        """Keeps corners of triangles, in their order, and colours."""
+        """Keeps corners of triangles, in their order, and colors."""
         self.meshes[path] = (vertices[:, faces.T.ravel()].T, colors.T)
 
     def SetProperty(self, path, name, value):
@@ -44,7 +44,7 @@ def send_cup():
     return pieces, sheets, steps
 
 
-def test_every_facet_is_sent_once_in_the_colour_of_its_piece():
+def test_every_facet_is_sent_once_in_the_color_of_its_piece():
     pieces, sheets, _ = send_cup()
     for name, is_original in (("pieces", True), ("virtual", False)):
         wanted = [

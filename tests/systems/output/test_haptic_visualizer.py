@@ -38,11 +38,11 @@ def test_ports_have_drakes_names_and_sizes():
         for i in range(visualizer.num_input_ports())
     } == {
         "X_WH": 7,
-        "X_WTool": 7,
+        "X_WT": 7,
         "contacts": 0,
         "clusters": 0,
         "contact_wrench": 0,
-        "F_display": 6,
+        "F_Ho_W_commanded": 6,
         "X_WO_lid": 7,
     }
     assert visualizer.num_output_ports() == 0
@@ -52,9 +52,9 @@ def test_ports_have_drakes_names_and_sizes():
 def test_tool_and_ghost_are_where_the_ports_say():
     meshcat = FakeMeshcat()
     visualizer = make_visualizer(meshcat)
-    X_WTool = RigidTransform(RollPitchYaw(1, 2, 3), [1, 2, 3])
-    visualizer.ForcedPublish(make_context(visualizer, X_WTool=X_WTool))
-    assert meshcat.transforms["/haptics/tool"].IsNearlyEqualTo(X_WTool, 1e-12)
+    X_WT = RigidTransform(RollPitchYaw(1, 2, 3), [1, 2, 3])
+    visualizer.ForcedPublish(make_context(visualizer, X_WT=X_WT))
+    assert meshcat.transforms["/haptics/tool"].IsNearlyEqualTo(X_WT, 1e-12)
     ghost = meshcat.transforms["/haptics/handle"]
     assert ghost.IsNearlyEqualTo(X_WH @ X_HT, 1e-12)
 
@@ -63,7 +63,7 @@ def test_the_line_joins_the_handle_and_the_point_of_the_tool_that_it_holds():
     meshcat = FakeMeshcat()
     visualizer = make_visualizer(meshcat)
     offset = RigidTransform(np.array([0.003, 0.0, 0.004]))
-    visualizer.ForcedPublish(make_context(visualizer, X_WTool=offset @ X_WH @ X_HT))
+    visualizer.ForcedPublish(make_context(visualizer, X_WT=offset @ X_WH @ X_HT))
     X_WLine = meshcat.transforms["/haptics/coupling"]
     scale = meshcat.properties["/haptics/coupling/line", "scale"]
     assert scale == pytest.approx([1, 1, 0.005])
@@ -212,7 +212,7 @@ def test_friction_is_drawn_dark_where_it_sticks_and_light_where_it_slides():
     # The third cluster has none.
     force = np.array([[0.3, 0, 0], [0, -0.3, 0], [0, 0, 0]])
     friction = Frozen(f_cluster_W=force, sliding=np.array([False, True, False]))
-    visualizer.get_friction_force_input_port().FixValue(context, Value(friction))
+    visualizer.GetInputPort("friction_force").FixValue(context, Value(friction))
     visualizer.ForcedPublish(context)
     folder = "/haptics/friction"
     assert meshcat.visible(folder) == [f"{folder}/0/arrow/0", f"{folder}/1/arrow/1"]
@@ -237,7 +237,7 @@ def test_objects_that_move_follow_their_port_and_others_are_placed_once():
     visualizer = make_visualizer(meshcat, objects)
     assert meshcat.transforms["/haptics/objects/table"].IsNearlyEqualTo(X_WO, 1e-12)
     context = make_context(visualizer)
-    visualizer.get_object_pose_input_port("lid").FixValue(context, pose_to_vector(X_WH))
+    visualizer.GetInputPort("X_WO_lid").FixValue(context, pose_to_vector(X_WH))
     visualizer.ForcedPublish(context)
     assert meshcat.transforms["/haptics/objects/lid"].IsNearlyEqualTo(X_WH, 1e-12)
 

@@ -70,17 +70,17 @@ def test_a_frame_is_drawn_in_slices_that_no_tick_notices(monkeypatch):
 @pytest.mark.parametrize("recording", [False, True])
 def test_a_loop_that_sheds_load_draws_nothing_but_a_recording(recording):
     meshcat = FakeMeshcat()
-    visualizer = make_visualizer(meshcat, sheds_load=True)
+    visualizer = make_visualizer(meshcat, enable_load_shedding=True)
     if recording:
         visualizer.StartRecording()
     context = make_context(visualizer, [-1e-3])
-    relief = visualizer.get_relief_input_port()
-    relief.FixValue(context, [0.02, 1.0, 0.0])
+    load_shedding = visualizer.GetInputPort("load_shedding")
+    load_shedding.FixValue(context, [0.02, 1.0, 0.0])
     simulator = Simulator(visualizer, context)
     simulator.Initialize()
     simulator.AdvanceTo(0.125)
     assert ("/haptics/tool" in meshcat.transforms) == recording
-    relief.FixValue(context, [0.0, 1.0, 0.0])
+    load_shedding.FixValue(context, [0.0, 1.0, 0.0])
     simulator.AdvanceTo(0.25)
     assert "/haptics/tool" in meshcat.transforms
 

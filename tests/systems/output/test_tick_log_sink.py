@@ -53,17 +53,17 @@ def test_with_the_simulated_arm_it_is_what_a_monitor_sees_before_the_tick(
     def look(haptic, root):
         loop = haptic.loop
         ports = [
-            loop.device.get_handle_pose_output_port(),
-            loop.device.get_handle_velocity_output_port(),
+            loop.device.GetOutputPort("X_WH"),
+            loop.device.GetOutputPort("V_WH"),
             loop.display_wrench,
-            loop.device.get_applied_wrench_output_port(),
-            loop.haptic_tool.get_pose_output_port(),
-            loop.haptic_tool.get_velocity_output_port(),
-            loop.device.get_status_output_port(),
+            loop.device.GetOutputPort("F_Ho_W_rendered"),
+            loop.haptic_tool.GetOutputPort("X_WT"),
+            loop.haptic_tool.GetOutputPort("V_WT"),
+            loop.device.GetOutputPort("status"),
         ]
         values = [p.Eval(p.get_system().GetMyContextFromRoot(root)) for p in ports]
         query = loop.contact_query
-        contacts = query.get_contacts_output_port().Eval(
+        contacts = query.GetOutputPort("contacts").Eval(
             query.GetMyContextFromRoot(root)
         )
         nearest = min(contacts.distance, default=np.inf)
@@ -71,7 +71,7 @@ def test_with_the_simulated_arm_it_is_what_a_monitor_sees_before_the_tick(
 
     rows = record(tmp_path / "log", scene, on_tick=look)
     seen = np.array(seen[:TICKS])
-    names = "X_WH V_WH F_display F_applied X_WTool V_WTool".split()
+    names = "X_WH V_WH F_Ho_W_commanded F_Ho_W_rendered X_WT V_WT".split()
     noted = np.hstack(
         [rows["time_s"][:, None], *(rows[name] for name in names)]
         + [rows[name][:, None] for name in ("status", "contacts", "distance_m")]
@@ -80,7 +80,7 @@ def test_with_the_simulated_arm_it_is_what_a_monitor_sees_before_the_tick(
     # The scene has what is to be told apart: a free tool, then a pressed one.
     assert rows["contacts"][0] == 0
     assert rows["contacts"].max() > 0
-    assert np.linalg.norm(rows["F_display"][-1]) > 0.5
+    assert np.linalg.norm(rows["F_Ho_W_commanded"][-1]) > 0.5
     assert np.isnan(rows["device_time_s"]).all()
     assert not rows["gate"].any()
 
@@ -88,7 +88,7 @@ def test_with_the_simulated_arm_it_is_what_a_monitor_sees_before_the_tick(
 def test_what_is_asked_at_a_tick_is_shown_after_it(tmp_path, scene):
     scene.device.max_force_N = 0.6
     rows = record(tmp_path / "log", scene)
-    asked, shown = rows["F_display"][:-1], rows["F_applied"][1:]
+    asked, shown = rows["F_Ho_W_commanded"][:-1], rows["F_Ho_W_rendered"][1:]
     limited = rows["status"][1:] == 1
     assert 0 < limited.sum() < len(limited)
     np.testing.assert_array_equal(shown[~limited], asked[~limited])
@@ -108,7 +108,7 @@ def test_with_a_device_it_is_the_reading_of_the_same_tick(tmp_path, scene):
             time_s=5.0 + 1e-3 * k,
             X_BH=at,
             V_BH=np.array([0.0, 0.0, 0.0, 0.0, 0.0, -0.02]),
-            F_BH=np.zeros(6),
+            F_Ho_B=np.zeros(6),
             buttons=k % 3,
             gate=GateState.FAULT if k % 50 == 0 else GateState.ACTIVE,
             fault=Fault.STALE if k % 50 == 0 else Fault.NONE,
@@ -128,9 +128,11 @@ def test_with_a_device_it_is_the_reading_of_the_same_tick(tmp_path, scene):
     np.testing.assert_allclose(drop, 2e-5 * np.arange(TICKS), atol=1e-12)
     # What is asked for follows from the reading of the very tick: the coupling's
     # spring between that handle and that tool.
-    spring = scene.coupling.stiffness_N_per_m * (rows["X_WTool"] - rows["X_WH"])[:, 4:]
-    damper = scene.coupling.damping_Ns_per_m * (rows["V_WTool"] - rows["V_WH"])[:, 3:]
-    np.testing.assert_allclose(rows["F_display"][:, 3:], spring + damper, atol=1e-6)
+    spring = scene.coupling.stiffness_N_per_m * (rows["X_WT"] - rows["X_WH"])[:, 4:]
+    damper = scene.coupling.damping_Ns_per_m * (rows["V_WT"] - rows["V_WH"])[:, 3:]
+    np.testing.assert_allclose(
+        rows["F_Ho_W_commanded"][:, 3:], spring + damper, atol=1e-6
+    )
 
 
 def test_without_a_recorder_there_is_no_sink(scene):

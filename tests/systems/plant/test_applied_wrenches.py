@@ -31,8 +31,8 @@ def test_topology():
         system.get_input_port(i).get_name(): system.get_input_port(i).size()
         for i in range(system.num_input_ports())
     } == {
-        "F_Tool_W_contact": 6,
-        "F_Tool_W_coupling": 6,
+        "F_To_W_contact": 6,
+        "F_To_W_coupling": 6,
         "F_O_W_contact": 12,
         "F_O_W_friction": 12,
     }
@@ -48,7 +48,7 @@ def test_wrenches_on_a_body_are_summed_at_its_origin():
     assert [force.body_index for force in forces] == [TOOL, CART, DOOR]
     on_objects = values["F_O_W_contact"] + values["F_O_W_friction"]
     expected = [
-        values["F_Tool_W_contact"] + values["F_Tool_W_coupling"],
+        values["F_To_W_contact"] + values["F_To_W_coupling"],
         on_objects[:6],
         on_objects[6:],
     ]
@@ -60,7 +60,7 @@ def test_wrenches_on_a_body_are_summed_at_its_origin():
 def test_where_nothing_else_moves_only_the_tool_is_pushed():
     system = AppliedWrenches(TOOL, ["contact"])
     context = system.CreateDefaultContext()
-    F = fix(system, context)["F_Tool_W_contact"]
+    F = fix(system, context)["F_To_W_contact"]
     (force,) = system.get_output_port().Eval(context)
     np.testing.assert_array_equal(force.F_Bq_W.get_coeffs(), F)
 

@@ -9,7 +9,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.plant.body_motions import BodyMotions
 
-OUTPUTS = ("X_WTool", "V_WTool", "X_WO_cart", "V_WO_cart")
+OUTPUTS = ("X_WT", "V_WT", "X_WO_cart", "V_WO_cart")
 
 
 def make_scene(config=PLANTS["continuous"]):
@@ -21,10 +21,10 @@ def make_scene(config=PLANTS["continuous"]):
         BodyMotions(bodies[2].index(), {"cart": bodies[0].index()})
     )
     plant, connect = scene.plant, scene.builder.Connect
-    connect(plant.get_body_poses_output_port(), motions.get_body_poses_input_port())
+    connect(plant.get_body_poses_output_port(), motions.GetInputPort("body_poses"))
     connect(
         plant.get_body_spatial_velocities_output_port(),
-        motions.get_body_velocities_input_port(),
+        motions.GetInputPort("body_spatial_velocities"),
     )
     return scene.start(), motions
 
@@ -69,8 +69,8 @@ def test_the_velocity_is_that_of_the_pose():
     )
     V = np.array([1.0, -2.0, 0.5, 0.3, 0.1, -0.4])
     scene.plant.SetVelocities(scene.context, [*np.zeros(12), *V])
-    np.testing.assert_allclose(scene.read(motions, "V_WTool"), V)
-    q = scene.read(motions, "X_WTool")
+    np.testing.assert_allclose(scene.read(motions, "V_WT"), V)
+    q = scene.read(motions, "X_WT")
     w, xyz = q[0], q[1:4]
     # q' = 1/2 ω q in quaternions.
     change = 0.5 * np.array([-V[:3] @ xyz, *(w * V[:3] + np.cross(V[:3], xyz))])

@@ -32,19 +32,17 @@ def force_model(force, stiffness=0.0, damping=0.0):
 def velocity_after(tool, ticks, **inputs):
     simulator = Simulator(tool)
     for name, model in inputs.items():
-        tool.get_wrench_input_port(name).FixValue(
-            simulator.get_mutable_context(), model
-        )
+        tool.GetInputPort(name).FixValue(simulator.get_mutable_context(), model)
     # Half a tick more, so that round-off does not decide about the last update.
     simulator.AdvanceTo((ticks - 0.5) * PERIOD)
-    return tool.get_velocity_output_port().Eval(simulator.get_context())
+    return tool.GetOutputPort("V_WT").Eval(simulator.get_context())
 
 
 def test_topology(tool):
     names = [tool.get_input_port(i).get_name() for i in range(2)]
     assert names == ["coupling", "contact"]
-    assert tool.GetOutputPort("X_WTool").size() == 7
-    assert tool.GetOutputPort("V_WTool").size() == 6
+    assert tool.GetOutputPort("X_WT").size() == 7
+    assert tool.GetOutputPort("V_WT").size() == 6
     assert not tool.HasAnyDirectFeedthrough()
 
 
@@ -57,11 +55,9 @@ def test_its_state_is_what_linearization_accepts(tool):
 def test_it_starts_at_rest_where_it_is_told(tool):
     context = tool.CreateDefaultContext()
     np.testing.assert_allclose(
-        tool.get_pose_output_port().Eval(context), pose_to_vector(X_WT)
+        tool.GetOutputPort("X_WT").Eval(context), pose_to_vector(X_WT)
     )
-    np.testing.assert_array_equal(
-        tool.get_velocity_output_port().Eval(context), np.zeros(6)
-    )
+    np.testing.assert_array_equal(tool.GetOutputPort("V_WT").Eval(context), np.zeros(6))
 
 
 def test_without_wrenches_it_stays(tool):

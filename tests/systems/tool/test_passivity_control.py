@@ -7,7 +7,7 @@ from pydrake.systems.framework import DiagramBuilder
 from twin_check import check_twin
 
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.systems.device.display_force_hold import DisplayForceHold
+from drake_haptics.systems.device.rendered_force_hold import RenderedForceHold
 from drake_haptics.systems.tool.passivity_control import PassivityControl
 
 PERIOD, MAX_B, MAX_BR, RESERVE = 1e-3, 20.0, 0.01, 0.1
@@ -34,21 +34,21 @@ class Port:
     def fix(self, *, asked=(0,) * 6, applied=(0,) * 6, X_WH=None, V_WH=(0,) * 6):
         """Fixes all inputs."""
         for port, value in [
-            (self.control.get_asked_wrench_input_port(), asked),
-            (self.control.get_applied_wrench_input_port(), applied),
+            (self.control.GetInputPort("F_Ho_W_desired"), asked),
+            (self.control.GetInputPort("F_Ho_W_rendered"), applied),
             (
-                self.control.get_handle_pose_input_port(),
+                self.control.GetInputPort("X_WH"),
                 pose_to_vector(X_WH or RigidTransform()),
             ),
-            (self.control.get_handle_velocity_input_port(), V_WH),
+            (self.control.GetInputPort("V_WH"), V_WH),
         ]:
             port.FixValue(self.context, np.asarray(value, float))
 
     def read(self):
-        """Returns F_display and the balance."""
+        """Returns F_Ho_W_commanded and the balance."""
         return (
-            self.control.get_display_wrench_output_port().Eval(self.context),
-            self.control.get_energy_output_port().Eval(self.context)[0],
+            self.control.GetOutputPort("F_Ho_W_commanded").Eval(self.context),
+            self.control.GetOutputPort("energy_J").Eval(self.context)[0],
         )
 
     def update(self):
@@ -59,15 +59,15 @@ class Port:
 
 def test_topology(control):
     names = [control.get_input_port(i).get_name() for i in range(4)]
-    assert names == ["F_asked", "F_applied", "X_WH", "V_WH"]
+    assert names == ["F_Ho_W_desired", "F_Ho_W_rendered", "X_WH", "V_WH"]
     assert control.num_input_ports() == 4
-    assert control.GetOutputPort("F_display").size() == 6
+    assert control.GetOutputPort("F_Ho_W_commanded").size() == 6
     assert control.GetOutputPort("energy_J").size() == 1
 
 
 def test_what_is_asked_goes_straight_through(control):
-    """No sample of delay: a hold on F_display closes the loop, nothing else does."""
-    display = control.get_display_wrench_output_port().get_index()
+    """No sample of delay: only a hold on F_Ho_W_commanded closes the loop."""
+    display = control.GetOutputPort("F_Ho_W_commanded").get_index()
     for i in range(control.num_input_ports()):
         assert control.HasDirectFeedthrough(i, display)
 
@@ -124,23 +124,23 @@ def test_what_the_device_did_not_show_is_not_counted(control):
     """The hold limits the wrench; the observer sees what it holds."""
     builder = DiagramBuilder()
     builder.AddSystem(control)
-    hold = builder.AddSystem(DisplayForceHold(PERIOD, 5.0, 0.1))
+    hold = builder.AddSystem(RenderedForceHold(PERIOD, 5.0, 0.1))
     builder.Connect(
-        control.get_display_wrench_output_port(), hold.get_display_wrench_input_port()
+        control.GetOutputPort("F_Ho_W_commanded"), hold.GetInputPort("F_Ho_W_commanded")
     )
     builder.Connect(
-        hold.get_applied_wrench_output_port(), control.get_applied_wrench_input_port()
+        hold.GetOutputPort("F_Ho_W_rendered"), control.GetInputPort("F_Ho_W_rendered")
     )
     for port, name in [
-        (control.get_asked_wrench_input_port(), "F_asked"),
-        (control.get_handle_pose_input_port(), "X_WH"),
-        (control.get_handle_velocity_input_port(), "V_WH"),
+        (control.GetInputPort("F_Ho_W_desired"), "F_Ho_W_desired"),
+        (control.GetInputPort("X_WH"), "X_WH"),
+        (control.GetInputPort("V_WH"), "V_WH"),
     ]:
         builder.ExportInput(port, name)
-    builder.ExportOutput(control.get_energy_output_port(), "energy_J")
+    builder.ExportOutput(control.GetOutputPort("energy_J"), "energy_J")
     loop = builder.Build()
     context = loop.CreateDefaultContext()
-    loop.GetInputPort("F_asked").FixValue(context, [0, 0, 0, -50.0, 0, 0])
+    loop.GetInputPort("F_Ho_W_desired").FixValue(context, [0, 0, 0, -50.0, 0, 0])
     loop.GetInputPort("V_WH").FixValue(context, np.zeros(6))
     for k in range(3):
         X_WH = RigidTransform([1e-3 * k, 0, 0])
@@ -165,8 +165,8 @@ def test_derivatives_in_each_of_its_ways_are_those_of_the_law(
     turn = RotationMatrix.MakeXRotation(1e-2) @ RotationMatrix.MakeZRotation(2e-2)
     now = pose_to_vector(RigidTransform(turn, last[4:] + 1e-4 * rng.normal(size=3)))
     inputs = {
-        "F_asked": rng.normal(size=6),
-        "F_applied": rng.normal(size=6) * [1e-3, 1e-3, 1e-3, 1, 1, 1],
+        "F_Ho_W_desired": rng.normal(size=6),
+        "F_Ho_W_rendered": rng.normal(size=6) * [1e-3, 1e-3, 1e-3, 1, 1, 1],
         "X_WH": now,
         "V_WH": V_WH,
     }

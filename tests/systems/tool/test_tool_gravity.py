@@ -18,8 +18,8 @@ G = 9.81
 
 def wrench_model(gravity, X_WT):
     context = gravity.CreateDefaultContext()
-    gravity.get_tool_pose_input_port().FixValue(context, pose_to_vector(X_WT))
-    return gravity.get_wrench_model_output_port().Eval(context)
+    gravity.GetInputPort("X_WT").FixValue(context, pose_to_vector(X_WT))
+    return gravity.GetOutputPort("wrench_model").Eval(context)
 
 
 def random_pose(seed):
@@ -30,14 +30,14 @@ def random_pose(seed):
 def test_topology():
     gravity = ToolGravity(mass_kg=MASS, p_TTcm=P_TTCM)
     assert gravity.num_input_ports() == 1
-    assert gravity.GetInputPort("X_WTool").size() == 7
+    assert gravity.GetInputPort("X_WT").size() == 7
     assert gravity.num_output_ports() == 1
     assert gravity.GetOutputPort("wrench_model").size() == 78
     assert gravity.CreateDefaultContext().num_total_states() == 0
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_it_is_a_force_at_the_centre_of_mass(seed):
+def test_it_is_a_force_at_the_center_of_mass(seed):
     X_WT = random_pose(seed)
     acceleration = np.random.default_rng(seed).normal(size=3)
     gravity = ToolGravity(mass_kg=MASS, p_TTcm=P_TTCM, gravity_m_per_s2=acceleration)
@@ -51,7 +51,7 @@ def test_it_is_a_force_at_the_centre_of_mass(seed):
 @pytest.mark.parametrize("seed", range(5))
 def test_its_derivatives_are_those_of_the_wrench(seed):
     gravity = ToolGravity(mass_kg=MASS, p_TTcm=P_TTCM)
-    slope = check_twin(gravity, {"X_WTool": pose_to_vector(random_pose(seed))})
+    slope = check_twin(gravity, {"X_WT": pose_to_vector(random_pose(seed))})
     assert np.abs(slope[:3, :4]).max() > 0.01
 
 
@@ -73,7 +73,7 @@ def test_it_is_the_slope_of_the_potential(seed):
 
 
 def test_a_free_tool_falls_without_turning():
-    """Its centre of mass falls with g, wherever its origin is; it keeps its turn."""
+    """Its center of mass falls with g, wherever its origin is; it keeps its turn."""
     X_WT = random_pose(7)
     builder = DiagramBuilder()
     tool = builder.AddSystem(
@@ -82,13 +82,11 @@ def test_a_free_tool_falls_without_turning():
         )
     )
     gravity = builder.AddSystem(ToolGravity(mass_kg=MASS, p_TTcm=P_TTCM))
-    builder.Connect(tool.get_pose_output_port(), gravity.get_tool_pose_input_port())
-    builder.Connect(
-        gravity.get_wrench_model_output_port(), tool.get_wrench_input_port("gravity")
-    )
+    builder.Connect(tool.GetOutputPort("X_WT"), gravity.GetInputPort("X_WT"))
+    builder.Connect(gravity.GetOutputPort("wrench_model"), tool.GetInputPort("gravity"))
     simulator = Simulator(builder.Build())
     simulator.AdvanceTo(0.0995)
-    V = tool.get_velocity_output_port().Eval(
+    V = tool.GetOutputPort("V_WT").Eval(
         tool.GetMyContextFromRoot(simulator.get_context())
     )
     np.testing.assert_allclose(V, [0, 0, 0, 0, 0, -0.1 * G], atol=1e-9)

@@ -21,21 +21,21 @@ def coupling():
 
 def evaluate(coupling, X_WT, V_WH=AT_REST, V_WT=AT_REST):
     context = coupling.CreateDefaultContext()
-    coupling.get_handle_pose_input_port().FixValue(context, pose_to_vector(X_WH))
-    coupling.get_handle_velocity_input_port().FixValue(context, V_WH)
-    coupling.get_tool_pose_input_port().FixValue(context, pose_to_vector(X_WT))
-    coupling.get_tool_velocity_input_port().FixValue(context, V_WT)
+    coupling.GetInputPort("X_WH").FixValue(context, pose_to_vector(X_WH))
+    coupling.GetInputPort("V_WH").FixValue(context, V_WH)
+    coupling.GetInputPort("X_WT").FixValue(context, pose_to_vector(X_WT))
+    coupling.GetInputPort("V_WT").FixValue(context, V_WT)
     return (
-        coupling.get_wrench_model_output_port().Eval(context),
-        coupling.get_display_wrench_output_port().Eval(context),
+        coupling.GetOutputPort("wrench_model").Eval(context),
+        coupling.GetOutputPort("F_Ho_W_commanded").Eval(context),
     )
 
 
 def test_topology(coupling):
     names = [coupling.get_input_port(i).get_name() for i in range(4)]
-    assert names == ["X_WH", "V_WH", "X_WTool", "V_WTool"]
+    assert names == ["X_WH", "V_WH", "X_WT", "V_WT"]
     assert coupling.GetOutputPort("wrench_model").size() == 78
-    assert coupling.GetOutputPort("F_display").size() == 6
+    assert coupling.GetOutputPort("F_Ho_W_commanded").size() == 6
 
 
 def test_it_has_no_state_and_no_delay(coupling):
@@ -93,8 +93,8 @@ def test_its_twin_has_its_derivatives_however_far_it_is_twisted(coupling, angle)
         {
             "X_WH": pose_to_vector(X_WH),
             "V_WH": np.array([0.1, 0.2, -0.3, 1.0, -2.0, 3.0]),
-            "X_WTool": pose_to_vector(X_WH @ X_HT @ twist),
-            "V_WTool": np.array([-0.4, 0.5, 0.6, -0.1, 0.2, 0.3]),
+            "X_WT": pose_to_vector(X_WH @ X_HT @ twist),
+            "V_WT": np.array([-0.4, 0.5, 0.6, -0.1, 0.2, 0.3]),
         },
         step=min(1e-3, 0.05 * room),
         rtol=1e-8,
@@ -108,8 +108,8 @@ def test_derivatives_do_not_mind_the_length_of_a_quaternion(coupling):
         {
             "X_WH": pose_to_vector(X_WH) * [1.1, 1.1, 1.1, 1.1, 1, 1, 1],
             "V_WH": AT_REST,
-            "X_WTool": -pose_to_vector(X_WH) * [0.9, 0.9, 0.9, 0.9, -1, -1, -1],
-            "V_WTool": AT_REST,
+            "X_WT": -pose_to_vector(X_WH) * [0.9, 0.9, 0.9, 0.9, -1, -1, -1],
+            "V_WT": AT_REST,
         },
     )
     # By the length itself nothing changes.
@@ -135,8 +135,8 @@ def test_its_twin_has_its_derivatives_where_it_yields(times, speed):
         {
             "X_WH": pose_to_vector(there),
             "V_WH": 0.1 * speed * np.concatenate([axis, axis]),
-            "X_WTool": pose_to_vector(RigidTransform()),
-            "V_WTool": np.zeros(6),
+            "X_WT": pose_to_vector(RigidTransform()),
+            "V_WT": np.zeros(6),
         },
         step=1e-4,
         rtol=1e-6,

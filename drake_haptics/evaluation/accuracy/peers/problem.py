@@ -51,14 +51,14 @@ class PeerAnswers:
     """What a library answered at each of n ticks.
 
     Attributes:
-        F_Tool_W: (n, 6) wrench [τ; f] on the tool at its origin in the world, N·m, N.
+        F_To_W: (n, 6) wrench [τ; f] on the tool at its origin in the world, N·m, N.
         distance: (n,) of the deepest contact, m; infinite where there is none.
         tolerance_m: How far it looked for contacts, m.
         seconds: (n,) time inside the library, s.
         remark: What the method was given besides, empty otherwise.
     """
 
-    F_Tool_W: np.ndarray
+    F_To_W: np.ndarray
     distance: np.ndarray
     tolerance_m: float
     seconds: np.ndarray
@@ -140,7 +140,7 @@ def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
     """
     part, motion = problem.part, problem.motion
     cluster, force = part.make_clustering(), part.make_force()
-    F_Tool_W = np.zeros((len(motion), 6))
+    F_To_W = np.zeros((len(motion), 6))
     distance = np.full(len(motion), np.inf)
     valid = np.isfinite(found.nhat_BA_W).all(axis=1)
     valid &= found.distance < part.tolerance_m
@@ -160,8 +160,8 @@ def apply_law(problem: PeerProblem, found: FoundContacts) -> PeerAnswers:
         )
         wrench = force(
             clusters=cluster(contacts),
-            p_WTo=motion.X_WTool[k, 4:],
-            V_WTool=motion.V_WTool[k],
+            p_WTo=motion.X_WT[k, 4:],
+            V_WT=motion.V_WT[k],
         )
-        F_Tool_W[k] = wrench.F_Tool_W
-    return PeerAnswers(F_Tool_W, distance, part.tolerance_m, found.seconds)
+        F_To_W[k] = wrench.F_To_W
+    return PeerAnswers(F_To_W, distance, part.tolerance_m, found.seconds)

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 
-from drake_haptics.analysis.held_scene import build_quietly
-from drake_haptics.common.errors import UserError
+from drake_haptics.analysis.held_scene import build_without_scene_warnings
+from drake_haptics.common.errors import HapticsError
 from drake_haptics.evaluation.accuracy.figures import AccuracyStudy, Errors, PeerRow
 from drake_haptics.evaluation.accuracy.knobs import make_reference
 from drake_haptics.evaluation.accuracy.peers.problem import (
@@ -116,7 +116,7 @@ def run_peers(
         report("finding the truth without effects", 0.0)
         scene = _leave_out_effects(scene)
         truth = find_truth(make_reference(scene).apply(scene), motion)
-    problem = make_peer_problem(build_quietly(scene), motion, truth)
+    problem = make_peer_problem(build_without_scene_warnings(scene), motion, truth)
     rows = []
     for done, method in enumerate(METHODS):
         report(f"{method.library}: {method.words}", done / len(METHODS))
@@ -133,7 +133,7 @@ def run_peer(method: PeerMethod, problem: PeerProblem, truth: Truth) -> PeerRow:
         answers = method.load()(problem)
     except PackageNotFoundError:
         return _explain(method.library, method, f"{method.package} is not installed")
-    except (ImportError, UserError, RuntimeError, ValueError) as error:
+    except (ImportError, HapticsError, RuntimeError, ValueError) as error:
         return _explain(library, method, str(error))
     remark = f", {answers.remark}" if answers.remark else ""
     return PeerRow(
@@ -154,12 +154,12 @@ def _leave_out_effects(scene: Scene) -> Scene:
 
 
 def _find_errors(answers: PeerAnswers, problem: PeerProblem, truth: Truth) -> Errors:
-    F_Tcm_W = shift_wrench(answers.F_Tool_W, problem.motion.X_WTool, truth.p_TTcm)
+    F_Tcm_W = shift_wrench(answers.F_To_W, problem.motion.X_WT, truth.p_TTcm)
     return compare(F_Tcm_W, answers.distance, answers.tolerance_m, truth)
 
 
-def _explain(library: str, method: PeerMethod, why_not: str) -> PeerRow:
-    return PeerRow(library, method.words, None, None, why_not)
+def _explain(library: str, method: PeerMethod, failure_reason: str) -> PeerRow:
+    return PeerRow(library, method.words, None, None, failure_reason)
 
 
 def add_peers(

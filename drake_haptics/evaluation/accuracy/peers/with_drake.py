@@ -95,7 +95,7 @@ class DrakePlant:
         """
         context = self.plant.GetMyMutableContextFromRoot(self.root)
         of_port = port.get_system().GetMyContextFromRoot(self.root)
-        states = np.hstack([motion.X_WTool, motion.V_WTool])
+        states = np.hstack([motion.X_WT, motion.V_WT])
         seconds = np.zeros((PASSES, len(motion)))
         for i, one_pass in enumerate(seconds):
             for k, state in enumerate(states):
@@ -166,8 +166,8 @@ def answer_by_distances(problem: PeerProblem) -> PeerAnswers:
     rows: list[np.ndarray] = []
 
     def read(tick: int, pairs: list[SignedDistancePair]) -> None:
-        X_WTool = vector_to_pose(problem.motion.X_WTool[tick])
-        rows.extend(_to_row(pair, X_WTool, owners) for pair in pairs)
+        X_WT = vector_to_pose(problem.motion.X_WT[tick])
+        rows.extend(_to_row(pair, X_WT, owners) for pair in pairs)
         start.append(len(rows))
 
     seconds = drake.ask(
@@ -216,7 +216,7 @@ def _read_forces(problem: PeerProblem, add: AddGeometry) -> PeerAnswers:
     """Sums the forces of the plant's point contacts at the tool's origin."""
     drake = make_plant("point", problem.part.X_WO, add)
     motion, tool = problem.motion, drake.tool.index()
-    F_Tool_W = np.zeros((len(motion), 6))
+    F_To_W = np.zeros((len(motion), 6))
     distance = np.full(len(motion), np.inf)
 
     def read(tick: int, results: ContactResults) -> None:
@@ -224,13 +224,13 @@ def _read_forces(problem: PeerProblem, add: AddGeometry) -> PeerAnswers:
             info = results.point_pair_contact_info(i)
             # The force is the one on B, at C.
             force = info.contact_force() * (1 if info.bodyB_index() == tool else -1)
-            arm = info.contact_point() - motion.X_WTool[tick, 4:]
-            F_Tool_W[tick] += np.concatenate([np.cross(arm, force), force])
+            arm = info.contact_point() - motion.X_WT[tick, 4:]
+            F_To_W[tick] += np.concatenate([np.cross(arm, force), force])
             distance[tick] = min(distance[tick], -info.point_pair().depth)
 
     port = drake.plant.get_contact_results_output_port()
     seconds = drake.ask(motion, port, lambda results: results, read)
-    return PeerAnswers(F_Tool_W, distance, 0.0, seconds)
+    return PeerAnswers(F_To_W, distance, 0.0, seconds)
 
 
 def _find_owners(
@@ -253,14 +253,14 @@ def _find_owners(
 
 def _to_row(
     pair: SignedDistancePair,
-    X_WTool: RigidTransform,
+    X_WT: RigidTransform,
     owners: dict[GeometryId, tuple[int, RigidTransform]],
 ) -> np.ndarray:
     """Returns distance, normal out of the object, both points, and the object."""
     points = {}
     for piece, p in ((pair.id_A, pair.p_ACa), (pair.id_B, pair.p_BCb)):
         owner, X_BP = owners[piece]
-        points[owner] = (X_WTool @ X_BP if owner < 0 else X_BP) @ p
+        points[owner] = (X_WT @ X_BP if owner < 0 else X_BP) @ p
     is_A = owners[pair.id_A][0] < 0
     normal = pair.nhat_BA_W if is_A else -pair.nhat_BA_W
     which = max(points)
@@ -308,7 +308,7 @@ def _answer(problem: PeerProblem, add_tool: _AddTool) -> PeerAnswers:
     drake = make_plant("hydroelastic", problem.part.X_WO, add)
     motion = problem.motion
     own = set(drake.plant.GetCollisionGeometriesForBody(drake.tool))
-    F_Tool_W = np.zeros((len(motion), 6))
+    F_To_W = np.zeros((len(motion), 6))
 
     def read(tick: int, results: ContactResults) -> None:
         for i in range(results.num_hydroelastic_contacts()):
@@ -317,15 +317,15 @@ def _answer(problem: PeerProblem, add_tool: _AddTool) -> PeerAnswers:
             # The force is the one on M, at the surface's centroid.
             sign = 1 if surface.id_M() in own else -1
             force = sign * F_Ac_W.translational()
-            arm = surface.centroid() - motion.X_WTool[tick, 4:]
+            arm = surface.centroid() - motion.X_WT[tick, 4:]
             torque = sign * F_Ac_W.rotational() + np.cross(arm, force)
-            F_Tool_W[tick] += np.concatenate([torque, force])
+            F_To_W[tick] += np.concatenate([torque, force])
 
     port = drake.plant.get_contact_results_output_port()
     seconds = drake.ask(motion, port, lambda results: results, read)
-    scale = _fit(F_Tool_W[:, 3:], problem.f_W)
+    scale = _fit(F_To_W[:, 3:], problem.f_W)
     return PeerAnswers(
-        scale * F_Tool_W,
+        scale * F_To_W,
         np.full(len(motion), np.nan),
         0.0,
         seconds,

@@ -51,11 +51,11 @@ def answer_with_coal(problem: PeerProblem) -> PeerAnswers:
         for i, part in enumerate(problem.objects):
             X_WO = vector_to_pose(problem.part.X_WO[i]).GetAsMatrix4()
             add_pieces(native.coal_contacts_add, scene, i, part, X_WO)
-        poses = [vector_to_pose(X).GetAsMatrix4() for X in problem.motion.X_WTool]
-        X_WTool, seconds = np.array(poses), np.empty((PASSES, len(poses)))
+        poses = [vector_to_pose(X).GetAsMatrix4() for X in problem.motion.X_WT]
+        X_WT, seconds = np.array(poses), np.empty((PASSES, len(poses)))
         for one_pass in seconds:
             count = native.coal_contacts_run(
-                scene, problem.tolerance_m, len(X_WTool), X_WTool, one_pass
+                scene, problem.tolerance_m, len(X_WT), X_WT, one_pass
             )
         found = _copy_contacts(native.coal_contacts_copy, scene, count, seconds)
     finally:
@@ -81,10 +81,10 @@ def answer_with_mujoco(problem: PeerProblem) -> PeerAnswers:
     native = _load_mujoco()
     scene = open_mjcf(native.mujoco_contacts_new, _make_mjcf(problem))
     try:
-        X_WTool = np.ascontiguousarray(problem.motion.X_WTool)
-        n, seconds = len(X_WTool), np.empty((PASSES, len(X_WTool)))
+        X_WT = np.ascontiguousarray(problem.motion.X_WT)
+        n, seconds = len(X_WT), np.empty((PASSES, len(X_WT)))
         for one_pass in seconds:
-            count = native.mujoco_contacts_run(scene, n, X_WTool, one_pass)
+            count = native.mujoco_contacts_run(scene, n, X_WT, one_pass)
         found = _copy_contacts(native.mujoco_contacts_copy, scene, count, seconds)
     finally:
         native.mujoco_contacts_delete(scene)

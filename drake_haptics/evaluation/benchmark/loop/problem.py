@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from pydrake.math import RigidTransform
 
-from drake_haptics.analysis.held_scene import build_quietly
+from drake_haptics.analysis.held_scene import build_without_scene_warnings
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.evaluation.accuracy.recorded_motion import (
     RecordedMotion,
@@ -78,13 +78,13 @@ class LoopCourse:
     """What happened in a loop, at the beginning of each of n ticks.
 
     Attributes:
-        X_WTool: (n, 7) poses of the tool, m.
+        X_WT: (n, 7) poses of the tool, m.
         num_contacts: (n,) pairs of pieces that push each other.
         nearest_m: (n,) smallest signed distance of them, m; 0 where there is none.
         force_N: (n,) of the spring between handle and tool, N.
     """
 
-    X_WTool: np.ndarray
+    X_WT: np.ndarray
     num_contacts: np.ndarray
     nearest_m: np.ndarray
     force_N: np.ndarray
@@ -110,7 +110,7 @@ def make_problem(name: str = "cup_spoon", duration_s: float = 4.0) -> LoopProble
         duration_s: Of the motion, s.
     """
     scene = load_scene(find_scene(name))
-    haptic = build_quietly(scene)
+    haptic = build_without_scene_warnings(scene)
     motion = record_motion(scene, duration_s)
     return LoopProblem(name, scene, motion, haptic.tool, haptic.environment)
 

@@ -96,7 +96,7 @@ def _make_figures(
     ours: LoopCourse,
 ) -> LoopFigures:
     count, force_N = course.num_contacts[1:], course.force_N[1:]
-    apart_m = np.linalg.norm(course.X_WTool[1:, 4:] - ours.X_WTool[1:, 4:], axis=1)
+    apart_m = np.linalg.norm(course.X_WT[1:, 4:] - ours.X_WT[1:, 4:], axis=1)
     return LoopFigures(
         scene=problem.name,
         loop=name,

@@ -97,9 +97,9 @@ class StockLoop:
             contacts.append((len(depths), -max(depths, default=0.0)))
 
         self._run(note)
-        X_WTool, (count, nearest_m) = np.array(poses), np.array(contacts).T
-        force_N = problem.spring_force(X_WTool[:, 4:])
-        return LoopCourse(X_WTool, count.astype(int), nearest_m, force_N)
+        X_WT, (count, nearest_m) = np.array(poses), np.array(contacts).T
+        force_N = problem.spring_force(X_WT[:, 4:])
+        return LoopCourse(X_WT, count.astype(int), nearest_m, force_N)
 
     def time(self) -> np.ndarray:
         """See `Loop.time`."""

@@ -12,7 +12,7 @@ from pydrake.trajectories import PiecewisePolynomial
 
 from drake_haptics import _core
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.common.real_time import TickClock
+from drake_haptics.common.real_time import RealTimePacer
 from drake_haptics.evaluation.benchmark.loop.problem import LoopCourse, LoopProblem
 from drake_haptics.evaluation.measuring.timing import clock_interval, steady_memory
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
@@ -69,7 +69,7 @@ class ThisLoop:
         begins: list[float] = []
         ends: list[float] = []
         clock = time.perf_counter
-        pace = TickClock(self._problem.motion.period_s) if self._paced else None
+        pace = RealTimePacer(self._problem.motion.period_s) if self._paced else None
 
         def note(context: Context) -> EventStatus:
             ends.append(clock())
@@ -135,7 +135,7 @@ def _observe(problem: LoopProblem, haptic: HapticDiagram) -> LoopCourse:
     simulator = make_simulator(haptic)
     root = simulator.get_context()
     tool, query = haptic.loop.haptic_tool, haptic.loop.contact_query
-    pose, contacts = tool.get_pose_output_port(), query.get_contacts_output_port()
+    pose, contacts = tool.GetOutputPort("X_WT"), query.GetOutputPort("contacts")
     tool_context = tool.GetMyContextFromRoot(root)
     query_context = query.GetMyContextFromRoot(root)
     rows: list[np.ndarray] = []
@@ -152,10 +152,10 @@ def _observe(problem: LoopProblem, haptic: HapticDiagram) -> LoopCourse:
     note(root)
     simulator.set_monitor(note)
     simulator.AdvanceTo((n - 0.5) * problem.motion.period_s)
-    X_WTool = np.array(rows[:n])
+    X_WT = np.array(rows[:n])
     num_contacts, nearest_m = np.array(counts[:n]).T
-    force_N = problem.spring_force(X_WTool[:, 4:])
-    return LoopCourse(X_WTool, num_contacts.astype(int), nearest_m, force_N)
+    force_N = problem.spring_force(X_WT[:, 4:])
+    return LoopCourse(X_WT, num_contacts.astype(int), nearest_m, force_N)
 
 
 def _make_recording(problem: LoopProblem) -> Diagram:
@@ -173,7 +173,7 @@ def _make_recording(problem: LoopProblem) -> Diagram:
     parts = builder.AddNamedSystem("parts", Demultiplexer([7, 6]))
     builder.Connect(source.get_output_port(), parts.get_input_port())
     ignored = builder.AddNamedSystem("ignored", PassThrough(6))
-    builder.ExportInput(ignored.get_input_port(), "F_applied")
+    builder.ExportInput(ignored.get_input_port(), "F_Ho_W_rendered")
     builder.ExportOutput(parts.get_output_port(0), "X_WH")
     builder.ExportOutput(parts.get_output_port(1), "V_WH")
     return builder.Build()

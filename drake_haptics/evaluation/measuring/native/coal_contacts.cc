@@ -100,8 +100,8 @@ void coal_contacts_add(void* self, int owner, const double* vertices,
 }
 
 // Answers n poses of the tool and returns how many contacts there are in all.
-int coal_contacts_run(void* self, double tolerance, int n,
-                      const double* X_WTool, double* seconds) {
+int coal_contacts_run(void* self, double tolerance, int n, const double* X_WT,
+                      double* seconds) {
   auto& scene = *static_cast<CoalContacts*>(self);
   scene.tool_tree.setup();
   scene.object_tree.setup();
@@ -109,7 +109,7 @@ int coal_contacts_run(void* self, double tolerance, int n,
   Distances callback(tolerance, &scene.found);
   for (int i = 0; i < n; ++i) {
     seconds[i] = bench::Timed([&] {
-      const coal::Transform3s X = bench::CoalPose(X_WTool + 16 * i);
+      const coal::Transform3s X = bench::CoalPose(X_WT + 16 * i);
       for (coal::CollisionObject* piece : scene.tool) {
         piece->setTransform(X);
         piece->computeAABB();

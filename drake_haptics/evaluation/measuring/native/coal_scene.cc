@@ -82,7 +82,8 @@ void coal_scene_add(void* self, int of_tool, const double* vertices,
                     int num_vertices, const int* triangles, int num_triangles,
                     const double* X_WO) {
   auto& scene = *static_cast<CoalScene*>(self);
-  auto hull = bench::CoalConvex(vertices, num_vertices, triangles, num_triangles);
+  auto hull =
+      bench::CoalConvex(vertices, num_vertices, triangles, num_triangles);
   scene.pieces.push_back(
       std::make_unique<coal::CollisionObject>(hull, bench::CoalPose(X_WO)));
   coal::CollisionObject* piece = scene.pieces.back().get();
@@ -101,14 +102,14 @@ void coal_scene_setup(void* self) {
 }
 
 void coal_scene_run(void* self, double tolerance, int start, int n,
-                    const double* X_WTool, int* num_contacts, double* nearest,
+                    const double* X_WT, int* num_contacts, double* nearest,
                     double* seconds) {
   auto& scene = *static_cast<CoalScene*>(self);
   SignedDistances callback(tolerance,
                            static_cast<coal::GJKInitialGuess>(start));
   for (int i = 0; i < n; ++i) {
     seconds[i] = bench::Timed([&] {
-      Pose(bench::CoalPose(X_WTool + 16 * i), tolerance, scene);
+      Pose(bench::CoalPose(X_WT + 16 * i), tolerance, scene);
       scene.tool_tree.update();
       scene.object_tree.collide(&scene.tool_tree, &callback);
     });

@@ -54,13 +54,13 @@ void mujoco_contacts_delete(void* self) {
 
 // Answers n poses (7) of the tool and returns how many contacts there are in
 // all.
-int mujoco_contacts_run(void* self, int n, const double* X_WTool,
+int mujoco_contacts_run(void* self, int n, const double* X_WT,
                         double* seconds) {
   auto& [model, data, found] = *static_cast<MujocoContacts*>(self);
   found = {};
   for (int i = 0; i < n; ++i) {
-    mju_copy(data->qpos, X_WTool + 7 * i + 4, 3);
-    mju_copy(data->qpos + 3, X_WTool + 7 * i, 4);
+    mju_copy(data->qpos, X_WT + 7 * i + 4, 3);
+    mju_copy(data->qpos + 3, X_WT + 7 * i, 4);
     seconds[i] = bench::Timed([&] {
       mj_kinematics(model, data);
       mj_comPos(model, data);  // poses the trees that the broad phase uses

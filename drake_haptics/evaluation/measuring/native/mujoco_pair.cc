@@ -1,4 +1,5 @@
-// One convex pair in MuJoCo, for drake_haptics/evaluation/benchmark/libraries/with_mujoco.py.
+// One convex pair in MuJoCo, for
+// drake_haptics/evaluation/benchmark/libraries/with_mujoco.py.
 
 #include <mujoco/mujoco.h>
 
@@ -13,7 +14,7 @@ struct MujocoPair {
   mjData* data;
 };
 
-// Poses a geom at X * (mesh_pos, mesh_quat): MuJoCo moves a mesh to its centre
+// Poses a geom at X * (mesh_pos, mesh_quat): MuJoCo moves a mesh to its center
 // of mass and principal axes.
 void Place(const MujocoPair& pair, int geom, const double* X) {
   const int mesh = pair.model->geom_dataid[geom];

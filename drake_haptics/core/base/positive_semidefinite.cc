@@ -1,0 +1,43 @@
+#include "base/positive_semidefinite.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+namespace drake_haptics {
+namespace {
+
+// Below this part of the largest entry a difference is round-off.
+constexpr double kRoundOff = 1e-9;
+// An eigenvalue below zero by this part of it is that of a singular matrix.
+constexpr double kSingular = 1e-13;
+
+// By a Cholesky decomposition, which costs a fraction of the eigenvalues.
+bool IsPassive(const Mat6& symmetric, double size) {
+  const Mat6 lifted = symmetric + kSingular * size * Mat6::Identity();
+  return lifted.llt().info() == Eigen::Success;
+}
+
+}  // namespace
+
+Mat6 ProjectToPositiveSemidefinite(const Mat6& matrix, bool* changed) {
+  Vec6 length;
+  length << Vec3::Constant(1 / kHandleLength), Vec3::Ones();
+  const Mat6 even = length.asDiagonal() * matrix * length.asDiagonal();
+  const double size = even.cwiseAbs().maxCoeff();
+  if (size == 0) return Mat6::Zero();
+  const Mat6 symmetric = 0.5 * (even + even.transpose());
+  Mat6 passive = symmetric;
+  if (!IsPassive(symmetric, size)) {
+    const Eigen::SelfAdjointEigenSolver<Mat6> solver(symmetric);
+    passive = solver.eigenvectors() *
+              solver.eigenvalues().cwiseMax(0).asDiagonal() *
+              solver.eigenvectors().transpose();
+  }
+  if ((passive - even).cwiseAbs().maxCoeff() > kRoundOff * size) {
+    *changed = true;
+  }
+  return length.cwiseInverse().asDiagonal() * passive *
+         length.cwiseInverse().asDiagonal();
+}
+
+}  // namespace drake_haptics

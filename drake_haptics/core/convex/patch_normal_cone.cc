@@ -1,0 +1,148 @@
+#include "convex/patch_normal_cone.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "convex/normal_cone_test.h"
+
+namespace drake_haptics {
+namespace {
+
+// Sine of the angle by which corners are tested more loosely than contacts.
+constexpr double kLoose = 1e-6;
+// How far an edge carries beyond the normals beside it; a little more than
+// counts.
+constexpr double kArcSlack = 1.01 * kSurfaceSlack;
+// 1 + the cosine between normals that are beside a knife's edge: with the slack
+// at both ends, they would be half a turn apart or more.
+constexpr double kKnife = 2.1 * kArcSlack * kArcSlack;
+// By how much the arc of a knife's edge is shorter at each end, rad.
+constexpr double kShort = 1e-6;
+// Between two corners a boundary bulges by the slack at most, and round-off.
+constexpr double kBulge = 2 * kSurfaceSlack;
+// Cosine of the widest cone that is worth asking; any narrower than a right
+// angle holds what is between the directions in it.
+constexpr double kWidest = 0.1;
+
+class Collection {
+ public:
+  explicit Collection(const Polytope& piece) : piece_(piece) {}
+
+  // False where the directions are not bounded by corners.
+  bool Run() {
+    for (const Polytope::Facet& facet : piece_.facets) {
+      if (facet.original) corners_.push_back(facet.normal);
+    }
+    for (const Polytope::Edge& edge : piece_.edges) {
+      if (edge.carrying[0].isZero(0)) continue;
+      for (const Vec3& end : edge.carrying) {
+        corners_.push_back(end.normalized());
+      }
+    }
+    for (int v = 0; v < piece_.num_vertices(); ++v) {
+      if (!AddVertex(v)) return false;
+    }
+    return true;
+  }
+
+  DirectionCone Cone() const {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& corner : corners_) sum += corner;
+    DirectionCone cone{sum.normalized(), 1};
+    for (const Vec3& corner : corners_) {
+      cone.cosine = std::min(cone.cosine, cone.axis.dot(corner));
+    }
+    cone.cosine = std::cos(std::acos(cone.cosine) + kBulge);
+    return cone.cosine >= kWidest ? cone : DirectionCone();
+  }
+
+ private:
+  // The directions n with n · r = slack for two of the ring, and no more for
+  // the others.
+  bool AddVertex(int v) {
+    const auto ring = piece_.ring_of(v);
+    if (ring.size() < 3) return false;
+    const Vec3* flat = FindFlatFacet(v, ring);
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vec3 between =
+            (ring[i] + ring[j]) * (kSurfaceSlack / (1 + ring[i].dot(ring[j])));
+        const double rest = 1 - between.squaredNorm();
+        const Vec3 across = ring[i].cross(ring[j]);
+        // In one line they allow what others of the ring must bound.
+        if (!(rest > 0) || !(across.squaredNorm() > 1e-20)) continue;
+        const Vec3 aside = across.normalized() * std::sqrt(rest);
+        for (const Vec3& n : {Vec3(between + aside), Vec3(between - aside)}) {
+          if (IsCarried(n, ring) && !(flat && flat->dot(n) < 0)) {
+            corners_.push_back(n);
+          }
+        }
+      }
+    }
+    return true;
+  }
+
+  static bool IsCarried(const Vec3& n, std::span<const Vec3> ring) {
+    return std::all_of(ring.begin(), ring.end(), [&](const Vec3& r) {
+      return n.dot(r) <= kSurfaceSlack + kLoose;
+    });
+  }
+
+  // The normal of a plane in which the mesh lies all around a vertex: from its
+  // back it carries nothing. Null if there is none.
+  const Vec3* FindFlatFacet(int v, std::span<const Vec3> ring) const {
+    for (const Polytope::OneRingEntry& spoke : piece_.fan_of(v)) {
+      if (!piece_.facets[spoke.facet].original) continue;
+      const Vec3& n = spoke.normal;
+      const bool is_flat =
+          std::all_of(ring.begin(), ring.end(), [&](const Vec3& r) {
+            const Vec3 aside = n.cross(r);
+            return std::abs(n.dot(r)) <= kSurfaceSlack &&
+                   !IsCarried(aside, ring) && !IsCarried(-aside, ring);
+          });
+      if (is_flat) return &n;
+    }
+    return nullptr;
+  }
+
+  const Polytope& piece_;
+  std::vector<Vec3> corners_;
+};
+
+}  // namespace
+
+void FillEdgeNormalArcs(Polytope* piece) {
+  for (Polytope::Edge& edge : piece->edges) {
+    edge.carrying = {Vec3::Zero(), Vec3::Zero()};
+    const Vec3 &left = edge.wings[0], &right = edge.wings[1];
+    const bool is_rim = left.isZero(0) || right.isZero(0);
+    if (!edge.original || (left.isZero(0) && right.isZero(0))) continue;
+    const Vec3 along = (piece->vertices[edge.v1] - piece->vertices[edge.v0])
+                           .stableNormalized();
+    const Vec3 normals[2] = {along.cross(left), right.cross(along)};
+    // A concave edge carries nothing. A rim carries from its face's normal to
+    // the direction away from the face, and is not quite flush with either. A
+    // knife's, beside faces that lie back to back, ends short of their normals:
+    // an arc of half a turn or more would lead through the knife.
+    if (!is_rim && normals[0].dot(right) > 2 * kArcSlack) continue;
+    const bool is_knife = !is_rim && normals[0].dot(normals[1]) < -1 + kKnife;
+    const double slack = is_knife ? -kShort : kArcSlack;
+    for (int k = 0; k < 2; ++k) {
+      const Vec3& wing = edge.wings[k];
+      edge.carrying[k] =
+          wing.isZero(0) ? Vec3(-edge.wings[1 - k] - kArcSlack * normals[1 - k])
+                         : Vec3(normals[k] + slack * wing);
+    }
+  }
+}
+
+DirectionCone FindPatchNormalCone(const Polytope& piece) {
+  Collection collection(piece);
+  return piece.dimension < 2 || !collection.Run() ? DirectionCone()
+                                                  : collection.Cone();
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+
+#include "mesh/aabb_tree.h"
+#include "mesh/decomposition.h"
+
+namespace drake_haptics {
+
+/// Some triangles of a mesh, to ask how much of a convex polygon they cover.
+class MeshCoverage {
+ public:
+  /// @param vertices, triangles of the mesh; they must outlive this.
+  /// @param members the triangles that count.
+  MeshCoverage(std::span<const Vec3> vertices,
+               std::span<const Triangle> triangles,
+               std::span<const int> members);
+
+  /// Area, m², of the triangles that face as the polygon does and are within
+  /// `tolerance` (m) of it, counted where they are above or below it.
+  /// @param polygon corners, counter-clockwise about the unit `normal`.
+  double CoveredArea(std::span<const Vec3> polygon, const Vec3& normal,
+                     double tolerance) const;
+
+ private:
+  std::span<const Vec3> vertices_;
+  std::span<const Triangle> triangles_;
+  std::span<const int> members_;
+  AabbTree tree_;
+};
+
+}  // namespace drake_haptics

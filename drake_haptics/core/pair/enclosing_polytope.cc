@@ -1,0 +1,114 @@
+#include "pair/enclosing_polytope.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <limits>
+
+namespace drake_haptics {
+namespace {
+
+constexpr int kMaxGrowth = 1024;
+// Heights that are round-off, as a share of the size.
+constexpr double kThinShare = 1e-13;
+
+// Vertex number k of three that span the feature.
+int AffineBasisVertex(const Polytope& polytope, Feature feature, int k,
+                      int far_end) {
+  switch (feature.kind()) {
+    case FeatureKind::kVertex:
+      return feature.index();
+    case FeatureKind::kEdge: {
+      const Polytope::Edge& edge = polytope.edges[feature.index()];
+      return k == far_end ? edge.v1 : edge.v0;
+    }
+    default: {
+      const auto loop = polytope.loop_of(feature.index());
+      return loop[loop.size() * k / 3];
+    }
+  }
+}
+
+class Growth {
+ public:
+  Growth(const PosedPair& pair, DepthCertificate* surface)
+      : pair_(pair), surface_(*surface), flat_(kThinShare * pair.scale()) {}
+
+  bool Run(const DepthCandidate& facet) {
+    Start(facet);
+    for (int raises = 0; raises < kMaxGrowth; ++raises) {
+      for (const int t : surface_.added()) Measure(t);
+      const int t = Lowest();
+      const double height = surface_.keys()[t];
+      if (height > flat_) return true;
+      MinkowskiVertex hub = surface_.hub(t, 0);
+      const double support = -SupportGap(pair_, -Normal(t), &hub);
+      if (!(support > height + flat_) || !surface_.Raise(t, hub, nullptr)) {
+        return false;
+      }
+    }
+    return false;
+  }
+
+ private:
+  void Start(const DepthCandidate& facet) {
+    std::array<MinkowskiVertex, 4> hubs;
+    std::array<Vec3, 3> p;
+    for (int k = 0; k < 3; ++k) {
+      // Two edges span a parallelogram: three of its corners.
+      hubs[k] = {AffineBasisVertex(pair_.A, facet.feature_A, k, 1),
+                 AffineBasisVertex(pair_.B, facet.feature_B, k, 2)};
+      p[k] = pair_.a(hubs[k].a) - pair_.b(hubs[k].b);
+    }
+    // The outward normal of A ⊖ B is against n.
+    if ((p[1] - p[0]).cross(p[2] - p[0]).dot(facet.n) > 0) {
+      std::swap(hubs[1], hubs[2]);
+    }
+    hubs[3] = hubs[0];
+    SupportGap(pair_, -facet.n, &hubs[3]);
+    surface_.StartTetrahedron(hubs);
+  }
+
+  Vec3 Normal(int t) {
+    const Vec3& p = surface_.point(t, 0);
+    return (surface_.point(t, 1) - p)
+        .cross(surface_.point(t, 2) - p)
+        .normalized();
+  }
+
+  // A triangle's key is the height of its plane over the origin; one without
+  // area bounds nothing.
+  void Measure(int t) {
+    const Vec3 n = Normal(t);
+    surface_.set_key(t, n.squaredNorm() > 0.5
+                            ? n.dot(surface_.point(t, 0))
+                            : std::numeric_limits<double>::infinity());
+  }
+
+  int Lowest() const {
+    const auto keys = surface_.keys();
+    int lowest = 0;
+    for (int t = 1; t < surface_.num_slots(); ++t) {
+      if (keys[t] < keys[lowest]) lowest = t;
+    }
+    return lowest;
+  }
+
+  const PosedPair& pair_;
+  DepthCertificate& surface_;
+  const double flat_;
+};
+
+}  // namespace
+
+bool GrowEnclosingPolytope(const PosedPair& pair, const DepthCandidate& facet,
+                           DepthCertificate* surface) {
+  return Growth(pair, surface).Run(facet) &&
+         surface->WindingNumber(RayBehind(facet)) == 1;
+}
+
+Vec3 RayBehind(const DepthCandidate& facet) {
+  const Vec3 side = facet.n.unitOrthogonal();
+  return facet.n + 0.11 * side + 0.07 * facet.n.cross(side);
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,103 @@
+#include "pair/gauss_overlay_reject.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cassert>
+#include <span>
+#include <utility>
+
+namespace drake_haptics {
+namespace {
+
+// Regions with more corners than this go to the overlay without a clip.
+constexpr int kMaxCorners = 24;
+constexpr int kMaxClips = 6;
+
+// A spherical polygon: directions of any length.
+struct Region {
+  int size = 0;
+  std::array<Vec3, kMaxCorners> corner;
+
+  bool is_full() const { return size == kMaxCorners; }
+  void Add(const Vec3& direction) { corner[size++] = direction; }
+};
+
+// Whether the gap along a direction of any length exceeds a negative floor.
+bool Exceeds(const Vec3& direction, const Vec3& w, double floor) {
+  const double gap = direction.dot(w);
+  return gap > 0 || gap * gap < floor * floor * direction.squaredNorm();
+}
+
+// A corner that exceeds the floor, or -1.
+int FindExceeding(const Region& region, const Vec3& w, double floor) {
+  for (int k = 0; k < region.size; ++k) {
+    if (Exceeds(region.corner[k], w, floor)) return k;
+  }
+  return -1;
+}
+
+// The part of a region within the half-space direction · edge <= 0. A clip adds
+// a corner, and more where round-off has bent the region: false if there are
+// then too many.
+bool Clip(const Vec3& edge, Region* clipped) {
+  const Region region = *clipped;
+  Region& out = *clipped;
+  out.size = 0;
+  double before = region.corner[region.size - 1].dot(edge);
+  for (int k = 0; k < region.size; ++k) {
+    const Vec3& p = region.corner[k];
+    const double here = p.dot(edge);
+    if ((before <= 0) != (here <= 0)) {
+      const Vec3& q = region.corner[k == 0 ? region.size - 1 : k - 1];
+      if (out.is_full()) return false;
+      // Weights of opposite signs: made positive by the sign of `here`.
+      out.Add(here > 0 ? Vec3(here * q - before * p)
+                       : Vec3(before * p - here * q));
+    }
+    if (here <= 0) {
+      if (out.is_full()) return false;
+      out.Add(p);
+    }
+    before = here;
+  }
+  return true;
+}
+
+// The edge of B that excludes a direction (in B's frame) most; null if none.
+const Polytope::OneRingEntry* FindExcluding(
+    std::span<const Polytope::OneRingEntry> fan_B, const Vec3& n_B) {
+  const Polytope::OneRingEntry* found = nullptr;
+  double most = 0;
+  for (const Polytope::OneRingEntry& spoke : fan_B) {
+    const double value = n_B.dot(spoke.along);
+    if (value > most) {
+      most = value;
+      found = &spoke;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+bool OverlayMayExceed(const PosedPair& pair, const MinkowskiVertex& hub,
+                      const Vec3& w, double floor) {
+  assert(floor < 0);
+  const auto fan_A = pair.A.fan_of(hub.a);
+  if (pair.A.dimension < 3 || fan_A.size() + kMaxClips > kMaxCorners) {
+    return true;
+  }
+  Region region;
+  for (const Polytope::OneRingEntry& spoke : fan_A) region.Add(-spoke.normal);
+  for (int clips = 0;; ++clips) {
+    const int k = FindExceeding(region, w, floor);
+    if (k < 0) return false;
+    const Polytope::OneRingEntry* spoke = FindExcluding(
+        pair.B.fan_of(hub.b), pair.X_AB.R.transpose() * region.corner[k]);
+    if (spoke == nullptr || clips == kMaxClips) return true;
+    if (!Clip(pair.X_AB.R * spoke->along, &region)) return true;
+    if (region.size == 0) return false;
+  }
+}
+
+}  // namespace drake_haptics

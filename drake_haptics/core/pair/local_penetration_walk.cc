@@ -1,0 +1,155 @@
+#include "pair/local_penetration_walk.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "pair/gauss_overlay.h"
+#include "pair/minkowski_facet_vertices.h"
+
+namespace drake_haptics {
+namespace {
+
+constexpr double kNone = -std::numeric_limits<double>::infinity();
+
+class Walk {
+ public:
+  Walk(const PosedPair& pair, SurfaceRule rule, const WalkBounds& bounds,
+       DepthWorkspace* workspace)
+      : pair_(pair), rule_(rule), bounds_(bounds), workspace_(*workspace) {
+    workspace_.visited.clear();
+    workspace_.candidates.clear();
+    workspace_.closed.clear();
+  }
+
+  Depth Run(const MinkowskiVertex& start, const DepthCandidate* known) {
+    if (known != nullptr) Add(*known);
+    Visit(start);
+    Depth result;
+    result.hub = start;
+    // Each round looks around one facet: the best supported one, or while
+    // there is none, the best of the others not yet looked around.
+    for (int num_steps = 0;;) {
+      const int target = best_ >= 0 ? best_ : BestOpen();
+      if (target < 0) break;
+      const int before = best_;
+      const bool may_step = best_ < 0 || num_steps++ < bounds_.max_steps;
+      if (!may_step || !VisitHubsOf(target, &result.hub)) {
+        result.status = DepthStatus::kBounded;
+        break;
+      }
+      if (best_ >= 0 && best_ == before) {
+        result.status = DepthStatus::kLocalMinimum;
+        break;
+      }
+      if (best_ < 0) workspace_.closed[target] = 1;
+    }
+    const int answer = best_ >= 0 ? best_ : BestUnsupported();
+    if (answer < 0) return result;
+    result.best = workspace_.candidates[answer];
+    result.shallowest = result.best.h;
+    for (const DepthCandidate& candidate : workspace_.candidates) {
+      result.shallowest = std::max(result.shallowest, candidate.h);
+    }
+    if (result.status == DepthStatus::kNoFacet) {
+      result.status = DepthStatus::kLocalMinimum;
+    }
+    result.hub = {pair_.A.first_vertex_of(result.best.feature_A),
+                  pair_.B.first_vertex_of(result.best.feature_B)};
+    return result;
+  }
+
+ private:
+  void Visit(const MinkowskiVertex& hub) {
+    workspace_.visited.push_back(hub);
+    const std::size_t first = workspace_.candidates.size();
+    // With a supported answer at hand only better ones are of interest.
+    const double floor =
+        best_ >= 0 ? workspace_.candidates[best_].h + Tie(pair_) : kNone;
+    OverlayGaussRegions(pair_, hub, rule_, floor, &workspace_);
+    Take(first);
+  }
+
+  void Add(const DepthCandidate& candidate) {
+    workspace_.candidates.push_back(candidate);
+    Take(workspace_.candidates.size() - 1);
+  }
+
+  // Notes what the candidates from the given one on mean for the answer.
+  void Take(std::size_t first) {
+    workspace_.closed.resize(workspace_.candidates.size(), 0);
+    const double tie = Tie(pair_);
+    for (std::size_t i = first; i < workspace_.candidates.size(); ++i) {
+      const DepthCandidate& candidate = workspace_.candidates[i];
+      if (candidate.support != NormalConeTest::kSupported) continue;
+      if (best_ < 0 || candidate.h > workspace_.candidates[best_].h + tie) {
+        best_ = static_cast<int>(i);
+      }
+    }
+  }
+
+  // Looks at all hubs of a facet; false where the bound on those without an
+  // answer stopped it.
+  bool VisitHubsOf(int target, MinkowskiVertex* last) {
+    const DepthCandidate facet = workspace_.candidates[target];
+    ListMinkowskiFacetVertices(pair_, facet.feature_A, facet.feature_B, facet.n,
+                               &workspace_.corners);
+    for (const MinkowskiVertex& hub : workspace_.corners) {
+      const auto& visited = workspace_.visited;
+      if (std::find(visited.begin(), visited.end(), hub) != visited.end()) {
+        continue;
+      }
+      if (best_ < 0 &&
+          static_cast<int>(visited.size()) >= bounds_.max_promotion_hubs) {
+        return false;
+      }
+      Visit(hub);
+      *last = hub;
+    }
+    return true;
+  }
+
+  int BestOpen() const {
+    int best = -1;
+    for (std::size_t i = 0; i < workspace_.candidates.size(); ++i) {
+      if (workspace_.closed[i]) continue;
+      if (best < 0 ||
+          workspace_.candidates[i].h > workspace_.candidates[best].h) {
+        best = static_cast<int>(i);
+      }
+    }
+    return best;
+  }
+
+  int BestUnsupported() const {
+    int best = -1;
+    for (std::size_t i = 0; i < workspace_.candidates.size(); ++i) {
+      const DepthCandidate& candidate = workspace_.candidates[i];
+      if (best < 0) {
+        best = static_cast<int>(i);
+        continue;
+      }
+      const DepthCandidate& other = workspace_.candidates[best];
+      if (candidate.support > other.support ||
+          (candidate.support == other.support && candidate.h > other.h)) {
+        best = static_cast<int>(i);
+      }
+    }
+    return best;
+  }
+
+  const PosedPair& pair_;
+  const SurfaceRule rule_;
+  const WalkBounds bounds_;
+  DepthWorkspace& workspace_;
+  int best_ = -1;  // the best candidate that both surfaces support
+};
+
+}  // namespace
+
+Depth WalkDepth(const PosedPair& pair, const MinkowskiVertex& start,
+                SurfaceRule rule, const DepthCandidate* known,
+                const WalkBounds& bounds, DepthWorkspace* workspace) {
+  return Walk(pair, rule, bounds, workspace).Run(start, known);
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "convex/normal_cone_test.h"
+#include "convex/support.h"
+
+namespace drake_haptics {
+
+/// Bounds on what a walk looks at, at least 1 each.
+struct WalkBounds {
+  /// Hubs, while no supported facet is known.
+  int max_promotion_hubs = 1;
+  /// Steps from then on (the iterations of paper 5.2.3): each looks at all hubs
+  /// of the best facet so far. Far above most needs.
+  int max_steps = 1024;
+};
+
+/// Which contacts of a pair count.
+enum class SurfaceRule {
+  kWholeBoundary,  ///< the polytopes are the solids: every contact counts
+  kSurfaceOnly     ///< the polytopes are pieces of surfaces: a contact must be
+                   ///< carried by the meshes that they stand for
+};
+
+/// A facet of the Minkowski difference A ⊖ B that is near a hub: the contact
+/// which separating the pair along n would leave.
+struct DepthCandidate {
+  double h = 0;            ///< support gap along n, m; −h is the depth
+  Vec3 n = Vec3::UnitX();  ///< unit, from B into A, in A's frame
+  Feature feature_A;       ///< facet, vertex or edge of A
+  Feature feature_B;       ///< vertex, facet or edge of B
+  /// Of the surfaces; under kWholeBoundary always kSupported.
+  NormalConeTest support = NormalConeTest::kVirtual;
+};
+
+/// How a walk ended.
+enum class DepthStatus {
+  kLocalMinimum,  ///< no facet around any of the answer's hubs is shallower
+  kBounded,       ///< a bound was met; the best one seen
+  kNoFacet        ///< the Minkowski difference has no facet here (flat in it)
+};
+
+struct Depth {
+  DepthStatus status = DepthStatus::kNoFacet;
+  DepthCandidate best;
+  double shallowest = 0;  ///< largest gap of all facets seen, virtual or not, m
+  MinkowskiVertex hub;    ///< one hub of the answer: the next walk's start
+};
+
+/// Buffers of a walk, kept between ticks so that a warm walk allocates nothing.
+struct DepthWorkspace {
+  std::vector<MinkowskiVertex> visited, corners;
+  std::vector<DepthCandidate> candidates;
+  std::vector<int> closed;
+  std::vector<double> gaps_A, gaps_B;
+  std::vector<int> arcs_B;
+  std::vector<Vec3> edges_B;
+};
+
+/// Walks on the surface of A ⊖ B from a vertex hub pair to a locally optimal
+/// penetration depth (paper, 5.2). At each hub the Gauss regions of the two
+/// vertices are overlaid on the sphere, with signs of dot and triple products
+/// instead of the paper's projection to z = 1, which degenerates for flat
+/// hulls; the corners of the overlay are the VF, FV and EE facets around the
+/// hub. The walk moves to the shallowest facet that both surfaces carry, until
+/// no hub of that facet knows a better one.
+///
+/// Facets on virtual features are passed over: where none of the facets seen
+/// so far is carried by both surfaces, the walk goes on over the next best
+/// ones (the promotion of paper 5.3.2) up to the bound.
+/// @param start a hub whose Gauss regions overlap: supports along a direction.
+/// @param known a facet of that hub known beforehand, or null: supported, it
+///     spares the look at all that is deeper.
+/// A facet's gap never exceeds that of the shallowest one, so where a bound
+/// ends the walk, the best facet seen still bounds the depth from above.
+Depth WalkDepth(const PosedPair& pair, const MinkowskiVertex& start,
+                SurfaceRule rule, const DepthCandidate* known,
+                const WalkBounds& bounds, DepthWorkspace* workspace);
+
+}  // namespace drake_haptics

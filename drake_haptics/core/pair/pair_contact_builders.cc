@@ -1,0 +1,105 @@
+#include "pair/pair_contact_builders.h"
+
+#include "convex/normal_cone_test.h"
+#include "pair/witness.h"
+
+namespace drake_haptics {
+namespace {
+
+Feature SimplexFeature(const Polytope& polytope, const Simplex& simplex,
+                       int MinkowskiVertex::* side, const Vec3& n) {
+  int vertices[4];
+  for (int i = 0; i < simplex.size; ++i) {
+    vertices[i] = simplex.hubs[i].*side;
+  }
+  return FeatureOfVertices(polytope, vertices, simplex.size, n);
+}
+
+bool IsBetter(const Depth& second, const Depth& first) {
+  if (second.status == DepthStatus::kNoFacet) return false;
+  if (first.status == DepthStatus::kNoFacet) return true;
+  if (second.best.support != first.best.support) {
+    return second.best.support > first.best.support;
+  }
+  return second.best.h > first.best.h;
+}
+
+Depth WalkAlong(const PosedPair& pair, SurfaceRule rule, const Vec3& direction,
+                MinkowskiVertex hub, const WalkBounds& bounds,
+                DepthWorkspace* workspace) {
+  SupportGap(pair, direction, &hub);
+  return WalkDepth(pair, hub, rule, nullptr, bounds, workspace);
+}
+
+}  // namespace
+
+bool AreBothWanted(const PosedPair& pair, const Separation& separation) {
+  const double share = separation.is_proven ? 1e-9 : 1e-6;
+  return separation.distance < share * pair.scale();
+}
+
+PairContact ContactApart(const PosedPair& pair, const Separation& separation) {
+  const Vec3& n = separation.n;
+  const Vec3 n_B = pair.X_AB.R.transpose() * n;
+  return {
+      separation.distance,
+      n,
+      separation.p_a,
+      separation.p_b,
+      SimplexFeature(pair.A, separation.simplex, &MinkowskiVertex::a, -n),
+      SimplexFeature(pair.B, separation.simplex, &MinkowskiVertex::b, n_B),
+      separation.is_bounded ? ContactStatus::kBounded : ContactStatus::kNear};
+}
+
+PairContact ContactAtFacet(const PosedPair& pair, const DepthCandidate& facet,
+                           ContactStatus status) {
+  const Witness witness = WitnessOfFeatures(pair, facet.feature_A,
+                                            facet.feature_B, facet.n, facet.h);
+  return {facet.h,         facet.n,         witness.p_a, witness.p_b,
+          facet.feature_A, facet.feature_B, status};
+}
+
+PairContact ContactGrazing(const PosedPair& pair, const Separation& separation,
+                           const Vec3& n_last) {
+  const Vec3 along = pair.A.num_vertices() > 1
+                         ? Vec3(pair.A.vertices[1] - pair.A.vertices[0])
+                     : pair.B.num_vertices() > 1 ? Vec3(pair.b(1) - pair.b(0))
+                                                 : Vec3::UnitX();
+  Vec3 n = n_last - along * (along.dot(n_last) / along.squaredNorm());
+  if (!(n.norm() > 1e-6)) n = along.unitOrthogonal();
+  n.normalize();
+  return {0.0,
+          n,
+          separation.p_a,
+          separation.p_a,
+          SimplexFeature(pair.A, separation.simplex, &MinkowskiVertex::a, -n),
+          SimplexFeature(pair.B, separation.simplex, &MinkowskiVertex::b,
+                         pair.X_AB.R.transpose() * n),
+          ContactStatus::kPenetrating};
+}
+
+Vec3 BetweenCentroids(const PosedPair& pair) {
+  const Vec3 between = pair.A.centroid - pair.X_AB * pair.B.centroid;
+  const double length = between.norm();
+  return length > 1e-12 * pair.scale() ? Vec3(between / length) : Vec3::UnitX();
+}
+
+Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
+                const MinkowskiVertex& hub_last, const WalkBounds& bounds,
+                DepthWorkspace* workspace) {
+  Depth best = WalkAlong(pair, rule, BetweenCentroids(pair), hub_last, bounds,
+                         workspace);
+  if (n_last.squaredNorm() > 0) {
+    const Depth other =
+        WalkAlong(pair, rule, n_last, hub_last, bounds, workspace);
+    if (IsBetter(other, best)) best = other;
+  }
+  // Round-off can hide every facet from a hub.
+  for (int i = 0; i < 6 && best.status == DepthStatus::kNoFacet; ++i) {
+    const Vec3 axis = (i < 3 ? 1.0 : -1.0) * Vec3::Unit(i % 3);
+    best = WalkAlong(pair, rule, axis, hub_last, bounds, workspace);
+  }
+  return best;
+}
+
+}  // namespace drake_haptics

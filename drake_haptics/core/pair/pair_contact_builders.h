@@ -1,0 +1,37 @@
+#pragma once
+
+#include "convex/support.h"
+#include "pair/local_penetration_walk.h"
+#include "pair/pair_contact.h"
+#include "pair/separation.h"
+
+namespace drake_haptics {
+
+/// Whether a pair is apart by so little that distance and depth are both
+/// wanted, the larger of their support gaps being the answer: closer than a
+/// billionth of the size, or than a millionth where round-off leaves the
+/// distance unproven.
+bool AreBothWanted(const PosedPair& pair, const Separation& separation);
+
+/// The contact at the closest points of a pair that is apart.
+PairContact ContactApart(const PosedPair& pair, const Separation& separation);
+
+/// The contact at a facet of A ⊖ B.
+PairContact ContactAtFacet(const PosedPair& pair, const DepthCandidate& facet,
+                           ContactStatus status);
+
+/// The contact of two sets that touch and lie in one line or point: they
+/// overlap by nothing across it. The normal stays near n_last (zero if none).
+PairContact ContactGrazing(const PosedPair& pair, const Separation& separation,
+                           const Vec3& n_last);
+
+/// Unit direction from B's centroid to A's; any where they coincide.
+Vec3 BetweenCentroids(const PosedPair& pair);
+
+/// The facet found by the starts of paper 5.2.2 where no facet is known: the
+/// line that joins the centroids and, unless it is zero, the last normal.
+Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
+                const MinkowskiVertex& hub_last, const WalkBounds& bounds,
+                DepthWorkspace* workspace);
+
+}  // namespace drake_haptics

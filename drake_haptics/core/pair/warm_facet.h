@@ -1,0 +1,36 @@
+#pragma once
+
+#include "base/types.h"
+#include "convex/support.h"
+#include "pair/local_penetration_walk.h"
+
+namespace drake_haptics {
+
+/// What became of the facet of A ⊖ B that was the last answer.
+enum class RevisitStatus {
+  kGone,    ///< its features do not face each other any more
+  kFacet,   ///< it is a facet, perhaps not the shallowest around
+  kMinimum  ///< it is a facet, and none that touches it is shallower
+};
+
+struct Revisit {
+  RevisitStatus status = RevisitStatus::kGone;
+  DepthCandidate facet;
+  MinkowskiVertex hub;  ///< one hub of the facet
+};
+
+/// Evaluates a facet of A ⊖ B again at the present pose, and proves in O(1),
+/// where it can, that it is still a local minimum of the depth.
+///
+/// The proof: let the origin lie |h| below the facet's plane with its foot
+/// inside the facet, at least c from its rim. A facet that touches it has its
+/// plane's line in this one on or outside the rim, so at an angle φ its depth
+/// is at least |h| cos φ + c sin φ, which exceeds |h| when c > |h| tan(φ/2).
+/// The largest φ is bounded by the Gauss regions of either body's feature
+/// (gauss_turn.h).
+/// @param n_last the facet's last normal, in A's frame; decides the side on
+///     which two edges pass each other.
+Revisit RevisitFacet(const PosedPair& pair, SurfaceRule rule, Feature feature_A,
+                     Feature feature_B, const Vec3& n_last);
+
+}  // namespace drake_haptics

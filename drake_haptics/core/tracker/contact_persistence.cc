@@ -1,0 +1,64 @@
+#include "tracker/contact_persistence.h"
+
+#include <algorithm>
+
+namespace drake_haptics {
+namespace {
+
+// How much a contact may sink beyond what the motion explains, as a share of
+// the tolerance.
+constexpr double kSinkShare = 0.1;
+// Cosine of the largest turn of a contact's normal in one tick.
+constexpr double kLargestTurn = 0.5;
+// Cosine of the angle, 10°, within which normals are asked for together, and of
+// that beyond the largest turn.
+constexpr double kAlike = 0.985;
+constexpr double kLargestTurnOfAlike = 0.34;
+
+}  // namespace
+
+bool ContactPersistence::Continues(const DepthCandidate& facet) const {
+  if (!state_.in_contact) return false;
+  PenetratingContact last{state_.distance, pair_.X_AB.R.transpose() * state_.n,
+                          state_.p_b};
+  last.Advance(pair_.X_AB, request_.last_X_AB);
+  return Follows(facet, last);
+}
+
+bool ContactPersistence::IsTransferred(const DepthCandidate& facet) const {
+  return std::any_of(request_.pressed.begin(), request_.pressed.end(),
+                     [&](const PenetratingContact& last) {
+                       return last.IsNear(pair_.A, pair_.B) &&
+                              Follows(facet, last);
+                     });
+}
+
+void ContactPersistence::AppendWanted(std::vector<WantedFacets>* wanted) const {
+  const std::size_t own = wanted->size();
+  for (const PenetratingContact& last : request_.pressed) {
+    if (!last.IsNear(pair_.A, pair_.B)) continue;
+    const Vec3 n = pair_.X_AB.R * last.n;
+    const auto alike = std::find_if(
+        wanted->begin() + static_cast<std::ptrdiff_t>(own), wanted->end(),
+        [&](const auto& other) { return other.cone.axis.dot(n) > kAlike; });
+    if (alike == wanted->end()) {
+      wanted->push_back({{n, kLargestTurnOfAlike}, LeastGap(last)});
+    } else {
+      alike->least = std::min(alike->least, LeastGap(last));
+    }
+  }
+}
+
+// Down to where the motion since a contact explains a facet's gap, m.
+double ContactPersistence::LeastGap(const PenetratingContact& last) const {
+  return last.distance - 2 * last.motion - kSinkShare * request_.tolerance;
+}
+
+// Whether the motion since a contact explains the facet's depth and turn.
+bool ContactPersistence::Follows(const DepthCandidate& facet,
+                                 const PenetratingContact& last) const {
+  return facet.n.dot(pair_.X_AB.R * last.n) >= kLargestTurn &&
+         facet.h >= LeastGap(last);
+}
+
+}  // namespace drake_haptics

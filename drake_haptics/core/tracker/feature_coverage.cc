@@ -1,0 +1,47 @@
+#include "tracker/feature_coverage.h"
+
+#include <algorithm>
+
+#include "pair/pair_contact_builders.h"
+#include "pair/witness.h"
+
+namespace drake_haptics {
+namespace {
+
+// How far beyond its features' sides a contact in depth may lie, as a share of
+// the size.
+constexpr double kSlideShare = 1e-2;
+
+}  // namespace
+
+MinkowskiVertex HubOf(const PosedPair& pair, const DepthCandidate& facet) {
+  return {pair.A.first_vertex_of(facet.feature_A),
+          pair.B.first_vertex_of(facet.feature_B)};
+}
+
+PressurePatch FindSurfacePatch(const PosedPair& pair, const Vec3& n, double h,
+                               const MinkowskiVertex& hub, const Vec3& p_a,
+                               double tolerance, PatchWorkspace* workspace) {
+  const double layer = PressureLayer(tolerance);
+  return FindPressurePatch(pair, n, h, hub, p_a,
+                           std::clamp(tolerance - h, 0.0, layer), layer,
+                           workspace);
+}
+
+bool IsWithinSides(const PosedPair& pair, const PairContact& contact) {
+  return LateralOffset(pair, contact.feature_A, contact.feature_B,
+                       {contact.p_a, contact.p_b}) <=
+         kSlideShare * pair.scale();
+}
+
+bool IsWithinFeatures(const PosedPair& pair, const DepthCandidate& facet,
+                      double tolerance, PatchWorkspace* workspace) {
+  const PairContact contact =
+      ContactAtFacet(pair, facet, ContactStatus::kPenetrating);
+  return IsWithinSides(pair, contact) ||
+         FindSurfacePatch(pair, contact.n, contact.distance, HubOf(pair, facet),
+                          contact.p_a, tolerance, workspace)
+             .center;
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "convex/support.h"
+#include "pair/contact_patch.h"
+#include "pair/local_penetration_walk.h"
+#include "pair/pair_contact.h"
+
+namespace drake_haptics {
+
+/// A hub of a facet of A ⊖ B: the first vertices of its features.
+MinkowskiVertex HubOf(const PosedPair& pair, const DepthCandidate& facet);
+
+/// The patch of a contact between pieces of surfaces, by a layer as thick as
+/// `tolerance` − h (m), at most PressureLayer(tolerance).
+PressurePatch FindSurfacePatch(const PosedPair& pair, const Vec3& n, double h,
+                               const MinkowskiVertex& hub, const Vec3& p_a,
+                               double tolerance, PatchWorkspace* workspace);
+
+/// Whether a contact lies no farther beyond its features' sides than a small
+/// share of the size.
+bool IsWithinSides(const PosedPair& pair, const PairContact& contact);
+
+/// Whether the bodies press on the facet's own features: beside them its plane
+/// means nothing.
+bool IsWithinFeatures(const PosedPair& pair, const DepthCandidate& facet,
+                      double tolerance, PatchWorkspace* workspace);
+
+}  // namespace drake_haptics

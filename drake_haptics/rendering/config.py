@@ -1,0 +1,139 @@
+"""Configures haptic rendering of a plant by one struct, which YAML can give."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pydrake.common.yaml import yaml_load_typed
+from pydrake.geometry import Role, SceneGraph
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import DiagramBuilder
+
+from drake_haptics.common.errors import SceneError
+from drake_haptics.rendering.add_haptic_rendering import AddHapticRendering
+from drake_haptics.rendering.haptic_rendering import HapticRendering
+from drake_haptics.scene.schema import (
+    ContactParameters,
+    CouplingParameters,
+    Effects,
+    Material,
+    Pose,
+)
+from drake_haptics.scene.validation import require
+from drake_haptics.scene.yaml_loading import check_keys, load_yaml
+from drake_haptics.systems.device.haptic_device import HapticDevice
+
+_ROLES = {"proximity": Role.kProximity, "illustration": Role.kIllustration}
+
+
+@dataclass
+class HapticRenderingConfig:
+    """Arguments of `AddHapticRendering` that a file can hold.
+
+    Attributes:
+        tool_body: Name of the body that is the tool, or `model::name`.
+        environment: Names of the bodies that it meets. Defaults to all that have
+            shapes and can meet the tool.
+        role: Which shapes are used, `proximity` or `illustration`.
+        chord_error_m: Largest distance of polytopes from the round shapes that they
+            stand for, m.
+        contact: Tolerance, clustering and gains.
+        materials: Materials of bodies of the environment, by the names of their ports.
+        effects: What is felt besides contact.
+        coupling: Gains between a handle and the tool. Defaults to no handle.
+        X_HT: Pose of the tool in the handle at rest.
+        period_s: Tick of effects with a memory, and of the device, s. Defaults to the
+            plant's time step, or 1 ms for a continuous plant.
+        name: Name of the system in the builder.
+    """
+
+    tool_body: str = ""
+    environment: list[str] | None = None
+    role: str = "proximity"
+    chord_error_m: float = 1e-4
+    contact: ContactParameters = field(default_factory=ContactParameters)
+    materials: dict[str, Material] = field(default_factory=dict)
+    effects: Effects = field(default_factory=Effects)
+    coupling: CouplingParameters | None = None
+    X_HT: Pose = field(default_factory=Pose)
+    period_s: float | None = None
+    name: str = "haptic_rendering"
+
+
+def load_haptic_rendering_config(path: str | Path) -> HapticRenderingConfig:
+    """Reads a configuration from a YAML file.
+
+    Args:
+        path: The file, whose keys are the attributes of `HapticRenderingConfig`.
+
+    Returns:
+        The configuration, with the default of each key that the file leaves out.
+
+    Raises:
+        SceneError: The file cannot be read, or has a key or a value that means
+            nothing. The message names the file and the key.
+    """
+    path = Path(path)
+    data = load_yaml(path)
+    try:
+        check_keys(HapticRenderingConfig, data)
+        config: HapticRenderingConfig = yaml_load_typed(
+            schema=HapticRenderingConfig, filename=str(path)
+        )
+        require(bool(config.tool_body), "tool_body", "must name a body of the plant")
+        require(config.role in _ROLES, "role", f"must be one of {', '.join(_ROLES)}")
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from error
+    return config
+
+
+def ApplyHapticRenderingConfig(
+    config: HapticRenderingConfig,
+    builder: DiagramBuilder,
+    plant: MultibodyPlant,
+    scene_graph: SceneGraph,
+    *,
+    device: HapticDevice | None = None,
+    progress: Callable[[str, float], None] | None = None,
+) -> HapticRendering:
+    """Adds haptic rendering as a configuration says, by `AddHapticRendering`.
+
+    Args:
+        config: Made in code, or read by `load_haptic_rendering_config`.
+        builder: Builder of the diagram with the plant; not built yet.
+        plant: Finalized plant, continuous or discrete.
+        scene_graph: Scene graph of the plant.
+        device: Device of the handle, not yet in a builder, as of `make_device_port`.
+        progress: Called while meshes are cut with the name of the body and the share
+            done, from 0 to 1.
+
+    Returns:
+        The system. Its ports are named; see `HapticRendering`.
+
+    Warns:
+        SceneWarning: As `AddHapticRendering`.
+
+    Raises:
+        ValueError: A value is impossible; the message names the key.
+    """
+    require(config.role in _ROLES, "role", f"must be one of {', '.join(_ROLES)}")
+    return AddHapticRendering(
+        builder,
+        plant,
+        scene_graph,
+        config.tool_body,
+        environment=config.environment,
+        role=_ROLES[config.role],
+        chord_error_m=config.chord_error_m,
+        contact=config.contact,
+        materials=config.materials,
+        effects=config.effects,
+        coupling=config.coupling,
+        device=device,
+        X_HT=config.X_HT.to_rigid_transform(),
+        period_s=config.period_s,
+        name=config.name,
+        progress=progress,
+    )
