@@ -17,7 +17,6 @@ from drake_haptics.analysis.jobs.blas_threads import one_blas_thread
 from drake_haptics.analysis.jobs.exact_json import from_exact_json, to_exact_json
 from drake_haptics.analysis.jobs.pool import (
     SerialExecutor,
-    check_not_importing,
     explain_broken_pool,
     local_processes,
 )
@@ -168,9 +167,9 @@ def run_study(
     is there twice is computed once.
 
     Args:
-        function: Of one task. Without an executor it must pickle: of the top level of
-            a module, a functools.partial of such, or a callable dataclass. A store
-            needs the same, and that what is bound to it is data.
+        function: Function of one task. With a store it must be of the top level of a
+            module, a functools.partial of such, or a callable dataclass, and what is
+            bound to it must be data.
         tasks: The tasks to call it with.
         executor: Any concurrent.futures.Executor, for instance
             `distributed.Client(...).get_executor()` of a Dask cluster. It stays open.
@@ -191,10 +190,8 @@ def run_study(
         StudyError: Tasks raised, or workers died. It has the results of the others.
         KeyboardInterrupt: A person pressed Ctrl-C; tells how many are done.
         ValueError: An argument cannot be used, or the store is of another study.
-        RuntimeError: The program lacks its ``if __name__ == "__main__":``.
         OSError: The store cannot be written.
     """
-    check_not_importing()
     _check_arguments(function, executor, chunk_size)
     keys = [_to_key(index, task) for index, task in enumerate(tasks)]
     with _open_store(store, function) as kept:
@@ -250,7 +247,7 @@ class _Study:
             # The threads of an executor share this process's BLAS: where each held it
             # for its own chunk, the first to end would free it for the others.
             one_blas_thread(),
-            _open_executor(executor, self._function, chunks) as workers,
+            _open_executor(executor, chunks) as workers,
             closing(_compute(workers, self._function, pending, chunk_size)) as done,
         ):
             for key, outcome in done:
@@ -335,13 +332,13 @@ def _take(
 
 
 def _open_executor(
-    executor: Executor | None, function: Callable[[Any], Any], chunks: int
+    executor: Executor | None, chunks: int
 ) -> AbstractContextManager[Executor]:
     if executor is not None:
         return nullcontext(executor)
     if is_in_task():  # the cores are at other tasks already
         return nullcontext(SerialExecutor())
-    return local_processes(function, chunks)
+    return local_processes(chunks)
 
 
 def _open_store(

@@ -266,6 +266,17 @@ def test_a_chunk_that_cannot_travel_fails_by_itself():
         assert run_study(square, [2], executor=pool) == [4]
 
 
+def test_a_function_without_a_name_goes_to_other_processes():
+    pid, *squares = run_study(lambda task: os.getpid() if task else 2**2, [1, 0])
+    assert pid != os.getpid() and squares == [4]
+
+
+def test_a_function_that_cannot_travel_is_told():
+    lock = threading.Lock()
+    with pytest.raises(StudyError, match=r"task 0, 1: .*pickle"):
+        run_study(lambda task: lock, [1])
+
+
 def test_arguments_that_cannot_be_used_are_named():
     with pytest.raises(ValueError, match="task 1 cannot be kept: it is of type"):
         run_study(square, [1, object()])
@@ -275,8 +286,6 @@ def test_arguments_that_cannot_be_used_are_named():
         run_study(square, [1], executor=4)
     with pytest.raises(ValueError, match="chunk_size must be at least 1, is 0"):
         run_study(square, [1], chunk_size=0)
-    with pytest.raises(ValueError, match="function cannot go to another process"):
-        run_study(lambda task: task, [1])
 
 
 def test_an_interrupted_study_takes_its_tasks_back(journal):
