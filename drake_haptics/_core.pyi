@@ -658,7 +658,7 @@ class ContactTracker:
     A pose is a (4, 4) rigid matrix, a `RigidTransform`, or a (7,) vector [qw qx qy qz x y z]; lengths in m. A ValueError leaves what was learnt as it is. Threads that share a tracker take turns.
     """
 
-    def __init__(self, A: drake_haptics.geometry.decomposition.decompose.Decomposition | Decomposition, B: drake_haptics.geometry.decomposition.decompose.Decomposition | Decomposition, tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
+    def __init__(self, A: drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces, B: drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces, tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
         """
         Watches A against B for contacts up to `tolerance` (m).
 
@@ -724,7 +724,7 @@ class SceneTracker:
     All contacts of a moving tool with many objects at once; else a `ContactTracker`, A the tool and B each object. Objects are posed one by one and stay there, so that those at rest cost nothing.
     """
 
-    def __init__(self, tool: drake_haptics.geometry.decomposition.decompose.Decomposition | Decomposition, objects: Sequence[drake_haptics.geometry.decomposition.decompose.Decomposition | Decomposition], tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
+    def __init__(self, tool: drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces, objects: Sequence[drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces], tolerance: float, depth: Literal['tracked', 'global'] = 'tracked', max_walk_steps: int = 1024) -> None:
         """
         Watches `tool` against `objects`, all at the identity pose, for contacts up to `tolerance` (m).
 

@@ -182,13 +182,13 @@ def AddLcmDriver(
     X_BH, V_BH = arm.GetOutputPort("X_WH"), arm.GetOutputPort("V_WH")
     for output, input in [
         (commands.get_output_port(), gate.GetInputPort("lcmt_haptic_command")),
-        (X_BH, gate.GetInputPort("X_WH")),
-        (V_BH, gate.GetInputPort("V_WH")),
+        (X_BH, gate.GetInputPort("X_BH")),
+        (V_BH, gate.GetInputPort("V_BH")),
         (gate.GetOutputPort("F_Ho_B"), arm.GetInputPort("F_Ho_W_rendered")),
-        (X_BH, sender.GetInputPort("X_WH")),
-        (V_BH, sender.GetInputPort("V_WH")),
+        (X_BH, sender.GetInputPort("X_BH")),
+        (V_BH, sender.GetInputPort("V_BH")),
         (gate.GetOutputPort("gate_status"), sender.GetInputPort("gate_status")),
-        (sender.GetOutputPort("status"), statuses.get_input_port()),
+        (sender.GetOutputPort("lcmt_haptic_status"), statuses.get_input_port()),
     ]:
         builder.Connect(output, input)
     return gate

@@ -66,7 +66,7 @@ class ContactExtrapolator(DifferentiableSystem):
                 for item in objects
             ],
         )
-        bodies = ["Tool", *(f"O_{item.name}" for item in objects if item.X_WO is None)]
+        bodies = ["T", *(f"O_{item.name}" for item in objects if item.X_WO is None)]
         self._contacts = self.DeclareAbstractInputPort("contacts", Value[object]())
         self._found, self._now = [], []
         for body in bodies:

@@ -98,7 +98,7 @@ class ContactChain:
 
     def _fix(self, system, context, x: np.ndarray) -> None:
         for row, body in enumerate(self._moving):
-            name = "Tool" if body == 0 else f"O_{body - 1}"
+            name = "T" if body == 0 else f"O_{body - 1}"
             of_body = x[13 * row : 13 * row + 13]
             system.GetInputPort(f"X_W{name}").FixValue(context, of_body[:7])
             system.GetInputPort(f"V_W{name}").FixValue(context, of_body[7:])

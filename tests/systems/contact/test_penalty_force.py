@@ -267,7 +267,7 @@ def test_its_twin_gives_all_that_is_known_of_wrenches(states):
     clusters = state.cluster(state.differentiate_contacts())
     force.GetInputPort("clusters").FixValue(context, Value[object](clusters))
     seeds = InitializeAutoDiff(state.x).reshape(3, 13)
-    for name, row in zip(("Tool", "O_a", "O_b"), seeds, strict=True):
+    for name, row in zip(("T", "O_a", "O_b"), seeds, strict=True):
         force.GetInputPort(f"X_W{name}").FixValue(context, row[:7])
         force.GetInputPort(f"V_W{name}").FixValue(context, row[7:])
     found = force.GetOutputPort("contact_wrench").Eval(context)

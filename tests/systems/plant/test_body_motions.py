@@ -52,7 +52,7 @@ def test_topology():
 def test_each_body_is_read_in_its_own_place(config):
     scene, motions = make_scene(config)
     scene.plant.SetPositionsAndVelocities(scene.context, random_state(scene.plant, 0))
-    for body, suffix in [("tool", "Tool"), ("cart", "O_cart")]:
+    for body, suffix in [("tool", "T"), ("cart", "O_cart")]:
         q = scene.read(motions, f"X_W{suffix}")
         expected = pose_to_vector(scene.pose(body))
         np.testing.assert_allclose(q, expected, atol=1e-15)
