@@ -288,10 +288,8 @@ class ContactStatus(enum.IntEnum):
 
 class Contact:
     """
-    One contact of two convex polytopes A and B, in the world frame W, in the words and signs of Drake's `SignedDistancePair`. Immutable, and made by queries only: tolerance and gains are those of a `drake_haptics.scene.schema.Contact`.
+    One contact of two convex polytopes A and B, in the world frame W, in the words and signs of Drake's `SignedDistancePair`. Immutable, and made by queries only: tolerance and gains are those of a `drake_haptics.ContactParameters`.
     """
-
-    def __init__(self) -> None: ...
 
     @property
     def distance(self) -> float:

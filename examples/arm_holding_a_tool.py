@@ -18,9 +18,8 @@ from pydrake.systems.controllers import JointStiffnessController
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.visualization import AddDefaultVisualization
 
-from drake_haptics import AddHapticRendering, find_mesh
+from drake_haptics import AddHapticRendering, ContactParameters, find_mesh
 from drake_haptics.analysis import find_equilibrium, find_modes, linearize_sampled
-from drake_haptics.scene.schema import ContactParameters
 
 # A ring that is fixed, and an arm whose two links turn about z; it moves a pen along z.
 MODEL = f"""

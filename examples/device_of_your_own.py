@@ -14,6 +14,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics import (
     AddHapticLoop,
+    ContactParameters,
     CouplingParameters,
     DeviceBackend,
     DeviceCommand,
@@ -24,7 +25,6 @@ from drake_haptics import (
     make_device_port,
 )
 from drake_haptics.geometry import make_tool_dynamics
-from drake_haptics.scene.schema import ContactParameters
 from drake_haptics.systems import ContactObject
 
 PERIOD_S = 1e-3

@@ -46,7 +46,7 @@ def find_device_site(scene: Scene) -> DevicePlacement:
     """Returns where a scene has its device.
 
     Raises:
-        SceneError: There is no such preset, or the hand's path is none.
+        SceneError: There is no such preset, or the hand's path is not valid.
     """
     path = make_hand_path(scene.hand.path)
     X_WB = find_base(scene, path)
@@ -71,7 +71,7 @@ def wait_for_reading(backend: DeviceBackend, timeout_s: float = 3.0) -> DeviceRe
 
     Raises:
         DeviceError: None has come, or none that could be used.
-        ValueError: Its pose or velocity is none.
+        ValueError: Its pose is not rigid, or a number is not finite.
     """
     end_s = time.monotonic() + timeout_s
     while (reading := backend.read()) is None:

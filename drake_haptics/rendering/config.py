@@ -1,7 +1,5 @@
 """Configures haptic rendering of a plant by one struct, which YAML can give."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +10,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import DiagramBuilder
 
 from drake_haptics.common.errors import SceneError
+from drake_haptics.common.one_line import one_line
 from drake_haptics.rendering.add_haptic_rendering import AddHapticRendering
 from drake_haptics.rendering.haptic_rendering import HapticRendering
 from drake_haptics.scene.schema import (
@@ -25,6 +24,7 @@ from drake_haptics.scene.validation import require
 from drake_haptics.scene.yaml_loading import check_keys, load_yaml
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
+# Drake reads the types of the fields at run time, so that annotations are no strings.
 _ROLES = {"proximity": Role.kProximity, "illustration": Role.kIllustration}
 
 
@@ -60,6 +60,9 @@ class HapticRenderingConfig:
     X_HT: Pose = field(default_factory=Pose)
     period_s: float | None = None
     name: str = "haptic_rendering"
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
 
 def load_haptic_rendering_config(path: str | Path) -> HapticRenderingConfig:
@@ -113,10 +116,11 @@ def ApplyHapticRenderingConfig(
         The system. Its ports are named; see `HapticRendering`.
 
     Warns:
-        SceneWarning: As `AddHapticRendering`.
+        SceneWarning: For the reasons of `AddHapticRendering`.
 
     Raises:
-        ValueError: A value is impossible; the message names the key.
+        ValueError: A value is impossible, as in `AddHapticRendering`; the message names
+            the key.
     """
     require(config.role in _ROLES, "role", f"must be one of {', '.join(_ROLES)}")
     return AddHapticRendering(

@@ -152,7 +152,7 @@ def _check_effects(
     """Refuses what would mean nothing, or something false."""
     if device is not None and coupling is None:
         raise ValueError(
-            "device: needs a coupling to the tool; give coupling=Coupling()"
+            "device: needs a coupling to the tool; give coupling=CouplingParameters()"
         )
     if effects.gravity is not None:
         raise ValueError(

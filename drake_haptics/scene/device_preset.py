@@ -122,7 +122,7 @@ def is_preset_file(preset: str) -> bool:
 
 
 def load_device_preset(name_or_path: str) -> DevicePreset:
-    """Reads a shipped preset, or a file of one's own.
+    """Reads a shipped preset, or a file of your own.
 
     Args:
         name_or_path: Name of a preset in models/devices, or a file (`*.yaml`, `*.yml`).

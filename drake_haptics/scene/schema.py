@@ -337,7 +337,7 @@ class DeviceParameters:
 
     Attributes:
         preset: Name of a file in models/devices (see `drake-haptics devices`), or a
-            file of one's own (`*.yaml`), relative to the scene file.
+            file of your own (`*.yaml`), relative to the scene file.
         base: X_WB, the pose of the device's base in the world. Where not given,
             the middle of its workspace is put at the middle of the hand's path, and
             a device that is not simulated begins where the path does.

@@ -90,7 +90,7 @@ def _split(key: str) -> list[str | int]:
     """Returns the names and indices of a key.
 
     Raises:
-        SceneError: It is none, or no scene has such a part.
+        SceneError: It is not a setting, or no scene has such a part.
     """
     steps: list[str | int] = []
     for part in key.split("."):

@@ -21,8 +21,8 @@ def load_yaml(path: Path) -> Any:
     """Returns what a file of YAML holds.
 
     Raises:
-        SceneError: It cannot be opened, is none, or gives a key twice; the message is
-            one line.
+        SceneError: It cannot be opened, is not YAML, or gives a key twice; the message
+            is one line.
     """
     try:
         data = yaml_load_file(str(path))

@@ -103,7 +103,7 @@ def _has_same_device(old: HapticDiagram, new: HapticDiagram) -> bool:
 
 
 def _find_arm(haptic: HapticDiagram) -> MultibodyPlant | None:
-    """Returns the plant of a simulated arm; None where the device is none."""
+    """Returns the plant of a simulated arm; None where the device is not one."""
     device = haptic.loop.device
     if not device.HasSubsystemNamed("simulated_arm"):
         return None

@@ -65,7 +65,7 @@ def test_what_fits_is_taken(value, kind):
         (
             drake_haptics.Contact,
             ContactParameters,
-            "it must be a drake_haptics.scene.schema.Contact, is of type",
+            "it must be a drake_haptics.scene.schema.ContactParameters, is of type",
         ),
         (
             ContactParameters(tolerance_m="1"),

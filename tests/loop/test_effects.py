@@ -95,11 +95,12 @@ from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.schema import *
 scene = Scene(tool=Tool(mesh={scene.tool.mesh!r}),
               environment=[EnvironmentObject("plate", {scene.environment[0].mesh!r})],
-              hand=Hand(path=HandPath(waypoints=[Waypoint(position_m=[0, 0, 0.05])])))
+              hand=HandParameters(path=HandPathParameters(waypoints=[Waypoint(position_m=[0,
+              0, 0.05])])))
 BuildHapticDiagram(scene)
 print(*(n for n in {sorted(OF_EFFECT.values())}
         if any(m.endswith("." + n) for m in sys.modules)))
-scene.effects.gravity = Gravity()
+scene.effects.gravity = GravityParameters()
 BuildHapticDiagram(scene)
 print(*(n for n in {sorted(OF_EFFECT.values())}
         if any(m.endswith("." + n) for m in sys.modules)))

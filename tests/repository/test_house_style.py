@@ -28,8 +28,8 @@ BETTER = {
     r"\b(?:there )?(?:is|are) none\b": "is not a ...",
     r"\bcan(?:not)? be had\b": "is (not) available",
     r"\bcomes? along\b": "is included",
-    r"\b\w*(?:meter|liter)s?\b": "meter, liter",
-    r"\b\w*(?:color|behavior|favour|honour|neighbor)\w*": "color",
+    r"\b\w*(?:metre|litre)s?\b": "meter, liter",
+    r"\b\w*(?:colour|behaviour|favour|honour|neighbour)\w*": "color",
     r"\bcent(?:re|res|red|ring)\b": "center",
     r"\banalys(?:e|ed|er|ing)\b": "analyze",
     rf"\b(?:{_VERBS})is(?:e|ed|es|er|ing|ation|ations)\b": "-ize",
@@ -116,7 +116,7 @@ def test_the_first_line_of_a_module_says_what_it_is_or_does():
         for path in list_files(".py")
         if (doc := ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))))
     }
-    assert len(lines) > 400
+    assert len(lines) > 250
     questions = [f"{p}: {line}" for p, line in lines.items() if QUESTION.match(line)]
     assert questions == []
 
@@ -137,22 +137,22 @@ def test_pages_have_words_that_readers_know():
 
 def test_words_are_found_in_prose_alone():
     python = (
-        '"""Makes a center; there is none."""\n'
-        "center = 'color'  # not anew,\n"
-        "def analyze():\n"
-        '    """Returns `neighbor`, or None if there is none; this is\n'
+        '"""Makes a centre; there is none."""\n'
+        "centre = 'colour'  # not anew,\n"
+        "def analyse():\n"
+        '    """Returns `neighbour`, or None if there is none; this is\n'
         '    none of the others."""\n'
     )
     assert find_words(find_python_prose(python)) == [
-        "1: 'center', better 'center'",
+        "1: 'centre', better 'center'",
         "4: 'is none', better 'is not a ...'",
         "2: 'anew', better 'again'",
     ]
-    core = 'int grey; // as "http://center" anew\n/* Half a\n millimeter. */\n'
+    core = 'int grey; // as "http://centre" anew\n/* Half a\n millimetre. */\n'
     assert find_words(find_comments(core)) == [
         "1: 'anew', better 'again'",
-        "1: 'center', better 'center'",
-        "3: 'millimeter', better 'meter, liter'",
+        "1: 'centre', better 'center'",
+        "3: 'millimetre', better 'meter, liter'",
     ]
     page = "Not `grey`\n```text\ngrey\n```\nbut *grey*.\n"
     assert find_words(find_page_prose(page)) == ["5: 'grey', better 'gray'"]

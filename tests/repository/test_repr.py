@@ -75,6 +75,9 @@ def make_loop(folder: Path) -> list[object]:
     return [
         scene,
         scene.coupling,
+        scene.contact,
+        drake_haptics.Pose(),
+        drake_haptics.HapticRenderingConfig(),
         drake_haptics.Material(),
         drake_haptics.Effects(),
         drake_haptics.ShadingParameters(),

@@ -13,7 +13,7 @@ class FrameChange {
   explicit FrameChange(const PoseVector& q_AB)
       : X_AB_(PoseFromVector(q_AB, "X_AB")), q_AB_(QuaternionOf(q_AB)) {}
 
-  /// [X_AH; V_AH] of [X_BH; V_BH]. A quaternion that is none stays none.
+  /// [X_AH; V_AH] of [X_BH; V_BH]. A quaternion without a norm stays so.
   Eigen::Matrix<double, 13, 1> ChangeMotion(const PoseVector& q_BH,
                                             const Vec6& V_BH) const {
     const Eigen::Quaterniond turn =

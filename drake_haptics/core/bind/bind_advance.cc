@@ -26,7 +26,7 @@ PoseOf<AutoDiff> PoseAt(const AutoDiffVector& poses, Eigen::Index i,
                         const char* what) {
   PoseVectorOf<AutoDiff> q;
   for (int k = 0; k < 7; ++k) q[k] = poses(7 * i + k);
-  PoseFromVector(ValuesOf(q), what);  // refuses what is none
+  PoseFromVector(ValuesOf(q), what);  // refuses what is not a pose
   return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
 }
 

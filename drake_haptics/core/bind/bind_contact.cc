@@ -103,17 +103,7 @@ void BindOneContact(nb::module_& m) {
       "One contact of two convex polytopes A and B, in the world frame W, in "
       "the words and signs of Drake's `SignedDistancePair`. Immutable, and "
       "made by queries only: tolerance and gains are those of a "
-      "`drake_haptics.scene.schema.Contact`.");
-  // Settings and result have one name: who takes one for the other is told.
-  contact.def(
-      "__init__",
-      [](nb::handle, nb::args, nb::kwargs) {
-        throw nb::type_error(
-            "drake_haptics.Contact is what a query finds and has no "
-            "constructor; for tolerance, stiffness and damping: "
-            "from drake_haptics.scene.schema import Contact");
-      },
-      nb::sig("def __init__(self) -> None"));
+      "`drake_haptics.ContactParameters`.");
   contact.def_ro("distance", &Contact::distance,
                  "Signed distance, m; > 0 apart, < 0 penetrating (then "
                  "−distance is the depth).");

@@ -158,7 +158,7 @@ void BindDecomposition(nb::module_& m) {
           "(m,) piece of each triangle; -1 where pieces were not made from "
           "triangles.")
       .def("__repr__", [](const Decomposition& self) {
-        return nb::str("Decomposition({} triangles, {})")
+        return nb::str("ConvexPieces({} triangles, {})")
             .format(self.triangles.size(),
                     Counted(self.pieces.size(), "piece"));
       });

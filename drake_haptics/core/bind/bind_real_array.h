@@ -42,7 +42,7 @@ class RealArray {
   Py_buffer view_{};  // keeps its owner alive
 };
 
-/// A real number. @throws std::invalid_argument if it is none.
+/// A real number. @throws std::invalid_argument if it is not a number.
 double ToReal(nanobind::handle value, const char* name);
 
 /// The class of a value, for messages.

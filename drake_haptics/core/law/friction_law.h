@@ -31,7 +31,7 @@ struct FrictionForceOf {
 /// The limit lies between μ_s N and μ N, by the grip. Slip wears the grip down
 /// over the length `break_away`; relief of the force below μ N restores it, all
 /// of it when the relief is half of (μ_s − μ) N. So what has stopped sticks
-/// anew, and the force is a Lipschitz function of displacement, always in the
+/// again, and the force is a Lipschitz function of displacement, always in the
 /// cone.
 ///
 /// The stiffness is that of the next tick, if the motion goes on: −df/dx where

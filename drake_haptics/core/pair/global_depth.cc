@@ -20,7 +20,7 @@ constexpr double kCoplanarShare = 1e-11;
 // the shallowest one.
 constexpr double kKeepShare = 1e-9;
 // Raises of a surface just grown. One that was kept may need a share of its
-// triangles raised; more, and growing it anew is cheaper.
+// triangles raised; more, and growing it again is cheaper.
 constexpr int kMaxRaises = 4096;
 constexpr int kKeptRaises = 48;
 constexpr int kKeptTrianglesPerRaise = 4;

@@ -65,7 +65,7 @@ struct GlobalDepthState {
 /// Where S is nearer than the best facet known, the support along that
 /// direction raises it, or shows the way to a shallower facet (the expansion of
 /// van den Bergen, 2001, on a surface that need not stay convex). S is grown
-/// anew where that fails, for which the number of raises is bounded.
+/// again where that fails, for which the number of raises is bounded.
 ///
 /// A facet within a billionth of the size of the shallowest one stays the
 /// answer while it is one, so that ties do not chatter; h is the true one.

@@ -6,7 +6,7 @@
 namespace drake_haptics {
 namespace {
 
-/// A time since the path began (anew).
+/// A time since the path began, or began again.
 double TimeOnPath(double time, double period) {
   return std::fmod(time, period);
 }

@@ -26,7 +26,7 @@ struct PosePath {
 
   std::vector<double> starts;  ///< of the segments, rising from 0, s
   std::vector<Cubic> cubics;   ///< one per segment; the last one never ends
-  double period;               ///< when it begins anew, s; infinite if never
+  double period;               ///< when it begins again, s; infinite if never
 
   template <typename T>
   MovingPoseOf<T> Evaluate(const T& time) const;

@@ -279,7 +279,7 @@ class Query {
   }
 
   // Of one that was refused at the last tick, and mostly is again: the thorough
-  // search is made anew only now and then.
+  // search is made again only now and then.
   Depth RefusedDepth() {
     MinkowskiVertex hub = state_.refused_hub;
     SupportGap(pair_, state_.refused_n, &hub);

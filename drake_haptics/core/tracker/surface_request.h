@@ -39,7 +39,7 @@ struct PenetratingContact {
 
 /// What is asked of a pair of pieces.
 struct SurfaceRequest {
-  double tolerance = 0;  ///< contacts farther apart than this (m) are none
+  double tolerance = 0;  ///< surfaces farther apart (m) have no contact
   /// The surfaces cross and no other contact was found: any way out will do.
   bool is_any_way_out = false;
   /// The pose at the last query, by which the motion of a contact is known, and

@@ -111,7 +111,8 @@ def choose_setting(
         budget_us: For the whole tick, 99th percentile, µs.
         make_study: Measures settings, all of them for None; called only if the scene
             does not hold, and in the end with what is given up together.
-        measure_p99: Runs a scene anew and returns the 99th percentile of its ticks, µs.
+        measure_p99: Runs a scene in a new process and returns the 99th percentile of
+            its ticks, µs.
         progress: Called with what is done now and the share of it, in [0, 1].
         runs: Of each combination.
 

@@ -149,7 +149,7 @@ def time_native(part: NativePart, motion: RecordedMotion) -> TickTimes:
 
 
 def measure_p99(scene: Scene) -> float:
-    """Runs a scene anew and returns the 99th percentile of its ticks, µs.
+    """Runs a scene in a new process and returns the 99th percentile of its ticks, µs.
 
     The process, its memory and its caches are new, as they are for whoever runs the
     scene. It runs one lap of the hand's path, at most 5 s of it.

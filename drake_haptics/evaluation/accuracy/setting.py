@@ -57,8 +57,8 @@ class Setting:
         """Returns a copy of a scene with the changes.
 
         Raises:
-            AttributeError: A key is none of the scene's.
-            TypeError: A mapping has a key that is none of its part's, or stands where
+            AttributeError: The scene has no such key.
+            TypeError: A mapping has a key that its part lacks, or stands where
                 no part may be left out.
         """
         changed = copy.deepcopy(scene)
@@ -174,7 +174,7 @@ def apply_checked(setting: Setting, scene: Scene) -> Scene:
     """Returns a copy of a scene with a setting, if that is a scene.
 
     Raises:
-        HapticsError: A key is none of the scene's, or a value cannot be.
+        HapticsError: The scene has no such key, or a value is impossible.
     """
     known = [*list_keys(Scene), *list_keys(EnvironmentObject, "environment.")]
     for key in setting.changes:

@@ -85,7 +85,7 @@ class Measurement:
     place: PressedPlace | None
 
     def __call__(self, task: dict[str, Any]) -> dict[str, Any]:
-        """Returns what is asked for, or why it cannot be had.
+        """Returns the result, or the reason why there is none.
 
         Args:
             task: `what` ("errors", "instructions", "native" or "ticks") and the

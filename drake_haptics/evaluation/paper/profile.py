@@ -21,7 +21,7 @@ _WARM_UP_TICKS = 20
 _SHORTEST_INTERVAL = 40
 # Fewer ticks of a kind have no median to speak of.
 _LEAST_TICKS = 20
-# A power through fewer points, or through nearly equal ones, is none.
+# Fewer points, or nearly equal ones, do not determine a power.
 _LEAST_NUMBERS = 3
 _LEAST_SPAN = 4.0
 

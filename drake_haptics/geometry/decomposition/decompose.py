@@ -135,7 +135,7 @@ def decompose(
             `drake_haptics.geometry.decomposition.cache`.
 
     Raises:
-        HapticsError: if the mesh is none, the method is unknown, its error is missing
+        HapticsError: if there is no mesh, the method is unknown, its error is missing
             or its optional package is.
     """
     if not isinstance(mesh, Mesh):

@@ -19,7 +19,7 @@ export class History {
 
   /** Takes a frame's trace, whose last sample is of the frame's time. */
   append(time_s, {dt_s, force_N, torque_Nm}, felt) {
-    // The scene begins anew.
+    // The scene begins again.
     if (time_s < this.end) this.clear();
     for (let i = 0; i < force_N.length; i++) {
       this.time[this.head] = time_s - dt_s * (force_N.length - 1 - i);

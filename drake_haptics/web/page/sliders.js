@@ -116,7 +116,7 @@ class Slider {
     });
   }
 
-  /** Takes the number that was typed. What is none of the range changes nothing: a hand may hold the handle. */
+  /** Takes the number that was typed. A number out of range changes nothing: a hand may hold the handle. */
   _take() {
     const typed = this.number.value.trim();
     if (typed === String(this._text(this.shown))) return;

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-from typing import Any
 
 import numpy as np
 import pytest
@@ -155,11 +154,3 @@ def test_a_contact_says_what_it_is() -> None:
     nothing = SceneTracker(box([1, 1, 1]), [box([1, 1, 1])], 0.1).query(pose([0, 0, 9]))
     assert repr(nothing) == "ContactSet(no contacts)"
     assert nothing.feature_A.shape == (0, 2) and nothing.p_WCa.shape == (0, 3)
-
-
-def test_who_takes_it_for_the_settings_of_a_scene_is_told() -> None:
-    make: Any = Contact
-    with pytest.raises(
-        TypeError, match=r"from drake_haptics\.scene\.schema import Contact"
-    ):
-        make(stiffness_N_per_m=2e3)
