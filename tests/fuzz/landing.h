@@ -41,9 +41,9 @@ Landing DrawLanding(ByteSource* source);
 /// - where their least depth is unique, the latter has that depth, and so has
 ///   the former if the tool lay in front of its facet.
 ///
-/// All that for tracked and for global depths. Of solids in several pieces it
-/// counts which overlaps are not met. The truth is the certified global depth
-/// of the pieces as polytopes.
+/// All that for tracked and for global depths. Of solids in several pieces
+/// whose surfaces cross it counts which overlaps are not met. The truth is the
+/// certified global depth of the pieces as polytopes.
 void CheckLanding(const Landing& landing, Tally* tally);
 
 }  // namespace drake_haptics::fuzz

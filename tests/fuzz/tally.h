@@ -16,7 +16,8 @@ struct Tally {
   std::int64_t apart = 0;     ///< answers by regime
   std::int64_t overlapping = 0;
   std::int64_t bounded = 0;  ///< answers whose search met its bound
-  /// Overlaps of solids in several pieces that began within one step, and those
+  /// Overlaps of solids in several pieces that began within one step, with
+  /// surfaces that cross, and those
   /// which a tracker did not meet that had come, or that began there.
   std::int64_t landings = 0, unmet = 0, unmet_at_first = 0;
   std::size_t most_hubs = 0;  ///< hubs that the longest walk looked at

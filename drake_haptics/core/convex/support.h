@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/types.h"
 #include "convex/polytope.h"
 
@@ -9,6 +12,34 @@ namespace drake_haptics {
 /// in the polytope's frame). Climbs from vertex `start` from fan to fan, so
 /// that on coherent motion it costs one fan whatever the size.
 int SupportVertex(const Polytope& polytope, const Vec3& direction, int start);
+
+/// How far an edge that a facet hides at vertex v may rise from it, for all
+/// that the facet is flat within its tolerance, m: out of its plane, and where
+/// two corners nearly coincide, beside its edges.
+inline double Unevenness(const Polytope& P, int v,
+                         const Polytope::HiddenEdge& edge) {
+  double least = edge.along.norm();
+  for (const auto& spoke : P.fan_of(v)) {
+    least = std::min(least, std::abs(spoke.normal.dot(edge.along)));
+  }
+  constexpr double kTolerance = 1e-6;  // of facets, as a share of the size
+  return std::max(2 * least, kTolerance * P.radius);
+}
+
+/// Whether no neighbor of vertex v is farther than v along the unit direction,
+/// in the polytope's frame, by more than the slack (m). One across a facet may
+/// be farther by what the facet is not flat.
+inline bool IsFarthest(const Polytope& P, int v, const Vec3& direction,
+                       double slack) {
+  for (const auto& spoke : P.fan_of(v)) {
+    if (direction.dot(spoke.along) > slack) return false;
+  }
+  for (const auto& edge : P.hidden_of(v)) {
+    const double beyond = direction.dot(edge.along) - slack;
+    if (beyond > 0 && beyond > Unevenness(P, v, edge)) return false;
+  }
+  return true;
+}
 
 /// Two polytopes in A's frame: A as it is, B posed by X_AB. The difference of
 /// the origins is formed once, in X_AB, so that offsets of both in the world

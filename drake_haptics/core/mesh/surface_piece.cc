@@ -130,20 +130,20 @@ SurfacePiece MakeSurfacePiece(const MeshTopology& mesh,
   std::vector<Vec3> points;
   for (const int v : corners) points.push_back(mesh.vertices[v]);
 
-  // The hull of a closed patch is the surface: nothing goes on beyond it. Edges
-  // of the mesh that are shorter than the hull is exact would tell otherwise.
-  if (IsClosed(mesh, patch)) {
-    return {MakePolytope(points,
-                         FindHullShape(points, kFacetTolerances * tolerance)),
-            {}};
-  }
-  const HullShape shape = FindOpenShape(mesh, patch, points, tolerance);
+  const bool closed = IsClosed(mesh, patch);
+  const HullShape shape =
+      closed ? FindHullShape(points, kFacetTolerances * tolerance)
+             : FindOpenShape(mesh, patch, points, tolerance);
   SurfacePiece piece{MakePolytope(points, shape), {}};
+  // The hull of a closed patch is the surface: nothing goes on beyond it. Edges
+  // of the mesh that end at no corner of the hull, and may be shorter than it
+  // is exact, would tell otherwise.
+  if (closed && shape.extreme.size() < corners.size()) return piece;
   std::vector<int> source;
   for (const int i : shape.extreme) source.push_back(corners[i]);
   const double on_facet = kOnFacetTolerances * tolerance;
   ConnectToSurface(mesh, patch, source, on_facet, &piece.polytope);
-  if (patch.size() > 1) {
+  if (patch.size() > 1 && !closed) {
     piece.lost = FindLost(mesh, patch, on_facet, piece.polytope);
   }
   return piece;

@@ -126,7 +126,11 @@ class Query {
     }
     MinkowskiVertex hub = state_.hub;
     SupportGap(pair_, state_.n, &hub);
-    return WalkDepth(pair_, hub, SurfaceRule::kWholeBoundary, nullptr,
+    const Depth depth = WalkDepth(pair_, hub, SurfaceRule::kWholeBoundary,
+                                  nullptr, kNoPromotion, &workspace_.depth);
+    // Round-off can hide every facet from where a walk began.
+    if (depth.status != DepthStatus::kNoFacet) return depth;
+    return ColdDepth(pair_, SurfaceRule::kWholeBoundary, state_.n, state_.hub,
                      kNoPromotion, &workspace_.depth);
   }
 

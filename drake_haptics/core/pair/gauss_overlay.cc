@@ -1,7 +1,6 @@
 #include "pair/gauss_overlay.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -142,19 +141,13 @@ class Overlay {
 
   // n is in the region of A's vertex when no neighbor lies further against n.
   bool IsInRegionOfA(const Vec3& n) const {
-    const double slack = kRegionSlack * pair_.A.radius;
-    return std::all_of(fan_A_.begin(), fan_A_.end(), [&](const auto& spoke) {
-      return n.dot(spoke.along) >= -slack;
-    });
+    return IsFarthest(pair_.A, hub_.a, -n, kRegionSlack * pair_.A.radius);
   }
 
   // n is in the region of B's vertex when no neighbor lies further along n.
   bool IsInRegionOfB(const Vec3& n) const {
-    const Vec3 n_B = pair_.X_AB.R.transpose() * n;
-    const double slack = kRegionSlack * pair_.B.radius;
-    return std::all_of(fan_B_.begin(), fan_B_.end(), [&](const auto& spoke) {
-      return n_B.dot(spoke.along) <= slack;
-    });
+    return IsFarthest(pair_.B, hub_.b, pair_.X_AB.R.transpose() * n,
+                      kRegionSlack * pair_.B.radius);
   }
 
   void Append(double h, const Vec3& n, Feature a, Feature b) {

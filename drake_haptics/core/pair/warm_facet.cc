@@ -13,17 +13,17 @@
 namespace drake_haptics {
 namespace {
 
-// How far the neighbors of vertex v of P reach beyond it along a direction, m.
+// How far the neighbors of vertex v of P reach beyond it along a direction, m;
+// across a facet, beyond what it is not flat.
 double Reach(const Polytope& P, int v, const Vec3& direction) {
   double reach = -std::numeric_limits<double>::infinity();
   for (const Polytope::OneRingEntry& spoke : P.fan_of(v)) {
     reach = std::max(reach, direction.dot(spoke.along));
   }
+  for (const Polytope::HiddenEdge& edge : P.hidden_of(v)) {
+    reach = std::max(reach, direction.dot(edge.along) - Unevenness(P, v, edge));
+  }
   return reach;
-}
-
-bool IsFarthest(const Polytope& P, int v, const Vec3& direction) {
-  return Reach(P, v, direction) <= kRegionSlack * P.radius;
 }
 
 // The least clearance of a point on a facet's plane from the facet's rim;
@@ -129,8 +129,9 @@ Revisit VisitEdges(const PosedPair& pair, SurfaceRule rule, Feature a,
   if (!(length > kParallelSine * length_A * length_B)) return result;
   const Vec3 n = cross * ((cross.dot(n_last) < 0 ? -1.0 : 1.0) / length);
   // n is perpendicular to both edges, so one end stands for the whole edge.
-  if (!IsFarthest(pair.A, edge_A.v0, -n) ||
-      !IsFarthest(pair.B, edge_B.v0, pair.X_AB.R.transpose() * n)) {
+  if (!IsFarthest(pair.A, edge_A.v0, -n, kRegionSlack * pair.A.radius) ||
+      !IsFarthest(pair.B, edge_B.v0, pair.X_AB.R.transpose() * n,
+                  kRegionSlack * pair.B.radius)) {
     return result;
   }
   const Vec3 between = start_B - start_A;

@@ -105,11 +105,7 @@ class Enumeration {
 
   // Whether no neighbor of vertex v lies further against n, in P's frame.
   static bool IsInRegion(const Polytope& P, int v, const Vec3& n) {
-    const auto fan = P.fan_of(v);
-    const double slack = kRegionSlack * P.radius;
-    return std::all_of(fan.begin(), fan.end(), [&](const auto& spoke) {
-      return n.dot(spoke.along) >= -slack;
-    });
+    return IsFarthest(P, v, -n, kRegionSlack * P.radius);
   }
 
   void Append(double h, const Vec3& n, Feature a, Feature b) {

@@ -138,10 +138,7 @@ class Listing {
   // The mesh may carry contacts along directions in which the piece, beside an
   // edge of its hull, reaches farther.
   static bool IsSupport(const Polytope& P, int v, const Vec3& outward) {
-    const auto fan = P.fan_of(v);
-    return std::all_of(fan.begin(), fan.end(), [&](const auto& spoke) {
-      return outward.dot(spoke.along) <= kSlack * P.radius;
-    });
+    return IsFarthest(P, v, outward, kSlack * P.radius);
   }
 
   // Parallel edges have an arc in common where others cross at one direction:
@@ -237,7 +234,8 @@ class Listing {
       if (next == nullptr) return;
       x = std::max(x, first);
       if (next->edge >= 0 && P.edges[next->edge].original) {
-        cross((from + x * side).normalized(), next->edge);
+        const Vec3 direction = (from + x * side).normalized();
+        if (IsSupport(P, v, direction)) cross(direction, next->edge);
       }
       v = next->neighbor;
     }

@@ -82,6 +82,18 @@ bool LayInFront(const PosedPair& pair, const DepthCandidate& facet,
          -kTouchShare * pair.scale();
 }
 
+double LongestWay(const PosedPair& pair, const Pose& last_X_AB) {
+  const Pose X_BA = pair.X_AB.inverse(), last_X_BA = last_X_AB.inverse();
+  double longest = 0;
+  for (const Vec3& p : pair.A.vertices) {
+    longest = std::max(longest, (X_BA * p - last_X_BA * p).norm());
+  }
+  for (const Vec3& p : pair.B.vertices) {
+    longest = std::max(longest, (pair.X_AB * p - last_X_AB * p).norm());
+  }
+  return longest + kTouchShare * pair.scale();
+}
+
 std::optional<DepthCandidate> FindEntry(const PosedPair& pair,
                                         const SurfaceRequest& request,
                                         const MinkowskiVertex& near,

@@ -20,6 +20,10 @@ inline constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 bool LayInFront(const PosedPair& pair, const DepthCandidate& facet,
                 const Pose& last_X_AB);
 
+/// How far a point of either piece has moved at most since the last pose, seen
+/// from the other one, m: no way in was longer.
+double LongestWay(const PosedPair& pair, const Pose& last_X_AB);
+
 /// The facet of A ⊖ B by which two pieces in overlap came together: of all that
 /// the surfaces of both carry, in front of which A lay at the last pose, and on
 /// whose own features they press, the shallowest. Where any way out will do,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "convex/flush_features.h"
 #include "convex/normal_cone_test.h"
@@ -54,6 +55,7 @@ class Query {
 
   std::optional<PairContact> Run() {
     state_.is_settled = false;
+    did_overlap_ = std::exchange(state_.overlaps, false);
     std::optional<PairContact> contact;
     if (!state_.in_contact && IsBeyondLastNormal()) {
       contact = TransferredFrom();
@@ -63,6 +65,7 @@ class Query {
     }
     Remember(contact);
     if (!is_refused_) state_.refusals = 0;
+    state_.is_unmet = HasBegun() && !contact;
     state_.num_ways_out =
         contact || !ends_early_
             ? -1
@@ -145,7 +148,10 @@ class Query {
                            slack) == NormalConeTest::kSupported;
   }
 
+  bool HasBegun() const { return state_.overlaps && !did_overlap_; }
+
   std::optional<PairContact> Overlapping() {
+    state_.overlaps = true;
     const bool is_new = !state_.in_contact && !WasRefused();
     const std::optional<Depth> entry = is_new ? Entry() : std::nullopt;
     if (is_new && !entry && !MayBegin()) {
@@ -321,7 +327,14 @@ class Query {
            LayInFront(pair_, depth.best, request_.last_X_AB) ||
            (depth.best.n.dot(state_.n) >= kComingFrom &&
             depth.best.h >=
-                depth.shallowest - kEntryShare * request_.tolerance);
+                depth.shallowest - kEntryShare * request_.tolerance &&
+            !IsDeeperThanWay(depth.best));
+  }
+
+  // Of an overlap that has begun: whether the bodies have not moved so far.
+  bool IsDeeperThanWay(const DepthCandidate& facet) const {
+    return HasBegun() && !request_.is_first &&
+           facet.h < -LongestWay(pair_, request_.last_X_AB);
   }
 
   // The contact in the shallowest facet seen in which it goes on: the walk may
@@ -438,8 +451,9 @@ class Query {
   SurfacePairWorkspace& workspace_;
   GlobalDepthState* const global_;  // null where the depth is tracked
   Separation separation_;
-  bool is_refused_ = false;  // an overlap had no plausible facet
-  bool ends_early_ = false;  // see Promotion
+  bool did_overlap_ = false;  // at the last query
+  bool is_refused_ = false;   // an overlap had no plausible facet
+  bool ends_early_ = false;   // see Promotion
   std::optional<MinkowskiVertex>
       facet_hub_;  // of the facet that is the answer, if one is
 };

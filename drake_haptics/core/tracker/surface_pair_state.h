@@ -18,7 +18,9 @@ struct SurfacePairState : PairState {
   Vec3 p_b = Vec3::Zero();  ///< its witness point of B, in B's frame, m
   /// The last contact was a depth, within its features' sides.
   bool is_settled = false;
-  int refusals = 0;  ///< ticks on end at which an overlap was no contact
+  bool overlaps = false;  ///< the pieces do, where they were asked last
+  bool is_unmet = false;  ///< they began to, and there is no contact
+  int refusals = 0;       ///< ticks on end at which an overlap was no contact
   Vec3 refused_n = Vec3::Zero();  ///< where the last search ended, in A's frame
   MinkowskiVertex refused_hub;
   int press = -1;  ///< its place among the tick's pressed contacts, if any

@@ -55,6 +55,8 @@ struct SurfaceRequest {
   /// surfaces carry has bounds of its own, so that no contact is lost for want
   /// of it.
   int max_walk_steps = WalkBounds{}.max_steps;
+  /// No earlier pose is known; last_X_AB is where the bodies may come from.
+  bool is_first = false;
 };
 
 }  // namespace drake_haptics

@@ -17,6 +17,12 @@ constexpr int kMaxWaysOut = 16;
 // How far beyond the touch each leads, as a share of the size.
 constexpr double kBeyondTouch = 1e-6;
 
+// Whether a piece is a solid by itself: what overlaps its hull is in it.
+bool IsWhole(const Polytope& P) {
+  return std::all_of(P.facets.begin(), P.facets.end(),
+                     [](const auto& facet) { return facet.original; });
+}
+
 // Where a pair may have come from, of which no earlier pose is known: it counts
 // by the pose before that all pairs share, and then leaves by its own shortest
 // way.
@@ -64,6 +70,9 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
     if (out->size() == first) AskForAnyWayOut(tick, workspace, out);
   } else {
     AskAll(tick, front_tick, workspace, out);
+    if (out->size() == first && pressed_.empty() && HasBegunUnmet()) {
+      AskForAnyWayOut(tick, workspace, out);
+    }
   }
   std::sort(out->begin() + static_cast<std::ptrdiff_t>(first), out->end(),
             [](const Contact& p, const Contact& q) {
@@ -98,9 +107,17 @@ Pose TrackedObject::FindPoseBefore(const Tick& tick,
   return X_AB;
 }
 
-// Of the pairs whose surfaces cross, the contact of the one with the shallowest
-// way out, wherever on its features: a tool that stands through a wall has no
-// way out on the features where it is.
+// Whether pieces that were apart overlap at this tick and have no contact.
+bool TrackedObject::HasBegunUnmet() const {
+  return std::any_of(watched_.begin(), watched_.end(), [&](const auto& pair) {
+    return states_[pair.state].is_unmet;
+  });
+}
+
+// Of the pairs whose surfaces cross, or whose solids do, the contact of the one
+// with the shallowest way out, wherever on its features: a tool that stands
+// through a wall has no way out on the features where it is. None is longer
+// than the way in, where that is known.
 void TrackedObject::AskForAnyWayOut(const Tick& tick,
                                     TrackerWorkspace* workspace,
                                     std::vector<Contact>* out) {
@@ -110,10 +127,13 @@ void TrackedObject::AskForAnyWayOut(const Tick& tick,
   double largest = -kForever;
   for (ActivePair& watched : watched_) {
     const PosedPair pair = Posed(tick, watched.pieces);
-    if (pair.A.dimension < 2 || pair.B.dimension < 2 || !DoSurfacesCross(pair))
-      continue;
+    if (pair.A.dimension < 2 || pair.B.dimension < 2) continue;
+    const bool is_within =
+        states_[watched.state].overlaps && IsWhole(pair.A) && IsWhole(pair.B);
+    if (!is_within && !DoSurfacesCross(pair)) continue;
     const auto way = FindEntry(pair, any, {}, &workspace->pair);
-    if (way && way->h > largest) {
+    if (way && way->h > largest &&
+        (is_first_ || way->h >= -LongestWay(pair, tick.last_X_AB))) {
       largest = way->h;
       shallowest = &watched;
     }
@@ -249,7 +269,10 @@ bool TrackedObject::UpdatePair(const Tick& tick,
     const double gap =
         SupportGap(Posed(tick, pair->pieces), state.n, &state.hub);
     pair->slack = gap - tick.watched;
-    if (gap > tick.tolerance) return true;
+    if (gap > tick.tolerance) {
+      state.overlaps = state.is_unmet = false;
+      return true;
+    }
   }
   const double gap =
       front_tick.boxes.Gap(tick.tool.tree->box_of(pair->pieces.a),
@@ -280,7 +303,7 @@ void TrackedObject::QueryPair(const Tick& tick, TrackerWorkspace* workspace,
   const auto answer = QuerySurfacePair(
       posed,
       {tick.tolerance, is_any_way_out, last_X_AB, pressed_,
-       workspace->translation_vectors, tick.depth.max_walk_steps},
+       workspace->translation_vectors, tick.depth.max_walk_steps, is_first_},
       &state, &workspace->pair, global);
   pair->slack = 0;
   state.press = -1;

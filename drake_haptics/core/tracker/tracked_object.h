@@ -85,6 +85,7 @@ class TrackedObject {
   void AskAll(const Tick& tick, const BvttFront::Tick& front_tick,
               TrackerWorkspace* workspace, std::vector<Contact>* out);
   Pose FindPoseBefore(const Tick& tick, TrackerWorkspace* workspace) const;
+  bool HasBegunUnmet() const;
   void AskForAnyWayOut(const Tick& tick, TrackerWorkspace* workspace,
                        std::vector<Contact>* out);
   void InsertPairs(double watched, std::vector<EnteredPair>* entered);

@@ -3,6 +3,7 @@
 #include "mesh/decomposition.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <stdexcept>
 
 #include "check.h"
@@ -66,6 +67,23 @@ void AdoptedEdgesOffTheMeshCarryNothing() {
 Decomposition Decompose(const Mesh& mesh, const Progress& progress = {}) {
   const std::vector<std::uint8_t> solid(mesh.triangles.size(), 1);
   return DecomposeSurface(mesh.vertices, mesh.triangles, solid, progress);
+}
+
+// A box thinner than its hull is exact is a flat piece, and all the surface
+// there is: its short edges, which are not on the hull, rise from it nowhere.
+void ThinBoxStandsForItself() {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1,
+                               i & 4 ? 1e-7 : 0);
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6},
+                    {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
+                    {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  const Decomposition box = Decompose(mesh);
+  CHECK(box.pieces.size() == 1 && box.pieces[0].dimension == 2);
+  for (const Vec3& r : box.pieces[0].ring) CHECK(std::abs(r.z()) < 1e-6);
+  for (const auto& facet : box.pieces[0].facets) CHECK(facet.original);
 }
 
 // At the reentrant edge x = y = 1 each piece must know the wall of the other:
@@ -156,6 +174,7 @@ void BadInput() {
 
 int main() {
   drake_haptics::AdoptedEdgesOffTheMeshCarryNothing();
+  drake_haptics::ThinBoxStandsForItself();
   drake_haptics::WingsAtTheConcaveEdge();
   drake_haptics::RingAtTheConcaveVertex();
   drake_haptics::WingsWhereTheMeshEnds();

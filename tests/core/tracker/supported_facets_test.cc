@@ -11,6 +11,7 @@
 #include "check.h"
 #include "convex/normal_cone_test.h"
 #include "mesh/decomposition.h"
+#include "pair/witness.h"
 #include "tracker/brute_force_supported_facets.h"
 
 namespace drake_haptics {
@@ -153,6 +154,36 @@ void TestBlades() {
   CHECK(found > 200);
 }
 
+// Two boxes whose edges are parallel but for round-off: such edges make no
+// facet, and no point at which they pass each other.
+void TestParallelEdges() {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i) {
+    points.emplace_back(i & 1 ? 0.3 : -0.3, i & 2 ? 0.2 : -0.2,
+                        i & 4 ? 0.1 : -0.1);
+  }
+  const Polytope box = MakePolytope(points);
+  int found = 0;
+  for (int k = 0; k < 300; ++k) {
+    Pose X_AB;
+    X_AB.R =
+        Eigen::AngleAxisd(std::pow(10.0, Uniform(-17, -8)), RandomDirection())
+            .toRotationMatrix();
+    X_AB.p = Uniform(0, 0.2) * RandomDirection();
+    const PosedPair pair{box, box, X_AB};
+    const WantedFacets anything{{Vec3::UnitX(), -1.0}, -1.0};
+    std::vector<DepthCandidate> listed;
+    ListSupportedFacets(pair, {0, 0}, {&anything, 1}, &listed);
+    for (const DepthCandidate& facet : listed) {
+      const Witness witness = WitnessOfFeatures(
+          pair, facet.feature_A, facet.feature_B, facet.n, facet.h);
+      CHECK(witness.p_a.allFinite() && witness.p_b.allFinite());
+      ++found;
+    }
+  }
+  CHECK(found > 300);
+}
+
 // An axis and its opposite are in a cone of all directions, round-off or not.
 void TestAllDirections() {
   const DirectionCone all;
@@ -167,6 +198,7 @@ int main() {
   drake_haptics::TestConesAreNarrow();
   drake_haptics::TestLargePieces();
   drake_haptics::TestBlades();
+  drake_haptics::TestParallelEdges();
   drake_haptics::TestAllDirections();
   return drake_haptics::FailedChecks() > 0;
 }
