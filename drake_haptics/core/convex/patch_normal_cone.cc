@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "convex/normal_cone_test.h"
+#include "convex/normal_cone_support.h"
 
 namespace drake_haptics {
 namespace {

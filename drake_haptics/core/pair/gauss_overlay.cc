@@ -151,13 +151,13 @@ class Overlay {
   }
 
   void Append(double h, const Vec3& n, Feature a, Feature b) {
-    const NormalConeTest support =
+    const NormalConeSupport support =
         rule_ == SurfaceRule::kWholeBoundary
-            ? NormalConeTest::kSupported
+            ? NormalConeSupport::kSupported
             : ClassifySupport(pair_.A, a, n, pair_.B, b,
                               pair_.X_AB.R.transpose() * n);
     workspace_.candidates.push_back({h, n, a, b, support});
-    if (support == NormalConeTest::kSupported) floor_ = h + Tie(pair_);
+    if (support == NormalConeSupport::kSupported) floor_ = h + Tie(pair_);
   }
 
   const PosedPair& pair_;

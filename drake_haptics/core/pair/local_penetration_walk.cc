@@ -80,7 +80,7 @@ class Walk {
     const double tie = Tie(pair_);
     for (std::size_t i = first; i < workspace_.candidates.size(); ++i) {
       const DepthCandidate& candidate = workspace_.candidates[i];
-      if (candidate.support != NormalConeTest::kSupported) continue;
+      if (candidate.support != NormalConeSupport::kSupported) continue;
       if (best_ < 0 || candidate.h > workspace_.candidates[best_].h + tie) {
         best_ = static_cast<int>(i);
       }

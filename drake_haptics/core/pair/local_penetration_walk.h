@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/types.h"
-#include "convex/normal_cone_test.h"
+#include "convex/normal_cone_support.h"
 #include "convex/support.h"
 
 namespace drake_haptics {
@@ -32,7 +32,7 @@ struct DepthCandidate {
   Feature feature_A;       ///< facet, vertex or edge of A
   Feature feature_B;       ///< vertex, facet or edge of B
   /// Of the surfaces; under kWholeBoundary always kSupported.
-  NormalConeTest support = NormalConeTest::kVirtual;
+  NormalConeSupport support = NormalConeSupport::kVirtual;
 };
 
 /// How a walk ended.

@@ -1,6 +1,6 @@
 #include "pair/pair_contact_builders.h"
 
-#include "convex/normal_cone_test.h"
+#include "convex/normal_cone_support.h"
 #include "pair/witness.h"
 
 namespace drake_haptics {

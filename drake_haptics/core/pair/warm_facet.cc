@@ -83,9 +83,9 @@ Revisit Finish(const PosedPair& pair, SurfaceRule rule, const FacetVisit& visit,
                const MinkowskiVertex& hub) {
   Revisit result;
   if (!visit.is_facet) return result;
-  const NormalConeTest support =
+  const NormalConeSupport support =
       rule == SurfaceRule::kWholeBoundary
-          ? NormalConeTest::kSupported
+          ? NormalConeSupport::kSupported
           : ClassifySupport(pair.A, a, n, pair.B, b,
                             pair.X_AB.R.transpose() * n);
   result.facet = {visit.h, n, a, b, support};

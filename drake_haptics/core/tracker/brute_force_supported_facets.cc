@@ -109,9 +109,9 @@ class Enumeration {
   }
 
   void Append(double h, const Vec3& n, Feature a, Feature b) {
-    const NormalConeTest support = ClassifySupport(
+    const NormalConeSupport support = ClassifySupport(
         pair_.A, a, n, pair_.B, b, pair_.X_AB.R.transpose() * n);
-    if (support == NormalConeTest::kSupported) {
+    if (support == NormalConeSupport::kSupported) {
       facets_.push_back({h, n, a, b, support});
     }
   }

@@ -41,7 +41,7 @@ class Search {
         ConsiderFacet(pair_.X_AB.R * spoke.normal, spoke.facet, false);
       }
     }
-    if (found_.facet.support != NormalConeTest::kSupported &&
+    if (found_.facet.support != NormalConeSupport::kSupported &&
         (IsVertex(&MinkowskiVertex::a) || IsVertex(&MinkowskiVertex::b))) {
       ConsiderEndingEdges();
     }
@@ -112,9 +112,9 @@ class Search {
 
   void Consider(const Vec3& n, double h, Feature a, Feature b,
                 const MinkowskiVertex& hub) {
-    const NormalConeTest support = ClassifySupport(
+    const NormalConeSupport support = ClassifySupport(
         pair_.A, a, n, pair_.B, b, pair_.X_AB.R.transpose() * n);
-    if (support != NormalConeTest::kSupported) return;
+    if (support != NormalConeSupport::kSupported) return;
     const Witness witness = WitnessOfFeatures(pair_, a, b, n, h);
     // A flush face wider than the pieces has its lowest corner over another
     // one.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "convex/normal_cone_test.h"
+#include "convex/normal_cone_support.h"
 #include "pair/gauss_overlay.h"
 
 namespace drake_haptics {
@@ -242,9 +242,9 @@ class Listing {
   }
 
   void Append(const Vec3& n, Feature a, Feature b) {
-    const NormalConeTest support =
+    const NormalConeSupport support =
         ClassifySupport(pair_.A, a, n, pair_.B, b, R_BA_ * n);
-    if (support != NormalConeTest::kSupported) return;
+    if (support != NormalConeSupport::kSupported) return;
     const double h = n.dot(pair_.a(pair_.A.first_vertex_of(a)) -
                            pair_.b(pair_.B.first_vertex_of(b)));
     if (IsWanted(n, h)) facets_.push_back({h, n, a, b, support});

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "convex/flush_features.h"
-#include "convex/normal_cone_test.h"
+#include "convex/normal_cone_support.h"
 #include "pair/gauss_overlay.h"
 #include "pair/pair_contact_builders.h"
 #include "pair/separation.h"
@@ -127,7 +127,7 @@ class Query {
         PromoteClosestPoints(pair_, separation_, request_,
                              IsSupported(closest, kFlush), &workspace_.patch);
     ends_early_ = promotion.ends_early;
-    if (promotion.facet.support != NormalConeTest::kSupported) {
+    if (promotion.facet.support != NormalConeSupport::kSupported) {
       if (promotion.is_beside_wall) return closest;
       return std::nullopt;
     }
@@ -145,7 +145,7 @@ class Query {
     return ClassifySupport(pair_.A, contact.feature_A, contact.n, pair_.B,
                            contact.feature_B,
                            pair_.X_AB.R.transpose() * contact.n,
-                           slack) == NormalConeTest::kSupported;
+                           slack) == NormalConeSupport::kSupported;
   }
 
   bool HasBegun() const { return state_.overlaps && !did_overlap_; }
@@ -198,7 +198,7 @@ class Query {
     ContactStatus status =
         depth.best.h > 0 ? ContactStatus::kNear : ContactStatus::kPenetrating;
     if (depth.status == DepthStatus::kBounded &&
-        depth.best.support != NormalConeTest::kOriginal) {
+        depth.best.support != NormalConeSupport::kOriginal) {
       status = ContactStatus::kBounded;
     }
     return AtFacet(depth, status);
@@ -211,7 +211,7 @@ class Query {
   std::optional<Depth> LeastDepth(const Depth& tracked) {
     const Depth least = LeastOfAllFacets(pair_, tracked.hub, global_);
     if (least.status == DepthStatus::kNoFacet) return std::nullopt;
-    if (least.best.support == NormalConeTest::kSupported &&
+    if (least.best.support == NormalConeSupport::kSupported &&
         IsWithinFeatures(least.best)) {
       return least;
     }
@@ -313,11 +313,11 @@ class Query {
   // from behind, through its virtual side: its own surface is far then, and the
   // pieces on the near side carry the contact.
   bool IsPlausible(const Depth& depth) {
-    if (depth.best.support == NormalConeTest::kVirtual) return false;
+    if (depth.best.support == NormalConeSupport::kVirtual) return false;
     // What goes on may reach beyond its features: a face wider than the pieces
     // has its deepest corner over another one.
     if (passage_.Continues(depth.best)) return true;
-    if (depth.best.support != NormalConeTest::kSupported) return false;
+    if (depth.best.support != NormalConeSupport::kSupported) return false;
     // A walk that was cut short may not have come to where the bodies press.
     if (depth.status != DepthStatus::kBounded &&
         !IsWithinFeatures(depth.best)) {
@@ -342,7 +342,7 @@ class Query {
   std::optional<PairContact> GoneOn() {
     const DepthCandidate* best = nullptr;
     for (const DepthCandidate& facet : workspace_.depth.candidates) {
-      if (facet.support == NormalConeTest::kSupported && facet.h < 0 &&
+      if (facet.support == NormalConeSupport::kSupported && facet.h < 0 &&
           (best == nullptr || facet.h > best->h) && passage_.Continues(facet)) {
         best = &facet;
       }
@@ -385,7 +385,7 @@ class Query {
           RevisitFacet(pair_, SurfaceRule::kSurfaceOnly, state_.feature_A,
                        state_.feature_B, state_.n);
       if (last.status == RevisitStatus::kMinimum &&
-          last.facet.support == NormalConeTest::kSupported) {
+          last.facet.support == NormalConeSupport::kSupported) {
         return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub};
       }
       if (last.status != RevisitStatus::kGone) {
@@ -409,7 +409,7 @@ class Query {
         WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
                   Bounds(kWarmPromotionHubs), &workspace_.depth);
     if (depth.status == DepthStatus::kNoFacet ||
-        depth.best.support != NormalConeTest::kSupported ||
+        depth.best.support != NormalConeSupport::kSupported ||
         !(depth.best.h < 0) ||
         !(passage_.Continues(depth.best) ||
           passage_.IsTransferred(depth.best)) ||

@@ -37,7 +37,7 @@ Polytope Piece(int size, bool is_flat) {
 bool IsCarried(const PosedPair& pair, Feature a, Feature b, const Vec3& n) {
   return ClassifySupport(pair.A, a, n, pair.B, b,
                          pair.X_AB.R.transpose() * n) ==
-         NormalConeTest::kSupported;
+         NormalConeSupport::kSupported;
 }
 
 // The largest gap of all carried facets, by support over all vertices.

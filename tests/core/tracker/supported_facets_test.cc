@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "check.h"
-#include "convex/normal_cone_test.h"
+#include "convex/normal_cone_support.h"
 #include "mesh/decomposition.h"
 #include "pair/witness.h"
 #include "tracker/brute_force_supported_facets.h"

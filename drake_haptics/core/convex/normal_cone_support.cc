@@ -1,4 +1,4 @@
-#include "convex/normal_cone_test.h"
+#include "convex/normal_cone_support.h"
 
 #include <algorithm>
 #include <span>
@@ -94,20 +94,21 @@ bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
 }
 
 // Support of one side; n points out of the polytope, in its frame.
-NormalConeTest ClassifySide(const Polytope& polytope, Feature feature,
-                            const Vec3& n, double slack) {
+NormalConeSupport ClassifySide(const Polytope& polytope, Feature feature,
+                               const Vec3& n, double slack) {
   const auto supported_if = [](bool condition) {
-    return condition ? NormalConeTest::kSupported : NormalConeTest::kOriginal;
+    return condition ? NormalConeSupport::kSupported
+                     : NormalConeSupport::kOriginal;
   };
   switch (feature.kind()) {
     case FeatureKind::kFacet:
       return polytope.facets[feature.index()].original
-                 ? NormalConeTest::kSupported
-                 : NormalConeTest::kVirtual;
+                 ? NormalConeSupport::kSupported
+                 : NormalConeSupport::kVirtual;
     case FeatureKind::kEdge: {
       const Polytope::Edge& edge = polytope.edges[feature.index()];
       if (!edge.original || !LeavesEdge(polytope, edge, n)) {
-        return NormalConeTest::kVirtual;
+        return NormalConeSupport::kVirtual;
       }
       return supported_if(n.dot(edge.wings[0]) <= slack &&
                           n.dot(edge.wings[1]) <= slack);
@@ -115,7 +116,7 @@ NormalConeTest ClassifySide(const Polytope& polytope, Feature feature,
     default: {
       // Vertices are never created by a decomposition: all are original.
       if (!LeavesVertex(polytope, feature.index(), n)) {
-        return NormalConeTest::kVirtual;
+        return NormalConeSupport::kVirtual;
       }
       const auto ring = polytope.ring_of(feature.index());
       return supported_if(
@@ -127,12 +128,12 @@ NormalConeTest ClassifySide(const Polytope& polytope, Feature feature,
 
 }  // namespace
 
-NormalConeTest ClassifySupport(const Polytope& A, Feature feature_A,
-                               const Vec3& n_A, const Polytope& B,
-                               Feature feature_B, const Vec3& n_B,
-                               double slack) {
-  const NormalConeTest of_A = ClassifySide(A, feature_A, -n_A, slack);
-  if (of_A == NormalConeTest::kVirtual) return of_A;
+NormalConeSupport ClassifySupport(const Polytope& A, Feature feature_A,
+                                  const Vec3& n_A, const Polytope& B,
+                                  Feature feature_B, const Vec3& n_B,
+                                  double slack) {
+  const NormalConeSupport of_A = ClassifySide(A, feature_A, -n_A, slack);
+  if (of_A == NormalConeSupport::kVirtual) return of_A;
   return std::min(of_A, ClassifySide(B, feature_B, n_B, slack));
 }
 

@@ -1,5 +1,5 @@
 // Which contacts the surface of a polytope carries at its edges and vertices.
-#include "convex/normal_cone_test.h"
+#include "convex/normal_cone_support.h"
 
 #include <vector>
 
@@ -20,7 +20,7 @@ Polytope Octahedron(const Vec3& half) {
 
 // What the vertices or edges that are farthest along n carry along it, against
 // the facet of a large body that faces them.
-NormalConeTest SupportAlong(const Polytope& P, const Vec3& n) {
+NormalConeSupport SupportAlong(const Polytope& P, const Vec3& n) {
   const Polytope wall =
       MakePolytope(std::vector{Vec3(0, 0, 0), Vec3(9, 0, 0), Vec3(0, 9, 0)});
   double most = -1e9;
@@ -39,10 +39,10 @@ NormalConeTest SupportAlong(const Polytope& P, const Vec3& n) {
 void BladesAndNeedlesCarryOutward() {
   const Polytope blade = Octahedron({1e-5, 1, 1});
   const Polytope needle = Octahedron({1, 1e-5, 1e-5});
-  CHECK(SupportAlong(blade, Vec3::UnitY()) == NormalConeTest::kSupported);
+  CHECK(SupportAlong(blade, Vec3::UnitY()) == NormalConeSupport::kSupported);
   CHECK(SupportAlong(blade, Vec3(0, 1, 1).normalized()) ==
-        NormalConeTest::kSupported);
-  CHECK(SupportAlong(needle, Vec3::UnitX()) == NormalConeTest::kSupported);
+        NormalConeSupport::kSupported);
+  CHECK(SupportAlong(needle, Vec3::UnitX()) == NormalConeSupport::kSupported);
 }
 
 // Into the body nothing is carried, by whatever feature.
@@ -56,14 +56,14 @@ void NothingIsCarriedInward() {
       const Vec3 inward = -P.vertices[v].normalized();
       CHECK(ClassifySupport(P, {FeatureKind::kVertex, v}, -inward, wall,
                             {FeatureKind::kFacet, 0},
-                            inward) != NormalConeTest::kSupported);
+                            inward) != NormalConeSupport::kSupported);
     }
     for (int e = 0; e < static_cast<int>(P.edges.size()); ++e) {
       const Vec3 inward =
           (P.edges[e].wings[0] + P.edges[e].wings[1]).normalized();
       CHECK(ClassifySupport(P, {FeatureKind::kEdge, e}, -inward, wall,
                             {FeatureKind::kFacet, 0},
-                            inward) == NormalConeTest::kVirtual);
+                            inward) == NormalConeSupport::kVirtual);
     }
   }
 }

@@ -6,7 +6,7 @@
 namespace drake_haptics {
 
 /// How far a feature of a piece can carry a contact along a direction.
-enum class NormalConeTest {
+enum class NormalConeSupport {
   kVirtual = 0,   ///< not on the mesh (paper, 5.3.1), or met from behind it
   kOriginal = 1,  ///< on the mesh, but the mesh goes on beyond it there
   kSupported = 2  ///< on the mesh, and the mesh around it stays behind it
@@ -27,10 +27,10 @@ inline constexpr double kSurfaceSlack = 1e-3;
 /// goes on, it is not.
 /// @param slack sine of the angle by which the surfaces may rise above the
 ///     plane and still support the contact.
-NormalConeTest ClassifySupport(const Polytope& A, Feature feature_A,
-                               const Vec3& n_A, const Polytope& B,
-                               Feature feature_B, const Vec3& n_B,
-                               double slack = kSurfaceSlack);
+NormalConeSupport ClassifySupport(const Polytope& A, Feature feature_A,
+                                  const Vec3& n_A, const Polytope& B,
+                                  Feature feature_B, const Vec3& n_B,
+                                  double slack = kSurfaceSlack);
 
 /// The smallest feature that holds the given vertices (one to four, repeats
 /// allowed); of several facets the one that faces the direction n most.
