@@ -1,10 +1,9 @@
-"""Writes the tables of the README: what shipped scenes cost, and how that compares.
+"""Writes the README's table of loops, and the shipped scenes of docs/benchmarks.md.
 
 python docs/generate/readme_tables.py --write
 
 The scenes are measured, in two minutes, on a machine that does nothing else. The
-rest is taken from the pages whose figures they are: docs/benchmarks.md and
-docs/paper.md, written by `docs/generate/write_docs.py` and `paper_table.py`.
+loops are taken from docs/benchmarks.md, written by `docs/generate/write_docs.py`.
 """
 
 from __future__ import annotations
@@ -24,6 +23,7 @@ from drake_haptics.loop.builder import HapticDiagram
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
+BENCHMARKS = ROOT / "docs" / "benchmarks.md"
 BEGIN = "<!-- {}: written by docs/generate/readme_tables.py -->\n"
 END = "<!-- end of {} -->\n"
 # The first is the one of `make demo`.
@@ -33,20 +33,13 @@ DURATION_S = 10.0
 LOOPS = {
     "drake_haptics, whole tick, paced": "this package at 1 kHz by the clock, as a"
     " device needs it",
-    "drake_haptics, whole tick": "this package: exact depth, near contacts, shared"
-    " stiffness, implicit tool",
-    "drake_haptics, native part": "the same in its C++ core alone, without device,"
-    " Drake and Python",
-    "Drake, bushing, TAMSI": "stock Drake: bushing, point contact on the same pieces,"
-    " TAMSI",
+    "drake_haptics, whole tick": "this package, device to device",
+    "drake_haptics, native part": "its C++ core alone",
+    "Drake, bushing, TAMSI": "Drake: bushing, point contact on the same pieces, TAMSI",
     "Drake, bushing, SAP": "the same with SAP",
     "MuJoCo, mj_step": "MuJoCo: `mj_step` with the same pieces, timed in C",
 }
 UNDISTURBED = ("p99, undisturbed", "p99.9, undisturbed")
-QUERIES = {
-    "drake_haptics, tracked": '`depth="tracked"`',
-    "drake_haptics, global": '`depth="global"`',
-}
 
 
 def describe_shape(haptic: HapticDiagram) -> list[str]:
@@ -113,55 +106,13 @@ def make_loops() -> str:
     rows = [[LOOPS[row[0]], *(f"{x} µs" for x in row[1:4])] for row in found]
     head = ["one tick of `cup_spoon`", "median", *UNDISTURBED]
     return (
-        f"{to_markdown(iter([head, *rows]))}\nUndisturbed: the mean of the middle half"
-        " of the repeats of each tick. Rows that are not of a loop by the clock run as"
-        " fast as they can, one tick after the other: caches stay warm.\n"
+        f"{to_markdown(iter([head, *rows]))}\nLoops run as fast as they can, with warm"
+        " caches. Undisturbed: the mean of the middle half of the repeats of each"
+        " tick.\n"
     )
 
 
-def make_queries() -> str:
-    """Returns the contact query's time to that of others, from docs/benchmarks.md."""
-    times = read_rows(
-        "benchmarks.md",
-        "Convex pairs: time, to the fastest other library of each pair",
-    )
-    errors = {
-        row[0]: row[3] for row in read_rows("benchmarks.md", "Convex pairs: errors")
-    }
-    rows = [
-        [
-            QUERIES[name],
-            *(f"{float(share):.2f}" for share in shares[:4]),
-            f"{float(errors[name].removesuffix('%')):g} %",
-        ]
-        for name, *shares in times
-        if name in QUERIES
-    ]
-    head = [
-        "one pair of convex bodies",
-        "apart: median",
-        "p99",
-        "in depth: median",
-        "p99",
-        "least depth found",
-    ]
-    return to_markdown(iter([head, *rows]))
-
-
-def make_paper() -> str:
-    """Returns what the paper's own scenes take, from docs/paper.md."""
-    rows = read_rows("paper.md", "Scenarios")
-    p99_us = [float(row[9].split("/")[1]) for row in rows]
-    triangles = max(sum(_numbers(row[3])) for row in rows)
-    return (
-        f"The paper's scenes, made again with {len(rows)} sets of meshes of up to"
-        f" {triangles:,} triangles, take {min(p99_us):.0f} to {max(p99_us):.0f} µs in"
-        " 99 of 100 ticks, device to device through Drake's Simulator, as fast as they"
-        " can and undisturbed.\n"
-    )
-
-
-MAKERS = {"loops": make_loops, "queries": make_queries, "paper": make_paper}
+PARTS = ((BENCHMARKS, "scenes", make_scenes), (README, "loops", make_loops))
 
 
 def read_rows(page: str, title: str) -> list[list[str]]:
@@ -172,7 +123,7 @@ def read_rows(page: str, title: str) -> list[list[str]]:
 
 
 def span_of(page: str, name: str) -> slice:
-    """Returns where in the README the part of that name is.
+    """Returns where in a page the part of that name is.
 
     Raises:
         ValueError: a mark is missing.
@@ -181,24 +132,20 @@ def span_of(page: str, name: str) -> slice:
     return slice(page.index(begin) + len(begin), page.index(END.format(name)))
 
 
-def _numbers(text: str) -> list[int]:
-    return [int(x.replace(",", "")) for x in re.findall(r"[\d,]+", text)]
-
-
 def main() -> None:
-    """Prints the parts, and with --write puts them into the README."""
+    """Prints the tables, and with --write puts them into their pages."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--write", action="store_true", help=f"write {README.name}")
+    parser.add_argument("--write", action="store_true", help="write both pages")
     write = parser.parse_args().write
-    for name, make in {"scenes": make_scenes, **MAKERS}.items():
+    for file, name, make in PARTS:
         text = make()
         print(f"{name}\n\n{text}")
         if write:
-            page = README.read_text(encoding="utf-8")
+            page = file.read_text(encoding="utf-8")
             span = span_of(page, name)
-            README.write_text(
+            file.write_text(
                 f"{page[: span.start]}\n{text}\n{page[span.stop :]}", encoding="utf-8"
             )
 

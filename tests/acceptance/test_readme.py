@@ -1,4 +1,4 @@
-"""All that the README says to type works, and what it shows is so."""
+"""All that README and front page say to type works, and what they show is so."""
 
 import json
 import re
@@ -6,6 +6,7 @@ import shlex
 import signal
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -20,12 +21,19 @@ ROOT = Path(__file__).parents[2]
 COMMAND = Path(sys.executable).with_name(PROGRAM)
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = find_blocks(README)
+FRONT_BLOCKS = find_blocks((ROOT / "docs" / "index.md").read_text(encoding="utf-8"))
 SETUP, *SHELLS = [block for block in BLOCKS if block.language == "sh"]
 (TWO_TERMINALS,) = [b for b in SHELLS if b.text.startswith(f"{PROGRAM} device ")]
 # Each block is a sequence; a command in a sentence stands by itself.
 SEQUENCES = [block.commands for block in SHELLS if block is not TWO_TERMINALS]
 SEQUENCES += [[command] for command in find_span_commands(README)]
-SNIPPETS = [block for block in BLOCKS if block.language == "python"]
+# Each program, with what it prints.
+SNIPPETS = [
+    pytest.param(page, block, shown.text, id=f"{page}, line {block.line}")
+    for page, blocks in {"README.md": BLOCKS, "index.md": FRONT_BLOCKS}.items()
+    for block, shown in pairwise(blocks)
+    if block.language == "python"
+]
 # What measures for minutes is only begun; its own tests let it end.
 SHORTER = {
     "stability": ["--map", "0"],
@@ -39,7 +47,7 @@ OTHER_PROGRAMS = {
     "make tutorials",  # its notebooks: test_tutorials.py
     "pip install PATH_OF_THE_CHECKOUT",  # make runs it, on the checkout
     "python -m drake_haptics.evaluation.shapes",  # evaluation/shapes/test_shapes.py
-    "run",  # a function, and the command in short
+    "run",  # the command in short
     "run --log FILE",  # test_cli_log.py
 }
 
@@ -114,11 +122,14 @@ def test_two_commands_set_up_and_no_other_does():
 
 
 def test_every_block_is_of_a_kind_that_is_tested():
-    kinds = [block.language for block in BLOCKS]
-    assert set(kinds) == {"sh", "python", "text"}
-    for i, kind in enumerate(kinds):
-        if kind == "text":
-            assert kinds[i - 1] == "python", "shows what the snippet prints"
+    for blocks in (BLOCKS, FRONT_BLOCKS):
+        kinds = [block.language for block in blocks]
+        assert set(kinds) <= {"sh", "python", "text"}
+        for i, kind in enumerate(kinds):
+            if kind == "text":
+                assert kinds[i - 1] == "python", "shows what the snippet prints"
+            if kind == "python":
+                assert kinds[i + 1] == "text"
 
 
 def test_every_program_in_a_sentence_is_run_somewhere():
@@ -140,27 +151,24 @@ def test_options_in_sentences_are_those_of_a_command(name):
     assert name in options
 
 
-@pytest.mark.parametrize("snippet", SNIPPETS, ids=lambda block: f"line {block.line}")
-def test_snippets_print_what_is_shown(snippet, capsys, monkeypatch):
+@pytest.mark.parametrize(("page", "snippet", "shown"), SNIPPETS)
+def test_snippets_print_what_is_shown(page, snippet, shown, capsys, monkeypatch):
     monkeypatch.chdir(ROOT)
-    shown = BLOCKS[BLOCKS.index(snippet) + 1]
-    assert shown.language == "text"
     code = "\n" * snippet.line + snippet.text
-    exec(compile(code, "README.md", "exec"), {"__name__": "readme"})
+    exec(compile(code, page, "exec"), {"__name__": "readme"})
     printed = capsys.readouterr().out
     number = re.compile(r"\d+\.?\d*")
-    assert number.sub("", printed) == number.sub("", shown.text)
+    assert number.sub("", printed) == number.sub("", shown)
     # Of other processors the last digit may differ by one.
-    for here, there in zip(
-        number.findall(printed), number.findall(shown.text), strict=True
-    ):
+    for here, there in zip(number.findall(printed), number.findall(shown), strict=True):
         last_digit = 10.0 ** -len(there.partition(".")[2])
         assert float(here) == pytest.approx(float(there), abs=1.01 * last_digit)
 
 
-def test_the_first_snippet_is_short():
-    lines = [line for line in SNIPPETS[0].text.splitlines() if line.strip()]
-    assert len(lines) <= 10
+def test_the_programs_are_short():
+    most = {"README.md": 18, "index.md": 10}
+    for page, snippet, _ in (case.values for case in SNIPPETS):
+        assert len([x for x in snippet.text.splitlines() if x.strip()]) <= most[page]
 
 
 def test_the_die_lies_in_the_cup_and_not_on_its_hull():
@@ -175,7 +183,7 @@ def test_the_die_lies_in_the_cup_and_not_on_its_hull():
 
 def test_the_softest_contact_of_the_example_gives_way_by_its_spring():
     """Less its tolerance, and no more than the force over the stiffness."""
-    (text,) = (b.text for b in BLOCKS if "N/m:" in b.text and b.language == "text")
+    (text,) = (b.text for b in FRONT_BLOCKS if b.language == "text")
     tolerance_m = load_scene(find_scene("cup_spoon")).contact.tolerance_m
     for line in text.splitlines():
         stiffness, force_N, deep_mm = map(float, re.findall(r"\d+\.?\d*", line))
