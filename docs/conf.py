@@ -26,7 +26,6 @@ extensions = [
     "navigation",
     "pydrake_system",
     "property_docstrings",
-    "readme_page",
     "repository_links",
     "repository_pages",
     "system_pages",

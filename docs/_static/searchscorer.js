@@ -10,7 +10,7 @@ var Scorer = (() => {
     [/^reference\/generated\//, -12],
     [/^reference\//, -3],
     [/^(troubleshooting|glossary)$/, 5],
-    [/^(concepts|start|no-device|cockpit|effects|stability|install|compose)$/, 3],
+    [/^(concepts|no-device|cockpit|effects|stability|install|compose)$/, 3],
     [/^tutorials\//, -1],
   ];
   // What people call it who do not know what pages and sections call it.

@@ -19,7 +19,6 @@ Pages = dict[Path, Page]
 # Pages of every kind, with boxes, tables, code and pictures.
 LOOKED_AT = (
     "index.html",
-    "start.html",
     "accuracy.html",
     "benchmarks.html",
     "concepts.html",
