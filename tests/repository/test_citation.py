@@ -1,4 +1,4 @@
-"""CITATION.cff, the page on citing and the package's metadata agree."""
+"""CITATION.cff, the README's citation and the package's metadata agree."""
 
 import re
 from pathlib import Path
@@ -7,14 +7,8 @@ import yaml
 
 ROOT = Path(__file__).parents[2]
 CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-PAGE = (ROOT / "docs" / "citing.md").read_text(encoding="utf-8")
-
-
-def read_bibtex(kind: str) -> dict[str, str]:
-    """The fields of the page's one entry of a kind, each in one line."""
-    [entry] = re.findall(rf"(?ms)^@{kind}\{{\w+,\n(.*?)^\}}", PAGE)
-    fields = re.findall(r"(?s)(\w+)\s*=\s*\{(.*?)\},\n", entry)
-    return {name: " ".join(text.replace("\\", "").split()) for name, text in fields}
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+SECTION = " ".join(README.split("## Citation\n")[1].split("\n## ")[0].split())
 
 
 def test_the_software_is_that_of_the_metadata():
@@ -22,15 +16,13 @@ def test_the_software_is_that_of_the_metadata():
     for key in ("version", "license"):
         [value] = re.findall(rf'(?m)^{key} = "(.+)"$', metadata)
         assert CITATION[key] == value
-        assert read_bibtex("software")[key] == value
-    assert read_bibtex("software")["title"] == CITATION["title"]
+    assert f"{CITATION['license']}." in README.split("## License\n")[1]
 
 
-def test_the_paper_is_that_of_the_page():
+def test_the_readme_cites_the_same_paper_and_names_the_file():
     [paper] = CITATION["references"]
-    page = read_bibtex("article")
-    names = [f"{x['family-names']}, {x['given-names']}" for x in paper["authors"]]
-    assert page["author"] == " and ".join(names)
-    assert (page["title"], page["journal"]) == (paper["title"], paper["journal"])
-    for page_key, key in (("volume", "volume"), ("number", "issue"), ("year", "year")):
-        assert page[page_key] == str(paper[key])
+    *names, last = [author["family-names"] for author in paper["authors"]]
+    journal = paper["journal"].partition(":")[0]
+    where = f"{journal} {paper['volume']}({paper['issue']}), {paper['year']}"
+    assert f"{', '.join(names)}, and {last}, *{paper['title']}* ({where})" in SECTION
+    assert "(CITATION.cff)" in SECTION
