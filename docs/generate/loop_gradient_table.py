@@ -18,7 +18,7 @@ from page_stamp import write_page
 
 from drake_haptics.analysis.diagram_systems import walk_leaves
 
-PAGE = Path(__file__).parents[2] / "docs" / "loop-gradients.md"
+PAGE = Path(__file__).parents[2] / "docs" / "gradients.md"
 MARK = "<!-- written by docs/generate/loop_gradient_table.py -->\n"
 SCENES = (
     "can_box",

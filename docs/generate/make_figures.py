@@ -66,7 +66,7 @@ FIGURES = (
     _table("hard-cases", "hard_cases", 3),
     _table("sliding", "sliding", 2),
     _table("gradients", "gradient", 5),
-    _table("loop-gradients", "loop_gradient", 2),
+    _table("gradients", "loop_gradient", 2),
     _table("device-twin", "twin", 5),
     _table("servo", "servo", 3),
     _table("stability", "stability", 3),

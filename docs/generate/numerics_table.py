@@ -153,7 +153,7 @@ def _make_derivative_row() -> list[str]:
         for name in ("F", "K", "B", "as a diagram")
         for part in row[name].split(" / ")
     )
-    loops = read_table("loop-gradients.md", "scene")
+    loops = read_table("gradients.md", "scene")
     loop = max(float(row[name]) for row in loops for name in ("largest", "largest 2"))
     return [
         "a derivative is wrong",
@@ -161,7 +161,7 @@ def _make_derivative_row() -> list[str]:
         f" {len(loops)} scenes",
         f"relative error {worst:.0e} at most, {loop:.0e} of whole loops",
         "central differences",
-        "[gradients](gradients.md), [loops](loop-gradients.md)",
+        "[gradients](gradients.md), [loops](gradients.md#whole-loops)",
     ]
 
 
