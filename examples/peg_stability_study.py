@@ -6,7 +6,7 @@ The peg of `torus_peg`, made rigid and held with two fingers, leans on the hole.
 point of the map over stiffness and damping of the coupling is computed in one of
 several processes and kept in FILE. Interrupt it and start it again: what is done is
 not done again. Pass `executor=distributed.Client(...).get_executor()` to
-`calc_z_width`, and the same study runs on a Dask cluster (docs/studies.md).
+`calc_z_width`, and the same study runs on a Dask cluster (docs/stability.md).
 """
 
 import sys

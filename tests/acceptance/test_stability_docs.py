@@ -10,7 +10,7 @@ from drake_haptics.bounds.sampled_spring import calc_stable_stiffness
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs" / "stability.md").read_text(encoding="utf-8")
-COUPLING, SCENE, DIAGRAM = (
+COUPLING, SCENE, DIAGRAM, *_ = (
     textwrap.dedent(snippet)
     for snippet in re.findall(r"(?ms)^ *```python\n(.*?)^ *```$", TEXT)
 )

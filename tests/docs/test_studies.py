@@ -1,4 +1,4 @@
-"""The programs of docs/studies.md run as they stand."""
+"""The programs on studies in docs/stability.md run as they stand."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 
-PAGE = Path(__file__).parents[2] / "docs" / "studies.md"
-LOCAL, CLUSTER = re.findall(
-    r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S
-)
+PAGE = Path(__file__).parents[2] / "docs" / "stability.md"
+SECTION = PAGE.read_text(encoding="utf-8").partition("\n## Studies\n")[2]
+LOCAL, CLUSTER = re.findall(r"^```python\n(.*?)^```", SECTION, re.M | re.S)
 
 
 def run(program: str, folder: Path) -> str:

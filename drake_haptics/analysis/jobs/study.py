@@ -177,7 +177,7 @@ def run_study(
             them in the end; inside of another study's task it computes in place.
         store: File that keeps each result as soon as it is there. A call with the same
             function and file computes only what is not in it yet, also after the
-            program was killed. See docs/studies.md.
+            program was killed. See docs/stability.md.
         progress: Called with the numbers of distinct tasks that are done (with a
             result or failed) and of all, first with what the store had.
         chunk_size: Tasks that travel to a worker together: more than 1 for tasks of
