@@ -28,7 +28,7 @@ from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.live_values import is_live_change, live_keys
 
 _EVERY_KEY = "reference/every-key.yaml"
-_LIVE = "[Live](../live-values.md):"
+_LIVE = "[Live](../compose.md#change-gains-while-it-runs):"
 _PRESET = "reference/every-key-of-a-device.yaml"
 
 

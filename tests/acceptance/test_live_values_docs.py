@@ -1,4 +1,4 @@
-"""What docs/live-values.md shows runs, and prints what it says."""
+"""What docs/compose.md shows on changing gains runs, and prints what it says."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,8 @@ from drake_haptics.systems.contact.contact_query import ContactQuery
 from drake_haptics.systems.contact.penalty_force import PenaltyForce
 from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
-TEXT = (Path(__file__).parents[2] / "docs" / "live-values.md").read_text("utf-8")
+PAGE = Path(__file__).parents[2] / "docs" / "compose.md"
+TEXT = PAGE.read_text("utf-8").partition("## Change gains")[2]
 SNIPPETS = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
 
 
@@ -22,7 +23,7 @@ def printed():
     names = {"print": lambda value: lines[-1].append(value)}
     for number, snippet in enumerate(SNIPPETS):
         lines.append([])
-        exec(compile(snippet, f"live-values.md, snippet {number}", "exec"), names)
+        exec(compile(snippet, f"compose.md, snippet {number}", "exec"), names)
     return lines
 
 
