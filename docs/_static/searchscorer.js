@@ -10,7 +10,7 @@ var Scorer = (() => {
     [/^reference\/generated\//, -12],
     [/^reference\//, -3],
     [/^(troubleshooting|glossary)$/, 5],
-    [/^(concepts|no-device|cockpit|effects|stability|install|compose)$/, 3],
+    [/^(concepts|cockpit|effects|stability|install|compose)$/, 3],
     [/^tutorials\//, -1],
   ];
   // What people call it who do not know what pages and sections call it.
@@ -19,6 +19,7 @@ var Scorer = (() => {
     "api-stability": "version compatible breaking deprecated",
     "architecture": "source folder layout contribute",
     "bridge-a-device": "own device arm vendor SDK driver motor",
+    "cockpit#without-a-device": "no device simulate device browser",
     "comparison": "alternative versus limits",
     "compose": "own plant robot MultibodyPlant",
     "device-twin": "encoder noise",
@@ -27,7 +28,6 @@ var Scorer = (() => {
     "glossary#units": "damping stiffness unit",
     "gradients": "AutoDiff Jacobian linearize",
     "install": "pip wheel macOS Windows Python version",
-    "no-device": "simulate device browser",
     "no-fall-through": "thin wall plate tunnel",
     "paper": "citing cite reference author bibtex",
     "record-replay": "record log a run CSV",

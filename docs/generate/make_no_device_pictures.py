@@ -1,4 +1,4 @@
-"""Makes the pictures of docs/no-device.md.
+"""Makes the pictures of mouse and sliders in docs/cockpit.md.
 
 python docs/generate/make_no_device_pictures.py
 

@@ -47,7 +47,7 @@ SOUGHT = {
     "network delay": "stability.html",
     "own plant": "compose.html",
     "friction": "effects.html",
-    "no device": "no-device.html",
+    "no device": "cockpit.html#without-a-device",
 }
 
 

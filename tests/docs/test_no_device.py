@@ -1,4 +1,4 @@
-"""docs/no-device.md says what the devices do."""
+"""docs/cockpit.md says what mouse, sliders and gamepad do."""
 
 import ast
 import re
@@ -9,7 +9,8 @@ import pytest
 from drake_haptics.device import followed_handle, meshcat_device
 
 DOCS = Path(__file__).parents[2] / "docs"
-PAGE = (DOCS / "no-device.md").read_text(encoding="utf-8")
+TEXT = (DOCS / "cockpit.md").read_text(encoding="utf-8")
+PAGE = TEXT.partition("\n## Without a device\n")[2].partition("\n## ")[0]
 KEYS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowDown": "↓", "ArrowUp": "↑",
         "PageDown": "Page Down", "PageUp": "Page Up"}  # fmt: skip
 
@@ -48,4 +49,4 @@ def test_its_program_imports_what_there_is():
     ]
     assert len(imports) == 4
     module = ast.Module(body=imports, type_ignores=[])
-    exec(compile(module, "no-device.md", "exec"), {})
+    exec(compile(module, "cockpit.md", "exec"), {})
