@@ -172,7 +172,7 @@ DEVICE = Lesson(
     ],
     exits=f"0: at the end, or at Ctrl-C. {_UNUSABLE}.",
     further="End either of the two, or pause `run` with Ctrl-Z, and see what the other"
-    " does. docs/bridge-a-device.md makes a driver for an arm of your own.",
+    " does. docs/connect-a-device.md shows how to write a driver for your own arm.",
 )
 
 SCENES = Lesson(

@@ -204,7 +204,7 @@ def run_scene(
     if (fault := session.figures.get("device", {}).get("fault", "NONE")) != "NONE":
         raise _FaultError(
             f"the run ended with its device at fault ({describe_fault(fault)}):"
-            " docs/closed-loop.md says what each fault means"
+            " docs/connect-a-device.md says what each fault means"
         )
 
 

@@ -98,7 +98,7 @@ def test_the_page_says_the_defaults() -> None:
 
 
 def test_the_page_links_to_what_is_there() -> None:
-    for name in ("device-protocol.md", "bridge-a-device.md"):
+    for name in ("device-protocol.md", "connect-a-device.md"):
         text = (REPO / "docs" / name).read_text(encoding="utf-8")
         for target in re.findall(r"\]\(([^)#]+)\)", text):
             if "://" not in target:

@@ -23,7 +23,7 @@ AT_REST = np.array([1.0, 0, 0, 0, 0, 0, 0])
 STILL = np.zeros(6)
 PUSH = DeviceCommand(np.array([0, 0, 0, 0, 0, 2.0]), AT_REST, STILL)
 TICK_NS = 10**6
-# docs/closed-loop.md and docs/servo.md.
+# docs/connect-a-device.md and docs/servo.md.
 COMMAND_LIFE_S, LONGEST_LIFE_S, FADE_S = 0.05, 0.1, 0.02
 HOLD_S, RELEASE_S = 0.02, 0.02
 
