@@ -29,6 +29,9 @@ TITLES += (*CAUSES, "of the largest", "chain alone")
 _TEXT = """\
 # How much the wrench changes in a micrometer
 
+**Does the force jump when the tool moves by a micrometer?** Rarely: about one step in a
+thousand changes it by more than ten times what the spring explains.
+
 The wrench should be a Lipschitz function of the pose: in a hand, a force that jumps is
 a knock. Here tools take {steps:,} random steps of about a micrometer in contact with
 solids, around {episodes} random poses each, nowhere deeper than what carries

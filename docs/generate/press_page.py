@@ -21,6 +21,10 @@ THIN = ("cup", "spoon")
 _TEXT = """\
 # No fall-through
 
+**Can a tool lose contact with a solid, or get through it?** Not with the default gains
+in any press or jab below; with softer gains, such as those of the shipped scenes, it
+can get through walls that are thinner than the tool sinks in.
+
 Pressed or jabbed anywhere onto a closed solid, a tool should never lose contact while
 the two overlap, nor be pushed further in, nor get through. With the default gains,
 which carry the device's largest force before the shapes touch, that holds for every

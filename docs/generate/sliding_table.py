@@ -35,6 +35,10 @@ UP = np.array([0.0, 0.0, 1.0])
 _TEXT = """\
 # Sliding over seams
 
+**Does a person feel the seams between the pieces of a flat face?** No: where contacts
+share stiffness, as they do by default, the force has no ripple, and every tick has a
+contact.
+
 A tool is held level at a height over a flat face that is cut into pieces, and slides.
 The face is one plane, so each contact should have its normal and the nearest its
 distance, and the force should stay as it is. This page is written by

@@ -93,6 +93,10 @@ EQUATIONS = {
 _TEXT = """\
 # Wrenches in closed form
 
+**Are force and torque those of the formulas?** Yes: where contacts share stiffness, as
+they do by default, they agree to round-off, and for a smooth sphere to the bound of its
+tessellation.
+
 Contacts whose force and torque are known on paper, answered by the real chain: bodies
 cut into pieces, contact query, clusters, penalty force. This page is written by
 
