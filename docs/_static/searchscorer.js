@@ -10,7 +10,8 @@ var Scorer = (() => {
     [/^reference\/generated\//, -12],
     [/^reference\//, -3],
     [/^(troubleshooting|glossary)$/, 5],
-    [/^(concepts|cockpit|effects|stability|install|compose)$/, 3],
+    [/^cockpit$/, 6],
+    [/^(concepts|effects|stability|install|compose)$/, 3],
     [/^tutorials\//, -1],
   ];
   // What people call it who do not know what pages and sections call it.
