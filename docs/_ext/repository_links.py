@@ -16,7 +16,6 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.transforms import SphinxTransform
 
-_README = "README.md"  # says what the front page says, to whoever sees the repository
 _FRONT_PAGE = "index"  # where links to folders of pages lead
 _REFERENCE_TYPE = "repository"
 METADATA = "repository_links"  # key of a page's metadata: the paths that it links to
@@ -47,10 +46,7 @@ class RepositoryLinks(SphinxTransform):
                     self._mark(link, path.relative_to(docs.parent).as_posix())
 
     def _mark(self, link: nodes.Element, name: str) -> None:
-        """Makes a link one to a path of the repository, or to the front page."""
-        if name == _README:
-            link["reftarget"] = _FRONT_PAGE
-            return
+        """Makes a link one to a path of the repository."""
         self.env.metadata[self.env.docname].setdefault(METADATA, set()).add(name)
         marked = addnodes.pending_xref(
             "", *link.children, reftype=_REFERENCE_TYPE, reftarget=name
