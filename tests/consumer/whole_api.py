@@ -16,11 +16,13 @@ from drake_haptics import (
     AddAppliedSpatialForce,
     AddHapticLoop,
     AddHapticRendering,
+    ApplyHapticRenderingConfig,
     BrakingParameters,
     BuildHapticDiagram,
     CallbackTimer,
     ConnectMovingObject,
     Contact,
+    ContactParameters,
     ContactSet,
     ContactStatus,
     ContactTracker,
@@ -42,11 +44,13 @@ from drake_haptics import (
     HapticDiagram,
     HapticLoop,
     HapticRendering,
+    HapticRenderingConfig,
     HapticsError,
     Material,
     Mesh,
     MeshError,
     PairTrajectory,
+    Pose,
     RealTimePacer,
     RunError,
     RunStatistics,
@@ -64,6 +68,7 @@ from drake_haptics import (
     list_meshes,
     list_scenes,
     live_keys,
+    load_haptic_rendering_config,
     load_mesh,
     load_scene,
     make_device_port,
@@ -161,8 +166,9 @@ def use_a_scene(name: str) -> float:
             print(error)
     log = replay(read_tick_log("run.ticks"))
     assert_type(figures, RunStatistics)
-    assert_type(figures.to_dict()["tick_us"]["median"], float)
-    return figures.to_dict()["max_force_N"] + log.count_ticks_from_start()
+    assert_type(figures.tick_us.median, float)
+    assert_type(figures.to_dict()["tick_us"], dict[str, float])
+    return figures.max_force_N + log.count_ticks_from_start()
 
 
 def use_in_a_plant(
@@ -174,6 +180,7 @@ def use_in_a_plant(
         plant,
         scene_graph,
         "die",
+        contact=ContactParameters(stiffness_N_per_m=2e3),
         materials={"cup": Material(stiffness_N_per_m=500.0)},
         effects=Effects(
             shading=ShadingParameters(),
@@ -193,3 +200,13 @@ print(AddHapticLoop.__doc__, ConnectMovingObject.__doc__, use_in_a_plant.__doc__
 port, _ = make_device_port(Still(), period_s=1e-3, max_force_N=1.0, max_torque_Nm=0.1)
 assert_type(port, HapticDevice)
 print(use_geometry(Path("cup.obj")), use_a_scene("cup_spoon"))
+
+
+def configure_a_plant(
+    builder: DiagramBuilder, plant: MultibodyPlant, scene_graph: SceneGraph
+) -> HapticRendering:
+    """The same by a configuration, from a file or in code."""
+    config = load_haptic_rendering_config("rendering.yaml")
+    assert_type(config, HapticRenderingConfig)
+    config.X_HT = Pose(position_m=[0.0, 0.0, 0.1])
+    return ApplyHapticRenderingConfig(config, builder, plant, scene_graph)
