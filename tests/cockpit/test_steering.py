@@ -204,8 +204,8 @@ def test_ticks_that_take_too_long_are_told_with_the_key_that_helps(
     rig = make({}, scene=dataclasses.replace(scene, device=device))
     rig.run(0.2)
     assert rig.page.outlooks[-1].shed > 0
-    assert rig.page.states[0]["load_shedding"] == ""
-    assert rig.page.states[-1]["load_shedding"] == "contact.tolerance_m: a smaller one."
+    assert rig.page.states[0]["relief"] == ""
+    assert rig.page.states[-1]["relief"] == "contact.tolerance_m: a smaller one."
     [(costs_us, slow)] = asked
     assert costs_us["contact_query"] > 0.0 and slow is rig.changes.scene
 
