@@ -60,11 +60,13 @@ format: $(STAMP)-test
 	$(BIN)/ruff format .
 	$(BIN)/clang-format -i $(FORMATTED)
 
-# Rebuilds the C++ core after an edit, without a fresh build environment.
+# Rebuilds the C++ core after an edit, without a fresh build environment, and file by
+# file: the first time it compiles all of them.
 build:
 	@test -e $(STAMP)-test || $(MAKE) $(STAMP)-test
 	$(BIN)/pip install --quiet "scikit-build-core>=0.11" "nanobind>=2.7,<3" "cmeel-eigen>=3.4"
-	$(BIN)/pip install --quiet --no-build-isolation --no-deps -e .
+	$(BIN)/pip install --quiet --no-build-isolation --no-deps \
+	  --config-settings=cmake.define.CMAKE_UNITY_BUILD=OFF -e .
 	$(BIN)/python -m nanobind.stubgen -q -m drake_haptics._core -o drake_haptics/_core.pyi
 	@touch $(STAMP) $(STAMP)-test
 

@@ -10,6 +10,7 @@
 #include "base/rotation.h"
 #include "bind/bind.h"
 #include "bind/bind_eigen.h"
+#include "bind/bind_pose.h"
 #include "law/autodiff_sets.h"
 #include "law/contact_extrapolation.h"
 
@@ -20,14 +21,6 @@ namespace {
 
 Pose PoseAt(const Eigen::VectorXd& poses, Eigen::Index i, const char* what) {
   return PoseFromVector(poses.segment<7>(7 * i), what);
-}
-
-PoseOf<AutoDiff> PoseAt(const AutoDiffVector& poses, Eigen::Index i,
-                        const char* what) {
-  PoseVectorOf<AutoDiff> q;
-  for (int k = 0; k < 7; ++k) q[k] = poses(7 * i + k);
-  PoseFromVector(ValuesOf(q), what);  // refuses what is not a pose
-  return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
 }
 
 // @param found, now poses of the tool and of the objects that move.

@@ -55,10 +55,10 @@ FrictionStepOf<T> CheckedStep(const StickSlipModel& model,
                     q_WO.data());
 }
 
-FrictionStep Step(const StickSlipModel& model, const Numbers& state,
-                  const ClusterSet& clusters,
-                  const PenaltyWrench& contact_wrench, const PoseVector& q_WT,
-                  const Numbers& q_WO) {
+FrictionStep StepFriction(const StickSlipModel& model, const Numbers& state,
+                          const ClusterSet& clusters,
+                          const PenaltyWrench& contact_wrench,
+                          const PoseVector& q_WT, const Numbers& q_WO) {
   return CheckedStep<double>(model, {state.data(), state.shape(0)}, clusters,
                              contact_wrench, q_WT,
                              {q_WO.data(), q_WO.shape(0)});
@@ -202,7 +202,7 @@ void BindStickSlipModel(nb::module_& m) {
           "    ValueError: a coefficient is negative, the ratio below 1, or a "
           "length not above 0.")
       .def_prop_ro("state_size", &StickSlipModel::state_size, "n.")
-      .def("step", &Step, nb::arg("state"), nb::arg("clusters"),
+      .def("step", &StepFriction, nb::arg("state"), nb::arg("clusters"),
            nb::arg("contact_wrench"), nb::arg("q_WT"), nb::arg("q_WO"),
            "Friction now, and the state for the next tick.\n\n"
            "Args:\n"

@@ -34,8 +34,8 @@ std::uint64_t ReadTime(nb::int_ now_ns) {
   return ReadCount<std::uint64_t>("now_ns", now_ns, 0, UINT64_MAX);
 }
 
-Eigen::Matrix<double, 6, 1> Step(dh_gate* gate, nb::int_ now_ns,
-                                 nb::handle X_BH, nb::handle V_BH) {
+Eigen::Matrix<double, 6, 1> StepGate(dh_gate* gate, nb::int_ now_ns,
+                                     nb::handle X_BH, nb::handle V_BH) {
   double X[7], V[6], F[6];
   ReadReals(X_BH, "X_BH", X);
   ReadReals(V_BH, "V_BH", V);
@@ -100,7 +100,8 @@ void BindGate(nb::module_& m) {
           "    'accepted', or why not: a key of `counts`.\n\n"
           "Raises:\n"
           "    ValueError: now_ns is no 64-bit time.")
-      .def("step", &Step, nb::arg("now_ns"), nb::arg("X_BH"), nb::arg("V_BH"),
+      .def("step", &StepGate, nb::arg("now_ns"), nb::arg("X_BH"),
+           nb::arg("V_BH"),
            "Moves the time on; once per tick, after the packets.\n\n"
            "Args:\n"
            "    now_ns: The driver's monotonic clock, ns.\n"

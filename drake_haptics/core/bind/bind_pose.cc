@@ -137,6 +137,14 @@ std::vector<Pose> ToPoses(const RealArray& array, const char* name) {
 
 }  // namespace
 
+PoseOf<AutoDiff> PoseAt(const AutoDiffVector& poses, Eigen::Index i,
+                        const char* name) {
+  PoseVectorOf<AutoDiff> q;
+  for (int k = 0; k < 7; ++k) q[k] = poses(7 * i + k);
+  PoseFromVector(ValuesOf(q), name);  // refuses what is not a pose
+  return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
+}
+
 Pose ToPose(nb::handle value, const char* name) {
   const RealArray array(AsMatrix(value), name);
   if (!IsMatrix(array) && !IsVector(array)) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/autodiff.h"
 #include "base/types.h"
 
 /// Poses that Python passes in. One pose is a (4, 4) rigid matrix, a (7,)
@@ -16,6 +17,11 @@ namespace drake_haptics {
 /// @param name the argument, for messages.
 /// @throws std::invalid_argument unless it is one pose: finite and rigid.
 Pose ToPose(nanobind::handle value, const char* name);
+
+/// Pose i of several with derivatives, 7 numbers each, one after another.
+/// @throws std::invalid_argument unless its values are a pose.
+PoseOf<AutoDiff> PoseAt(const AutoDiffVector& poses, Eigen::Index i,
+                        const char* name);
 
 /// The poses of one body over a trajectory.
 class PoseSeries {

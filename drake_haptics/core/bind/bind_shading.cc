@@ -6,6 +6,7 @@
 #include "base/rotation.h"
 #include "bind/bind.h"
 #include "bind/bind_eigen.h"
+#include "bind/bind_pose.h"
 #include "law/autodiff_sets.h"
 #include "law/force_shading.h"
 
@@ -27,15 +28,6 @@ ContactSet Shade(const ContactShading& self, ContactSet contacts,
   return contacts;
 }
 
-// Pose i of several, one after another.
-PoseOf<AutoDiff> ToPose(const AutoDiffVector& poses, Eigen::Index i,
-                        const char* what) {
-  PoseVectorOf<AutoDiff> q;
-  for (int k = 0; k < 7; ++k) q[k] = poses(7 * i + k);
-  PoseFromVector(ValuesOf(q), what);  // refuses what is not a pose
-  return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
-}
-
 AutoDiffContactSet DifferentiateShade(const ContactShading& self,
                                       AutoDiffContactSet contacts,
                                       const AutoDiffVector& q_WT,
@@ -49,12 +41,12 @@ AutoDiffContactSet DifferentiateShade(const ContactShading& self,
   }
   std::vector<PoseOf<AutoDiff>> X_WO;
   for (Eigen::Index i = 0; i < q_WO.size() / 7; ++i) {
-    X_WO.push_back(ToPose(q_WO, i, "q_WO"));
+    X_WO.push_back(PoseAt(q_WO, i, "q_WO"));
   }
   const Rows7 values = q_WO.value.reshaped<Eigen::RowMajor>(X_WO.size(), 7);
   const ContactSet shaded =
       Shade(self, ValuesOf(contacts.set), q_WT.value, values);
-  self.Shade<AutoDiff>(ToPose(q_WT, 0, "q_WT"), X_WO, &contacts.set);
+  self.Shade<AutoDiff>(PoseAt(q_WT, 0, "q_WT"), X_WO, &contacts.set);
   SetValues(shaded, &contacts);
   return contacts;
 }
