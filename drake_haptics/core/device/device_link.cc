@@ -17,7 +17,8 @@ bool IsFinite(const std::array<double, size>& values) {
                      [](double value) { return std::isfinite(value); });
 }
 
-// Normalizes the pose. False if it is not a pose, or other values are not finite.
+// Normalizes the pose. False if it is not a pose, or other values are not
+// finite.
 bool MakeUsable(HandleState* state) {
   auto& X = state->X;
   const double norm =
