@@ -169,7 +169,7 @@ def AddHapticLoop(
         _add_handle_model(builder, base, sources)
     loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
     builder.Connect(loop.contacts, loop.contact_clustering.GetInputPort("contacts"))
-    builder.Connect(loop.display_wrench, device.GetInputPort("F_Ho_W_commanded"))
+    builder.Connect(loop.commanded_wrench, device.GetInputPort("F_Ho_W_commanded"))
     return loop
 
 

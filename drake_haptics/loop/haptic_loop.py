@@ -83,7 +83,7 @@ class HapticLoop(BaseSystems):
         return self.found_contacts
 
     @property
-    def display_wrench(self) -> OutputPort:
+    def commanded_wrench(self) -> OutputPort:
         """The wrench (6) [τ; f] on its handle that the device is asked to show."""
         if self.effects.passivity is not None:
             return self.effects.passivity.GetOutputPort("F_Ho_W_commanded")
@@ -116,7 +116,7 @@ class HapticLoop(BaseSystems):
             "V_WT": tool.GetOutputPort("V_WT"),
             "X_WH": device.GetOutputPort("X_WH"),
             "V_WH": device.GetOutputPort("V_WH"),
-            "F_Ho_W_commanded": self.display_wrench,
+            "F_Ho_W_commanded": self.commanded_wrench,
             "F_Ho_W_rendered": device.GetOutputPort("F_Ho_W_rendered"),
             "status": device.GetOutputPort("status"),
             "contacts": self.contacts,

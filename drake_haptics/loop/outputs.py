@@ -72,7 +72,7 @@ def add_picture(
             loop.penalty_force.GetOutputPort("contact_wrench"),
             visualizer.GetInputPort("contact_wrench"),
         ),
-        (loop.display_wrench, visualizer.GetInputPort("F_Ho_W_commanded")),
+        (loop.commanded_wrench, visualizer.GetInputPort("F_Ho_W_commanded")),
     ]:
         builder.Connect(output, input)
     if loop.effects.friction is not None:
@@ -125,7 +125,7 @@ def AddTickLog(
     sources = {
         "X_WH": device.GetOutputPort("X_WH"),
         "V_WH": device.GetOutputPort("V_WH"),
-        "F_Ho_W_commanded": loop.display_wrench,
+        "F_Ho_W_commanded": loop.commanded_wrench,
         "F_Ho_W_rendered": device.GetOutputPort("F_Ho_W_rendered"),
         "X_WT": tool.GetOutputPort("X_WT"),
         "V_WT": tool.GetOutputPort("V_WT"),

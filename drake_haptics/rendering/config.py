@@ -61,8 +61,7 @@ class HapticRenderingConfig:
     period_s: float | None = None
     name: str = "haptic_rendering"
 
-    def __repr__(self) -> str:
-        return one_line(self)
+    __repr__ = one_line
 
 
 def load_haptic_rendering_config(path: str | Path) -> HapticRenderingConfig:

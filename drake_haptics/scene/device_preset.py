@@ -131,7 +131,7 @@ def load_device_preset(name_or_path: str) -> DevicePreset:
         The preset, whose `model` no longer depends on its folder.
 
     Raises:
-        SceneError: There is none of that name, in which case the message lists those
+        SceneError: No preset has that name, in which case the message lists those
             there are; or the file cannot be read, or has a key or value that means
             nothing: it names the file and the key.
     """

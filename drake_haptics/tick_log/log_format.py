@@ -116,7 +116,7 @@ def _parse_header(facts: object) -> TickLogHeader:
     texts += [*header.mesh_sha256, *header.mesh_sha256.values()]
     numbers = [header.period_s, *header.X_WB]
     if not all(isinstance(text, str) for text in texts):
-        raise ValueError("a text is none")
+        raise ValueError("a version, a scene or a mesh is not told as text")
     if not all(isinstance(x, float) and math.isfinite(x) for x in numbers):
         raise ValueError("a number is not a finite one with a decimal point")
     if len(header.X_WB) != 7 or header.period_s <= 0.0:
@@ -226,7 +226,7 @@ class TickRows:
         """Returns a quantity: (n,) where it is one number, else (n, numbers).
 
         Raises:
-            KeyError: There is none of that name.
+            KeyError: No quantity has that name.
         """
         if quantity in COUNTS:
             return self.counts[:, COUNTS.index(quantity)]

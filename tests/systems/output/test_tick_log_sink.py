@@ -55,7 +55,7 @@ def test_with_the_simulated_arm_it_is_what_a_monitor_sees_before_the_tick(
         ports = [
             loop.device.GetOutputPort("X_WH"),
             loop.device.GetOutputPort("V_WH"),
-            loop.display_wrench,
+            loop.commanded_wrench,
             loop.device.GetOutputPort("F_Ho_W_rendered"),
             loop.haptic_tool.GetOutputPort("X_WT"),
             loop.haptic_tool.GetOutputPort("V_WT"),
