@@ -106,9 +106,9 @@ def make_loops() -> str:
     rows = [[LOOPS[row[0]], *(f"{x} µs" for x in row[1:4])] for row in found]
     head = ["one tick of `cup_spoon`", "median", *UNDISTURBED]
     return (
-        f"{to_markdown(iter([head, *rows]))}\nLoops run as fast as they can, with warm"
-        " caches. Undisturbed: the mean of the middle half of the repeats of each"
-        " tick.\n"
+        f"{to_markdown(iter([head, *rows]))}\nAll but the first run as fast as they"
+        " can, with warm caches. Undisturbed: the mean of the middle half of the"
+        " repeats of each tick.\n"
     )
 
 

@@ -2,15 +2,18 @@
 
 drake-haptics bench --json figures.json
 python docs/generate/write_docs.py figures.json
+
+Of `bench loop --json` only the tables of whole ticks are written.
 """
 
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 
-from page_stamp import write_page
+from page_stamp import amend_page, write_page
 
 from drake_haptics.evaluation.benchmark.benchmark import (
     BenchFigures,
@@ -45,11 +48,28 @@ def with_figures(page: str, figures: BenchFigures) -> str:
     return page[:start] + "\n" + "\n".join(sections) + "\n" + page[page.index(_END) :]
 
 
+def with_tables(page: str, figures: BenchFigures) -> str:
+    """Returns the page with the tables that these figures make in place of those."""
+    for table in make_tables(figures):
+        section = re.compile(
+            rf"### {re.escape(table.title)}\n.*?(?=\n### |\n{re.escape(_END)})", re.S
+        )
+        page, replaced = section.subn(lambda _, t=table: t.to_markdown(), page)
+        assert replaced == 1, table.title
+    return page
+
+
 def main() -> None:
     """Reads the figures from the file named on the command line."""
     data = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
     page = PAGE.read_text(encoding="utf-8")
-    write_page(PAGE, with_figures(page, BenchFigures.from_dict(data)), __file__)
+    figures = BenchFigures.from_dict(data)
+    if figures.pairs or figures.scenes:
+        write_page(PAGE, with_figures(page, figures), __file__)
+    else:
+        amend_page(
+            PAGE, with_tables(page, figures), __file__, "whole ticks of the loop"
+        )
 
 
 if __name__ == "__main__":
