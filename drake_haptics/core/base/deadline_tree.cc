@@ -15,7 +15,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 DeadlineTree::DeadlineTree(int count)
     : leaves_(static_cast<int>(std::bit_ceil(static_cast<unsigned>(count)))),
       times_(2 * leaves_, kNever) {
-  for (int i = 0; i < count; ++i) Wake(i);
+  for (int i = 0; i < count; ++i) MakeDue(i);
 }
 
 void DeadlineTree::Set(int item, double time) {

@@ -15,7 +15,9 @@ class DeadlineTree {
   void Set(int item, double time);
 
   /// Makes the item due at once.
-  void Wake(int item) { Set(item, -std::numeric_limits<double>::infinity()); }
+  void MakeDue(int item) {
+    Set(item, -std::numeric_limits<double>::infinity());
+  }
 
   /// Writes the items that are due at `time` to `due`, in ascending order.
   void Collect(double time, std::vector<int>* due) const;

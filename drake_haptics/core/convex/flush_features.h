@@ -39,11 +39,12 @@ struct FlushFacets {
   FlushFacets(const Polytope& P, int vertex, const Vec3& outward) {
     // A little below the cosine of the tilt.
     constexpr double kCosTilted = 0.9974;
-    for (const Polytope::OneRingEntry& spoke : P.fan_of(vertex)) {
-      if (!(spoke.normal.dot(outward) > kCosTilted) || count == kMost) continue;
-      const double share = FacetShare(spoke.normal.cross(outward).norm());
+    for (const Polytope::OneRingEntry& ring_entry : P.fan_of(vertex)) {
+      if (!(ring_entry.normal.dot(outward) > kCosTilted) || count == kMost)
+        continue;
+      const double share = FacetShare(ring_entry.normal.cross(outward).norm());
       if (!(share > 0)) continue;
-      facets[count++] = {spoke.facet, share};
+      facets[count++] = {ring_entry.facet, share};
       rest *= 1 - share;
     }
   }
@@ -55,11 +56,12 @@ struct FlushFacets {
 template <typename Visitor>
 void VisitFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
                      const Visitor& visit) {
-  for (const Polytope::OneRingEntry& spoke : P.fan_of(vertex)) {
-    const double rise = spoke.along.dot(outward);
-    const double length_squared = spoke.along.squaredNorm();
+  for (const Polytope::OneRingEntry& ring_entry : P.fan_of(vertex)) {
+    const double rise = ring_entry.along.dot(outward);
+    const double length_squared = ring_entry.along.squaredNorm();
     if (rise * rise < kFlush * kFlush * length_squared) {
-      visit(spoke.edge, EdgeShare(std::abs(rise) / std::sqrt(length_squared)));
+      visit(ring_entry.edge,
+            EdgeShare(std::abs(rise) / std::sqrt(length_squared)));
     }
   }
 }

@@ -11,8 +11,8 @@ namespace {
 // Cosine of the largest angle between n and the facets around a vertex.
 double SmallestCosine(const Polytope& P, const Vec3& n, int vertex) {
   double cosine = 1;
-  for (const Polytope::OneRingEntry& spoke : P.fan_of(vertex)) {
-    cosine = std::min(cosine, n.dot(spoke.normal));
+  for (const Polytope::OneRingEntry& ring_entry : P.fan_of(vertex)) {
+    cosine = std::min(cosine, n.dot(ring_entry.normal));
   }
   return cosine;
 }

@@ -41,8 +41,8 @@ int CornerAcross(const std::vector<HullTriangle>& triangles,
 
 bool IsJoined(const Polytope& P, int v, int other) {
   const auto fan = P.fan_of(v);
-  return std::any_of(fan.begin(), fan.end(), [&](const auto& spoke) {
-    return spoke.neighbor == other;
+  return std::any_of(fan.begin(), fan.end(), [&](const auto& ring_entry) {
+    return ring_entry.neighbor == other;
   });
 }
 
@@ -60,10 +60,10 @@ void FillHiddenEdges(Polytope* P) {
   for (const Vec3& v : P->vertices) {
     points.push_back(NormalizeForPredicates(v, scale));
   }
-  const AffineBasis spanning = FindAffineBasis(points, kRoundOff);
-  if (spanning.dimension < 3) return;
+  const AffineBasis basis = FindAffineBasis(points, kRoundOff);
+  if (basis.dimension < 3) return;
   const std::vector<HullTriangle> triangles =
-      ConvexHull(points, spanning.point).Triangles();
+      ConvexHull(points, basis.point).Triangles();
   std::vector<std::array<int, 2>> ends;
   for (const HullTriangle& triangle : triangles) {
     for (int k = 0; k < 3; ++k) {

@@ -63,11 +63,11 @@ std::vector<int> FlatLoop(std::span<const Vec3> points, const Vec3& normal,
 }
 
 std::vector<HullShape::Polygon> Polygons(std::span<const Vec3> points,
-                                         const AffineBasis& spanning,
+                                         const AffineBasis& basis,
                                          double tolerance,
                                          const SurfaceTest& is_on_surface) {
-  const auto& p = spanning.point;
-  if (spanning.dimension == 3) {
+  const auto& p = basis.point;
+  if (basis.dimension == 3) {
     const std::vector<HullTriangle> triangles =
         ConvexHull(points, p).Triangles();
     std::vector<std::uint8_t> on_surface(triangles.size(), 1);
@@ -85,10 +85,10 @@ std::vector<HullShape::Polygon> Polygons(std::span<const Vec3> points,
   return {{normal, loop}, {-normal, back}};
 }
 
-std::vector<int> ExtremePoints(const AffineBasis& spanning,
+std::vector<int> ExtremePoints(const AffineBasis& basis,
                                std::span<const HullShape::Polygon> polygons) {
-  std::vector<int> extreme(spanning.point.begin(),
-                           spanning.point.begin() + spanning.dimension + 1);
+  std::vector<int> extreme(basis.point.begin(),
+                           basis.point.begin() + basis.dimension + 1);
   if (!polygons.empty()) extreme.clear();
   for (const HullShape::Polygon& polygon : polygons) {
     extreme.insert(extreme.end(), polygon.loop.begin(), polygon.loop.end());
@@ -131,20 +131,20 @@ HullShape FindHullShape(std::span<const Vec3> points, double tolerance,
   // The coordinates are below 1 now; so is the round-off they came with.
   const double thickness =
       std::max(tolerance * scale, 4 * std::numeric_limits<double>::epsilon());
-  const AffineBasis spanning = FindAffineBasis(distinct, thickness);
+  const AffineBasis basis = FindAffineBasis(distinct, thickness);
   HullShape shape;
-  shape.dimension = spanning.dimension;
-  if (spanning.dimension >= 2) {
+  shape.dimension = basis.dimension;
+  if (basis.dimension >= 2) {
     const auto is_on_surface_by_source = [&](const std::array<int, 3>& points,
                                              const Vec3& normal) {
       return is_on_surface(
           {source[points[0]], source[points[1]], source[points[2]]}, normal);
     };
     shape.polygons = Polygons(
-        distinct, spanning, thickness,
+        distinct, basis, thickness,
         is_on_surface ? SurfaceTest(is_on_surface_by_source) : SurfaceTest());
   }
-  shape.extreme = ExtremePoints(spanning, shape.polygons);
+  shape.extreme = ExtremePoints(basis, shape.polygons);
   for (int& i : shape.extreme) i = source[i];
   for (HullShape::Polygon& polygon : shape.polygons) {
     for (int& i : polygon.loop) i = source[i];

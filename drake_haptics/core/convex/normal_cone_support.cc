@@ -7,8 +7,8 @@ namespace drake_haptics {
 namespace {
 
 int FindEdge(const Polytope& polytope, int v0, int v1) {
-  for (const Polytope::OneRingEntry& spoke : polytope.fan_of(v0)) {
-    if (spoke.neighbor == v1) return spoke.edge;
+  for (const Polytope::OneRingEntry& ring_entry : polytope.fan_of(v0)) {
+    if (ring_entry.neighbor == v1) return ring_entry.edge;
   }
   return -1;
 }
@@ -61,12 +61,12 @@ bool LeavesEdge(const Polytope& polytope, const Polytope::Edge& edge,
 bool LeavesTip(const Polytope& polytope, int vertex, const Vec3& n) {
   if (!FallsAway(polytope.ring_of(vertex), n)) return false;
   const auto fan = polytope.fan_of(vertex);
-  const auto is_on_surface = [&](const Polytope::OneRingEntry& spoke) {
-    return spoke.facet >= 0 && polytope.facets[spoke.facet].original;
+  const auto is_on_surface = [&](const Polytope::OneRingEntry& ring_entry) {
+    return ring_entry.facet >= 0 && polytope.facets[ring_entry.facet].original;
   };
-  const auto is_of_blade = [&](const Polytope::OneRingEntry& spoke) {
-    if (spoke.edge < 0) return false;
-    const Polytope::Edge& edge = polytope.edges[spoke.edge];
+  const auto is_of_blade = [&](const Polytope::OneRingEntry& ring_entry) {
+    if (ring_entry.edge < 0) return false;
+    const Polytope::Edge& edge = polytope.edges[ring_entry.edge];
     return IsConvex(polytope, edge) && FallsAway(edge.wings, n);
   };
   return std::all_of(fan.begin(), fan.end(), is_on_surface) ||
@@ -79,14 +79,15 @@ bool LeavesVertex(const Polytope& polytope, int vertex, const Vec3& n) {
   bool has_surface = false;
   bool is_rim = false;
   double most = -1;
-  for (const Polytope::OneRingEntry& spoke : polytope.fan_of(vertex)) {
-    if (spoke.edge >= 0) {
-      const Polytope::Edge& edge = polytope.edges[spoke.edge];
+  for (const Polytope::OneRingEntry& ring_entry : polytope.fan_of(vertex)) {
+    if (ring_entry.edge >= 0) {
+      const Polytope::Edge& edge = polytope.edges[ring_entry.edge];
       is_rim |=
           edge.original && (edge.wings[0].isZero(0) || edge.wings[1].isZero(0));
     }
-    if (spoke.facet < 0 || !polytope.facets[spoke.facet].original) continue;
-    most = std::max(most, n.dot(spoke.normal));
+    if (ring_entry.facet < 0 || !polytope.facets[ring_entry.facet].original)
+      continue;
+    most = std::max(most, n.dot(ring_entry.normal));
     has_surface = true;
   }
   return !has_surface || most > (is_rim ? -kSurfaceSlack : kSurfaceSlack) ||
@@ -153,14 +154,15 @@ Feature FeatureOfVertices(const Polytope& polytope, const int* vertices,
   }
   Feature best(FeatureKind::kVertex, distinct[0]);
   double best_facing = -2;
-  for (const Polytope::OneRingEntry& spoke : polytope.fan_of(distinct[0])) {
-    const double facing = n.dot(spoke.normal);
-    if (spoke.facet >= 0 && facing > best_facing &&
+  for (const Polytope::OneRingEntry& ring_entry :
+       polytope.fan_of(distinct[0])) {
+    const double facing = n.dot(ring_entry.normal);
+    if (ring_entry.facet >= 0 && facing > best_facing &&
         std::all_of(distinct + 1, distinct + size, [&](int v) {
-          return FacetHolds(polytope, spoke.facet, v);
+          return FacetHolds(polytope, ring_entry.facet, v);
         })) {
       best_facing = facing;
-      best = {FeatureKind::kFacet, spoke.facet};
+      best = {FeatureKind::kFacet, ring_entry.facet};
     }
   }
   return best;

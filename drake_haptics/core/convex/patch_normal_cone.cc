@@ -37,8 +37,8 @@ class Collection {
       if (facet.original) corners_.push_back(facet.normal);
     }
     for (const Polytope::Edge& edge : piece_.edges) {
-      if (edge.carrying[0].isZero(0)) continue;
-      for (const Vec3& end : edge.carrying) {
+      if (edge.normal_arc[0].isZero(0)) continue;
+      for (const Vec3& end : edge.normal_arc) {
         corners_.push_back(end.normalized());
       }
     }
@@ -76,7 +76,7 @@ class Collection {
         if (!(rest > 0) || !(across.squaredNorm() > 1e-20)) continue;
         const Vec3 aside = across.normalized() * std::sqrt(rest);
         for (const Vec3& n : {Vec3(between + aside), Vec3(between - aside)}) {
-          if (IsCarried(n, ring) && !(flat && flat->dot(n) < 0)) {
+          if (IsInNormalCone(n, ring) && !(flat && flat->dot(n) < 0)) {
             corners_.push_back(n);
           }
         }
@@ -85,7 +85,7 @@ class Collection {
     return true;
   }
 
-  static bool IsCarried(const Vec3& n, std::span<const Vec3> ring) {
+  static bool IsInNormalCone(const Vec3& n, std::span<const Vec3> ring) {
     return std::all_of(ring.begin(), ring.end(), [&](const Vec3& r) {
       return n.dot(r) <= kSurfaceSlack + kLoose;
     });
@@ -94,14 +94,15 @@ class Collection {
   // The normal of a plane in which the mesh lies all around a vertex: from its
   // back it carries nothing. Null if there is none.
   const Vec3* FindFlatFacet(int v, std::span<const Vec3> ring) const {
-    for (const Polytope::OneRingEntry& spoke : piece_.fan_of(v)) {
-      if (!piece_.facets[spoke.facet].original) continue;
-      const Vec3& n = spoke.normal;
+    for (const Polytope::OneRingEntry& ring_entry : piece_.fan_of(v)) {
+      if (!piece_.facets[ring_entry.facet].original) continue;
+      const Vec3& n = ring_entry.normal;
       const bool is_flat =
           std::all_of(ring.begin(), ring.end(), [&](const Vec3& r) {
             const Vec3 aside = n.cross(r);
             return std::abs(n.dot(r)) <= kSurfaceSlack &&
-                   !IsCarried(aside, ring) && !IsCarried(-aside, ring);
+                   !IsInNormalCone(aside, ring) &&
+                   !IsInNormalCone(-aside, ring);
           });
       if (is_flat) return &n;
     }
@@ -116,7 +117,7 @@ class Collection {
 
 void FillEdgeNormalArcs(Polytope* piece) {
   for (Polytope::Edge& edge : piece->edges) {
-    edge.carrying = {Vec3::Zero(), Vec3::Zero()};
+    edge.normal_arc = {Vec3::Zero(), Vec3::Zero()};
     const Vec3 &left = edge.wings[0], &right = edge.wings[1];
     const bool is_rim = left.isZero(0) || right.isZero(0);
     if (!edge.original || (left.isZero(0) && right.isZero(0))) continue;
@@ -132,7 +133,7 @@ void FillEdgeNormalArcs(Polytope* piece) {
     const double slack = is_knife ? -kShort : kArcSlack;
     for (int k = 0; k < 2; ++k) {
       const Vec3& wing = edge.wings[k];
-      edge.carrying[k] =
+      edge.normal_arc[k] =
           wing.isZero(0) ? Vec3(-edge.wings[1 - k] - kArcSlack * normals[1 - k])
                          : Vec3(normals[k] + slack * wing);
     }

@@ -34,8 +34,8 @@ struct Polytope {
     std::array<Vec3, 2> wings{Vec3::Zero(), Vec3::Zero()};
     /// Ends of the arc of outward directions along which the edge can carry a
     /// contact, up to two quarter turns apart, nearly unit; zero where it
-    /// cannot (carrying_cone.h).
-    std::array<Vec3, 2> carrying{Vec3::Zero(), Vec3::Zero()};
+    /// cannot (patch_normal_cone.h).
+    std::array<Vec3, 2> normal_arc{Vec3::Zero(), Vec3::Zero()};
     double turn = 0;  ///< see gauss_turn.h
   };
 
@@ -76,7 +76,7 @@ struct Polytope {
   std::vector<Vec3> facet_loop_side;
 
   /// The edges and facets around each vertex, counter-clockwise seen from
-  /// outside: a facet lies between its spoke's edge and the next one's.
+  /// outside: a facet lies between its ring entry's edge and the next one's.
   std::vector<int> fan_start{0};
   std::vector<OneRingEntry> fan;
 
@@ -92,8 +92,8 @@ struct Polytope {
   std::vector<Vec3> ring;
 
   /// Holds all outward directions along which the surface can carry a contact
-  /// (carrying_cone.h).
-  DirectionCone carrying;
+  /// (patch_normal_cone.h).
+  DirectionCone normal_cone;
 
   Vec3 centroid = Vec3::Zero();  ///< mean of the vertices
   double radius = 0;             ///< of the ball about the centroid, m

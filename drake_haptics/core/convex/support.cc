@@ -30,7 +30,7 @@ int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
         next = edge.neighbor;
       }
     };
-    for (const auto& spoke : polytope.fan_of(best)) consider(spoke);
+    for (const auto& ring_entry : polytope.fan_of(best)) consider(ring_entry);
     if (next < 0) {
       for (const auto& edge : polytope.hidden_of(best)) consider(edge);
     }
@@ -40,10 +40,11 @@ int SupportVertex(const Polytope& polytope, const Vec3& direction, int start) {
   return best;
 }
 
-double SupportGap(const PosedPair& pair, const Vec3& n, MinkowskiVertex* hub) {
-  hub->a = pair.SupportA(-n, hub->a);
-  hub->b = pair.SupportB(n, hub->b);
-  return n.dot(pair.a(hub->a) - pair.b(hub->b));
+double SupportGap(const PosedPair& pair, const Vec3& n,
+                  MinkowskiVertex* vertex_pair) {
+  vertex_pair->a = pair.SupportA(-n, vertex_pair->a);
+  vertex_pair->b = pair.SupportB(n, vertex_pair->b);
+  return n.dot(pair.a(vertex_pair->a) - pair.b(vertex_pair->b));
 }
 
 }  // namespace drake_haptics

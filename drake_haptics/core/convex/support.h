@@ -19,8 +19,8 @@ int SupportVertex(const Polytope& polytope, const Vec3& direction, int start);
 inline double Unevenness(const Polytope& P, int v,
                          const Polytope::HiddenEdge& edge) {
   double least = edge.along.norm();
-  for (const auto& spoke : P.fan_of(v)) {
-    least = std::min(least, std::abs(spoke.normal.dot(edge.along)));
+  for (const auto& ring_entry : P.fan_of(v)) {
+    least = std::min(least, std::abs(ring_entry.normal.dot(edge.along)));
   }
   constexpr double kTolerance = 1e-6;  // of facets, as a share of the size
   return std::max(2 * least, kTolerance * P.radius);
@@ -31,8 +31,8 @@ inline double Unevenness(const Polytope& P, int v,
 /// be farther by what the facet is not flat.
 inline bool IsFarthest(const Polytope& P, int v, const Vec3& direction,
                        double slack) {
-  for (const auto& spoke : P.fan_of(v)) {
-    if (direction.dot(spoke.along) > slack) return false;
+  for (const auto& ring_entry : P.fan_of(v)) {
+    if (direction.dot(ring_entry.along) > slack) return false;
   }
   for (const auto& edge : P.hidden_of(v)) {
     const double beyond = direction.dot(edge.along) - slack;
@@ -68,9 +68,10 @@ struct MinkowskiVertex {
   bool operator==(const MinkowskiVertex&) const = default;
 };
 
-/// Moves `hub` to the vertices that face each other along n (in A's frame,
-/// from B into A) and returns the support gap
-/// h(n) = min n·a − max n·b. For unit n the signed distance is at least h(n).
-double SupportGap(const PosedPair& pair, const Vec3& n, MinkowskiVertex* hub);
+/// Moves `vertex_pair` to the vertices that face each other along n (in A's
+/// frame, from B into A) and returns the support gap h(n) = min n·a − max n·b.
+/// For unit n the signed distance is at least h(n).
+double SupportGap(const PosedPair& pair, const Vec3& n,
+                  MinkowskiVertex* vertex_pair);
 
 }  // namespace drake_haptics

@@ -39,13 +39,13 @@ void ZipContacts(A& a, B& b, const F& f) {
 }
 
 template <typename F>
-void ZipCoupling(MovingSkinCoupling& a, const MovingSkinCoupling& b,
-                 const F& f) {
+void ZipCoupling(MovingCompressionJacobian& a,
+                 const MovingCompressionJacobian& b, const F& f) {
   ZipItems(a.together, b.together, f);
 }
 
 template <typename F>
-void ZipCoupling(MovingSkinCoupling& a, const CompressionJacobian& b,
+void ZipCoupling(MovingCompressionJacobian& a, const CompressionJacobian& b,
                  const F& f) {
   a.values = b;
   for (std::size_t i = 0; i < a.members.size(); ++i) {
@@ -57,7 +57,7 @@ void ZipCoupling(MovingSkinCoupling& a, const CompressionJacobian& b,
 }
 
 template <typename F>
-void ZipCoupling(const MovingSkinCoupling& a, CompressionJacobian& b,
+void ZipCoupling(const MovingCompressionJacobian& a, CompressionJacobian& b,
                  const F&) {
   b = a.values;
 }

@@ -32,7 +32,7 @@ struct ClusterSetOf {
   std::vector<std::int32_t> label;  ///< cluster of each contact; -1 for none
   /// How the compression of each cluster changes with the depth of each;
   /// symmetric and positive semidefinite. Empty where each has its own.
-  SkinCouplingOf<T> coupling;
+  CompressionJacobianOf<T> coupling;
   /// The search for the compressions met the bound on its steps: they push, but
   /// are not quite those of the least energy. See SolveSkin.
   bool is_bounded = false;

@@ -162,7 +162,7 @@ ComplianceForces SolveSkin(const Skin& skin, int max_steps) {
   }
 }
 
-MovingComplianceForces SolveSkin(const MovingSkin& skin,
+MovingComplianceForces SolveSkin(const MovingCompression& skin,
                                  const std::vector<char>& is_pushing) {
   // C of those that push, apart from the others, which have a 1.
   MatrixOf<AutoDiff> C = skin.common;

@@ -45,7 +45,7 @@ ComplianceForces SolveSkin(const Skin& skin, int max_steps = kMaxSkinSteps);
 
 /// The same with derivatives, under which each contact has a direction of its
 /// own.
-struct MovingSkin {
+struct MovingCompression {
   VectorOf<AutoDiff> depth;   ///< w, m
   VectorOf<AutoDiff> slope;   ///< r
   MatrixOf<AutoDiff> common;  ///< φᵀ φ between contacts
@@ -57,7 +57,7 @@ struct MovingComplianceForces {
 
 /// The forces of contacts of which it is known which push. What these bear
 /// changes with C = φᵀ φ + 1/r by −H dC H.
-MovingComplianceForces SolveSkin(const MovingSkin& skin,
+MovingComplianceForces SolveSkin(const MovingCompression& skin,
                                  const std::vector<char>& is_pushing);
 
 }  // namespace drake_haptics

@@ -52,7 +52,7 @@ struct CompressionJacobian {
 
 /// The same with derivatives, under which equal normals may turn apart: all of
 /// H, object by object.
-struct MovingSkinCoupling {
+struct MovingCompressionJacobian {
   /// The row of a cluster covers those of its object: `count` from `first` on.
   struct Member {
     std::int32_t first = 0;
@@ -81,8 +81,8 @@ struct MovingSkinCoupling {
 };
 
 template <typename T>
-using SkinCouplingOf =
+using CompressionJacobianOf =
     std::conditional_t<std::is_same_v<T, double>, CompressionJacobian,
-                       MovingSkinCoupling>;
+                       MovingCompressionJacobian>;
 
 }  // namespace drake_haptics

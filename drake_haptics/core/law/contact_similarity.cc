@@ -92,7 +92,7 @@ class ContactSimilarity {
       : contacts_(contacts), tolerance_(tolerance), total_(contacts.size()) {
     for (std::size_t i = 0; i < contacts.size(); ++i) total_[i] = Extent(i);
     Compare();
-    SortKin();
+    SortSimilar();
   }
 
   // A contact's share of the extent of those that are more than θ the same,
@@ -101,11 +101,11 @@ class ContactSimilarity {
   // no more than one to one, however different the extents.
   VectorOf<T> Shares() const {
     VectorOf<T> shares(total_.size());
-    auto next = kin_.begin();
+    auto next = similar_.begin();
     for (Eigen::Index i = 0; i < shares.size(); ++i) {
       const T extent = Extent(i);
       T share{0}, total = total_[i], above{1};
-      for (; next != kin_.end() && next->of == static_cast<std::size_t>(i);
+      for (; next != similar_.end() && next->of == static_cast<std::size_t>(i);
            ++next) {
         share += (above - next->sameness) * extent / total;
         above = next->sameness;
@@ -120,12 +120,13 @@ class ContactSimilarity {
   T Extent(std::size_t i) const { return contacts_[i]->extent + kLeastExtent; }
 
   // By contacts, the most alike first.
-  void SortKin() {
+  void SortSimilar() {
     std::vector<std::size_t> end(total_.size() + 1, 0);
-    for (const SimilarContact<T>& kin : kin_) ++end[kin.of];
+    for (const SimilarContact<T>& similar : similar_) ++end[similar.of];
     std::exclusive_scan(end.begin(), end.end(), end.begin(), std::size_t{0});
-    std::vector<SimilarContact<T>> sorted(kin_.size());
-    for (const SimilarContact<T>& kin : kin_) sorted[end[kin.of]++] = kin;
+    std::vector<SimilarContact<T>> sorted(similar_.size());
+    for (const SimilarContact<T>& similar : similar_)
+      sorted[end[similar.of]++] = similar;
     auto first = sorted.begin();
     for (Eigen::Index i = 0; i < total_.size(); ++i) {
       const auto last = sorted.begin() + end[i];
@@ -134,7 +135,7 @@ class ContactSimilarity {
       });
       first = last;
     }
-    kin_ = std::move(sorted);
+    similar_ = std::move(sorted);
   }
 
   // Looks at the pairs that are near along the axis or both flush.
@@ -251,15 +252,15 @@ class ContactSimilarity {
       total_[i] += Extent(j);
       total_[j] += Extent(i);
     } else if (sameness > 0.0) {
-      kin_.push_back({i, sameness, Extent(j)});
-      kin_.push_back({j, sameness, Extent(i)});
+      similar_.push_back({i, sameness, Extent(j)});
+      similar_.push_back({j, sameness, Extent(i)});
     }
   }
 
   std::span<const ContactOf<T>* const> contacts_;
   double tolerance_;
   VectorOf<T> total_;  // extents of all that are wholly the same, m²
-  std::vector<SimilarContact<T>> kin_;
+  std::vector<SimilarContact<T>> similar_;
 };
 
 }  // namespace

@@ -77,8 +77,8 @@ std::vector<int> FacetsOfTriangles(const Decomposition& mesh,
       for (const Vec3& corner : corners) {
         const int v = vertices.Find(corner);
         if (v < 0) continue;
-        for (const Polytope::OneRingEntry& spoke : piece.fan_of(v)) {
-          if (spoke.facet >= 0) best.Offer(spoke.facet);
+        for (const Polytope::OneRingEntry& ring_entry : piece.fan_of(v)) {
+          if (ring_entry.facet >= 0) best.Offer(ring_entry.facet);
         }
       }
       // All corners inside a facet or on its sides.

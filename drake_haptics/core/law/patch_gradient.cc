@@ -20,7 +20,7 @@ void DifferentiatePatch(const PosedPieces& pieces, const Contact& contact,
                         double tolerance, ContactGradient* gradient,
                         MovingWitness* witness) {
   const double layer = PressureLayer(tolerance);
-  const MinkowskiVertex hub{contact.support[0], contact.support[1]};
+  const MinkowskiVertex vertex_pair{contact.support[0], contact.support[1]};
   const MovingWitness of_features = *witness;
   PatchWorkspace workspace;
   // In A's frame, with the tool displaced by `by`.
@@ -35,7 +35,7 @@ void DifferentiatePatch(const PosedPieces& pieces, const Contact& contact,
     const double h = contact.distance + gradient->distance.dot(by);
     const Vec3 p_a = of_features.p + of_features.motion * by - by.tail<3>();
     PressurePatch patch = FindPressurePatch(
-        pair, R_AW * n, h, hub, R_AW * p_a,
+        pair, R_AW * n, h, vertex_pair, R_AW * p_a,
         std::clamp(tolerance - h, 0.0, layer), layer, &workspace);
     patch.center = R_WA * patch.center.value_or(R_AW * p_a) + by.tail<3>();
     return patch;

@@ -66,7 +66,7 @@ Mat6 SumCoupled(const CompressionJacobian& coupling, const Wrenches<double>& G,
   return K;
 }
 
-Mat6Of<AutoDiff> SumCoupled(const MovingSkinCoupling& coupling,
+Mat6Of<AutoDiff> SumCoupled(const MovingCompressionJacobian& coupling,
                             const Wrenches<AutoDiff>& G,
                             const Eigen::VectorXd& k) {
   Mat6Of<AutoDiff> K = Mat6Of<AutoDiff>::Zero();

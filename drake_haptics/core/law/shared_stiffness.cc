@@ -77,12 +77,12 @@ Skin MakeSkin(std::span<const Contact* const> contacts, double tolerance) {
 
 // With derivatives each contact has a direction of its own: equal normals may
 // turn differently.
-MovingSkin MakeSkin(std::span<const ContactOf<AutoDiff>* const> contacts,
-                    double tolerance) {
+MovingCompression MakeSkin(std::span<const ContactOf<AutoDiff>* const> contacts,
+                           double tolerance) {
   const auto n = static_cast<Eigen::Index>(contacts.size());
-  MovingSkin skin{VectorOf<AutoDiff>(n),
-                  ContactShares<AutoDiff>(contacts, tolerance),
-                  MatrixOf<AutoDiff>(n, n)};
+  MovingCompression skin{VectorOf<AutoDiff>(n),
+                         ContactShares<AutoDiff>(contacts, tolerance),
+                         MatrixOf<AutoDiff>(n, n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     skin.depth[i] = tolerance - contacts[i]->distance;
     skin.slope[i] /= kOwnShare;
@@ -97,7 +97,7 @@ MovingSkin MakeSkin(std::span<const ContactOf<AutoDiff>* const> contacts,
 }
 
 // Which contacts push.
-std::vector<char> FindPushing(const MovingSkin& skin, bool* is_bounded) {
+std::vector<char> FindPushing(const MovingCompression& skin, bool* is_bounded) {
   const Eigen::Index n = skin.depth.size();
   std::vector<std::int32_t> direction(n);
   std::iota(direction.begin(), direction.end(), 0);
@@ -118,7 +118,7 @@ void AppendAlone(CompressionJacobian* coupling) {
   coupling->members.push_back({1.0, -1, 0});
 }
 
-void AppendAlone(MovingSkinCoupling* coupling) {
+void AppendAlone(MovingCompressionJacobian* coupling) {
   const auto first = static_cast<std::int32_t>(coupling->members.size());
   coupling->members.push_back({first, 1, coupling->together.size()});
   coupling->together.push_back(AutoDiff(1));
@@ -143,10 +143,10 @@ Eigen::VectorXd Solve(std::span<const Contact* const> contacts,
 
 VectorOf<AutoDiff> Solve(std::span<const ContactOf<AutoDiff>* const> contacts,
                          double tolerance, ClusterSetOf<AutoDiff>* out) {
-  const MovingSkin skin = MakeSkin(contacts, tolerance);
+  const MovingCompression skin = MakeSkin(contacts, tolerance);
   MovingComplianceForces forces =
       SolveSkin(skin, FindPushing(skin, &out->is_bounded));
-  MovingSkinCoupling* const coupling = &out->coupling;
+  MovingCompressionJacobian* const coupling = &out->coupling;
   const auto first = static_cast<std::int32_t>(coupling->members.size());
   const auto count = static_cast<std::int32_t>(contacts.size());
   for (std::int32_t i = 0; i < count; ++i) {

@@ -64,8 +64,8 @@ int FacetAt(const Polytope& piece, Feature feature, const Vec3& n) {
   NearestFacet nearest(piece, n);
   switch (feature.kind()) {
     case FeatureKind::kVertex:
-      for (const auto& spoke : piece.fan_of(feature.index())) {
-        nearest.Offer(spoke.facet);
+      for (const auto& ring_entry : piece.fan_of(feature.index())) {
+        nearest.Offer(ring_entry.facet);
       }
       break;
     case FeatureKind::kEdge:

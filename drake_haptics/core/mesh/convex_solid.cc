@@ -15,8 +15,8 @@ constexpr double kConvexTolerance = 1e-6;
 // The boundary of a component's hull, to ask what is near it.
 class HullBoundary {
  public:
-  HullBoundary(std::span<const Vec3> points, const AffineBasis& spanning) {
-    const ConvexHull hull(points, spanning.point);
+  HullBoundary(std::span<const Vec3> points, const AffineBasis& basis) {
+    const ConvexHull hull(points, basis.point);
     start_.assign(points.size() + 1, 0);
     hull.ForEachTriangle([&](const HullTriangle& t) {
       planes_.push_back({t.normal, t.normal.dot(points[t.vertex[0]])});
@@ -87,11 +87,11 @@ std::vector<Plane> FindConvexSolid(const SurfaceMesh& mesh,
   }
   const double tolerance =
       std::max(2 * mesh.tolerance, kConvexTolerance * box.diagonal().norm());
-  const AffineBasis spanning =
+  const AffineBasis basis =
       FindAffineBasis(points, kFlatTolerances * tolerance);
-  if (spanning.dimension < 3) return {};
+  if (basis.dimension < 3) return {};
 
-  const HullBoundary boundary(points, spanning);
+  const HullBoundary boundary(points, basis);
   const auto index_of = [&](int vertex) {
     return static_cast<int>(std::lower_bound(used.begin(), used.end(), vertex) -
                             used.begin());

@@ -244,7 +244,7 @@ bool StandsForMesh(const SurfaceDistance& surface,
                    const std::array<Vec3, 3>& corners, const Vec3& normal,
                    double depth, double tolerance) {
   constexpr int kRows = 4;
-  int count = 0, carrying = 0;
+  int count = 0, met = 0;
   for (int i = 0; i < kRows; ++i) {
     for (int j = 0; i + j < kRows; ++j) {
       const double u = (i + 1.0 / 3) / kRows, v = (j + 1.0 / 3) / kRows;
@@ -253,11 +253,11 @@ bool StandsForMesh(const SurfaceDistance& surface,
       ++count;
       if (MeetsFront(surface, at + tolerance * normal,
                      -(depth + 2 * tolerance) * normal)) {
-        ++carrying;
+        ++met;
       }
     }
   }
-  return 2 * carrying >= count;
+  return 2 * met >= count;
 }
 
 Polytope MakeMergedPiece(const SurfaceDistance& surface,

@@ -188,10 +188,10 @@ bool Patch::HullIsInside(const Sizes& before) {
       points.push_back(mesh_.vertices[v]);
       added.extend(points.back());
     }
-    const AffineBasis spanning =
+    const AffineBasis basis =
         FindAffineBasis(points, kFlatTolerances * mesh_.tolerance);
-    if (spanning.dimension < 3) return FlatHullIsCovered(points);
-    grown.emplace(points, spanning.point);
+    if (basis.dimension < 3) return FlatHullIsCovered(points);
+    grown.emplace(points, basis.point);
   } else {
     for (std::size_t i = before.vertices; i < vertices_.size(); ++i) {
       const Vec3& p = mesh_.vertices[vertices_[i]];

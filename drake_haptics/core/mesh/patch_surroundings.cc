@@ -157,7 +157,7 @@ void ConnectToSurface(const MeshTopology& mesh, std::span<const int> patch,
   around.SetOuterWings();
   around.SetRings();
   FillEdgeNormalArcs(piece);
-  piece->carrying = FindPatchNormalCone(*piece);
+  piece->normal_cone = FindPatchNormalCone(*piece);
 }
 
 void MarkEdgesFromFacets(Polytope* piece) {
@@ -167,7 +167,7 @@ void MarkEdgesFromFacets(Polytope* piece) {
     const bool right = piece->facets[edge.right].original;
     edge.original = left || right;
     if (edge.original) continue;
-    edge.wings = edge.carrying = {Vec3::Zero(), Vec3::Zero()};
+    edge.wings = edge.normal_arc = {Vec3::Zero(), Vec3::Zero()};
   }
 }
 

@@ -201,30 +201,32 @@ struct Blend {
 int CountFlushEdges(const Polytope& P, int vertex, const Vec3& outward,
                     double layer) {
   const auto fan = P.fan_of(vertex);
-  return static_cast<int>(std::count_if(
-      fan.begin(), fan.end(),
-      [&](const auto& spoke) { return outward.dot(spoke.along) >= -layer; }));
+  return static_cast<int>(
+      std::count_if(fan.begin(), fan.end(), [&](const auto& ring_entry) {
+        return outward.dot(ring_entry.along) >= -layer;
+      }));
 }
 
 }  // namespace
 
 bool MayHaveExtent(const PosedPair& pair, const Vec3& n,
-                   const MinkowskiVertex& hub, double layer) {
-  const int of_A = CountFlushEdges(pair.A, hub.a, -n, layer);
+                   const MinkowskiVertex& vertex_pair, double layer) {
+  const int of_A = CountFlushEdges(pair.A, vertex_pair.a, -n, layer);
   if (of_A == 0) return false;
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
-  const int of_B = CountFlushEdges(pair.B, hub.b, n_B, layer);
+  const int of_B = CountFlushEdges(pair.B, vertex_pair.b, n_B, layer);
   return of_B > 0 && of_A + of_B > 2;
 }
 
 PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
-                                const MinkowskiVertex& hub, const Vec3& witness,
-                                double spread, double layer,
-                                PatchWorkspace* workspace) {
+                                const MinkowskiVertex& vertex_pair,
+                                const Vec3& witness, double spread,
+                                double layer, PatchWorkspace* workspace) {
   const double point = layer * layer;
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
   if (!(spread > 0)) return {std::nullopt, false, 0, point};
-  const FlushFacets of_A(pair.A, hub.a, -n), of_B(pair.B, hub.b, n_B);
+  const FlushFacets of_A(pair.A, vertex_pair.a, -n),
+      of_B(pair.B, vertex_pair.b, n_B);
   Patch patch(pair, n, h, spread, layer, workspace);
   Blend blend;
   for (const FlushFacets::Item& a : of_A) {
@@ -234,7 +236,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
   }
   const bool has_faces = blend.total > 0;
   if (of_A.rest > 0) {
-    VisitFlushEdges(pair.A, hub.a, n, [&](int edge_A, double share_A) {
+    VisitFlushEdges(pair.A, vertex_pair.a, n, [&](int edge_A, double share_A) {
       for (const FlushFacets::Item& b : of_B) {
         blend.Add(patch.OfEdgeOfA(edge_A, b.index), share_A * b.share,
                   of_A.rest);
@@ -242,19 +244,21 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
       if (!(of_B.rest > 0)) return;
       const Vec3 along_A =
           pair.a(pair.A.edges[edge_A].v1) - pair.a(pair.A.edges[edge_A].v0);
-      VisitFlushEdges(pair.B, hub.b, n_B, [&](int edge_B, double share_B) {
-        const Vec3 along_B =
-            pair.b(pair.B.edges[edge_B].v1) - pair.b(pair.B.edges[edge_B].v0);
-        const double sine =
-            along_A.cross(along_B).norm() / (along_A.norm() * along_B.norm());
-        const double share = share_A * share_B * EdgeShare(sine);
-        if (!(share > 0)) return;
-        blend.Add(patch.OfEdges(edge_A, edge_B), share, of_A.rest * of_B.rest);
-      });
+      VisitFlushEdges(
+          pair.B, vertex_pair.b, n_B, [&](int edge_B, double share_B) {
+            const Vec3 along_B = pair.b(pair.B.edges[edge_B].v1) -
+                                 pair.b(pair.B.edges[edge_B].v0);
+            const double sine = along_A.cross(along_B).norm() /
+                                (along_A.norm() * along_B.norm());
+            const double share = share_A * share_B * EdgeShare(sine);
+            if (!(share > 0)) return;
+            blend.Add(patch.OfEdges(edge_A, edge_B), share,
+                      of_A.rest * of_B.rest);
+          });
     });
   }
   if (of_B.rest > 0) {
-    VisitFlushEdges(pair.B, hub.b, n_B, [&](int edge, double share) {
+    VisitFlushEdges(pair.B, vertex_pair.b, n_B, [&](int edge, double share) {
       for (const FlushFacets::Item& a : of_A) {
         blend.Add(patch.OfEdgeOfB(a.index, edge), share * a.share, of_B.rest);
       }

@@ -17,11 +17,11 @@ inline double PressureLayer(double tolerance) {
   return std::max(0.1 * tolerance, 1e-9);
 }
 
-/// Whether edges of both bodies at the hub lie in the contact's plane to within
-/// `layer` (m), and more than one of either: a quick test that rules out most
-/// contacts at a point.
+/// Whether edges of both bodies at the vertex pair lie in the contact's plane
+/// to within `layer` (m), and more than one of either: a quick test that rules
+/// out most contacts at a point.
 bool MayHaveExtent(const PosedPair& pair, const Vec3& n,
-                   const MinkowskiVertex& hub, double layer);
+                   const MinkowskiVertex& vertex_pair, double layer);
 
 /// Where a contact acts and over what it is spread.
 struct PressurePatch {
@@ -50,15 +50,15 @@ struct PressurePatch {
 /// edges.
 /// @param n unit normal from B into A, in A's frame.
 /// @param h support gap along n, m.
-/// @param hub vertices that support the pair along n.
+/// @param vertex_pair vertices that support the pair along n.
 /// @param witness A's witness point, where the contact is as long as no feature
 ///     is flush.
 /// @param spread thickness of the layer at this contact, m.
 /// @param layer thickness of the layer of any contact that is not just about to
 ///     begin, m.
 PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
-                                const MinkowskiVertex& hub, const Vec3& witness,
-                                double spread, double layer,
-                                PatchWorkspace* workspace);
+                                const MinkowskiVertex& vertex_pair,
+                                const Vec3& witness, double spread,
+                                double layer, PatchWorkspace* workspace);
 
 }  // namespace drake_haptics

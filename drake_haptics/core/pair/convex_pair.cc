@@ -17,9 +17,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // size: witness points stay on the bodies to that share.
 constexpr double kLayerShare = 1e-9;
 
-// Every facet of a solid counts, so a walk knows an answer from its first hub
-// on and never needs to promote.
-constexpr WalkBounds kNoPromotion{.max_promotion_hubs = 1};
+// Every facet of a solid counts, so a walk knows an answer from its first
+// vertex pair on and never needs to promote.
+constexpr WalkBounds kNoPromotion{.max_promotion_vertex_pairs = 1};
 
 class Query {
  public:
@@ -51,8 +51,8 @@ class Query {
     const Depth depth = FindDepth();
     const bool has_facet = depth.status != DepthStatus::kNoFacet;
     if (is_apart) {
-      MinkowskiVertex hub = separation.simplex.hubs[0];
-      const double gap = SupportGap(pair_, separation.n, &hub);
+      MinkowskiVertex vertex_pair = separation.simplex.vertex_pairs[0];
+      const double gap = SupportGap(pair_, separation.n, &vertex_pair);
       if (!has_facet || depth.best.h <= gap) return Apart(separation);
     }
     if (has_facet) {
@@ -65,13 +65,13 @@ class Query {
   }
 
   PairContact Apart(const Separation& separation) {
-    state_.hub = separation.simplex.hubs[0];
+    state_.vertex_pair = separation.simplex.vertex_pairs[0];
     state_.feature_A = state_.feature_B = Feature();
     return ContactApart(pair_, separation);
   }
 
   PairContact AtFacet(const Depth& depth) {
-    state_.hub = depth.hub;
+    state_.vertex_pair = depth.vertex_pair;
     state_.feature_A = depth.best.feature_A;
     state_.feature_B = depth.best.feature_B;
     return ContactAtFacet(pair_, depth.best,
@@ -104,43 +104,45 @@ class Query {
     return {least.status == GlobalDepthStatus::kExact
                 ? DepthStatus::kLocalMinimum
                 : DepthStatus::kBounded,
-            least.facet, least.facet.h, least.hub};
+            least.facet, least.facet.h, least.vertex_pair};
   }
 
   // On coherent motion the last facet mostly still is the answer, and one
   // comparison proves it.
   Depth FindLocalDepth() {
     if (state_.feature_A.is_none()) {
-      return ColdDepth(pair_, SurfaceRule::kWholeBoundary, state_.n, state_.hub,
-                       kNoPromotion, &workspace_.depth);
+      return ColdDepth(pair_, SurfaceRule::kWholeBoundary, state_.n,
+                       state_.vertex_pair, kNoPromotion, &workspace_.depth);
     }
     const Revisit last =
         RevisitFacet(pair_, SurfaceRule::kWholeBoundary, state_.feature_A,
                      state_.feature_B, state_.n);
     if (last.status == RevisitStatus::kMinimum) {
-      return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub};
+      return {DepthStatus::kLocalMinimum, last.facet, last.facet.h,
+              last.vertex_pair};
     }
     if (last.status == RevisitStatus::kFacet) {
-      return WalkDepth(pair_, last.hub, SurfaceRule::kWholeBoundary,
+      return WalkDepth(pair_, last.vertex_pair, SurfaceRule::kWholeBoundary,
                        &last.facet, kNoPromotion, &workspace_.depth);
     }
-    MinkowskiVertex hub = state_.hub;
-    SupportGap(pair_, state_.n, &hub);
-    const Depth depth = WalkDepth(pair_, hub, SurfaceRule::kWholeBoundary,
-                                  nullptr, kNoPromotion, &workspace_.depth);
+    MinkowskiVertex vertex_pair = state_.vertex_pair;
+    SupportGap(pair_, state_.n, &vertex_pair);
+    const Depth depth =
+        WalkDepth(pair_, vertex_pair, SurfaceRule::kWholeBoundary, nullptr,
+                  kNoPromotion, &workspace_.depth);
     // Round-off can hide every facet from where a walk began.
     if (depth.status != DepthStatus::kNoFacet) return depth;
-    return ColdDepth(pair_, SurfaceRule::kWholeBoundary, state_.n, state_.hub,
-                     kNoPromotion, &workspace_.depth);
+    return ColdDepth(pair_, SurfaceRule::kWholeBoundary, state_.n,
+                     state_.vertex_pair, kNoPromotion, &workspace_.depth);
   }
 
   void Center(PairContact* contact) {
     const double layer = kLayerShare * pair_.scale();
     contact->extent = layer * layer;
-    if (!MayHaveExtent(pair_, contact->n, state_.hub, layer)) return;
-    const PressurePatch patch =
-        FindPressurePatch(pair_, contact->n, contact->distance, state_.hub,
-                          contact->p_a, layer, layer, &workspace_.patch);
+    if (!MayHaveExtent(pair_, contact->n, state_.vertex_pair, layer)) return;
+    const PressurePatch patch = FindPressurePatch(
+        pair_, contact->n, contact->distance, state_.vertex_pair, contact->p_a,
+        layer, layer, &workspace_.patch);
     contact->extent = patch.extent;
     contact->flushness = patch.flushness;
     if (!patch.center) return;

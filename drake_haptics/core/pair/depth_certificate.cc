@@ -11,7 +11,7 @@ namespace {
 // Height over a triangle's plane, as a share of the size, that is round-off.
 constexpr double kLevelShare = 1e-14;
 
-// Where on the rim of a patch a hub is, if not once.
+// Where on the rim of a patch a vertex pair is, if not once.
 constexpr int kNowhere = -1, kRepeated = -2;
 
 }  // namespace
@@ -38,12 +38,12 @@ const Vec3& DepthCertificate::Point(int v) {
   Vertex& vertex = vertices_[v];
   if (vertex.move != move_) {
     vertex.move = move_;
-    vertex.point = PointOf(vertex.hub);
+    vertex.point = PointOf(vertex.vertex_pair);
   }
   return vertex.point;
 }
 
-int DepthCertificate::AddVertex(const MinkowskiVertex& hub) {
+int DepthCertificate::AddVertex(const MinkowskiVertex& vertex_pair) {
   int v = static_cast<int>(vertices_.size());
   if (free_vertices_.empty()) {
     vertices_.emplace_back();
@@ -51,7 +51,7 @@ int DepthCertificate::AddVertex(const MinkowskiVertex& hub) {
     v = free_vertices_.back();
     free_vertices_.pop_back();
   }
-  vertices_[v] = {PointOf(hub), hub, move_, 0};
+  vertices_[v] = {PointOf(vertex_pair), vertex_pair, move_, 0};
   return v;
 }
 
@@ -85,11 +85,11 @@ void DepthCertificate::RemoveTriangle(int t) {
 }
 
 void DepthCertificate::StartTetrahedron(
-    const std::array<MinkowskiVertex, 4>& hubs) {
+    const std::array<MinkowskiVertex, 4>& vertex_pairs) {
   Clear();
   added_.clear();
   int v[4];
-  for (int k = 0; k < 4; ++k) v[k] = AddVertex(hubs[k]);
+  for (int k = 0; k < 4; ++k) v[k] = AddVertex(vertex_pairs[k]);
   AddTriangle(v[0], v[1], v[2]);
   AddTriangle(v[1], v[0], v[3]);
   AddTriangle(v[2], v[1], v[3]);
@@ -161,10 +161,10 @@ bool DepthCertificate::TraceRim() {
   return h == first && static_cast<int>(rim_.size()) == count;
 }
 
-int DepthCertificate::RimPosition(const MinkowskiVertex& hub) const {
+int DepthCertificate::RimPosition(const MinkowskiVertex& vertex_pair) const {
   int position = kNowhere;
   for (int i = 0; i < static_cast<int>(rim_.size()); ++i) {
-    if (!(vertices_[rim_[i]].hub == hub)) continue;
+    if (!(vertices_[rim_[i]].vertex_pair == vertex_pair)) continue;
     if (position != kNowhere) return kRepeated;
     position = i;
   }
@@ -228,33 +228,33 @@ void DepthCertificate::GrowPatch(int t, const Vec3& apex, const Vec3* above) {
   }
 }
 
-bool DepthCertificate::Raise(int t, const MinkowskiVertex& hub,
+bool DepthCertificate::Raise(int t, const MinkowskiVertex& vertex_pair,
                              const Vec3* above) {
-  const Vec3 apex = PointOf(hub);
+  const Vec3 apex = PointOf(vertex_pair);
   const int seed = FindBelow(t, apex, above);
   GrowPatch(seed, apex, above);
-  int position = TraceRim() ? RimPosition(hub) : kRepeated;
+  int position = TraceRim() ? RimPosition(vertex_pair) : kRepeated;
   if (position == kRepeated) {
     StartPatch(seed);
     if (!TraceRim()) return false;
-    position = RimPosition(hub);
+    position = RimPosition(vertex_pair);
     if (position == kRepeated) return false;
   }
   if (position >= 0 && rim_.size() == 3) {
     // The apex is a corner already: what is left is to turn the side facing it.
     return above && TurnSide(twin(rim_outer_[(position + 1) % 3]), *above);
   }
-  CoverPatch(position >= 0 ? rim_[position] : AddVertex(hub), position);
+  CoverPatch(position >= 0 ? rim_[position] : AddVertex(vertex_pair), position);
   return true;
 }
 
 // Joins the two corners that face a side instead of its ends. Where both are
-// the same hub the two triangles are each other's reverse, and go.
+// the same vertex pair the two triangles are each other's reverse, and go.
 bool DepthCertificate::TurnSide(int side, const Vec3& above) {
   const int t = side / 3, other = twin(side) / 3;
   const int apex = origin(Next(Next(side)));
   const int facing = origin(Next(Next(twin(side))));
-  if (vertices_[facing].hub == vertices_[apex].hub) {
+  if (vertices_[facing].vertex_pair == vertices_[apex].vertex_pair) {
     Cancel(side);
     return true;
   }
@@ -262,7 +262,7 @@ bool DepthCertificate::TurnSide(int side, const Vec3& above) {
   StartPatch(t);
   AddToPatch(other);
   if (!TraceRim()) return false;
-  const int position = RimPosition(vertices_[apex].hub);
+  const int position = RimPosition(vertices_[apex].vertex_pair);
   if (position < 0) return false;
   CoverPatch(apex, position);
   return true;

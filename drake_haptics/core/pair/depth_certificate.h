@@ -10,10 +10,10 @@
 
 namespace drake_haptics {
 
-/// A closed surface of triangles whose corners are hubs (a_i, b_j), the points
-/// a_i − b_j of A ⊖ B. It moves with the bodies. It is a list of triangles
-/// glued edge to edge, not an embedded surface: it may fold, and all that is
-/// ever asked of it is how often it winds about the origin.
+/// A closed surface of triangles whose corners are vertex pairs (a_i, b_j), the
+/// points a_i − b_j of A ⊖ B. It moves with the bodies. It is a list of
+/// triangles glued edge to edge, not an embedded surface: it may fold, and all
+/// that is ever asked of it is how often it winds about the origin.
 ///
 /// Side k of triangle t is the half-edge 3 t + k, from corner k to corner
 /// k + 1, counter-clockwise seen from outside.
@@ -26,9 +26,9 @@ class DepthCertificate {
   /// Takes the bodies' present pose; the points follow when they are read.
   void Move(const PosedPair& pair);
 
-  /// Starts with the tetrahedron of four hubs, of which the last is behind the
-  /// triangle of the first three as seen from outside.
-  void StartTetrahedron(const std::array<MinkowskiVertex, 4>& hubs);
+  /// Starts with the tetrahedron of four vertex pairs, of which the last is
+  /// behind the triangle of the first three as seen from outside.
+  void StartTetrahedron(const std::array<MinkowskiVertex, 4>& vertex_pairs);
 
   /// Triangles are numbered 0 … num_slots() − 1 with gaps; a gap has an
   /// infinite key.
@@ -40,25 +40,25 @@ class DepthCertificate {
   void ShiftKeys(double by);
 
   const Vec3& point(int t, int k) { return Point(triangles_[t].corner[k]); }
-  const MinkowskiVertex& hub(int t, int k) const {
-    return vertices_[triangles_[t].corner[k]].hub;
+  const MinkowskiVertex& vertex_pair(int t, int k) const {
+    return vertices_[triangles_[t].corner[k]].vertex_pair;
   }
   TriangleNearest Nearest(int t) {
     return FindTriangleNearest(point(t, 0), point(t, 1), point(t, 2));
   }
 
-  /// Replaces triangle t, and those around it that lie below `hub` or behind
-  /// what would come, by the cone from that hub over their rim.
+  /// Replaces triangle t, and those around it that lie below `vertex_pair` or
+  /// behind what would come, by the cone from that vertex pair over their rim.
   ///
   /// With each triangle replaced the surface changes by the tetrahedron between
-  /// it and the hub. The winding number stays what it was where no tetrahedron
-  /// holds the origin: the triangle's plane parts them, or the tetrahedron is
-  /// on one side of the origin.
+  /// it and the vertex pair. The winding number stays what it was where no
+  /// tetrahedron holds the origin: the triangle's plane parts them, or the
+  /// tetrahedron is on one side of the origin.
   /// @param above the direction of t's nearest point, for that proof. Null to
-  ///     do without: then all triangles below the hub are replaced, so that a
-  ///     hull stays a hull.
+  ///     do without: then all triangles below the vertex pair are replaced, so
+  ///     that a hull stays a hull.
   /// @returns false, having changed nothing, where t cannot be raised so.
-  bool Raise(int t, const MinkowskiVertex& hub, const Vec3* above);
+  bool Raise(int t, const MinkowskiVertex& vertex_pair, const Vec3* above);
 
   /// Removes corner k of triangle t, if the hole can be closed by a cone from
   /// one of its neighbors whose triangles stay `clearance` (m) away from the
@@ -79,7 +79,7 @@ class DepthCertificate {
   };
   struct Vertex {
     Vec3 point;
-    MinkowskiVertex hub;
+    MinkowskiVertex vertex_pair;
     unsigned move = 0;    // of which `point` is
     int num_corners = 0;  // triangles that have it
   };
@@ -101,8 +101,8 @@ class DepthCertificate {
   void StartPatch(int t);
   void AddToPatch(int t);
 
-  Vec3 PointOf(const MinkowskiVertex& hub) const {
-    return vertices_A_[hub.a] - X_AB_ * vertices_B_[hub.b];
+  Vec3 PointOf(const MinkowskiVertex& vertex_pair) const {
+    return vertices_A_[vertex_pair.a] - X_AB_ * vertices_B_[vertex_pair.b];
   }
   const Vec3& Point(int v);
   bool IsBelow(int t, const Vec3& at);
@@ -111,11 +111,11 @@ class DepthCertificate {
   int FindBelow(int t, const Vec3& at, const Vec3* above);
   void GrowPatch(int t, const Vec3& apex, const Vec3* above);
   bool TraceRim();
-  int RimPosition(const MinkowskiVertex& hub) const;
+  int RimPosition(const MinkowskiVertex& vertex_pair) const;
   void CoverPatch(int apex, int position);
   bool TurnSide(int side, const Vec3& above);
   void Cancel(int side);
-  int AddVertex(const MinkowskiVertex& hub);
+  int AddVertex(const MinkowskiVertex& vertex_pair);
   int AddTriangle(int u, int v, int w);
   void RemoveTriangle(int t);
 

@@ -40,9 +40,10 @@ class Growth {
       const int t = Lowest();
       const double height = surface_.keys()[t];
       if (height > flat_) return true;
-      MinkowskiVertex hub = surface_.hub(t, 0);
-      const double support = -SupportGap(pair_, -Normal(t), &hub);
-      if (!(support > height + flat_) || !surface_.Raise(t, hub, nullptr)) {
+      MinkowskiVertex vertex_pair = surface_.vertex_pair(t, 0);
+      const double support = -SupportGap(pair_, -Normal(t), &vertex_pair);
+      if (!(support > height + flat_) ||
+          !surface_.Raise(t, vertex_pair, nullptr)) {
         return false;
       }
     }
@@ -51,21 +52,21 @@ class Growth {
 
  private:
   void Start(const DepthCandidate& facet) {
-    std::array<MinkowskiVertex, 4> hubs;
+    std::array<MinkowskiVertex, 4> vertex_pairs;
     std::array<Vec3, 3> p;
     for (int k = 0; k < 3; ++k) {
       // Two edges span a parallelogram: three of its corners.
-      hubs[k] = {AffineBasisVertex(pair_.A, facet.feature_A, k, 1),
-                 AffineBasisVertex(pair_.B, facet.feature_B, k, 2)};
-      p[k] = pair_.a(hubs[k].a) - pair_.b(hubs[k].b);
+      vertex_pairs[k] = {AffineBasisVertex(pair_.A, facet.feature_A, k, 1),
+                         AffineBasisVertex(pair_.B, facet.feature_B, k, 2)};
+      p[k] = pair_.a(vertex_pairs[k].a) - pair_.b(vertex_pairs[k].b);
     }
     // The outward normal of A ⊖ B is against n.
     if ((p[1] - p[0]).cross(p[2] - p[0]).dot(facet.n) > 0) {
-      std::swap(hubs[1], hubs[2]);
+      std::swap(vertex_pairs[1], vertex_pairs[2]);
     }
-    hubs[3] = hubs[0];
-    SupportGap(pair_, -facet.n, &hubs[3]);
-    surface_.StartTetrahedron(hubs);
+    vertex_pairs[3] = vertex_pairs[0];
+    SupportGap(pair_, -facet.n, &vertex_pairs[3]);
+    surface_.StartTetrahedron(vertex_pairs);
   }
 
   Vec3 Normal(int t) {

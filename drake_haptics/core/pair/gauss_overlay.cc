@@ -12,26 +12,28 @@ namespace {
 
 using Fan = std::span<const Polytope::OneRingEntry>;
 
-// The overlay at one hub. Where an answer is known, its gap is the floor, and
-// what lies below is passed over. Along an arc the gap is largest at an end
-// where it is negative.
+// The overlay at one vertex pair. Where an answer is known, its gap is the
+// floor, and what lies below is passed over. Along an arc the gap is largest at
+// an end where it is negative.
 class Overlay {
  public:
-  Overlay(const PosedPair& pair, const MinkowskiVertex& hub, SurfaceRule rule,
-          double floor, DepthWorkspace* workspace)
+  Overlay(const PosedPair& pair, const MinkowskiVertex& vertex_pair,
+          SurfaceRule rule, double floor, DepthWorkspace* workspace)
       : pair_(pair),
-        hub_(hub),
+        vertex_pair_(vertex_pair),
         rule_(rule),
         floor_(floor),
         workspace_(*workspace),
-        fan_A_(pair.A.fan_of(hub.a)),
-        fan_B_(pair.B.fan_of(hub.b)),
-        w_(pair.a(hub.a) - pair.b(hub.b)),
+        fan_A_(pair.A.fan_of(vertex_pair.a)),
+        fan_B_(pair.B.fan_of(vertex_pair.b)),
+        w_(pair.a(vertex_pair.a) - pair.b(vertex_pair.b)),
         w_B_(pair.X_AB.R.transpose() * w_) {}
 
   void Run() {
-    // While a good answer is known most hubs have nothing above its gap.
-    if (floor_ < 0 && !OverlayMayExceed(pair_, hub_, w_, floor_)) return;
+    // While a good answer is known most vertex pairs have nothing above its
+    // gap.
+    if (floor_ < 0 && !OverlayMayExceed(pair_, vertex_pair_, w_, floor_))
+      return;
     FillGaps(fan_A_, -w_, &workspace_.gaps_A);
     FillGaps(fan_B_, w_B_, &workspace_.gaps_B);
     AddFacetsOfA();
@@ -57,7 +59,7 @@ class Overlay {
       const Vec3 n = -fan_A_[k].normal;
       if (IsInRegionOfB(n)) {
         Append(h, n, {FeatureKind::kFacet, fan_A_[k].facet},
-               {FeatureKind::kVertex, hub_.b});
+               {FeatureKind::kVertex, vertex_pair_.b});
       }
     }
   }
@@ -68,7 +70,7 @@ class Overlay {
       if (!(h > floor_) || fan_B_[k].facet < 0) continue;
       const Vec3 n = pair_.X_AB.R * fan_B_[k].normal;
       if (IsInRegionOfA(n)) {
-        Append(h, n, {FeatureKind::kVertex, hub_.a},
+        Append(h, n, {FeatureKind::kVertex, vertex_pair_.a},
                {FeatureKind::kFacet, fan_B_[k].facet});
       }
     }
@@ -141,12 +143,13 @@ class Overlay {
 
   // n is in the region of A's vertex when no neighbor lies further against n.
   bool IsInRegionOfA(const Vec3& n) const {
-    return IsFarthest(pair_.A, hub_.a, -n, kRegionSlack * pair_.A.radius);
+    return IsFarthest(pair_.A, vertex_pair_.a, -n,
+                      kRegionSlack * pair_.A.radius);
   }
 
   // n is in the region of B's vertex when no neighbor lies further along n.
   bool IsInRegionOfB(const Vec3& n) const {
-    return IsFarthest(pair_.B, hub_.b, pair_.X_AB.R.transpose() * n,
+    return IsFarthest(pair_.B, vertex_pair_.b, pair_.X_AB.R.transpose() * n,
                       kRegionSlack * pair_.B.radius);
   }
 
@@ -161,7 +164,7 @@ class Overlay {
   }
 
   const PosedPair& pair_;
-  const MinkowskiVertex hub_;
+  const MinkowskiVertex vertex_pair_;
   const SurfaceRule rule_;
   double floor_;
   DepthWorkspace& workspace_;
@@ -172,10 +175,10 @@ class Overlay {
 
 }  // namespace
 
-void OverlayGaussRegions(const PosedPair& pair, const MinkowskiVertex& hub,
-                         SurfaceRule rule, double floor,
-                         DepthWorkspace* workspace) {
-  Overlay(pair, hub, rule, floor, workspace).Run();
+void OverlayGaussRegions(const PosedPair& pair,
+                         const MinkowskiVertex& vertex_pair, SurfaceRule rule,
+                         double floor, DepthWorkspace* workspace) {
+  Overlay(pair, vertex_pair, rule, floor, workspace).Run();
 }
 
 }  // namespace drake_haptics

@@ -16,12 +16,12 @@ inline constexpr double kParallelSine = 1e-8;
 /// are a tie, and a walk stays where it is.
 inline double Tie(const PosedPair& pair) { return 1e-12 * pair.scale(); }
 
-/// Lists the corners of the overlay of the two Gauss regions at a hub (paper,
-/// 5.2.3 steps 1 to 3): the facets of A ⊖ B around that vertex of it. Appends
-/// to workspace->candidates those whose gap exceeds `floor`, which the gap of
-/// a supported one raises.
-void OverlayGaussRegions(const PosedPair& pair, const MinkowskiVertex& hub,
-                         SurfaceRule rule, double floor,
-                         DepthWorkspace* workspace);
+/// Lists the corners of the overlay of the two Gauss regions at a vertex pair
+/// (paper, 5.2.3 steps 1 to 3): the facets of A ⊖ B around that vertex of it.
+/// Appends to workspace->candidates those whose gap exceeds `floor`, which the
+/// gap of a supported one raises.
+void OverlayGaussRegions(const PosedPair& pair,
+                         const MinkowskiVertex& vertex_pair, SurfaceRule rule,
+                         double floor, DepthWorkspace* workspace);
 
 }  // namespace drake_haptics

@@ -68,11 +68,11 @@ const Polytope::OneRingEntry* FindExcluding(
     std::span<const Polytope::OneRingEntry> fan_B, const Vec3& n_B) {
   const Polytope::OneRingEntry* found = nullptr;
   double most = 0;
-  for (const Polytope::OneRingEntry& spoke : fan_B) {
-    const double value = n_B.dot(spoke.along);
+  for (const Polytope::OneRingEntry& ring_entry : fan_B) {
+    const double value = n_B.dot(ring_entry.along);
     if (value > most) {
       most = value;
-      found = &spoke;
+      found = &ring_entry;
     }
   }
   return found;
@@ -80,22 +80,24 @@ const Polytope::OneRingEntry* FindExcluding(
 
 }  // namespace
 
-bool OverlayMayExceed(const PosedPair& pair, const MinkowskiVertex& hub,
+bool OverlayMayExceed(const PosedPair& pair, const MinkowskiVertex& vertex_pair,
                       const Vec3& w, double floor) {
   assert(floor < 0);
-  const auto fan_A = pair.A.fan_of(hub.a);
+  const auto fan_A = pair.A.fan_of(vertex_pair.a);
   if (pair.A.dimension < 3 || fan_A.size() + kMaxClips > kMaxCorners) {
     return true;
   }
   Region region;
-  for (const Polytope::OneRingEntry& spoke : fan_A) region.Add(-spoke.normal);
+  for (const Polytope::OneRingEntry& ring_entry : fan_A)
+    region.Add(-ring_entry.normal);
   for (int clips = 0;; ++clips) {
     const int k = FindExceeding(region, w, floor);
     if (k < 0) return false;
-    const Polytope::OneRingEntry* spoke = FindExcluding(
-        pair.B.fan_of(hub.b), pair.X_AB.R.transpose() * region.corner[k]);
-    if (spoke == nullptr || clips == kMaxClips) return true;
-    if (!Clip(pair.X_AB.R * spoke->along, &region)) return true;
+    const Polytope::OneRingEntry* ring_entry =
+        FindExcluding(pair.B.fan_of(vertex_pair.b),
+                      pair.X_AB.R.transpose() * region.corner[k]);
+    if (ring_entry == nullptr || clips == kMaxClips) return true;
+    if (!Clip(pair.X_AB.R * ring_entry->along, &region)) return true;
     if (region.size == 0) return false;
   }
 }

@@ -5,8 +5,9 @@
 
 namespace drake_haptics {
 
-/// Whether the overlay of the Gauss regions at a hub may hold a direction whose
-/// gap exceeds `floor` (m, negative): false is a proof that it does not.
+/// Whether the overlay of the Gauss regions at a vertex pair may hold a
+/// direction whose gap exceeds `floor` (m, negative): false is a proof that it
+/// does not.
 ///
 /// A's region is the cone of the normals around its vertex. A direction in a
 /// cone is a combination of the cone's corners with weights that sum to one or
@@ -14,8 +15,8 @@ namespace drake_haptics {
 /// Corners that do exceed it are clipped off along the edges of B that exclude
 /// them, until none is left or one turns out to lie in B's region too. That
 /// takes one or two clips where the whole overlay takes all pairs of edges.
-/// @param w the hub's vertex of A ⊖ B, in A's frame, m.
-bool OverlayMayExceed(const PosedPair& pair, const MinkowskiVertex& hub,
+/// @param w the vertex pair's vertex of A ⊖ B, in A's frame, m.
+bool OverlayMayExceed(const PosedPair& pair, const MinkowskiVertex& vertex_pair,
                       const Vec3& w, double floor);
 
 }  // namespace drake_haptics

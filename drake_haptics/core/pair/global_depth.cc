@@ -56,7 +56,7 @@ class Search {
         surface_(state->surface),
         tie_(kEqualShare * pair.scale()) {
     best_.facet = local.best;
-    best_.hub = local.hub;
+    best_.vertex_pair = local.vertex_pair;
   }
 
   GlobalDepth Run() {
@@ -86,21 +86,22 @@ class Search {
                      last.facet.feature_B, last.facet.n);
     if (again.status != RevisitStatus::kGone) {
       last_.facet = again.facet;
-      last_.hub = again.hub;
+      last_.vertex_pair = again.vertex_pair;
       if (again.facet.h > best_.facet.h) best_ = last_;
       return;
     }
-    MinkowskiVertex hub = last.hub;
-    const double h = SupportGap(pair_, last.facet.n, &hub);
-    if (h > best_.facet.h + tie_) Walk(hub);
+    MinkowskiVertex vertex_pair = last.vertex_pair;
+    const double h = SupportGap(pair_, last.facet.n, &vertex_pair);
+    if (h > best_.facet.h + tie_) Walk(vertex_pair);
   }
 
-  void Walk(const MinkowskiVertex& hub) {
-    const Depth depth = WalkDepth(pair_, hub, SurfaceRule::kWholeBoundary,
-                                  nullptr, {}, &state_.walk);
+  void Walk(const MinkowskiVertex& vertex_pair) {
+    const Depth depth =
+        WalkDepth(pair_, vertex_pair, SurfaceRule::kWholeBoundary, nullptr, {},
+                  &state_.walk);
     if (depth.status != DepthStatus::kNoFacet && depth.best.h > best_.facet.h) {
       best_.facet = depth.best;
-      best_.hub = depth.hub;
+      best_.vertex_pair = depth.vertex_pair;
     }
   }
 
@@ -119,8 +120,8 @@ class Search {
   }
 
   bool IsFlat() {
-    MinkowskiVertex hub = best_.hub;
-    const double behind = -SupportGap(pair_, -best_.facet.n, &hub);
+    MinkowskiVertex vertex_pair = best_.vertex_pair;
+    const double behind = -SupportGap(pair_, -best_.facet.n, &vertex_pair);
     return !(behind + depth() > kCoplanarShare * pair_.scale());
   }
 
@@ -210,13 +211,13 @@ class Search {
   // Raises triangle t, which is at the distance s.
   bool Raise(int t, double s) {
     const Vec3 n = surface_.Nearest(t).n;
-    MinkowskiVertex hub = surface_.hub(t, Farthest(t, n));
-    const double h = SupportGap(pair_, -n, &hub);
+    MinkowskiVertex vertex_pair = surface_.vertex_pair(t, Farthest(t, n));
+    const double h = SupportGap(pair_, -n, &vertex_pair);
     if (h > best_.facet.h + tie_) {
-      Walk(hub);
+      Walk(vertex_pair);
       if (!(s < depth() - tie_)) return true;
     }
-    if (-h - s <= tie_ || !surface_.Raise(t, hub, &n)) {
+    if (-h - s <= tie_ || !surface_.Raise(t, vertex_pair, &n)) {
       return s >= depth() - kCoplanarShare * pair_.scale();
     }
     if (surface_.is_alive(t)) Push(t);
@@ -264,7 +265,7 @@ class Search {
         last_.facet.h >= best_.facet.h - band && IsOverFacet(last_, band)) {
       answer.facet = last_.facet;
       answer.facet.h = best_.facet.h;
-      answer.hub = last_.hub;
+      answer.vertex_pair = last_.vertex_pair;
     }
     return answer;
   }
@@ -289,7 +290,7 @@ GlobalDepth FindGlobalDepth(const PosedPair& pair, const Depth& local,
                             GlobalDepthState* state) {
   if (local.status == DepthStatus::kNoFacet) {
     state->Reset();
-    return {GlobalDepthStatus::kFlat, local.best, local.hub};
+    return {GlobalDepthStatus::kFlat, local.best, local.vertex_pair};
   }
   return Search(pair, local, state).Run();
 }

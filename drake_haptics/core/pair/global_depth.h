@@ -18,8 +18,8 @@ enum class GlobalDepthStatus {
 
 struct GlobalDepth {
   GlobalDepthStatus status = GlobalDepthStatus::kBounded;
-  DepthCandidate facet;  ///< −facet.h is the depth
-  MinkowskiVertex hub;   ///< one hub of the facet
+  DepthCandidate facet;         ///< −facet.h is the depth
+  MinkowskiVertex vertex_pair;  ///< one vertex pair of the facet
 };
 
 /// A triangle of the surface that is nearer than the best facet known.

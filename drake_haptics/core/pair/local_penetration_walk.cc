@@ -25,7 +25,7 @@ class Walk {
     if (known != nullptr) Add(*known);
     Visit(start);
     Depth result;
-    result.hub = start;
+    result.vertex_pair = start;
     // Each round looks around one facet: the best supported one, or while
     // there is none, the best of the others not yet looked around.
     for (int num_steps = 0;;) {
@@ -33,7 +33,7 @@ class Walk {
       if (target < 0) break;
       const int before = best_;
       const bool may_step = best_ < 0 || num_steps++ < bounds_.max_steps;
-      if (!may_step || !VisitHubsOf(target, &result.hub)) {
+      if (!may_step || !VisitVertexPairsOf(target, &result.vertex_pair)) {
         result.status = DepthStatus::kBounded;
         break;
       }
@@ -53,19 +53,19 @@ class Walk {
     if (result.status == DepthStatus::kNoFacet) {
       result.status = DepthStatus::kLocalMinimum;
     }
-    result.hub = {pair_.A.first_vertex_of(result.best.feature_A),
-                  pair_.B.first_vertex_of(result.best.feature_B)};
+    result.vertex_pair = {pair_.A.first_vertex_of(result.best.feature_A),
+                          pair_.B.first_vertex_of(result.best.feature_B)};
     return result;
   }
 
  private:
-  void Visit(const MinkowskiVertex& hub) {
-    workspace_.visited.push_back(hub);
+  void Visit(const MinkowskiVertex& vertex_pair) {
+    workspace_.visited.push_back(vertex_pair);
     const std::size_t first = workspace_.candidates.size();
     // With a supported answer at hand only better ones are of interest.
     const double floor =
         best_ >= 0 ? workspace_.candidates[best_].h + Tie(pair_) : kNone;
-    OverlayGaussRegions(pair_, hub, rule_, floor, &workspace_);
+    OverlayGaussRegions(pair_, vertex_pair, rule_, floor, &workspace_);
     Take(first);
   }
 
@@ -87,23 +87,24 @@ class Walk {
     }
   }
 
-  // Looks at all hubs of a facet; false where the bound on those without an
-  // answer stopped it.
-  bool VisitHubsOf(int target, MinkowskiVertex* last) {
+  // Looks at all vertex pairs of a facet; false where the bound on those
+  // without an answer stopped it.
+  bool VisitVertexPairsOf(int target, MinkowskiVertex* last) {
     const DepthCandidate facet = workspace_.candidates[target];
     ListMinkowskiFacetVertices(pair_, facet.feature_A, facet.feature_B, facet.n,
                                &workspace_.corners);
-    for (const MinkowskiVertex& hub : workspace_.corners) {
+    for (const MinkowskiVertex& vertex_pair : workspace_.corners) {
       const auto& visited = workspace_.visited;
-      if (std::find(visited.begin(), visited.end(), hub) != visited.end()) {
+      if (std::find(visited.begin(), visited.end(), vertex_pair) !=
+          visited.end()) {
         continue;
       }
-      if (best_ < 0 &&
-          static_cast<int>(visited.size()) >= bounds_.max_promotion_hubs) {
+      if (best_ < 0 && static_cast<int>(visited.size()) >=
+                           bounds_.max_promotion_vertex_pairs) {
         return false;
       }
-      Visit(hub);
-      *last = hub;
+      Visit(vertex_pair);
+      *last = vertex_pair;
     }
     return true;
   }

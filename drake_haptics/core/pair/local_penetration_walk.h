@@ -10,10 +10,10 @@ namespace drake_haptics {
 
 /// Bounds on what a walk looks at, at least 1 each.
 struct WalkBounds {
-  /// Hubs, while no supported facet is known.
-  int max_promotion_hubs = 1;
-  /// Steps from then on (the iterations of paper 5.2.3): each looks at all hubs
-  /// of the best facet so far. Far above most needs.
+  /// Vertex pairs, while no supported facet is known.
+  int max_promotion_vertex_pairs = 1;
+  /// Steps from then on (the iterations of paper 5.2.3): each looks at all
+  /// vertex pairs of the best facet so far. Far above most needs.
   int max_steps = 1024;
 };
 
@@ -24,8 +24,8 @@ enum class SurfaceRule {
                    ///< carried by the meshes that they stand for
 };
 
-/// A facet of the Minkowski difference A ⊖ B that is near a hub: the contact
-/// which separating the pair along n would leave.
+/// A facet of the Minkowski difference A ⊖ B that is near a vertex pair: the
+/// contact which separating the pair along n would leave.
 struct DepthCandidate {
   double h = 0;            ///< support gap along n, m; −h is the depth
   Vec3 n = Vec3::UnitX();  ///< unit, from B into A, in A's frame
@@ -37,7 +37,8 @@ struct DepthCandidate {
 
 /// How a walk ended.
 enum class DepthStatus {
-  kLocalMinimum,  ///< no facet around any of the answer's hubs is shallower
+  kLocalMinimum,  ///< no facet around any of the answer's vertex pairs is
+                  ///< shallower
   kBounded,       ///< a bound was met; the best one seen
   kNoFacet        ///< the Minkowski difference has no facet here (flat in it)
 };
@@ -46,7 +47,8 @@ struct Depth {
   DepthStatus status = DepthStatus::kNoFacet;
   DepthCandidate best;
   double shallowest = 0;  ///< largest gap of all facets seen, virtual or not, m
-  MinkowskiVertex hub;    ///< one hub of the answer: the next walk's start
+  MinkowskiVertex
+      vertex_pair;  ///< one vertex pair of the answer: the next walk's start
 };
 
 /// Buffers of a walk, kept between ticks so that a warm walk allocates nothing.
@@ -59,19 +61,21 @@ struct DepthWorkspace {
   std::vector<Vec3> edges_B;
 };
 
-/// Walks on the surface of A ⊖ B from a vertex hub pair to a locally optimal
-/// penetration depth (paper, 5.2). At each hub the Gauss regions of the two
-/// vertices are overlaid on the sphere, with signs of dot and triple products
-/// instead of the paper's projection to z = 1, which degenerates for flat
-/// hulls; the corners of the overlay are the VF, FV and EE facets around the
-/// hub. The walk moves to the shallowest facet that both surfaces carry, until
-/// no hub of that facet knows a better one.
+/// Walks on the surface of A ⊖ B from a vertex pair to a locally
+/// optimal penetration depth (paper, 5.2). At each vertex pair the Gauss
+/// regions of the two vertices are overlaid on the sphere, with signs of dot
+/// and triple products instead of the paper's projection to z = 1, which
+/// degenerates for flat hulls; the corners of the overlay are the VF, FV and EE
+/// facets around the vertex pair. The walk moves to the shallowest facet that
+/// both surfaces carry, until no vertex pair of that facet knows a better one.
 ///
 /// Facets on virtual features are passed over: where none of the facets seen
 /// so far is carried by both surfaces, the walk goes on over the next best
 /// ones (the promotion of paper 5.3.2) up to the bound.
-/// @param start a hub whose Gauss regions overlap: supports along a direction.
-/// @param known a facet of that hub known beforehand, or null: supported, it
+/// @param start a vertex pair whose Gauss regions overlap: supports along a
+/// direction.
+/// @param known a facet of that vertex pair known beforehand, or null:
+/// supported, it
 ///     spares the look at all that is deeper.
 /// A facet's gap never exceeds that of the shallowest one, so where a bound
 /// ends the walk, the best facet seen still bounds the depth from above.

@@ -27,12 +27,12 @@ Feature WidestAtVertex(const Polytope& P, Feature feature,
   const auto fan = P.fan_of(feature.index());
   const double slack = kFlushSlack * P.radius;
   const Polytope::OneRingEntry* flush = nullptr;
-  for (const Polytope::OneRingEntry& spoke : fan) {
-    if (outward.dot(spoke.along) < -slack) continue;
-    if (IsFlush(P, spoke.facet, outward)) {
-      return {FeatureKind::kFacet, spoke.facet};
+  for (const Polytope::OneRingEntry& ring_entry : fan) {
+    if (outward.dot(ring_entry.along) < -slack) continue;
+    if (IsFlush(P, ring_entry.facet, outward)) {
+      return {FeatureKind::kFacet, ring_entry.facet};
     }
-    flush = &spoke;
+    flush = &ring_entry;
   }
   return flush == nullptr ? feature : Feature(FeatureKind::kEdge, flush->edge);
 }
@@ -70,7 +70,7 @@ class PolygonDifference {
                     std::span<const int> loop_B, const Vec3& n)
       : pair_(pair), loop_A_(loop_A), loop_B_(loop_B), n_(n) {}
 
-  void List(std::vector<MinkowskiVertex>* hubs) const {
+  void List(std::vector<MinkowskiVertex>* vertex_pairs) const {
     const Vec3 along = n_.unitOrthogonal();
     const int size_A = static_cast<int>(loop_A_.size());
     const int size_B = static_cast<int>(loop_B_.size());
@@ -78,8 +78,8 @@ class PolygonDifference {
     const int first_B = Lowest(size_B, [&](int j) { return -along.dot(B(j)); });
     int i = 0, j = 0;
     while (i < size_A || j < size_B) {
-      hubs->push_back({loop_A_[(first_A + i) % size_A],
-                       loop_B_[(first_B - j + 2 * size_B) % size_B]});
+      vertex_pairs->push_back({loop_A_[(first_A + i) % size_A],
+                               loop_B_[(first_B - j + 2 * size_B) % size_B]});
       const Vec3 side_A = A(first_A + i + 1) - A(first_A + i);
       const Vec3 side_B = B(first_B - j) - B(first_B - j - 1);
       const double turn = -n_.dot(side_A.cross(side_B));
@@ -131,17 +131,17 @@ Feature WidestSupport(const Polytope& P, Feature feature, const Vec3& outward) {
 
 void ListMinkowskiFacetVertices(const PosedPair& pair, Feature feature_A,
                                 Feature feature_B, const Vec3& n,
-                                std::vector<MinkowskiVertex>* hubs) {
+                                std::vector<MinkowskiVertex>* vertex_pairs) {
   const Corners a(pair.A, WidestSupport(pair.A, feature_A, -n));
   const Corners b(
       pair.B, WidestSupport(pair.B, feature_B, pair.X_AB.R.transpose() * n));
-  hubs->clear();
+  vertex_pairs->clear();
   if (a.vertices.size() > 2 && b.vertices.size() > 2) {
-    PolygonDifference(pair, a.vertices, b.vertices, n).List(hubs);
+    PolygonDifference(pair, a.vertices, b.vertices, n).List(vertex_pairs);
     return;
   }
   for (const int i : a.vertices) {
-    for (const int j : b.vertices) hubs->push_back({i, j});
+    for (const int j : b.vertices) vertex_pairs->push_back({i, j});
   }
 }
 

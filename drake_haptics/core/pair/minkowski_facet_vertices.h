@@ -17,13 +17,13 @@ inline constexpr double kFlushSlack = 1e-9;
 /// supporting plane, that face or edge, else the feature itself.
 Feature WidestSupport(const Polytope& P, Feature feature, const Vec3& outward);
 
-/// Lists the hubs of the facet of A ⊖ B with normal n: its vertices. Where
-/// both bodies lie flush the facet is the difference of two polygons, and has
-/// as many vertices as both of them together.
+/// Lists the vertex pairs of the facet of A ⊖ B with normal n: its vertices.
+/// Where both bodies lie flush the facet is the difference of two polygons, and
+/// has as many vertices as both of them together.
 /// @param feature_A, feature_B features on the facet, at least.
 /// @param n from B into A, in A's frame, unit.
 void ListMinkowskiFacetVertices(const PosedPair& pair, Feature feature_A,
                                 Feature feature_B, const Vec3& n,
-                                std::vector<MinkowskiVertex>* hubs);
+                                std::vector<MinkowskiVertex>* vertex_pairs);
 
 }  // namespace drake_haptics

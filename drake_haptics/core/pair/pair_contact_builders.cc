@@ -10,7 +10,7 @@ Feature SimplexFeature(const Polytope& polytope, const Simplex& simplex,
                        int MinkowskiVertex::* side, const Vec3& n) {
   int vertices[4];
   for (int i = 0; i < simplex.size; ++i) {
-    vertices[i] = simplex.hubs[i].*side;
+    vertices[i] = simplex.vertex_pairs[i].*side;
   }
   return FeatureOfVertices(polytope, vertices, simplex.size, n);
 }
@@ -25,10 +25,10 @@ bool IsBetter(const Depth& second, const Depth& first) {
 }
 
 Depth WalkAlong(const PosedPair& pair, SurfaceRule rule, const Vec3& direction,
-                MinkowskiVertex hub, const WalkBounds& bounds,
+                MinkowskiVertex vertex_pair, const WalkBounds& bounds,
                 DepthWorkspace* workspace) {
-  SupportGap(pair, direction, &hub);
-  return WalkDepth(pair, hub, rule, nullptr, bounds, workspace);
+  SupportGap(pair, direction, &vertex_pair);
+  return WalkDepth(pair, vertex_pair, rule, nullptr, bounds, workspace);
 }
 
 }  // namespace
@@ -85,19 +85,19 @@ Vec3 BetweenCentroids(const PosedPair& pair) {
 }
 
 Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
-                const MinkowskiVertex& hub_last, const WalkBounds& bounds,
-                DepthWorkspace* workspace) {
-  Depth best = WalkAlong(pair, rule, BetweenCentroids(pair), hub_last, bounds,
-                         workspace);
+                const MinkowskiVertex& vertex_pair_last,
+                const WalkBounds& bounds, DepthWorkspace* workspace) {
+  Depth best = WalkAlong(pair, rule, BetweenCentroids(pair), vertex_pair_last,
+                         bounds, workspace);
   if (n_last.squaredNorm() > 0) {
     const Depth other =
-        WalkAlong(pair, rule, n_last, hub_last, bounds, workspace);
+        WalkAlong(pair, rule, n_last, vertex_pair_last, bounds, workspace);
     if (IsBetter(other, best)) best = other;
   }
-  // Round-off can hide every facet from a hub.
+  // Round-off can hide every facet from a vertex pair.
   for (int i = 0; i < 6 && best.status == DepthStatus::kNoFacet; ++i) {
     const Vec3 axis = (i < 3 ? 1.0 : -1.0) * Vec3::Unit(i % 3);
-    best = WalkAlong(pair, rule, axis, hub_last, bounds, workspace);
+    best = WalkAlong(pair, rule, axis, vertex_pair_last, bounds, workspace);
   }
   return best;
 }

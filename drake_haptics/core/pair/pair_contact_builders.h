@@ -31,7 +31,7 @@ Vec3 BetweenCentroids(const PosedPair& pair);
 /// The facet found by the starts of paper 5.2.2 where no facet is known: the
 /// line that joins the centroids and, unless it is zero, the last normal.
 Depth ColdDepth(const PosedPair& pair, SurfaceRule rule, const Vec3& n_last,
-                const MinkowskiVertex& hub_last, const WalkBounds& bounds,
-                DepthWorkspace* workspace);
+                const MinkowskiVertex& vertex_pair_last,
+                const WalkBounds& bounds, DepthWorkspace* workspace);
 
 }  // namespace drake_haptics

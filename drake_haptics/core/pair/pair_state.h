@@ -10,11 +10,11 @@ namespace drake_haptics {
 
 /// What a pair remembers from one tick to the next.
 struct PairState {
-  SimplexHubs simplex;    ///< of the last separation query
-  Vec3 n = Vec3::Zero();  ///< last normal, in A's frame; zero if none
-  MinkowskiVertex hub;    ///< supports along the last normal
-  Feature feature_A;      ///< features of the last depth; none if the last
-  Feature feature_B;      ///< answer was not a depth
+  SimplexVertexPairs simplex;   ///< of the last separation query
+  Vec3 n = Vec3::Zero();        ///< last normal, in A's frame; zero if none
+  MinkowskiVertex vertex_pair;  ///< supports along the last normal
+  Feature feature_A;  ///< features of the last depth; none if the last
+  Feature feature_B;  ///< answer was not a depth
 };
 
 /// Buffers of a query, kept between ticks so that a warm one allocates nothing.

@@ -17,10 +17,11 @@ constexpr double kProvenShare = 1e-10;
 // no direction any more.
 constexpr double kTouchingShare = 1e-13;
 
-void Start(const PosedPair& pair, const SimplexHubs& start, Simplex* simplex) {
+void Start(const PosedPair& pair, const SimplexVertexPairs& start,
+           Simplex* simplex) {
   for (int i = 0; i < start.size; ++i) {
-    const MinkowskiVertex hub = start.hubs[i];
-    simplex->Add(hub, pair.a(hub.a) - pair.b(hub.b));
+    const MinkowskiVertex vertex_pair = start.vertex_pairs[i];
+    simplex->Add(vertex_pair, pair.a(vertex_pair.a) - pair.b(vertex_pair.b));
   }
   if (simplex->size == 0) {
     simplex->Add({0, 0}, pair.a(0) - pair.b(0));
@@ -45,11 +46,11 @@ void Straighten(const PosedPair& pair, double scale, Separation* result) {
   constexpr double kNearby = 0.999;  // cosine
   const Vec3 v = result->simplex.Closest();
   const Vec3 tilted = result->n;
-  MinkowskiVertex hub = result->simplex.hubs[0];
-  double best = SupportGap(pair, tilted, &hub);
+  MinkowskiVertex vertex_pair = result->simplex.vertex_pairs[0];
+  double best = SupportGap(pair, tilted, &vertex_pair);
   const auto consider = [&](const Vec3& n) {
     if (n.dot(tilted) < kNearby) return;
-    const double gap = SupportGap(pair, n, &hub);
+    const double gap = SupportGap(pair, n, &vertex_pair);
     if (!(gap > best)) return;
     best = gap;
     result->n = n;
@@ -57,10 +58,11 @@ void Straighten(const PosedPair& pair, double scale, Separation* result) {
     result->is_proven = result->distance - gap <= kProvenShare * scale;
   };
   for (int i = 0; i < result->simplex.size; ++i) {
-    const MinkowskiVertex corner = result->simplex.hubs[i];
-    for (const auto& spoke : pair.A.fan_of(corner.a)) consider(-spoke.normal);
-    for (const auto& spoke : pair.B.fan_of(corner.b)) {
-      consider(pair.X_AB.R * spoke.normal);
+    const MinkowskiVertex corner = result->simplex.vertex_pairs[i];
+    for (const auto& ring_entry : pair.A.fan_of(corner.a))
+      consider(-ring_entry.normal);
+    for (const auto& ring_entry : pair.B.fan_of(corner.b)) {
+      consider(pair.X_AB.R * ring_entry.normal);
     }
   }
 }
@@ -69,18 +71,18 @@ void SetClosestPoints(const PosedPair& pair, Separation* result) {
   const Simplex& simplex = result->simplex;
   result->p_a.setZero();
   for (int i = 0; i < simplex.size; ++i) {
-    result->p_a += simplex.weights[i] * pair.a(simplex.hubs[i].a);
+    result->p_a += simplex.weights[i] * pair.a(simplex.vertex_pairs[i].a);
   }
   result->p_b = result->p_a - result->distance * result->n;
 }
 
-Separation Search(const PosedPair& pair, const SimplexHubs& start, double limit,
-                  int max_rounds) {
+Separation Search(const PosedPair& pair, const SimplexVertexPairs& start,
+                  double limit, int max_rounds) {
   Separation result;
   Simplex& simplex = result.simplex;
   Start(pair, start, &simplex);
   const double scale = pair.scale() + simplex.points[0].norm();
-  MinkowskiVertex hub = simplex.hubs[0];
+  MinkowskiVertex vertex_pair = simplex.vertex_pairs[0];
   for (int round = 0;; ++round) {
     const Vec3 v = simplex.Closest();
     const double length = v.norm();
@@ -92,16 +94,17 @@ Separation Search(const PosedPair& pair, const SimplexHubs& start, double limit,
     result.status = SeparationStatus::kApart;
     result.n = Direction(simplex, v, length);
     result.distance = result.n.dot(v);
-    const double gap = SupportGap(pair, result.n, &hub);
+    const double gap = SupportGap(pair, result.n, &vertex_pair);
     if (gap > limit) {
       result.status = SeparationStatus::kBeyond;
       result.distance = gap;
       return result;
     }
     result.is_proven = length - gap <= kProvenShare * scale;
-    if (length - gap <= kRelativeGap * scale || simplex.Contains(hub)) break;
+    if (length - gap <= kRelativeGap * scale || simplex.Contains(vertex_pair))
+      break;
     Simplex next = simplex;
-    next.Add(hub, pair.a(hub.a) - pair.b(hub.b));
+    next.Add(vertex_pair, pair.a(vertex_pair.a) - pair.b(vertex_pair.b));
     ReduceToClosest(&next);
     // Round-off can stop the descent a hair short of the gap above.
     if (next.size < 4 && !(next.Closest().squaredNorm() < length * length)) {
@@ -121,11 +124,12 @@ Separation Search(const PosedPair& pair, const SimplexHubs& start, double limit,
 
 }  // namespace
 
-bool HoldsOrigin(const PosedPair& pair, const SimplexHubs& simplex) {
+bool HoldsOrigin(const PosedPair& pair, const SimplexVertexPairs& simplex) {
   if (simplex.size < 4) return false;
   Vec3 p[4];
   for (int i = 0; i < 4; ++i) {
-    p[i] = pair.a(simplex.hubs[i].a) - pair.b(simplex.hubs[i].b);
+    p[i] =
+        pair.a(simplex.vertex_pairs[i].a) - pair.b(simplex.vertex_pairs[i].b);
   }
   // Volumes, with signs, of the tetrahedra that the origin makes with the
   // faces: the origin is inside where all are alike.
@@ -139,8 +143,9 @@ bool HoldsOrigin(const PosedPair& pair, const SimplexHubs& simplex) {
                      [&](double volume) { return sign * volume > round_off; });
 }
 
-Separation ComputeSeparation(const PosedPair& pair, const SimplexHubs& start,
-                             double limit, int max_rounds) {
+Separation ComputeSeparation(const PosedPair& pair,
+                             const SimplexVertexPairs& start, double limit,
+                             int max_rounds) {
   assert(max_rounds > 0);
   const Separation result = Search(pair, start, limit, max_rounds);
   if (result.status != SeparationStatus::kApart || result.is_proven ||

@@ -118,7 +118,8 @@ void Keep(const Face& face, Simplex* simplex) {
     const Simplex from = *simplex;
     simplex->size = 0;
     for (int i = 0; i < face.count; ++i) {
-      simplex->Add(from.hubs[face.corner[i]], from.points[face.corner[i]]);
+      simplex->Add(from.vertex_pairs[face.corner[i]],
+                   from.points[face.corner[i]]);
     }
   }
   for (int i = 0; i < face.count; ++i) simplex->weights[i] = face.weight[i];
@@ -127,9 +128,10 @@ void Keep(const Face& face, Simplex* simplex) {
 
 }  // namespace
 
-bool SimplexHubs::operator==(const SimplexHubs& other) const {
+bool SimplexVertexPairs::operator==(const SimplexVertexPairs& other) const {
   return size == other.size &&
-         std::equal(hubs.begin(), hubs.begin() + size, other.hubs.begin());
+         std::equal(vertex_pairs.begin(), vertex_pairs.begin() + size,
+                    other.vertex_pairs.begin());
 }
 
 void ReduceToClosest(Simplex* simplex) {

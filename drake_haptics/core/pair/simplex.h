@@ -9,27 +9,27 @@ namespace drake_haptics {
 
 /// Up to four vertices of the Minkowski difference A ⊖ B by name: what is left
 /// of a simplex when the pose changes.
-struct SimplexHubs {
-  std::array<MinkowskiVertex, 4> hubs;
+struct SimplexVertexPairs {
+  std::array<MinkowskiVertex, 4> vertex_pairs;
   int size = 0;
-  bool operator==(const SimplexHubs& other) const;
+  bool operator==(const SimplexVertexPairs& other) const;
 };
 
 /// Up to four vertices of A ⊖ B at a pose, with the weights of the point of
 /// their hull that is closest to the origin.
-struct Simplex : SimplexHubs {
+struct Simplex : SimplexVertexPairs {
   std::array<Vec3, 4> points;       ///< a − b, m, in A's frame
   std::array<double, 4> weights{};  ///< barycentric, of the closest point
   Vec3 normal = Vec3::Zero();       ///< of a triangle, away from the origin, m²
 
-  bool Contains(const MinkowskiVertex& hub) const {
+  bool Contains(const MinkowskiVertex& vertex_pair) const {
     for (int i = 0; i < size; ++i) {
-      if (hubs[i] == hub) return true;
+      if (vertex_pairs[i] == vertex_pair) return true;
     }
     return false;
   }
-  void Add(const MinkowskiVertex& hub, const Vec3& point) {
-    hubs[size] = hub;
+  void Add(const MinkowskiVertex& vertex_pair, const Vec3& point) {
+    vertex_pairs[size] = vertex_pair;
     points[size] = point;
     weights[size] = 1.0;
     ++size;

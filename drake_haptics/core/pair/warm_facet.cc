@@ -17,8 +17,8 @@ namespace {
 // across a facet, beyond what it is not flat.
 double Reach(const Polytope& P, int v, const Vec3& direction) {
   double reach = -std::numeric_limits<double>::infinity();
-  for (const Polytope::OneRingEntry& spoke : P.fan_of(v)) {
-    reach = std::max(reach, direction.dot(spoke.along));
+  for (const Polytope::OneRingEntry& ring_entry : P.fan_of(v)) {
+    reach = std::max(reach, direction.dot(ring_entry.along));
   }
   for (const Polytope::HiddenEdge& edge : P.hidden_of(v)) {
     reach = std::max(reach, direction.dot(edge.along) - Unevenness(P, v, edge));
@@ -43,8 +43,8 @@ double Clearance(const Polytope& P, int facet, const Vec3& point) {
 // vertex.
 double TurnAroundVertex(const Polytope& P, int v, const Vec3& direction) {
   double cosine = 1;
-  for (const Polytope::OneRingEntry& spoke : P.fan_of(v)) {
-    cosine = std::min(cosine, direction.dot(spoke.normal));
+  for (const Polytope::OneRingEntry& ring_entry : P.fan_of(v)) {
+    cosine = std::min(cosine, direction.dot(ring_entry.normal));
   }
   return P.dimension < 2 ? std::numeric_limits<double>::infinity()
                          : GaussAngleBound(cosine);
@@ -80,7 +80,7 @@ FacetVisit Visit(const Polytope& P, int facet, const Polytope& Q, int v,
 
 Revisit Finish(const PosedPair& pair, SurfaceRule rule, const FacetVisit& visit,
                const Vec3& n, Feature a, Feature b,
-               const MinkowskiVertex& hub) {
+               const MinkowskiVertex& vertex_pair) {
   Revisit result;
   if (!visit.is_facet) return result;
   const NormalConeSupport support =
@@ -89,7 +89,7 @@ Revisit Finish(const PosedPair& pair, SurfaceRule rule, const FacetVisit& visit,
           : ClassifySupport(pair.A, a, n, pair.B, b,
                             pair.X_AB.R.transpose() * n);
   result.facet = {visit.h, n, a, b, support};
-  result.hub = hub;
+  result.vertex_pair = vertex_pair;
   result.status =
       visit.is_minimum ? RevisitStatus::kMinimum : RevisitStatus::kFacet;
   return result;

@@ -16,7 +16,7 @@ enum class RevisitStatus {
 struct Revisit {
   RevisitStatus status = RevisitStatus::kGone;
   DepthCandidate facet;
-  MinkowskiVertex hub;  ///< one hub of the facet
+  MinkowskiVertex vertex_pair;  ///< one vertex pair of the facet
 };
 
 /// Evaluates a facet of A ⊖ B again at the present pose, and proves in O(1),

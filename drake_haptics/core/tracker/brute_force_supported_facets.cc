@@ -51,8 +51,8 @@ class Enumeration {
     const Polytope::Facet& facet = pair_.A.facets[f];
     if (!facet.original) return;
     const Vec3 n = -facet.normal;
-    MinkowskiVertex hub{pair_.A.loop_of(f)[0], 0};
-    const double h = SupportGap(pair_, n, &hub);
+    MinkowskiVertex vertex_pair{pair_.A.loop_of(f)[0], 0};
+    const double h = SupportGap(pair_, n, &vertex_pair);
     if (!(h > floor_)) return;
     for (int j = 0; j < pair_.B.num_vertices(); ++j) {
       if (IsInRegion(pair_.B, j, pair_.X_AB.R.transpose() * -n)) {
@@ -66,8 +66,8 @@ class Enumeration {
     const Polytope::Facet& facet = pair_.B.facets[f];
     if (!facet.original) return;
     const Vec3 n = pair_.X_AB.R * facet.normal;
-    MinkowskiVertex hub{0, pair_.B.loop_of(f)[0]};
-    const double h = SupportGap(pair_, n, &hub);
+    MinkowskiVertex vertex_pair{0, pair_.B.loop_of(f)[0]};
+    const double h = SupportGap(pair_, n, &vertex_pair);
     if (!(h > floor_)) return;
     for (int i = 0; i < pair_.A.num_vertices(); ++i) {
       if (IsInRegion(pair_.A, i, n)) {
@@ -132,7 +132,7 @@ Depth LeastOfAllFacets(const PosedPair& pair, const MinkowskiVertex& start,
   Depth least{found.status == GlobalDepthStatus::kExact
                   ? DepthStatus::kLocalMinimum
                   : DepthStatus::kBounded,
-              found.facet, found.facet.h, found.hub};
+              found.facet, found.facet.h, found.vertex_pair};
   const Vec3 n_B = pair.X_AB.R.transpose() * least.best.n;
   least.best.support =
       ClassifySupport(pair.A, least.best.feature_A, least.best.n, pair.B,

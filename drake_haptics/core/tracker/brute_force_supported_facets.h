@@ -10,7 +10,7 @@ namespace drake_haptics {
 
 /// The shallowest of all facets of A ⊖ B (global_depth.h), virtual or not, with
 /// its support by the surfaces. kNoFacet where A ⊖ B has no interior.
-/// @param start a hub to walk from.
+/// @param start a vertex pair to walk from.
 Depth LeastOfAllFacets(const PosedPair& pair, const MinkowskiVertex& start,
                        GlobalDepthState* state);
 

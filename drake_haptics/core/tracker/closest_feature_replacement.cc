@@ -30,15 +30,18 @@ class Search {
 
   Promotion Run() {
     for (int i = 0; i < simplex().size; ++i) {
-      const MinkowskiVertex& corner = simplex().hubs[i];
+      const MinkowskiVertex& corner = simplex().vertex_pairs[i];
       if (!IsRepeated(simplex(), i, &MinkowskiVertex::a)) {
-        for (const Polytope::OneRingEntry& spoke : pair_.A.fan_of(corner.a)) {
-          ConsiderFacet(-spoke.normal, spoke.facet, true);
+        for (const Polytope::OneRingEntry& ring_entry :
+             pair_.A.fan_of(corner.a)) {
+          ConsiderFacet(-ring_entry.normal, ring_entry.facet, true);
         }
       }
       if (IsRepeated(simplex(), i, &MinkowskiVertex::b)) continue;
-      for (const Polytope::OneRingEntry& spoke : pair_.B.fan_of(corner.b)) {
-        ConsiderFacet(pair_.X_AB.R * spoke.normal, spoke.facet, false);
+      for (const Polytope::OneRingEntry& ring_entry :
+           pair_.B.fan_of(corner.b)) {
+        ConsiderFacet(pair_.X_AB.R * ring_entry.normal, ring_entry.facet,
+                      false);
       }
     }
     if (found_.facet.support != NormalConeSupport::kSupported &&
@@ -53,15 +56,18 @@ class Search {
 
   void ConsiderFacet(const Vec3& n, int facet, bool is_of_A) {
     if (n.dot(separation_.n) < kLargestPromotion) return;
-    MinkowskiVertex hub = simplex().hubs[0];
-    if (!MayReplaceFeature(pair_, n, facet, is_of_A, hub, found_.facet.h))
+    MinkowskiVertex vertex_pair = simplex().vertex_pairs[0];
+    if (!MayReplaceFeature(pair_, n, facet, is_of_A, vertex_pair,
+                           found_.facet.h))
       return;
-    const double h = SupportGap(pair_, n, &hub);
+    const double h = SupportGap(pair_, n, &vertex_pair);
     if (!(h > found_.facet.h) || h > request_.tolerance) return;
     const Feature face(FeatureKind::kFacet, facet);
-    const Feature a = is_of_A ? face : Feature(FeatureKind::kVertex, hub.a);
-    const Feature b = is_of_A ? Feature(FeatureKind::kVertex, hub.b) : face;
-    Consider(n, h, a, b, hub);
+    const Feature a =
+        is_of_A ? face : Feature(FeatureKind::kVertex, vertex_pair.a);
+    const Feature b =
+        is_of_A ? Feature(FeatureKind::kVertex, vertex_pair.b) : face;
+    Consider(n, h, a, b, vertex_pair);
   }
 
   // The closest point is a vertex: an edge may have ended there at the next
@@ -70,7 +76,7 @@ class Search {
     found_.ends_early = true;
     if (request_.translation_vectors.empty()) return;
     for (int i = 0; i < simplex().size; ++i) {
-      const MinkowskiVertex& corner = simplex().hubs[i];
+      const MinkowskiVertex& corner = simplex().vertex_pairs[i];
       const Vec3 w = pair_.a(corner.a) - pair_.b(corner.b);
       for (const Polytope::OneRingEntry& b : pair_.B.fan_of(corner.b)) {
         if (b.edge < 0 || !pair_.B.edges[b.edge].original) continue;
@@ -84,10 +90,12 @@ class Search {
   }
 
   bool IsVertex(int MinkowskiVertex::* side) const {
-    const auto& hubs = simplex().hubs;
-    return std::all_of(
-        hubs.begin(), hubs.begin() + simplex().size,
-        [&](const MinkowskiVertex& hub) { return hub.*side == hubs[0].*side; });
+    const auto& vertex_pairs = simplex().vertex_pairs;
+    return std::all_of(vertex_pairs.begin(),
+                       vertex_pairs.begin() + simplex().size,
+                       [&](const MinkowskiVertex& vertex_pair) {
+                         return vertex_pair.*side == vertex_pairs[0].*side;
+                       });
   }
 
   // @param w the vertex of A ⊖ B from which both edges go out.
@@ -104,14 +112,14 @@ class Search {
         h > request_.tolerance) {
       return;
     }
-    MinkowskiVertex hub = corner;
-    if (SupportGap(pair_, n, &hub) < h - Tie(pair_)) return;
+    MinkowskiVertex vertex_pair = corner;
+    if (SupportGap(pair_, n, &vertex_pair) < h - Tie(pair_)) return;
     Consider(n, h, {FeatureKind::kEdge, a.edge}, {FeatureKind::kEdge, b.edge},
              corner);
   }
 
   void Consider(const Vec3& n, double h, Feature a, Feature b,
-                const MinkowskiVertex& hub) {
+                const MinkowskiVertex& vertex_pair) {
     const NormalConeSupport support = ClassifySupport(
         pair_.A, a, n, pair_.B, b, pair_.X_AB.R.transpose() * n);
     if (support != NormalConeSupport::kSupported) return;
@@ -120,8 +128,8 @@ class Search {
     // one.
     if (LateralOffset(pair_, a, b, witness) > 0 &&
         !(surface_goes_on_flat_ &&
-          FindSurfacePatch(pair_, n, h, hub, witness.p_a, request_.tolerance,
-                           &workspace_)
+          FindSurfacePatch(pair_, n, h, vertex_pair, witness.p_a,
+                           request_.tolerance, &workspace_)
               .has_faces)) {
       found_.ends_early = true;
       found_.is_beside_wall |=
@@ -131,7 +139,7 @@ class Search {
       return;
     }
     found_.facet = {h, n, a, b, support};
-    found_.hub = hub;
+    found_.vertex_pair = vertex_pair;
   }
 
   const PosedPair& pair_;

@@ -11,7 +11,7 @@ namespace drake_haptics {
 /// What becomes of closest points that the surfaces do not carry by themselves.
 struct Promotion {
   DepthCandidate facet;  ///< takes their place; not kSupported if there is none
-  MinkowskiVertex hub;   ///< of the facet
+  MinkowskiVertex vertex_pair;  ///< of the facet
   /// Without a facet: they are a contact with A out of the walls that it
   /// presses into.
   bool is_beside_wall = false;

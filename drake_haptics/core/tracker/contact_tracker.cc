@@ -26,7 +26,7 @@ ContactTracker::ContactTracker(
     const DepthSearch& depth)
     : tolerance_(tolerance),
       depth_(depth),
-      wake_times_(static_cast<int>(objects.size())) {
+      deadlines_(static_cast<int>(objects.size())) {
   RequireNotNegative(tolerance, "tolerance");
   if (depth.max_walk_steps < 1) {
     throw std::invalid_argument("max_walk_steps must be at least 1, is " +
@@ -61,7 +61,7 @@ void ContactTracker::SetTolerance(double tolerance) {
   if (farther <= 0) return;
   for (int i = 0; i < num_objects(); ++i) {
     objects_[i].tracked.WatchFarther(farther);
-    wake_times_.Wake(i);
+    deadlines_.MakeDue(i);
   }
 }
 
@@ -74,7 +74,7 @@ void ContactTracker::SetObjectPose(int i, const Pose& X_WO) {
   if (X_WO.R == object.X_WO.R && X_WO.p == object.X_WO.p) return;
   object.X_WO = X_WO;
   object.has_moved = true;
-  wake_times_.Wake(i);
+  deadlines_.MakeDue(i);
 }
 
 void ContactTracker::Query(const Pose& X_WT, double tolerance,
@@ -111,8 +111,8 @@ void ContactTracker::QueryAll(const Pose& X_WT, double tolerance,
     step = 0;
   }
   odometer_ += step;
-  wake_times_.Collect(odometer_, &awake_);
-  for (const int i : awake_) {
+  deadlines_.Collect(odometer_, &due_);
+  for (const int i : due_) {
     QueryObject(i, X_WT, motion, step, tolerance, out);
   }
   last_X_WT_ = X_WT;
@@ -135,7 +135,7 @@ void ContactTracker::StartOver() {
 void ContactTracker::Forget(int i) {
   objects_[i].tracked.Reset();
   objects_[i].ahead = 0;
-  wake_times_.Wake(i);
+  deadlines_.MakeDue(i);
 }
 
 void ContactTracker::QueryObject(int i, const Pose& X_WT,
@@ -165,7 +165,7 @@ void ContactTracker::QueryObject(int i, const Pose& X_WT,
   for (std::size_t k = first; k < out->contacts.size(); ++k) {
     out->contacts[k].object = i;
   }
-  wake_times_.Set(i, object.tracked.quiet_until() - object.ahead);
+  deadlines_.Set(i, object.tracked.quiet_until() - object.ahead);
 }
 
 void ContactTracker::Reset() {

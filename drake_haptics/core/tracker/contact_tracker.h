@@ -90,9 +90,9 @@ class ContactTracker {
   double radius_;   // of the tool about its middle, m
   Pose last_X_WT_;  // at the last query
   bool is_first_ = true;
-  double odometer_ = 0;      // of the tool in the world, m
-  DeadlineTree wake_times_;  // of the objects, by the tool's odometer
-  std::vector<int> awake_;
+  double odometer_ = 0;     // of the tool in the world, m
+  DeadlineTree deadlines_;  // of the objects, by the tool's odometer
+  std::vector<int> due_;
   TrackerWorkspace workspace_;
 };
 

@@ -20,19 +20,19 @@ bool IsWorthListing(const PosedPair& pair) {
 }  // namespace
 
 bool MayOverlapDeeper(const PosedPair& pair, const SurfaceRequest& request,
-                      const ContactPersistence& passage,
+                      const ContactPersistence& persistence,
                       const MinkowskiVertex& near, const WantedFacets* own,
                       SurfacePairWorkspace* workspace) {
   if (!IsWorthListing(pair)) return true;
   std::vector<WantedFacets>& wanted = workspace->wanted;
   wanted.clear();
   if (own != nullptr) wanted.push_back(*own);
-  passage.AppendWanted(&wanted);
-  std::vector<DepthCandidate>& facets = workspace->carried;
+  persistence.AppendWanted(&wanted);
+  std::vector<DepthCandidate>& facets = workspace->supported;
   ListSupportedFacets(pair, near, wanted, &facets);
   return std::any_of(facets.begin(), facets.end(), [&](const auto& facet) {
     return ((own != nullptr && own->Hold(facet.n, facet.h)) ||
-            passage.IsTransferred(facet)) &&
+            persistence.IsTransferred(facet)) &&
            IsWithinFeatures(pair, facet, request.tolerance, &workspace->patch);
   });
 }

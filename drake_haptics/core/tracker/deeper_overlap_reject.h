@@ -13,7 +13,7 @@ namespace drake_haptics {
 /// proof that it cannot, and costs less than a walk that finds nothing.
 /// @param near vertices near which the bodies overlap, for speed alone.
 bool MayOverlapDeeper(const PosedPair& pair, const SurfaceRequest& request,
-                      const ContactPersistence& passage,
+                      const ContactPersistence& persistence,
                       const MinkowskiVertex& near, const WantedFacets* own,
                       SurfacePairWorkspace* workspace);
 

@@ -14,16 +14,18 @@ constexpr double kSlideShare = 1e-2;
 
 }  // namespace
 
-MinkowskiVertex HubOf(const PosedPair& pair, const DepthCandidate& facet) {
+MinkowskiVertex VertexPairOf(const PosedPair& pair,
+                             const DepthCandidate& facet) {
   return {pair.A.first_vertex_of(facet.feature_A),
           pair.B.first_vertex_of(facet.feature_B)};
 }
 
 PressurePatch FindSurfacePatch(const PosedPair& pair, const Vec3& n, double h,
-                               const MinkowskiVertex& hub, const Vec3& p_a,
-                               double tolerance, PatchWorkspace* workspace) {
+                               const MinkowskiVertex& vertex_pair,
+                               const Vec3& p_a, double tolerance,
+                               PatchWorkspace* workspace) {
   const double layer = PressureLayer(tolerance);
-  return FindPressurePatch(pair, n, h, hub, p_a,
+  return FindPressurePatch(pair, n, h, vertex_pair, p_a,
                            std::clamp(tolerance - h, 0.0, layer), layer,
                            workspace);
 }
@@ -39,8 +41,9 @@ bool IsWithinFeatures(const PosedPair& pair, const DepthCandidate& facet,
   const PairContact contact =
       ContactAtFacet(pair, facet, ContactStatus::kPenetrating);
   return IsWithinSides(pair, contact) ||
-         FindSurfacePatch(pair, contact.n, contact.distance, HubOf(pair, facet),
-                          contact.p_a, tolerance, workspace)
+         FindSurfacePatch(pair, contact.n, contact.distance,
+                          VertexPairOf(pair, facet), contact.p_a, tolerance,
+                          workspace)
              .center;
 }
 

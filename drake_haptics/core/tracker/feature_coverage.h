@@ -7,14 +7,16 @@
 
 namespace drake_haptics {
 
-/// A hub of a facet of A ⊖ B: the first vertices of its features.
-MinkowskiVertex HubOf(const PosedPair& pair, const DepthCandidate& facet);
+/// A vertex pair of a facet of A ⊖ B: the first vertices of its features.
+MinkowskiVertex VertexPairOf(const PosedPair& pair,
+                             const DepthCandidate& facet);
 
 /// The patch of a contact between pieces of surfaces, by a layer as thick as
 /// `tolerance` − h (m), at most PressureLayer(tolerance).
 PressurePatch FindSurfacePatch(const PosedPair& pair, const Vec3& n, double h,
-                               const MinkowskiVertex& hub, const Vec3& p_a,
-                               double tolerance, PatchWorkspace* workspace);
+                               const MinkowskiVertex& vertex_pair,
+                               const Vec3& p_a, double tolerance,
+                               PatchWorkspace* workspace);
 
 /// Whether a contact lies no farther beyond its features' sides than a small
 /// share of the size.

@@ -15,11 +15,11 @@ bool MayReplaceFeature(const PosedPair& pair, const Vec3& n, int facet,
   double gap;
   if (is_of_A) {
     const Vec3 n_B = R.transpose() * n;
-    if (!pair.B.carrying.Holds(n_B)) return false;
+    if (!pair.B.normal_cone.Holds(n_B)) return false;
     const int b = SupportVertex(pair.B, n_B, near.b);
     gap = face.normal.dot(pair.b(b)) - face.offset;
   } else {
-    if (!pair.A.carrying.Holds(-n)) return false;
+    if (!pair.A.normal_cone.Holds(-n)) return false;
     const int a = SupportVertex(pair.A, -n, near.a);
     gap = n.dot(pair.a(a) - pair.X_AB.p) - face.offset;
   }
@@ -28,10 +28,11 @@ bool MayReplaceFeature(const PosedPair& pair, const Vec3& n, int facet,
 
 bool IsRepeated(const Simplex& simplex, int corner,
                 int MinkowskiVertex::* side) {
-  const auto begin = simplex.hubs.begin();
-  return std::any_of(begin, begin + corner, [&](const MinkowskiVertex& hub) {
-    return hub.*side == simplex.hubs[corner].*side;
-  });
+  const auto begin = simplex.vertex_pairs.begin();
+  return std::any_of(
+      begin, begin + corner, [&](const MinkowskiVertex& vertex_pair) {
+        return vertex_pair.*side == simplex.vertex_pairs[corner].*side;
+      });
 }
 
 }  // namespace drake_haptics

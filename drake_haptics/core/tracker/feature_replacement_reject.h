@@ -11,7 +11,7 @@ namespace drake_haptics {
 /// `floor` (m): false is a proof that it is not, for less than finding it.
 ///
 /// Virtual facets carry nothing, and the other body nothing along directions
-/// outside its carrying cone. The farthest vertex of the other body below the
+/// outside its normal cone. The farthest vertex of the other body below the
 /// facet's plane bounds the gap.
 /// @param n the facet's normal as that of the contact, in A's frame.
 /// @param facet its index; `is_of_A` tells of which body.

@@ -22,8 +22,8 @@ class Listing {
           std::vector<DepthCandidate>* facets)
       : pair_(pair),
         R_BA_(pair.X_AB.R.transpose()),
-        of_A_{-pair.A.carrying.axis, pair.A.carrying.cosine},
-        of_B_{pair.X_AB.R * pair.B.carrying.axis, pair.B.carrying.cosine},
+        of_A_{-pair.A.normal_cone.axis, pair.A.normal_cone.cosine},
+        of_B_{pair.X_AB.R * pair.B.normal_cone.axis, pair.B.normal_cone.cosine},
         near_(near),
         center_B_(pair.X_AB * pair.B.centroid),
         near_B_(pair.b(near.b)),
@@ -130,8 +130,8 @@ class Listing {
     *hint = SupportVertex(P, outward, *hint);
     visit(*hint);
     const double least = -kSlack * P.radius;
-    for (const Polytope::OneRingEntry& spoke : P.fan_of(*hint)) {
-      if (outward.dot(spoke.along) >= least) visit(spoke.neighbor);
+    for (const Polytope::OneRingEntry& ring_entry : P.fan_of(*hint)) {
+      if (outward.dot(ring_entry.along) >= least) visit(ring_entry.neighbor);
     }
   }
 
@@ -158,7 +158,7 @@ class Listing {
     for (int i = 0; i < static_cast<int>(pair_.A.edges.size()); ++i) {
       const Polytope::Edge& edge = pair_.A.edges[i];
       if (!edge.original) continue;
-      const Vec3 from = -edge.carrying[0], to = -edge.carrying[1];
+      const Vec3 from = -edge.normal_arc[0], to = -edge.normal_arc[1];
       if (from.isZero(0) ||
           !MayBeWanted(from, to, pair_.A.vertices[edge.v0] - center_B_,
                        pair_.A.vertices[edge.v0] - near_B_)) {
@@ -178,9 +178,9 @@ class Listing {
     for (int j = 0; j < static_cast<int>(pair_.B.edges.size()); ++j) {
       const Polytope::Edge& edge = pair_.B.edges[j];
       if (!edge.original) continue;
-      if (edge.carrying[0].isZero(0)) continue;
-      const Vec3 from = pair_.X_AB.R * edge.carrying[0];
-      const Vec3 to = pair_.X_AB.R * edge.carrying[1];
+      if (edge.normal_arc[0].isZero(0)) continue;
+      const Vec3 from = pair_.X_AB.R * edge.normal_arc[0];
+      const Vec3 to = pair_.X_AB.R * edge.normal_arc[1];
       const Vec3 start = pair_.b(edge.v0);
       if (!MayBeWanted(from, to, pair_.A.centroid - start,
                        pair_.a(near_.a) - start)) {
@@ -222,13 +222,13 @@ class Listing {
     for (int crossings = 0; crossings < P.num_vertices(); ++crossings) {
       const Polytope::OneRingEntry* next = nullptr;
       double first = 1;
-      for (const Polytope::OneRingEntry& spoke : P.fan_of(v)) {
-        const double rise = side.dot(spoke.along);
+      for (const Polytope::OneRingEntry& ring_entry : P.fan_of(v)) {
+        const double rise = side.dot(ring_entry.along);
         if (!(rise > 0)) continue;
-        const double at = -from.dot(spoke.along);
+        const double at = -from.dot(ring_entry.along);
         if (at <= first * rise) {
           first = at / rise;
-          next = &spoke;
+          next = &ring_entry;
         }
       }
       if (next == nullptr) return;

@@ -32,7 +32,7 @@ std::optional<DepthCandidate> Shallowest(const PosedPair& pair, double least,
                                          SurfacePairWorkspace* workspace,
                                          const DoesCount& does_count) {
   const WantedFacets wanted{{}, least};
-  std::vector<DepthCandidate>& facets = workspace->carried;
+  std::vector<DepthCandidate>& facets = workspace->supported;
   ListSupportedFacets(pair, near, {&wanted, 1}, &facets);
   std::sort(facets.begin(), facets.end(),
             [](const auto& p, const auto& q) { return p.h > q.h; });
@@ -77,8 +77,8 @@ bool LayInFront(const PosedPair& pair, const DepthCandidate& facet,
   const Vec3 n = facet.feature_A.kind() == FeatureKind::kFacet
                      ? facet.n
                      : Vec3(last_X_AB.R * (pair.X_AB.R.transpose() * facet.n));
-  MinkowskiVertex hub = HubOf(pair, facet);
-  return SupportGap({pair.A, pair.B, last_X_AB}, n, &hub) >=
+  MinkowskiVertex vertex_pair = VertexPairOf(pair, facet);
+  return SupportGap({pair.A, pair.B, last_X_AB}, n, &vertex_pair) >=
          -kTouchShare * pair.scale();
 }
 
@@ -118,12 +118,12 @@ std::optional<DepthCandidate> FindWayOut(const PosedPair& pair,
   if (separation.status != SeparationStatus::kTouching) return std::nullopt;
   // A direction along which they only touch separates them: no way leads out of
   // what does not overlap, least of all one through the far side.
-  const auto way = Shallowest(pair, kNoFloor, separation.simplex.hubs[0],
-                              workspace, [&](const auto& facet) {
-                                return facet.h >= 0 ||
-                                       IsWithinFeatures(pair, facet, tolerance,
-                                                        &workspace->patch);
-                              });
+  const auto way = Shallowest(
+      pair, kNoFloor, separation.simplex.vertex_pairs[0], workspace,
+      [&](const auto& facet) {
+        return facet.h >= 0 ||
+               IsWithinFeatures(pair, facet, tolerance, &workspace->patch);
+      });
   return way && way->h < 0 ? way : std::nullopt;
 }
 

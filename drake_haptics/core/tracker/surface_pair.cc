@@ -23,12 +23,12 @@
 namespace drake_haptics {
 namespace {
 
-// Hubs looked at for a facet that both surfaces carry, on the first tick of an
-// overlap and on later ones.
-constexpr int kColdPromotionHubs = 64;
-constexpr int kWarmPromotionHubs = 6;
+// VertexPairs looked at for a facet that both surfaces carry, on the first tick
+// of an overlap and on later ones.
+constexpr int kColdPromotionVertexPairs = 64;
+constexpr int kWarmPromotionVertexPairs = 6;
 // The same for an overlap that was refused, and for how many ticks.
-constexpr int kRefusedPromotionHubs = 2;
+constexpr int kRefusedPromotionVertexPairs = 2;
 constexpr int kRestAfterRefusal = 64;
 constexpr int kRefusalSpread = 32;
 // Cosine of the largest angle between the normal of a new contact and the
@@ -49,7 +49,7 @@ class Query {
       : pair_(pair),
         request_(request),
         state_(*state),
-        passage_(pair, request_, *state),
+        persistence_(pair, request_, *state),
         workspace_(*workspace),
         global_(global) {}
 
@@ -71,16 +71,16 @@ class Query {
             ? -1
             : static_cast<int>(request_.translation_vectors.size());
     if (!contact) return contact;
-    const bool is_pressed = contact->distance < 0 && facet_hub_;
+    const bool is_pressed = contact->distance < 0 && facet_vertex_pair_;
     const bool is_within = is_pressed && IsWithinSides(pair_, *contact);
-    if (facet_hub_ && contact->feature_A.kind() == FeatureKind::kEdge &&
+    if (facet_vertex_pair_ && contact->feature_A.kind() == FeatureKind::kEdge &&
         contact->feature_B.kind() == FeatureKind::kEdge) {
       contact->p_a = OnCrossedEdges(pair_, contact->feature_A,
                                     contact->feature_B, contact->p_a);
       contact->p_b = contact->p_a - contact->distance * contact->n;
     }
-    const PressurePatch patch =
-        FindPatch(contact->n, contact->distance, state_.hub, contact->p_a);
+    const PressurePatch patch = FindPatch(contact->n, contact->distance,
+                                          state_.vertex_pair, contact->p_a);
     state_.is_settled = is_within || (is_pressed && patch.center);
     if (patch.center) {
       contact->p_a = *patch.center;
@@ -88,7 +88,7 @@ class Query {
     }
     contact->extent = patch.extent;
     contact->flushness = patch.flushness;
-    contact->support = {state_.hub.a, state_.hub.b};
+    contact->support = {state_.vertex_pair.a, state_.vertex_pair.b};
     return contact;
   }
 
@@ -109,7 +109,8 @@ class Query {
   // Last tick's normal often still proves that the pair is out of reach.
   bool IsBeyondLastNormal() {
     return state_.n.squaredNorm() > 0 &&
-           SupportGap(pair_, state_.n, &state_.hub) > request_.tolerance;
+           SupportGap(pair_, state_.n, &state_.vertex_pair) >
+               request_.tolerance;
   }
 
   std::optional<PairContact> Near() {
@@ -131,7 +132,7 @@ class Query {
       if (promotion.is_beside_wall) return closest;
       return std::nullopt;
     }
-    facet_hub_ = promotion.hub;
+    facet_vertex_pair_ = promotion.vertex_pair;
     return ContactAtFacet(pair_, promotion.facet, ContactStatus::kNear);
   }
 
@@ -164,13 +165,15 @@ class Query {
                                       : RefusedDepth();
     // Round-off can hide every facet from where a walk began.
     if (depth.status == DepthStatus::kNoFacet) {
-      depth = ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
-                        Bounds(kWarmPromotionHubs), &workspace_.depth);
+      depth = ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n,
+                        state_.vertex_pair, Bounds(kWarmPromotionVertexPairs),
+                        &workspace_.depth);
     }
     const bool apart = separation_.status == SeparationStatus::kApart;
-    MinkowskiVertex hub = separation_.simplex.hubs[0];
-    if (apart && (depth.status == DepthStatus::kNoFacet ||
-                  depth.best.h <= SupportGap(pair_, separation_.n, &hub))) {
+    MinkowskiVertex vertex_pair = separation_.simplex.vertex_pairs[0];
+    if (apart &&
+        (depth.status == DepthStatus::kNoFacet ||
+         depth.best.h <= SupportGap(pair_, separation_.n, &vertex_pair))) {
       const PairContact contact = ContactApart(pair_, separation_);
       if (IsSupported(contact)) return contact;
     }
@@ -187,7 +190,7 @@ class Query {
         const auto begun = Entry();
         if (begun) return AtDepth(*begun);
       }
-      Refuse(depth.best.n, depth.hub);
+      Refuse(depth.best.n, depth.vertex_pair);
       const auto contact = GoneOn();
       return contact ? contact : TransferredFrom();
     }
@@ -209,7 +212,7 @@ class Query {
   // one is virtual, the least of the others counts if it is shallower than the
   // depth that was tracked, or, with none to compare to, by the rules for that.
   std::optional<Depth> LeastDepth(const Depth& tracked) {
-    const Depth least = LeastOfAllFacets(pair_, tracked.hub, global_);
+    const Depth least = LeastOfAllFacets(pair_, tracked.vertex_pair, global_);
     if (least.status == DepthStatus::kNoFacet) return std::nullopt;
     if (least.best.support == NormalConeSupport::kSupported &&
         IsWithinFeatures(least.best)) {
@@ -217,10 +220,10 @@ class Query {
     }
     const bool is_tracked = IsPlausible(tracked);
     ListSupportedFacetsByBruteForce(
-        pair_, is_tracked ? tracked.best.h : kNoFloor, &workspace_.carried);
-    for (const DepthCandidate& facet : workspace_.carried) {
+        pair_, is_tracked ? tracked.best.h : kNoFloor, &workspace_.supported);
+    for (const DepthCandidate& facet : workspace_.supported) {
       const Depth depth{DepthStatus::kLocalMinimum, facet, least.best.h,
-                        HubOf(pair_, facet)};
+                        VertexPairOf(pair_, facet)};
       if (is_tracked ? IsWithinFeatures(facet) : IsPlausible(depth)) {
         return depth;
       }
@@ -251,13 +254,13 @@ class Query {
   }
 
   double GapAlong(const Vec3& n) const {
-    MinkowskiVertex hub = state_.hub;
-    return SupportGap(pair_, n, &hub);
+    MinkowskiVertex vertex_pair = state_.vertex_pair;
+    return SupportGap(pair_, n, &vertex_pair);
   }
 
   bool MayFind(const WantedFacets* own) {
-    return MayOverlapDeeper(pair_, request_, passage_, state_.hub, own,
-                            &workspace_);
+    return MayOverlapDeeper(pair_, request_, persistence_, state_.vertex_pair,
+                            own, &workspace_);
   }
 
   // Where the overlap of a pair that was apart began.
@@ -266,44 +269,47 @@ class Query {
     if (is_walked || pair_.A.dimension < 2 || pair_.B.dimension < 2) {
       return std::nullopt;
     }
-    const auto facet = FindEntry(pair_, request_, state_.hub, &workspace_);
+    const auto facet =
+        FindEntry(pair_, request_, state_.vertex_pair, &workspace_);
     if (!facet) return std::nullopt;
     return Depth{DepthStatus::kLocalMinimum, *facet, facet->h,
-                 HubOf(pair_, *facet)};
+                 VertexPairOf(pair_, *facet)};
   }
 
   // Of a pair that was not in contact.
   Depth EntryDepth() {
     // Pairs refused at one tick shall not all be searched at one later tick.
-    state_.refusals = (state_.hub.a * 31 + state_.hub.b * 17) % kRefusalSpread;
-    return ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n, state_.hub,
-                     Bounds(kColdPromotionHubs), &workspace_.depth);
+    state_.refusals = (state_.vertex_pair.a * 31 + state_.vertex_pair.b * 17) %
+                      kRefusalSpread;
+    return ColdDepth(pair_, SurfaceRule::kSurfaceOnly, state_.n,
+                     state_.vertex_pair, Bounds(kColdPromotionVertexPairs),
+                     &workspace_.depth);
   }
 
-  WalkBounds Bounds(int max_promotion_hubs) const {
-    return {max_promotion_hubs, request_.max_walk_steps};
+  WalkBounds Bounds(int max_promotion_vertex_pairs) const {
+    return {max_promotion_vertex_pairs, request_.max_walk_steps};
   }
 
   // Of one that was refused at the last tick, and mostly is again: the thorough
   // search is made again only now and then.
   Depth RefusedDepth() {
-    MinkowskiVertex hub = state_.refused_hub;
-    SupportGap(pair_, state_.refused_n, &hub);
-    return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
-                     Bounds(kRefusedPromotionHubs), &workspace_.depth);
+    MinkowskiVertex vertex_pair = state_.refused_vertex_pair;
+    SupportGap(pair_, state_.refused_n, &vertex_pair);
+    return WalkDepth(pair_, vertex_pair, SurfaceRule::kSurfaceOnly, nullptr,
+                     Bounds(kRefusedPromotionVertexPairs), &workspace_.depth);
   }
 
-  // @param n, hub where the search ended.
-  void Refuse(const Vec3& n, const MinkowskiVertex& hub) {
+  // @param n, vertex pair where the search ended.
+  void Refuse(const Vec3& n, const MinkowskiVertex& vertex_pair) {
     is_refused_ = true;
     ++state_.refusals;
     state_.refused_n = n;
-    state_.refused_hub = hub;
+    state_.refused_vertex_pair = vertex_pair;
   }
 
   // The contact at a facet of A ⊖ B, which is also the next tick's start.
   PairContact AtFacet(const Depth& depth, ContactStatus status) {
-    facet_hub_ = depth.hub;
+    facet_vertex_pair_ = depth.vertex_pair;
     return ContactAtFacet(pair_, depth.best, status);
   }
 
@@ -316,14 +322,14 @@ class Query {
     if (depth.best.support == NormalConeSupport::kVirtual) return false;
     // What goes on may reach beyond its features: a face wider than the pieces
     // has its deepest corner over another one.
-    if (passage_.Continues(depth.best)) return true;
+    if (persistence_.Continues(depth.best)) return true;
     if (depth.best.support != NormalConeSupport::kSupported) return false;
     // A walk that was cut short may not have come to where the bodies press.
     if (depth.status != DepthStatus::kBounded &&
         !IsWithinFeatures(depth.best)) {
       return false;
     }
-    return passage_.IsTransferred(depth.best) ||
+    return persistence_.IsTransferred(depth.best) ||
            LayInFront(pair_, depth.best, request_.last_X_AB) ||
            (depth.best.n.dot(state_.n) >= kComingFrom &&
             depth.best.h >=
@@ -343,14 +349,15 @@ class Query {
     const DepthCandidate* best = nullptr;
     for (const DepthCandidate& facet : workspace_.depth.candidates) {
       if (facet.support == NormalConeSupport::kSupported && facet.h < 0 &&
-          (best == nullptr || facet.h > best->h) && passage_.Continues(facet)) {
+          (best == nullptr || facet.h > best->h) &&
+          persistence_.Continues(facet)) {
         best = &facet;
       }
     }
     if (best == nullptr) return std::nullopt;
-    return AtFacet(
-        {DepthStatus::kLocalMinimum, *best, best->h, HubOf(pair_, *best)},
-        ContactStatus::kPenetrating);
+    return AtFacet({DepthStatus::kLocalMinimum, *best, best->h,
+                    VertexPairOf(pair_, *best)},
+                   ContactStatus::kPenetrating);
   }
 
   // A pair that goes on where another one pressed: the tool may be behind this
@@ -379,55 +386,56 @@ class Query {
   // From the last answer. On coherent motion its facet mostly still is the
   // answer, and one comparison proves it.
   Depth WarmDepth() {
-    MinkowskiVertex hub = state_.hub;
+    MinkowskiVertex vertex_pair = state_.vertex_pair;
     if (!state_.feature_A.is_none()) {
       const Revisit last =
           RevisitFacet(pair_, SurfaceRule::kSurfaceOnly, state_.feature_A,
                        state_.feature_B, state_.n);
       if (last.status == RevisitStatus::kMinimum &&
           last.facet.support == NormalConeSupport::kSupported) {
-        return {DepthStatus::kLocalMinimum, last.facet, last.facet.h, last.hub};
+        return {DepthStatus::kLocalMinimum, last.facet, last.facet.h,
+                last.vertex_pair};
       }
       if (last.status != RevisitStatus::kGone) {
-        return WalkDepth(pair_, last.hub, SurfaceRule::kSurfaceOnly,
-                         &last.facet, Bounds(kWarmPromotionHubs),
+        return WalkDepth(pair_, last.vertex_pair, SurfaceRule::kSurfaceOnly,
+                         &last.facet, Bounds(kWarmPromotionVertexPairs),
                          &workspace_.depth);
       }
     }
-    SupportGap(pair_, state_.n, &hub);
-    return WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
-                     Bounds(kWarmPromotionHubs), &workspace_.depth);
+    SupportGap(pair_, state_.n, &vertex_pair);
+    return WalkDepth(pair_, vertex_pair, SurfaceRule::kSurfaceOnly, nullptr,
+                     Bounds(kWarmPromotionVertexPairs), &workspace_.depth);
   }
 
   // The tool was in contact and the hulls are apart now, yet the gap along the
   // way in, n, is negative: it went through a shallow piece. The depth is
   // measured along the surface's own normals, and the way out is the way in.
   std::optional<PairContact> Held(const Vec3& n) {
-    MinkowskiVertex hub = state_.hub;
-    if (!(SupportGap(pair_, n, &hub) < 0)) return std::nullopt;
+    MinkowskiVertex vertex_pair = state_.vertex_pair;
+    if (!(SupportGap(pair_, n, &vertex_pair) < 0)) return std::nullopt;
     const Depth depth =
-        WalkDepth(pair_, hub, SurfaceRule::kSurfaceOnly, nullptr,
-                  Bounds(kWarmPromotionHubs), &workspace_.depth);
+        WalkDepth(pair_, vertex_pair, SurfaceRule::kSurfaceOnly, nullptr,
+                  Bounds(kWarmPromotionVertexPairs), &workspace_.depth);
     if (depth.status == DepthStatus::kNoFacet ||
         depth.best.support != NormalConeSupport::kSupported ||
         !(depth.best.h < 0) ||
-        !(passage_.Continues(depth.best) ||
-          passage_.IsTransferred(depth.best)) ||
+        !(persistence_.Continues(depth.best) ||
+          persistence_.IsTransferred(depth.best)) ||
         !IsWithinFeatures(depth.best)) {
       return std::nullopt;
     }
     return AtFacet(depth, ContactStatus::kHeld);
   }
 
-  PressurePatch FindPatch(const Vec3& n, double h, const MinkowskiVertex& hub,
-                          const Vec3& p_a) {
-    return FindSurfacePatch(pair_, n, h, hub, p_a, request_.tolerance,
+  PressurePatch FindPatch(const Vec3& n, double h,
+                          const MinkowskiVertex& vertex_pair, const Vec3& p_a) {
+    return FindSurfacePatch(pair_, n, h, vertex_pair, p_a, request_.tolerance,
                             &workspace_.patch);
   }
 
   void Remember(const std::optional<PairContact>& contact) {
     state_.in_contact = contact.has_value();
-    const bool is_facet = contact && facet_hub_;
+    const bool is_facet = contact && facet_vertex_pair_;
     state_.feature_A = is_facet ? contact->feature_A : Feature();
     state_.feature_B = is_facet ? contact->feature_B : Feature();
     if (contact) {
@@ -436,18 +444,18 @@ class Query {
       state_.p_b = pair_.X_AB.inverse() * contact->p_b;
     }
     if (is_facet) {
-      state_.hub = *facet_hub_;
+      state_.vertex_pair = *facet_vertex_pair_;
     } else if (separation_.status != SeparationStatus::kTouching) {
       // The vertices of the closest features face each other along n.
       state_.n = separation_.n;
-      state_.hub = separation_.simplex.hubs[0];
+      state_.vertex_pair = separation_.simplex.vertex_pairs[0];
     }
   }
 
   const PosedPair& pair_;
   const SurfaceRequest request_;
   SurfacePairState& state_;
-  const ContactPersistence passage_;
+  const ContactPersistence persistence_;
   SurfacePairWorkspace& workspace_;
   GlobalDepthState* const global_;  // null where the depth is tracked
   Separation separation_;
@@ -455,7 +463,7 @@ class Query {
   bool is_refused_ = false;   // an overlap had no plausible facet
   bool ends_early_ = false;   // see Promotion
   std::optional<MinkowskiVertex>
-      facet_hub_;  // of the facet that is the answer, if one is
+      facet_vertex_pair_;  // of the facet that is the answer, if one is
 };
 
 }  // namespace

@@ -22,7 +22,7 @@ struct SurfacePairState : PairState {
   bool is_unmet = false;  ///< they began to, and there is no contact
   int refusals = 0;       ///< ticks on end at which an overlap was no contact
   Vec3 refused_n = Vec3::Zero();  ///< where the last search ended, in A's frame
-  MinkowskiVertex refused_hub;
+  MinkowskiVertex refused_vertex_pair;
   int press = -1;  ///< its place among the tick's pressed contacts, if any
   /// Set where no contact was found on the features that face each other, for
   /// they end: of how many walls that A presses into was known then.
@@ -31,7 +31,7 @@ struct SurfacePairState : PairState {
 
 /// Buffers of a query of two surface pieces.
 struct SurfacePairWorkspace : PairWorkspace {
-  std::vector<DepthCandidate> carried;
+  std::vector<DepthCandidate> supported;
   std::vector<WantedFacets> wanted;
 };
 

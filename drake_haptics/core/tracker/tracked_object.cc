@@ -267,7 +267,7 @@ bool TrackedObject::UpdatePair(const Tick& tick,
   if (!may_take_over && state.n.squaredNorm() > 0) {
     // Last tick's normal often still proves that the pair is out of reach.
     const double gap =
-        SupportGap(Posed(tick, pair->pieces), state.n, &state.hub);
+        SupportGap(Posed(tick, pair->pieces), state.n, &state.vertex_pair);
     pair->slack = gap - tick.watched;
     if (gap > tick.tolerance) {
       state.overlaps = state.is_unmet = false;

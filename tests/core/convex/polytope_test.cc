@@ -38,10 +38,10 @@ std::vector<Vec3> Cube(int points_per_edge) {
   return points;
 }
 
-// The spoke from one vertex to another, or null.
-const Polytope::OneRingEntry* SpokeTo(const Polytope& P, int from, int to) {
-  for (const Polytope::OneRingEntry& spoke : P.fan_of(from)) {
-    if (spoke.neighbor == to) return &spoke;
+// The ring_entry from one vertex to another, or null.
+const Polytope::OneRingEntry* RingEntryTo(const Polytope& P, int from, int to) {
+  for (const Polytope::OneRingEntry& ring_entry : P.fan_of(from)) {
+    if (ring_entry.neighbor == to) return &ring_entry;
   }
   return nullptr;
 }
@@ -58,9 +58,9 @@ void CheckLoops(const Polytope& P) {
                 ? edge.v0 == from && edge.v1 == to
                 : edge.right == f && edge.v0 == to && edge.v1 == from);
       // Counter-clockwise about a vertex its edge comes before its facet.
-      const Polytope::OneRingEntry* spoke = SpokeTo(P, from, to);
-      CHECK(spoke != nullptr && spoke->facet == f &&
-            spoke->normal == P.facets[f].normal);
+      const Polytope::OneRingEntry* ring_entry = RingEntryTo(P, from, to);
+      CHECK(ring_entry != nullptr && ring_entry->facet == f &&
+            ring_entry->normal == P.facets[f].normal);
     }
   }
 }
@@ -70,7 +70,7 @@ void CheckNeighbors(const Polytope& P) {
     const auto fan = P.fan_of(v);
     CHECK(fan.size() == P.ring_of(v).size());
     for (std::size_t i = 0; i < fan.size(); ++i) {
-      CHECK(SpokeTo(P, fan[i].neighbor, v) != nullptr);
+      CHECK(RingEntryTo(P, fan[i].neighbor, v) != nullptr);
       const Polytope::Edge& edge = P.edges[fan[i].edge];
       CHECK(std::minmax(edge.v0, edge.v1) == std::minmax(v, fan[i].neighbor));
       const Vec3 along = P.vertices[fan[i].neighbor] - P.vertices[v];

@@ -58,7 +58,7 @@ void AdoptedEdgesOffTheMeshCarryNothing() {
     for (const Polytope::Edge& edge : P.edges) {
       if (edge.original) continue;
       ++num_virtual;
-      CHECK(edge.carrying[0].isZero(0) && edge.carrying[1].isZero(0));
+      CHECK(edge.normal_arc[0].isZero(0) && edge.normal_arc[1].isZero(0));
     }
   }
   CHECK(num_virtual >= 6);

@@ -25,10 +25,10 @@ Polytope RandomBall(int n, std::mt19937* random) {
   return MakePolytope(points);
 }
 
-// The largest gap of all facets at a hub: the overlay without a floor.
-double LargestGap(const PosedPair& pair, const MinkowskiVertex& hub) {
+// The largest gap of all facets at a vertex pair: the overlay without a floor.
+double LargestGap(const PosedPair& pair, const MinkowskiVertex& vertex_pair) {
   DepthWorkspace workspace;
-  OverlayGaussRegions(pair, hub, SurfaceRule::kSurfaceOnly, -kInfinity,
+  OverlayGaussRegions(pair, vertex_pair, SurfaceRule::kSurfaceOnly, -kInfinity,
                       &workspace);
   double largest = -kInfinity;
   for (const DepthCandidate& candidate : workspace.candidates) {
@@ -53,13 +53,13 @@ void TestAgainstOverlay() {
                  .toRotationMatrix();
     X_AB.p = 0.4 * vector();
     const PosedPair pair{A, B, X_AB};
-    MinkowskiVertex hub;
-    SupportGap(pair, vector().normalized(), &hub);
-    const double largest = LargestGap(pair, hub);
+    MinkowskiVertex vertex_pair;
+    SupportGap(pair, vector().normalized(), &vertex_pair);
+    const double largest = LargestGap(pair, vertex_pair);
     if (!(largest < 0) || largest == -kInfinity) continue;
     const double floor = share(random) * largest;
-    const Vec3 w = pair.a(hub.a) - pair.b(hub.b);
-    const bool may_exceed = OverlayMayExceed(pair, hub, w, floor);
+    const Vec3 w = pair.a(vertex_pair.a) - pair.b(vertex_pair.b);
+    const bool may_exceed = OverlayMayExceed(pair, vertex_pair, w, floor);
     if (largest > floor) CHECK(may_exceed);
     (may_exceed ? kept : spared) += largest > floor ? 0 : 1;
   }

@@ -86,9 +86,9 @@ std::vector<Polytope> Shapes() {
 Depth LocalDepth(const PosedPair& pair, DepthWorkspace* workspace) {
   Vec3 n = pair.A.centroid - pair.X_AB * pair.B.centroid;
   if (!(n.norm() > 1e-12 * pair.scale())) n = Vec3::UnitX();
-  MinkowskiVertex hub;
-  SupportGap(pair, n, &hub);
-  return WalkDepth(pair, hub, SurfaceRule::kWholeBoundary, nullptr, {1},
+  MinkowskiVertex vertex_pair;
+  SupportGap(pair, n, &vertex_pair);
+  return WalkDepth(pair, vertex_pair, SurfaceRule::kWholeBoundary, nullptr, {1},
                    workspace);
 }
 

@@ -1,4 +1,5 @@
-// The hubs of a flush facet against all pairs of vertices that it could have.
+// The vertex pairs of a flush facet against all pairs of vertices that it could
+// have.
 #include "pair/minkowski_facet_vertices.h"
 
 #include <Eigen/Geometry>
@@ -32,18 +33,18 @@ int FacetFacing(const Polytope& P, const Vec3& outward) {
   return -1;
 }
 
-// Whether the hub is an extreme point of the difference in some direction of
-// the plane: tried densely.
-bool IsCorner(const PosedPair& pair, const MinkowskiVertex& hub,
+// Whether the vertex pair is an extreme point of the difference in some
+// direction of the plane: tried densely.
+bool IsCorner(const PosedPair& pair, const MinkowskiVertex& vertex_pair,
               const std::vector<int>& loop_A, const std::vector<int>& loop_B) {
   for (int k = 0; k < 720; ++k) {
     const double angle = 2 * M_PI * (k + 0.37) / 720;
     const Vec3 d(std::cos(angle), std::sin(angle), 0);
     const bool is_A = std::all_of(loop_A.begin(), loop_A.end(), [&](int v) {
-      return d.dot(pair.a(v)) <= d.dot(pair.a(hub.a)) + 1e-12;
+      return d.dot(pair.a(v)) <= d.dot(pair.a(vertex_pair.a)) + 1e-12;
     });
     const bool is_B = std::all_of(loop_B.begin(), loop_B.end(), [&](int v) {
-      return d.dot(pair.b(v)) >= d.dot(pair.b(hub.b)) - 1e-12;
+      return d.dot(pair.b(v)) >= d.dot(pair.b(vertex_pair.b)) - 1e-12;
     });
     if (is_A && is_B) return true;
   }
@@ -68,15 +69,16 @@ void TestFlushPrisms() {
     CHECK(WidestSupport(A, vertex, -n_A) ==
           Feature(FeatureKind::kFacet, bottom));
     CHECK(WidestSupport(B, edge, n_A) == Feature(FeatureKind::kFacet, top));
-    std::vector<MinkowskiVertex> hubs;
-    ListMinkowskiFacetVertices(pair, vertex, edge, n_A, &hubs);
-    CHECK(static_cast<int>(hubs.size()) == m + n);
+    std::vector<MinkowskiVertex> vertex_pairs;
+    ListMinkowskiFacetVertices(pair, vertex, edge, n_A, &vertex_pairs);
+    CHECK(static_cast<int>(vertex_pairs.size()) == m + n);
     for (const int a : loop_A) {
       for (const int b : loop_B) {
-        const MinkowskiVertex hub{a, b};
+        const MinkowskiVertex vertex_pair{a, b};
         const bool is_listed =
-            std::find(hubs.begin(), hubs.end(), hub) != hubs.end();
-        CHECK(is_listed == IsCorner(pair, hub, loop_A, loop_B));
+            std::find(vertex_pairs.begin(), vertex_pairs.end(), vertex_pair) !=
+            vertex_pairs.end();
+        CHECK(is_listed == IsCorner(pair, vertex_pair, loop_A, loop_B));
       }
     }
   }

@@ -71,10 +71,10 @@ void ClippingHasRoomForItsCorners() {
         Eigen::AngleAxisd(0.3 * uniform(generator), axis).toRotationMatrix();
     X_AB.p = Vec3(0, 0, 0.5);
     const PosedPair pair{A, B, X_AB};
-    MinkowskiVertex hub;
-    SupportGap(pair, -Vec3::UnitZ(), &hub);
+    MinkowskiVertex vertex_pair;
+    SupportGap(pair, -Vec3::UnitZ(), &vertex_pair);
     const Vec3 w = 0.3 * RandomDirection();
-    OverlayMayExceed(pair, hub, w, -1e-3);
+    OverlayMayExceed(pair, vertex_pair, w, -1e-3);
   }
 }
 

@@ -34,7 +34,8 @@ Polytope Piece(int size, bool is_flat) {
   return piece;
 }
 
-bool IsCarried(const PosedPair& pair, Feature a, Feature b, const Vec3& n) {
+bool IsInNormalCone(const PosedPair& pair, Feature a, Feature b,
+                    const Vec3& n) {
   return ClassifySupport(pair.A, a, n, pair.B, b,
                          pair.X_AB.R.transpose() * n) ==
          NormalConeSupport::kSupported;
@@ -46,7 +47,7 @@ double EnumeratedGap(const PosedPair& pair) {
   double best = -std::numeric_limits<double>::infinity();
   const auto consider = [&](const Vec3& n, Feature a, Feature b, double h) {
     if (h > best && std::abs(h - FullGap(pair, n)) < kSame &&
-        IsCarried(pair, a, b, n)) {
+        IsInNormalCone(pair, a, b, n)) {
       best = h;
     }
   };
@@ -102,7 +103,7 @@ void TestNoneIsMissed() {
       const auto& f = facets[i];
       CHECK(i == 0 || f.h <= facets[i - 1].h);
       CHECK(std::abs(f.h - FullGap(pair, f.n)) < 1e-12);
-      CHECK(IsCarried(pair, f.feature_A, f.feature_B, f.n));
+      CHECK(IsInNormalCone(pair, f.feature_A, f.feature_B, f.n));
     }
     const std::size_t all = facets.size();
     const double floor = facets[all / 2].h;

@@ -102,7 +102,7 @@ void TestConesAreNarrow() {
   const Decomposition body = DentedTorus(24, 16, 0.02);
   const auto narrow = std::count_if(
       body.pieces.begin(), body.pieces.end(),
-      [](const Polytope& piece) { return piece.carrying.cosine > 0; });
+      [](const Polytope& piece) { return piece.normal_cone.cosine > 0; });
   CHECK(narrow > 0.5 * static_cast<double>(body.pieces.size()));
 }
 
