@@ -27,9 +27,9 @@ from drake_haptics.evaluation.paper.report import (
     Section,
     describe_machine_line,
     make_sections,
-    render,
     summarize,
 )
+from drake_haptics.report.page import draw_png
 
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "paper.md"
@@ -110,7 +110,9 @@ def write_pictures(evaluation: PaperEvaluation) -> None:
         old.unlink()
     for section in make_sections(evaluation):
         for picture in section.pictures:
-            image = Image.open(io.BytesIO(render(picture, _DPI))).convert("RGB")
+            image = Image.open(io.BytesIO(draw_png(picture.draw(), _DPI))).convert(
+                "RGB"
+            )
             small = image.quantize(_COLORS, dither=Image.Dither.NONE)
             small.save(_DOCS / file_of(picture), optimize=True)
 

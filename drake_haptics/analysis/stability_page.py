@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import base64
-import html
-import io
 import math
-from importlib.resources import files
 from pathlib import Path
-from string import Template
 
 from drake_haptics.analysis.delay_margin import LONGEST_DELAY
 from drake_haptics.analysis.modes import describe_motion
 from drake_haptics.analysis.scene_stability import SceneStability
 from drake_haptics.analysis.stiffness_limits import StiffnessLimits, format_limit
-from drake_haptics.report.page import check_page_path
+from drake_haptics.report.page import check_page_path, draw_png, write_page
 
 _SLOWEST_SHOWN = 12
-_DPI = 110
-# Longer cells of a table are words.
-_LONGEST_NUMBER = 20
-_WORDS = ' class="words"'
+# The header of a table and its rows.
+_Table = tuple[list[str], list[list[str]]]
 
 
 def write_stability_page(stability: SceneStability, name: str, path: Path) -> None:
@@ -36,25 +29,24 @@ def write_stability_page(stability: SceneStability, name: str, path: Path) -> No
         OSError: A file cannot be written.
     """
     check_page_path(path)
-    picture = io.BytesIO()
-    stability.plot().savefig(picture, format="png", dpi=_DPI)
-    path.with_suffix(".png").write_bytes(picture.getvalue())
-    template = files("drake_haptics.analysis").joinpath("stability_page.html")
-    page = Template(template.read_text(encoding="utf-8")).substitute(
-        name=html.escape(name),
-        description=html.escape(stability.scene.description),
-        verdict=html.escape(describe_verdict(stability)),
+    sheet = draw_png(stability.plot())
+    path.with_suffix(".png").write_bytes(sheet)
+    write_page(
+        path,
+        "analysis/stability_page.html",
+        name=name,
+        description=stability.scene.description,
+        verdict=describe_verdict(stability),
         verdict_class=_choose_class(stability),
-        situation=html.escape(describe_situation(stability)),
-        sheet=base64.b64encode(picture.getvalue()).decode(),
-        restless=_make_restless(stability),
+        situation=describe_situation(stability),
+        sheet=sheet,
+        restless=describe_restless(stability),
         limits=_make_limits(stability),
         margins=_make_margins(stability),
         gains=_make_gains(stability),
         modes=_make_modes(stability),
-        warnings=_make_warnings(stability),
+        warnings=stability.broken_bounds,
     )
-    path.write_text(page, encoding="utf-8")
 
 
 def describe_verdict(stability: SceneStability) -> str:
@@ -145,12 +137,7 @@ def _choose_class(stability: SceneStability) -> str:
     return "good" if stability.is_passive else "fair"
 
 
-def _make_restless(stability: SceneStability) -> str:
-    words = describe_restless(stability)
-    return f"<p>{html.escape(words)}</p>" if words else ""
-
-
-def _make_limits(stability: SceneStability) -> str:
+def _make_limits(stability: SceneStability) -> _Table:
     header = ["", "scene", "eigenvalue", "simulation", "one axis", "formula"]
     header.append("what limits it")
     rows = [
@@ -165,10 +152,10 @@ def _make_limits(stability: SceneStability) -> str:
         ]
         for limit in stability.limits
     ]
-    return _make_table(header, rows)
+    return header, rows
 
 
-def _make_margins(stability: SceneStability) -> str:
+def _make_margins(stability: SceneStability) -> _Table:
     rows = [
         [
             f"stiffness of {limit.kind}, {limit.against}",
@@ -186,10 +173,10 @@ def _make_margins(stability: SceneStability) -> str:
         ]
     )
     rows.append(["growth per tick", f"{stability.growth:.6f}"])
-    return _make_table(["", "margin"], rows)
+    return ["", "margin"], rows
 
 
-def _make_gains(stability: SceneStability) -> str:
+def _make_gains(stability: SceneStability) -> _Table:
     coupling, handle = stability.scene.coupling, stability.handle
     rows = [
         (
@@ -218,41 +205,16 @@ def _make_gains(stability: SceneStability) -> str:
             handle.rotational_stiffness_Nm_per_rad,
         ),
     ]
-    return _make_table(
-        ["", "translation", "rotation"],
-        [[what, f"{one:.5g}", f"{other:.5g}"] for what, one, other in rows],
-    )
+    cells = [[what, f"{one:.5g}", f"{other:.5g}"] for what, one, other in rows]
+    return ["", "translation", "rotation"], cells
 
 
-def _make_modes(stability: SceneStability) -> str:
+def _make_modes(stability: SceneStability) -> _Table:
     rows = [
         [f"{abs(mode.eigenvalue):.6f}", mode.describe()]
         for mode in stability.modes[:_SLOWEST_SHOWN]
     ]
-    return _make_table(["|z|", f"the slowest {len(rows)} to die out"], rows)
-
-
-def _make_warnings(stability: SceneStability) -> str:
-    if not stability.broken_bounds:
-        return ""
-    items = "".join(f"<li>{html.escape(s)}</li>" for s in stability.broken_bounds)
-    return f"<h2>Bounds that the coupling breaks</h2><ul>{items}</ul>"
-
-
-def _make_table(header: list[str], rows: list[list[str]]) -> str:
-    """Returns a table; long cells are words, which do not line up like numbers."""
-    words = [
-        any(len(row[i]) > _LONGEST_NUMBER for row in rows) for i in range(len(header))
-    ]
-
-    def make_row(tag: str, cells: list[str]) -> str:
-        return "".join(
-            f"<{tag}{_WORDS if is_words else ''}>{html.escape(cell)}</{tag}>"
-            for cell, is_words in zip(cells, words, strict=True)
-        )
-
-    body = "".join(f"<tr>{make_row('td', row)}</tr>" for row in rows)
-    return f"<table><tr>{make_row('th', header)}</tr>{body}</table>"
+    return ["|z|", f"the slowest {len(rows)} to die out"], rows
 
 
 def _times(factor: float) -> str:

@@ -1,11 +1,18 @@
-"""Tables and file names of the pages that commands write."""
+"""Tables, and pages in one file that any browser shows."""
 
 from __future__ import annotations
 
+import base64
+import io
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from drake_haptics.common.errors import HapticsError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -48,3 +55,39 @@ def check_page_path(path: Path) -> None:
             f"the page must not be called {path.name}: its picture will be. Give a"
             " name that ends with .html"
         )
+
+
+def draw_png(figure: Figure, dpi: int = 110) -> bytes:
+    """Returns a figure as PNG of so many dots per inch."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=dpi)
+    return stream.getvalue()
+
+
+def write_page(path: Path, template: str, **data: object) -> None:
+    """Writes a page as one HTML file.
+
+    Args:
+        path: Path of the file.
+        template: Path of its Jinja template in the package, which extends
+            `report/page.html`.
+        **data: What the template names. Text is escaped.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FunctionLoader(_read_template),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+    )
+    environment.filters["base64"] = lambda png: base64.b64encode(png).decode()
+    page = environment.get_template(template).render(**data)
+    path.write_text(page, encoding="utf-8")
+
+
+def _read_template(name: str) -> str:
+    return files("drake_haptics").joinpath(name).read_text(encoding="utf-8")

@@ -18,7 +18,6 @@ COMMAND = "drake-haptics "
 # Files whose business is a command line, another program's, or a style sheet.
 ARE_OPTIONS = {
     "evaluation/accuracy/setting.py": "format_setting returns options",
-    "evaluation/accuracy/page.py": "has variables of CSS",
     "evaluation/measuring/valgrind.py": "calls valgrind",
     "evaluation/paper/report.py": "tells of the command `paper`",
     "evaluation/paper/words.py": "tells of the command `paper`",
