@@ -24,6 +24,7 @@ from drake_haptics.bounds.sampled_spring import (
     calc_stable_stiffness,
 )
 from drake_haptics.common.one_line import one_line
+from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.scene.device_preset import DevicePreset, load_device_preset
 from drake_haptics.scene.schema import CouplingParameters
 from drake_haptics.systems.arm.hand_impedance import HAND_GRIPS, HandGrip
@@ -265,10 +266,8 @@ def suggest_coupling(
 
 
 def _check(rate_hz: float, delay_s: float, margin: float, hand: str | None) -> None:
-    if not (rate_hz > 0.0 and np.isfinite(rate_hz)):
-        raise ValueError(f"rate_hz must be positive, is {rate_hz}")
-    if not (delay_s >= 0.0 and np.isfinite(delay_s)):
-        raise ValueError(f"delay_s must be at least 0, is {delay_s}")
+    check_positive(rate_hz=rate_hz)
+    check_at_least(0, delay_s=delay_s)
     if not (margin > 1.0 and np.isfinite(margin)):
         raise ValueError(f"margin must be above 1, is {margin}")
     if hand is not None and hand not in HAND_GRIPS:

@@ -20,7 +20,6 @@ from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.analysis.preconditions import (
     check_abstract_state,
     check_conversion,
-    check_positive,
     check_system_and_context,
     explain_drake_errors,
 )
@@ -28,6 +27,7 @@ from drake_haptics.analysis.sampled_map import (
     SampledMap,
     set_state,
 )
+from drake_haptics.common.value_checks import check_at_least, check_positive
 
 # Singular values below this part of the largest are directions that nothing holds:
 # quaternion lengths, memories of friction. A step has no part in them.
@@ -91,12 +91,10 @@ def find_equilibrium(
     """
     check_system_and_context(diagram, context)
     if period_s is not None:
-        check_positive("period_s", period_s)
-    check_positive("tolerance", tolerance)
-    if max_iterations < 1:
-        raise ValueError(f"max_iterations must be at least 1, is {max_iterations}")
-    if settle_s < 0.0 or not np.isfinite(settle_s):
-        raise ValueError(f"settle_s must be 0 or more, is {settle_s}")
+        check_positive(period_s=period_s)
+    check_positive(tolerance=tolerance)
+    check_at_least(1, max_iterations=max_iterations)
+    check_at_least(0, settle_s=settle_s)
     check_abstract_state(diagram)
     check_conversion(diagram)
     timings = find_timings(diagram, context)

@@ -26,6 +26,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from drake_haptics.common.one_line import one_line
+from drake_haptics.common.value_checks import check_at_least
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -101,8 +102,7 @@ def calc_exact_boundary(delay_samples: int, points: int = 200) -> ExactBoundary:
     Raises:
         ValueError: The delay is negative or no whole number, or points less than 2.
     """
-    if points < 2:
-        raise ValueError(f"points must be at least 2, is {points}")
+    check_at_least(2, points=points)
     angles = np.linspace(0.0, _end_of_angles(delay_samples), points)
     curve = [calc_boundary_point(angle, delay_samples) for angle in angles]
     return ExactBoundary(
@@ -161,8 +161,7 @@ def calc_exact_alpha(beta: float, delay_samples: int) -> float:
     Raises:
         ValueError: The delay is negative or no whole number, or β is negative.
     """
-    if not beta >= 0.0:
-        raise ValueError(f"beta must be at least 0, is {beta}")
+    check_at_least(0, beta=beta)
     end = _end_of_angles(delay_samples)
     if beta >= calc_boundary_point(end, delay_samples).beta:
         return 0.0

@@ -35,7 +35,6 @@ from drake_haptics.analysis.modes import PeriodMap, check_return
 from drake_haptics.analysis.preconditions import (
     check_abstract_state,
     check_conversion,
-    check_positive,
     check_system_and_context,
     explain_drake_errors,
 )
@@ -44,6 +43,7 @@ from drake_haptics.analysis.sampled_map import (
     get_state,
     set_state,
 )
+from drake_haptics.common.value_checks import check_positive
 
 # Periods are taken for fractions of a second with denominators up to this.
 _LARGEST_DENOMINATOR = 10**7
@@ -68,7 +68,7 @@ def find_hyperperiod(
     """
     periods = sorted({timing.period_s for timing in timings})
     if hyperperiod_s is not None:
-        check_positive("hyperperiod_s", hyperperiod_s)
+        check_positive(hyperperiod_s=hyperperiod_s)
         for period in periods:
             count = hyperperiod_s / period
             if round(count) < 1 or abs(count - round(count)) > _SAME_TIME * count:
@@ -162,7 +162,7 @@ def calc_monodromy(
             convert, or loses derivatives; Drake refuses otherwise.
     """
     check_system_and_context(diagram, context)
-    check_positive("tolerance", tolerance)
+    check_positive(tolerance=tolerance)
     if not all(_is_sampled_plant(leaf) for leaf in _list_abstract(diagram)):
         check_abstract_state(diagram)
     check_conversion(diagram)
@@ -170,7 +170,7 @@ def calc_monodromy(
     H = find_hyperperiod(timings, hyperperiod_s)
     shortest = min((timing.period_s for timing in timings), default=H)
     step_s = shortest / _STEPS if step_s is None else step_s
-    check_positive("step_s", step_s)
+    check_positive(step_s=step_s)
     start = snap_to_update(context.get_time(), timings)
     end = snap_to_update(start + H, timings)
     x = get_state(context)

@@ -27,6 +27,7 @@ from scipy.optimize import minimize_scalar
 
 from drake_haptics.analysis.jobs.blas_threads import on_one_blas_thread
 from drake_haptics.common.one_line import one_line
+from drake_haptics.common.value_checks import check_at_least, check_positive
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -76,10 +77,8 @@ def make_spring_damper(
     Raises:
         ValueError: The period is not positive or the delay is negative.
     """
-    if not period_s > 0.0:
-        raise ValueError(f"period_s must be positive, is {period_s}")
-    if delay_samples < 0:
-        raise ValueError(f"delay_samples must be at least 0, is {delay_samples}")
+    check_positive(period_s=period_s)
+    check_at_least(0, delay_samples=delay_samples)
     K, B = np.atleast_2d(stiffness), np.atleast_2d(damping)
 
     def H(z: complex) -> np.ndarray:
@@ -264,8 +263,7 @@ def calc_passivity(
         ValueError: The period is not positive or not that of the system, a frequency
             is out of its range, H is not square, or is not finite somewhere.
     """
-    if not period_s > 0.0:
-        raise ValueError(f"period_s must be positive, is {period_s}")
+    check_positive(period_s=period_s)
     transfer, poles = as_transfer(H, period_s)
     nyquist_Hz = 0.5 / period_s
 

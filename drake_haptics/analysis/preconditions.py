@@ -28,6 +28,7 @@ from drake_haptics.analysis.diagram_systems import (
     walk_leaves,
 )
 from drake_haptics.common.type_checks import require_kinds
+from drake_haptics.common.value_checks import check_positive
 
 
 def check_system_and_context(diagram: System, context: Context) -> None:
@@ -105,7 +106,7 @@ def find_period(timings: Sequence[Timing], period_s: float | None) -> float:
             given, or `period_s` is another one or not positive.
     """
     if period_s is not None:
-        check_positive("period_s", period_s)
+        check_positive(period_s=period_s)
     if not timings:
         if period_s is None:
             raise ValueError(
@@ -132,12 +133,6 @@ def find_period(timings: Sequence[Timing], period_s: float | None) -> float:
             f" {found:g} s: leave period_s out"
         )
     return found
-
-
-def check_positive(name: str, value: float) -> None:
-    """Raises ValueError if a number is not positive and finite."""
-    if not (value > 0.0 and math.isfinite(value)):
-        raise ValueError(f"{name} must be positive, is {value}")
 
 
 def check_events(system: System, context: Context, period_s: float) -> None:

@@ -21,6 +21,7 @@ from drake_haptics.bounds.sampled_spring import (
     calc_stable_stiffness,
 )
 from drake_haptics.common.one_line import one_line
+from drake_haptics.common.value_checks import check_at_least, check_positive
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -176,13 +177,10 @@ def calc_quantization_bounds(
             friction is negative.
     """
     steps = np.asarray(resolutions, dtype=float)
-    if not period_s > 0.0:
-        raise ValueError(f"period_s must be positive, is {period_s}")
+    check_positive(period_s=period_s)
     if steps.size == 0 or not (steps > 0.0).all():
         raise ValueError("resolutions must be at least one, all positive")
-    for name, value in [("held_damping", held_damping), ("friction", friction)]:
-        if not value >= 0.0:
-            raise ValueError(f"{name} must be at least 0, is {value}")
+    check_at_least(0, held_damping=held_damping, friction=friction)
     return QuantizationBounds(
         resolutions=steps,
         stiffness=np.array(

@@ -18,6 +18,7 @@ from drake_haptics.bounds.sampled_spring import (
 )
 from drake_haptics.common.colors import EIGENVALUE, FORMULA, PASSIVITY, STABLE, UNSTABLE
 from drake_haptics.common.one_line import one_line
+from drake_haptics.common.value_checks import check_at_least, check_positive
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,12 +50,8 @@ class HeldBounds:
         Raises:
             ValueError: The period is not positive, or another value is negative.
         """
-        if not (self.period_s > 0.0 and math.isfinite(self.period_s)):
-            raise ValueError(f"period_s must be positive, is {self.period_s}")
-        for name in ("held_damping", "delay_s"):
-            value = getattr(self, name)
-            if not (value >= 0.0 and math.isfinite(value)):
-                raise ValueError(f"{name} must be at least 0, is {value}")
+        check_positive(period_s=self.period_s)
+        check_at_least(0, held_damping=self.held_damping, delay_s=self.delay_s)
 
     def calc_passive_stiffness(self, damping: float) -> float:
         """Returns the stiffness K up to which K and B are passive.

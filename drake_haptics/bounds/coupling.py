@@ -10,6 +10,7 @@ from drake_haptics.bounds.sampled_spring import (
     calc_sampled_damping,
     calc_stable_stiffness,
 )
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.scene.device_preset import DevicePreset
 
 
@@ -119,13 +120,9 @@ def find_broken_bounds(
     Raises:
         ValueError: The period, the mass or the inertia is not positive.
     """
-    for name, value in [
-        ("period_s", period_s),
-        ("mass_kg", handle.mass_kg),
-        ("inertia_kgm2", handle.inertia_kgm2),
-    ]:
-        if not value > 0.0:
-            raise ValueError(f"{name} must be positive, is {value}")
+    check_positive(
+        period_s=period_s, mass_kg=handle.mass_kg, inertia_kgm2=handle.inertia_kgm2
+    )
     found: list[BrokenBound] = []
     for kind, m, b in [
         (_TRANSLATION, handle.mass_kg, handle.damping_Ns_per_m),

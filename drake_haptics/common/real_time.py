@@ -11,6 +11,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from drake_haptics.common.one_line import count
+from drake_haptics.common.value_checks import check_positive
 
 # Percentiles are those of the latest ticks: a minute at 1 kHz.
 _MAX_RECORDS = 1 << 16
@@ -40,8 +41,7 @@ class RealTimePacer:
         clock: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ):
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         self._period_s = period_s
         self._clock = clock
         self._sleep = sleep

@@ -17,6 +17,7 @@ import numpy as np
 from drake_haptics import _core
 from drake_haptics.common.errors import HapticsError
 from drake_haptics.common.real_time import RealTimePacer
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import DeviceReading, Fault, GateState
 
 Peer = tuple[str, int]
@@ -105,8 +106,7 @@ class DeviceDriver:
         port: int,
         clock_ns: Callable[[], int] = read_clock_ns,
     ):
-        if not 0.0 < rate_hz < math.inf:
-            raise ValueError(f"rate_hz must be positive and finite, is {rate_hz}")
+        check_positive(rate_hz=rate_hz)
         self._arm = arm
         self._limits = (max_force_N, max_torque_Nm)
         self._gate = _core.DeviceGate(

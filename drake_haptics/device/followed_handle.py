@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import DeviceCommand, DeviceReading, GateState
 from drake_haptics.device.rotation_vector import (
     calc_angular_velocity,
@@ -162,13 +163,11 @@ class PoseFilter:
             ValueError: The pose is not finite or has no quaternion, a number is not
                 positive, or the handle could lag behind by more than 0.5 rad.
         """
-        for name, value in [
-            ("rate_per_s", rate_per_s),
-            ("max_speed_m_per_s", max_speed_m_per_s),
-            ("max_turn_rad_per_s", max_turn_rad_per_s),
-        ]:
-            if not (value > 0.0 and math.isfinite(value)):
-                raise ValueError(f"{name} must be positive and finite, is {value}")
+        check_positive(
+            rate_per_s=rate_per_s,
+            max_speed_m_per_s=max_speed_m_per_s,
+            max_turn_rad_per_s=max_turn_rad_per_s,
+        )
         most = _LONGEST_LAG_RAD * rate_per_s / 2.0
         if max_turn_rad_per_s > most:
             raise ValueError(

@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from drake_haptics.common.value_checks import check_positive
+
 # Below this angle, rad, series to the next order are exact to round-off.
 _SMALL_RAD = 1e-4
 # Orientations that stay the same for so long are those of a handle at rest.
@@ -118,8 +120,7 @@ class TurnRate:
     """
 
     def __init__(self, time_constant_s: float):
-        if not time_constant_s > 0.0:
-            raise ValueError(f"time_constant_s must be positive, is {time_constant_s}")
+        check_positive(time_constant_s=time_constant_s)
         self._time_constant_s = time_constant_s
         self._time_s = -math.inf
         self._orientation: tuple[float, ...] | None = None

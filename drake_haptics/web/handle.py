@@ -5,7 +5,6 @@ A camera's frame C is Drake's: x right, y down, z away from the viewer.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from time import monotonic
 from typing import Any
@@ -14,6 +13,7 @@ import numpy as np
 from pydrake.math import RigidTransform
 
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceCommand,
@@ -127,11 +127,7 @@ class PageHandle(DeviceBackend):
         Raises:
             ValueError: A pose is not finite, or the radius out of range.
         """
-        if not 0.0 < workspace_radius_m < math.inf:
-            raise ValueError(
-                "workspace_radius_m must be positive and finite, is"
-                f" {workspace_radius_m}"
-            )
+        check_positive(workspace_radius_m=workspace_radius_m)
         self._handle = FollowedHandle(pose_to_vector(X_BH))
         self._X_WB = X_WB
         self._pilot = PagePilot(X_WB @ X_BH, workspace_radius_m)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from time import monotonic
 
 from pydrake.geometry import Meshcat
 from pydrake.math import RigidTransform
 
+from drake_haptics.common.value_checks import check_at_least
 from drake_haptics.device.backend import DeviceCommand, DeviceReading
 from drake_haptics.web.handle import PageHandle
 from drake_haptics.web.link import open_page_port
@@ -59,12 +59,7 @@ class MouseDevice(PageHandle):
             HapticsError: The port is not available.
         """
         super().__init__(X_WB=X_WB, X_BH=X_BH, workspace_radius_m=workspace_radius_m)
-        for name, value in [
-            ("max_force_N", max_force_N),
-            ("max_torque_Nm", max_torque_Nm),
-        ]:
-            if not 0.0 <= value < math.inf:
-                raise ValueError(f"{name} must be finite and not negative, is {value}")
+        check_at_least(0, max_force_N=max_force_N, max_torque_Nm=max_torque_Nm)
         self._R_WB = X_WB.rotation().matrix()
         self._p_WH = (X_WB @ X_BH).translation()
         self._page = LivePage(

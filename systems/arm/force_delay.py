@@ -7,6 +7,8 @@ from itertools import pairwise
 from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import ZeroOrderHold
 
+from drake_haptics.common.value_checks import check_at_least, check_positive
+
 
 class ForceDelay(Diagram):
     """Delays a wrench by whole periods, on top of the hold before it.
@@ -40,10 +42,8 @@ class ForceDelay(Diagram):
             ValueError: The period is not positive or there is no sample.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
-        if samples < 1:
-            raise ValueError(f"samples must be at least 1, is {samples}")
+        check_positive(period_s=period_s)
+        check_at_least(1, samples=samples)
         builder = DiagramBuilder()
         holds = [
             builder.AddNamedSystem(f"hold_{i}", ZeroOrderHold(period_s, 6))

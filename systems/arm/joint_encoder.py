@@ -12,6 +12,7 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics._core import ArmDynamics
+from drake_haptics.common.value_checks import check_at_least, check_positive
 
 
 class JointEncoder(LeafSystem):
@@ -66,14 +67,8 @@ class JointEncoder(LeafSystem):
             ValueError: The period or a step is not positive, or the window is empty.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
-        if not (np.asarray(step_rad) > 0.0).all():
-            raise ValueError(f"step_rad must be positive, is {step_rad}")
-        if velocity_window < 1:
-            raise ValueError(
-                f"velocity_window must be at least 1, is {velocity_window}"
-            )
+        check_positive(period_s=period_s, step_rad=step_rad)
+        check_at_least(1, velocity_window=velocity_window)
         self._arm = arm
         self._num_kept = velocity_window + 1
         self._window_s = velocity_window * period_s

@@ -6,6 +6,8 @@ import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
+from drake_haptics.common.value_checks import check_at_least, check_positive
+
 # Angular frequency of a joint on its bristles times the tick: as stiff as an integrator
 # of second order with one step per tick follows well.
 _STIFFNESS = 0.4
@@ -68,14 +70,10 @@ class JointFriction(LeafSystem):
             ValueError: The period is not positive or a friction is negative.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
-        for name, values in [
-            ("coulomb_Nm", coulomb_Nm),
-            ("viscous_Nms_per_rad", viscous_Nms_per_rad),
-        ]:
-            if not (np.asarray(values) >= 0.0).all():
-                raise ValueError(f"{name} must not be negative, is {values}")
+        check_positive(period_s=period_s)
+        check_at_least(
+            0, coulomb_Nm=coulomb_Nm, viscous_Nms_per_rad=viscous_Nms_per_rad
+        )
         S = np.array(joint_per_motor, dtype=float)
         self._motor_per_joint = np.linalg.inv(S)
         self._coulomb_Nm = np.array(coulomb_Nm, dtype=float)

@@ -6,6 +6,7 @@ import numpy as np
 from pydrake.systems.framework import BasicVector, Context
 
 from drake_haptics._core import ArmDynamics, AutoDiffVector
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -52,8 +53,7 @@ class MotorTorque(DifferentiableSystem):
             ValueError: A torque is not positive.
         """
         super().__init__()
-        if not (np.asarray(peak_torque_Nm) > 0.0).all():
-            raise ValueError(f"peak_torque_Nm must be positive, is {peak_torque_Nm}")
+        check_positive(peak_torque_Nm=peak_torque_Nm)
         self._arm = arm
         self._to_motors = np.array(joint_per_motor, dtype=float).T
         self._to_joints = np.linalg.inv(self._to_motors)

@@ -18,6 +18,7 @@ from pydrake.systems.framework import (
 
 from drake_haptics._core import FrameChange
 from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import DeviceBackend, DeviceCommand, DeviceReading
 from drake_haptics.systems.framework.differentiable_system import export_parts
 
@@ -73,8 +74,7 @@ class DeviceIo(Diagram):
             ValueError: The period is not positive.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         builder = DiagramBuilder()
         exchange = builder.AddNamedSystem(
             "exchange", _Exchange(backend, _Frame(X_WB), period_s, first_reading)

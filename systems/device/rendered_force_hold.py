@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from pydrake.systems.framework import (
     Context,
@@ -13,6 +11,7 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics._core import AutoDiffVector, limit_wrench
+from drake_haptics.common.value_checks import check_at_least, check_positive
 from drake_haptics.systems.framework.differentiable_system import (
     AutoDiffPoint,
     DifferentiableSystem,
@@ -61,14 +60,8 @@ class RenderedForceHold(Diagram):
                 finite.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
-        for name, limit in [
-            ("max_force_N", max_force_N),
-            ("max_torque_Nm", max_torque_Nm),
-        ]:
-            if not (limit >= 0.0 and math.isfinite(limit)):
-                raise ValueError(f"{name} must be finite and not negative, is {limit}")
+        check_positive(period_s=period_s)
+        check_at_least(0, max_force_N=max_force_N, max_torque_Nm=max_torque_Nm)
         builder = DiagramBuilder()
         sample = builder.AddNamedSystem(
             "sample", _LimitedSample(period_s, max_force_N, max_torque_Nm)

@@ -11,6 +11,7 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.systems.framework.differentiable_system import export_parts
 
 
@@ -47,8 +48,7 @@ class ReplayedHandle(Diagram):
                 not positive.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         if not len(X_WH) == len(V_WH) > 0:
             raise ValueError(
                 f"X_WH and V_WH must have as many ticks and at least one, have"

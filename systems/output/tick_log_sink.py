@@ -15,6 +15,7 @@ from pydrake.systems.framework import (
 from pydrake.systems.primitives import Multiplexer
 
 from drake_haptics._core import ClusterSet, ContactSet
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import DeviceReading
 from drake_haptics.tick_log.log_format import REALS, SIGNALS
 from drake_haptics.tick_log.tick_recorder import TickRecorder
@@ -63,8 +64,7 @@ class TickLogSink(Diagram):
             ValueError: The period is not positive.
         """
         super().__init__()
-        if not period_s > 0.0:
-            raise ValueError(f"period_s must be positive, is {period_s}")
+        check_positive(period_s=period_s)
         builder = DiagramBuilder()
         # Drake joins the vectors, which takes less time than one port in Python.
         signals = builder.AddNamedSystem(

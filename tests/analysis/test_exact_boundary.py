@@ -93,9 +93,9 @@ def test_a_delay_that_is_not_whole_is_refused(delay):
 
 
 def test_what_cannot_be_is_refused():
-    with pytest.raises(ValueError, match="beta must be at least 0, is -1"):
+    with pytest.raises(ValueError, match="beta must be at least 0 and finite, is -1"):
         calc_exact_alpha(-1.0, 0)
     with pytest.raises(ValueError, match=r"angle must be in \[0, 1\.57"):
         calc_boundary_point(1.6, 0)
-    with pytest.raises(ValueError, match="points must be at least 2, is 1"):
+    with pytest.raises(ValueError, match="points must be at least 2 and finite, is 1"):
         calc_exact_boundary(0, 1)

@@ -189,7 +189,7 @@ H = make_spring_damper(800.0, 2.0, T)
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((H, 0.0), "period_s must be positive, is 0"),
+        ((H, 0.0), "period_s must be positive and finite, is 0"),
         ((H, T, [501.0]), "frequencies_Hz must be from 0 to"),
         ((H, T, []), "frequencies_Hz must be from 0 to"),
         ((lambda z: np.ones((2, 1)), T), "H must be square"),

@@ -81,11 +81,11 @@ def test_the_plot_shows_the_curve_and_its_knee():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((0.5, 0.1, 0.0, [1e-5]), "period_s must be positive, is 0"),
+        ((0.5, 0.1, 0.0, [1e-5]), "period_s must be positive and finite, is 0"),
         ((0.5, 0.1, T, []), "resolutions must be at least one"),
         ((0.5, 0.1, T, [0.0]), "resolutions must be at least one"),
-        ((-0.5, 0.1, T, [1e-5]), "held_damping must be at least 0, is -0.5"),
-        ((0.5, -0.1, T, [1e-5]), "friction must be at least 0, is -0.1"),
+        ((-0.5, 0.1, T, [1e-5]), "held_damping must be at least 0 and finite"),
+        ((0.5, -0.1, T, [1e-5]), "friction must be at least 0 and finite"),
     ],
 )
 def test_what_cannot_be_is_refused(arguments, message):

@@ -95,5 +95,5 @@ def test_memory_does_not_grow_and_old_ticks_are_forgotten():
 
 
 def test_the_period_must_be_positive():
-    with pytest.raises(ValueError, match="period_s must be positive, is 0"):
+    with pytest.raises(ValueError, match="period_s must be positive and finite, is 0"):
         RealTimePacer(0.0)

@@ -71,5 +71,5 @@ def test_at_rest_the_rate_is_nothing_and_a_jump_after_it_means_nothing():
 
 
 def test_a_time_constant_must_be_positive():
-    with pytest.raises(ValueError, match="time_constant_s must be positive, is 0"):
+    with pytest.raises(ValueError, match="time_constant_s must be positive and"):
         TurnRate(0.0)

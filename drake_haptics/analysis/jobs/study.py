@@ -21,6 +21,7 @@ from drake_haptics.analysis.jobs.pool import (
     local_processes,
 )
 from drake_haptics.analysis.jobs.store import StudyFunction, StudyStore
+from drake_haptics.common.value_checks import check_at_least
 
 # Failed tasks that a message tells of; all are in the error.
 _TOLD = 5
@@ -359,8 +360,7 @@ def _check_arguments(
             "executor must be a concurrent.futures.Executor (of a Dask client:"
             f" client.get_executor()), is a {type(executor).__name__}"
         )
-    if chunk_size < 1:
-        raise ValueError(f"chunk_size must be at least 1, is {chunk_size}")
+    check_at_least(1, chunk_size=chunk_size)
 
 
 def _to_key(index: int, task: Any) -> str:

@@ -13,6 +13,7 @@ from websockets.exceptions import WebSocketException
 from websockets.sync.client import ClientConnection, connect
 
 from drake_haptics.common.real_time import RealTimePacer
+from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import (
     DeviceBackend,
     DeviceCommand,
@@ -94,8 +95,7 @@ class HaplyDevice(DeviceBackend):
             raise ValueError(
                 f"force_field must be vector or values, is {force_field!r}"
             )
-        if not rate_hz > 0.0:
-            raise ValueError(f"rate_hz must be positive, is {rate_hz}")
+        check_positive(rate_hz=rate_hz)
         self._uri = uri
         self._exchange = HaplyExchange(
             LocalGate(max_force_N=max_force_N, max_torque_Nm=0.0, ttl_s=ttl_s),

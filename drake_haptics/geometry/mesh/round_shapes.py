@@ -11,6 +11,8 @@ from itertools import product
 
 import numpy as np
 
+from drake_haptics.common.value_checks import check_positive
+
 # Beyond, a hull takes seconds and says no more to a hand.
 _LARGEST_FREQUENCY = 40
 _MOST_SIDES = 720
@@ -37,7 +39,7 @@ def make_ellipsoid_corners(
             some ten thousand corners.
     """
     largest = max(semi_axes_m)
-    _check_error(chord_error_m)
+    check_positive(chord_error_m=chord_error_m)
     # The error goes with the square of the facets' size.
     frequency = max(1, int(0.3 * np.sqrt(largest / chord_error_m)))
     while True:
@@ -90,7 +92,7 @@ def make_cylinder_corners(
         ValueError: The error is not positive, or so small that it takes more than
             some hundred sides.
     """
-    _check_error(chord_error_m)
+    check_positive(chord_error_m=chord_error_m)
     sides = 3
     while _split_error(np.cos(np.pi / sides))[1] * radius_m > chord_error_m:
         sides += 1
@@ -106,11 +108,6 @@ def make_cylinder_corners(
     return np.concatenate(
         [np.insert(ring, 2, z, axis=1) for z in (-0.5 * length_m, 0.5 * length_m)]
     )
-
-
-def _check_error(chord_error_m: float) -> None:
-    if not chord_error_m > 0.0:
-        raise ValueError(f"chord_error_m must be positive, is {chord_error_m}")
 
 
 def _split_error(height: float) -> tuple[float, float]:

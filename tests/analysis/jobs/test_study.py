@@ -284,7 +284,7 @@ def test_arguments_that_cannot_be_used_are_named():
         run_study(3, [1])
     with pytest.raises(ValueError, match=r"executor must be .*get_executor.* is a int"):
         run_study(square, [1], executor=4)
-    with pytest.raises(ValueError, match="chunk_size must be at least 1, is 0"):
+    with pytest.raises(ValueError, match="chunk_size must be at least 1 and"):
         run_study(square, [1], chunk_size=0)
 
 

@@ -132,9 +132,9 @@ def test_a_swing_ends_and_energy_only_falls(seed):
     ("change", "message"),
     [
         ({"period_s": 0.0}, "period_s must be positive"),
-        ({"coulomb_Nm": -COULOMB}, "coulomb_Nm must not be negative"),
-        ({"viscous_Nms_per_rad": -np.ones(6)}, "viscous_Nms_per_rad must not be"),
-        ({"coulomb_Nm": np.full(6, np.nan)}, "coulomb_Nm must not be negative"),
+        ({"coulomb_Nm": -COULOMB}, "coulomb_Nm must be at least 0"),
+        ({"viscous_Nms_per_rad": -np.ones(6)}, "viscous_Nms_per_rad must be at"),
+        ({"coulomb_Nm": np.full(6, np.nan)}, "coulomb_Nm must be at least 0"),
     ],
 )
 def test_what_is_no_friction_is_refused(change, message):

@@ -123,5 +123,5 @@ def test_a_handle_that_is_nowhere_ends_the_simulation():
 
 
 def test_the_period_must_be_positive():
-    with pytest.raises(ValueError, match="period_s must be positive, is 0"):
+    with pytest.raises(ValueError, match="period_s must be positive and finite, is 0"):
         DeviceIo(ScriptedDevice(), X_WB, 0.0, make_reading())

@@ -53,5 +53,5 @@ def test_what_cannot_be_replayed_is_refused():
         ReplayedHandle(X_WH, V_WH[:1], 1e-3)
     with pytest.raises(ValueError, match="have 0 and 0"):
         ReplayedHandle(X_WH[:0], V_WH[:0], 1e-3)
-    with pytest.raises(ValueError, match="period_s must be positive, is 0"):
+    with pytest.raises(ValueError, match="period_s must be positive and finite, is 0"):
         ReplayedHandle(X_WH, V_WH, 0.0)

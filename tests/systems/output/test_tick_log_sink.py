@@ -140,7 +140,7 @@ def test_without_a_recorder_there_is_no_sink(scene):
 
 
 def test_a_period_must_be_positive():
-    with pytest.raises(ValueError, match="period_s must be positive, is 0"):
+    with pytest.raises(ValueError, match="period_s must be positive and finite, is 0"):
         TickLogSink(None, 0.0)
 
 

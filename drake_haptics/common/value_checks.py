@@ -1,0 +1,31 @@
+"""Checks the values of arguments before they are used."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+def check_positive(**values: ArrayLike) -> None:
+    """Raises ValueError unless all numbers are above 0 and finite.
+
+    Args:
+        **values: Number or array of each argument, by its name.
+    """
+    for name, value in values.items():
+        if not np.all((np.asarray(value) > 0.0) & np.isfinite(value)):
+            raise ValueError(f"{name} must be positive and finite, is {value}")
+
+
+def check_at_least(least: float, **values: ArrayLike) -> None:
+    """Raises ValueError unless no number is below a least one and all are finite.
+
+    Args:
+        least: The least number that is allowed.
+        **values: Number or array of each argument, by its name.
+    """
+    for name, value in values.items():
+        if not np.all((np.asarray(value) >= least) & np.isfinite(value)):
+            raise ValueError(
+                f"{name} must be at least {least:g} and finite, is {value}"
+            )
