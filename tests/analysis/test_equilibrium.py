@@ -247,10 +247,10 @@ def test_a_value_that_is_not_a_number_is_no_equilibrium():
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
-        ({"period_s": 0.0}, "period_s must be positive, is 0"),
-        ({"tolerance": 0.0}, "tolerance must be positive, is 0"),
-        ({"max_iterations": 0}, "max_iterations must be at least 1, is 0"),
-        ({"settle_s": -1.0}, "settle_s must be 0 or more, is -1"),
+        ({"period_s": 0.0}, "period_s must be positive and finite, is 0"),
+        ({"tolerance": 0.0}, "tolerance must be positive and finite, is 0"),
+        ({"max_iterations": 0}, "max_iterations must be at least 1 and finite, is 0"),
+        ({"settle_s": -1.0}, "settle_s must be at least 0 and finite, is -1"),
     ],
 )
 def test_arguments_are_checked(options, reason):

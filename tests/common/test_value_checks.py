@@ -15,11 +15,11 @@ def test_values_in_range_pass():
 
 @pytest.mark.parametrize("value", [0, -1e-9, math.inf, math.nan, [1.0, 0.0]])
 def test_what_is_not_positive_is_refused(value):
-    with pytest.raises(ValueError, match="^b must be positive and finite, is "):
+    with pytest.raises(ValueError, match=r"^b must be positive and finite, is "):
         check_positive(a=1.0, b=value)
 
 
 @pytest.mark.parametrize("value", [1, 1.999, math.inf, math.nan, [3.0, -math.inf]])
 def test_what_is_below_the_least_is_refused(value):
-    with pytest.raises(ValueError, match="^b must be at least 2 and finite, is "):
+    with pytest.raises(ValueError, match=r"^b must be at least 2 and finite, is "):
         check_at_least(2, a=2, b=value)
