@@ -11,12 +11,12 @@ python docs/generate/accuracy_table.py --write --errors KNOB ...
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from page_parts import find_part, make_parser, replace_part, to_markdown
 from page_stamp import amend_page, write_page
 
 from drake_haptics.cli.console import progress_bar
@@ -64,8 +64,6 @@ _BUDGET_RUNS = 3
 # Of the scene's own p99: a budget that costs something.
 _BUDGET_SHARE = 0.8
 _BUDGET_STEP_US = 10.0
-BEGIN = "<!-- {}: written by docs/generate/accuracy_table.py -->\n"
-END = "<!-- end of {} -->\n"
 COLUMNS_NAME, BUDGETS_NAME = "columns", "budgets"
 BUDGET_HEADINGS = ("scene", "budget, µs", "p99, µs", "scene's p99, µs", "given up")
 # Knob, setting, and times of tick and core are before the errors; energy is the last.
@@ -89,7 +87,7 @@ def make_prices(study: AccuracyStudy) -> str:
     ]
     parts = [
         " ".join([*describe_verdict(study), describe_reference(study)]) + "\n",
-        _to_markdown(["knob", "setting", *heads], rows),
+        to_markdown([["knob", "setting", *heads], *rows]),
         _make_list("Knee: ", describe_knees(study)),
         _make_list("Beside it: ", describe_peers(study)),
         _make_list("Not measured: ", describe_missing(study)),
@@ -113,24 +111,13 @@ def make_budgets(choices: dict[str, BudgetChoice]) -> str:
                 "; ".join(lost) if choice.holds else describe_outcome(choice, name),
             ]
         )
-    return _to_markdown(list(BUDGET_HEADINGS), rows)
-
-
-def span_of(page: str, name: str) -> slice:
-    """Returns where in the page the part of that name is.
-
-    Raises:
-        ValueError: a mark is missing.
-    """
-    begin = BEGIN.format(name)
-    return slice(page.index(begin) + len(begin), page.index(END.format(name)))
+    return to_markdown([BUDGET_HEADINGS, *rows])
 
 
 def with_parts(page: str, parts: dict[str, str]) -> str:
     """Returns the page with new parts between their marks."""
     for name, text in parts.items():
-        span = span_of(page, name)
-        page = f"{page[: span.start]}\n{text}\n{page[span.stop :]}"
+        page = replace_part(page, text, name)
     return page
 
 
@@ -167,7 +154,7 @@ def measure_errors(
 
 def with_errors(page: str, name: str, errors: dict[tuple[str, str], list[str]]) -> str:
     """Returns the page with these errors in the rows of a scene."""
-    span = span_of(page, name)
+    span = find_part(page, name)
     lines = page[span].split("\n")
     for i, line in enumerate(lines):
         cells = line[2:-2].split(" | ")
@@ -224,17 +211,9 @@ def _make_list(beginning: str, sentences: list[str]) -> str:
     return "".join(f"- {beginning}{sentence}\n" for sentence in sentences)
 
 
-def _to_markdown(header: list[str], rows: list[list[str]]) -> str:
-    lines = [header, ["---"] * len(header), *rows]
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines) + "\n"
-
-
 def main() -> None:
     """Measures, prints, and writes the page if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    parser = make_parser(__doc__, PAGE)
     parser.add_argument("--store", type=Path, help="folder that keeps results")
     parser.add_argument(
         "--errors", nargs="+", metavar="KNOB", help="of these knobs alone"

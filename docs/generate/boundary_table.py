@@ -5,7 +5,6 @@ python docs/generate/boundary_table.py --write
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +12,7 @@ from pathlib import Path
 import matplotlib
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
+from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import write_page
 from wall_motion import HAND, NO_HAND, TABLE, find_simulated_limit, make_wall
 
@@ -30,8 +30,6 @@ from drake_haptics.bounds.sampled_spring import (
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "stability-theory.md"
 PICTURE = _DOCS / "stability_boundary.png"
-BEGIN = "<!-- {}: written by docs/generate/boundary_table.py -->\n"
-END = "<!-- end of {} -->\n"
 DELAYS = range(5)
 BETAS = (0.05, 0.1, 0.2)
 MASS_KG, PERIOD_S = 0.1, 1e-3
@@ -103,33 +101,15 @@ def wall_rows() -> Iterator[list[str]]:
         ]
 
 
-def to_markdown(rows: Iterator[list[str]]) -> str:
-    """The rows as a table, the first one its head."""
-    lines = ["| " + " | ".join(cells) + " |" for cells in rows]
-    lines.insert(1, "|" + "---|" * (lines[0].count("|") - 1))
-    return "\n".join(lines) + "\n"
-
-
 TABLES = {"boundaries": boundary_rows, "walls": wall_rows}
-
-
-def span_of(page: str, name: str) -> slice:
-    """Returns where in the page the table of that name is.
-
-    Raises:
-        ValueError: a mark is missing.
-    """
-    begin = BEGIN.format(name)
-    return slice(page.index(begin) + len(begin), page.index(END.format(name)))
 
 
 def with_tables(page: str) -> str:
     """Returns the page with the tables of now."""
     for name, rows in TABLES.items():
-        table = f"\n{to_markdown(rows())}\n"
+        table = to_markdown(rows())
         print(table)
-        span = span_of(page, name)
-        page = page[: span.start] + table + page[span.stop :]
+        page = replace_part(page, table, name)
     return page
 
 
@@ -157,11 +137,7 @@ def draw() -> None:
 
 def main() -> None:
     """Prints the tables, and writes page and picture if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
-    write = parser.parse_args().write
+    write = make_parser(__doc__, PAGE).parse_args().write
     page = with_tables(PAGE.read_text(encoding="utf-8"))
     if write:
         write_page(PAGE, page, __file__)

@@ -20,6 +20,7 @@ from pathlib import Path
 
 from effect_child import CORE_CALLS, EFFECTS, TICKS, WARM_UP, make_scene
 from effect_rows import make_rows
+from page_parts import read_part, replace_part
 from page_stamp import amend_page, write_page
 
 from drake_haptics.common.real_time import RealTimePacer
@@ -28,8 +29,6 @@ from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import make_simulator
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "effects.md"
-_BEGIN = "<!-- figures: written by docs/generate/effect_costs.py -->\n"
-_END = "<!-- end of figures -->\n"
 _REPEATS = 3
 _PROOF = f"""\
 An effect that is not named costs nothing: its module is not loaded and its function of
@@ -131,8 +130,7 @@ def measure(has_times: bool) -> Costs:
 
 def read_times(page: str) -> dict[str, str]:
     """Returns the cells of the page that have times, by what is in the first cell."""
-    start, end = page.index(_BEGIN), page.index(_END)
-    rows = [line[2:-2].split(" | ") for line in page[start:end].splitlines()]
+    rows = [line[2:-2].split(" | ") for line in read_part(page).splitlines()]
     return {row[0]: row[_TIME] for row in rows if len(row) == len(_HEADER)}
 
 
@@ -193,9 +191,8 @@ def with_figures(page: str, costs: Costs) -> str:
     Raises:
         ValueError: a mark is missing.
     """
-    start, end = page.index(_BEGIN) + len(_BEGIN), page.index(_END)
     parts = [make_table(costs, read_times(page)), _PROOF + "\n" + make_proof(costs)]
-    return page[:start] + "\n" + "\n\n".join(parts) + "\n\n" + page[end:]
+    return replace_part(page, "\n\n".join(parts) + "\n")
 
 
 def _row(cells: Sequence[str]) -> str:
@@ -209,7 +206,7 @@ def main() -> None:
     has_times = "--keep-times" not in sys.argv[1:]
     costs = measure(has_times)
     page = with_figures(PAGE.read_text(encoding="utf-8"), costs)
-    print(page[page.index(_BEGIN) : page.index(_END)], costs.tick_us)
+    print(read_part(page), costs.tick_us)
     if "--write" not in sys.argv[1:]:
         return
     if has_times:

@@ -5,7 +5,6 @@ python docs/generate/gradient_table.py --write
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -21,6 +20,7 @@ from cell_mesh import cell_mesh
 from contact_chain_diagram import ContactChain
 from contact_samples import box, pose
 from contact_state import METHODS, State, T, keeps_features, random_states
+from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import write_page
 from press_tools import MODELS
 from touching_poses import touching_pose
@@ -30,8 +30,6 @@ from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import load_mesh
 
 PAGE = Path(__file__).parents[2] / "docs" / "gradients.md"
-BEGIN = "<!-- chain: written by docs/generate/gradient_table.py -->\n"
-END = "<!-- end of chain -->\n"
 STEP = 5e-7
 TARGET = 1e-6
 # One in so many states goes through Drake too, which takes longer.
@@ -222,23 +220,14 @@ def rows(count: int) -> Iterator[Row]:
 
 def main() -> None:
     """Prints the table, and writes it into the page if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = make_parser(__doc__, PAGE)
     parser.add_argument("--states", type=int, default=300, help="of each row")
-    parser.add_argument("--write", action="store_true", help="write docs/gradients.md")
     arguments = parser.parse_args()
-    lines = [
-        "| " + " | ".join(texts) + " |"
-        for texts in (TITLES, *map(cells, rows(arguments.states)))
-    ]
-    lines.insert(1, "|" + "---|" * len(TITLES))
-    print(*lines, sep="\n")
+    table = to_markdown([TITLES, *map(cells, rows(arguments.states))])
+    print(table)
     if arguments.write:
         page = PAGE.read_text(encoding="utf-8")
-        start, end = page.index(BEGIN) + len(BEGIN), page.index(END)
-        table = "\n".join(["", *lines, "", ""])
-        write_page(PAGE, page[:start] + table + page[end:], __file__)
+        write_page(PAGE, replace_part(page, table, "chain"), __file__)
 
 
 if __name__ == "__main__":

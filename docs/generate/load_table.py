@@ -5,13 +5,12 @@ python docs/generate/load_table.py --write
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from boundary_table import to_markdown
+from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import write_page
 
 from drake_haptics import SceneTracker
@@ -20,8 +19,6 @@ from drake_haptics.evaluation.benchmark.scenes import SceneProblem, scene_makers
 from drake_haptics.evaluation.measuring.timing import describe_machine
 
 PAGE = Path(__file__).parents[2] / "docs" / "under-load.md"
-BEGIN = "<!-- stages: written by docs/generate/load_table.py -->\n"
-END = "<!-- end of stages -->\n"
 HEAD = ["scene", "left out", "contacts", "that push", "query, µs", "the rest, µs"]
 SCENES = ("spoon on cup", "peg in hole", "wrench in machine room")
 # What is left of the reach, and the cell as a share of the tool's size.
@@ -82,20 +79,9 @@ def rows() -> Iterator[list[str]]:
             ]
 
 
-def span_of(page: str) -> slice:
-    """Returns where in the page the table is.
-
-    Raises:
-        ValueError: a mark is missing.
-    """
-    return slice(page.index(BEGIN) + len(BEGIN), page.index(END))
-
-
 def main() -> None:
     """Prints the table, and with --write puts it into the page."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
-    write = parser.parse_args().write
+    write = make_parser(__doc__, PAGE).parse_args().write
     machine = describe_machine()
     table = (
         f"{machine['processor']}, {machine['cores']} cores, {machine['system']}; noisy."
@@ -104,10 +90,7 @@ def main() -> None:
     print(table)
     if write:
         page = PAGE.read_text(encoding="utf-8")
-        span = span_of(page)
-        write_page(
-            PAGE, page[: span.start] + "\n" + table + "\n" + page[span.stop :], __file__
-        )
+        write_page(PAGE, replace_part(page, table, "stages"), __file__)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ python docs/generate/loop_gradient_table.py --write
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,6 +13,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
 from loop_gradients import LoopGradients, build_scene, calc_gradients, contact_states
+from page_parts import make_parser, to_markdown
 from page_stamp import write_page
 
 from drake_haptics.analysis.diagram_systems import walk_leaves
@@ -84,9 +84,7 @@ def _tell_errors(found: list[LoopGradients], part: slice) -> list[str]:
 
 def with_table(page: str) -> str:
     """Returns the page with the table of now between its marks."""
-    lines = ["| " + " | ".join(cells) + " |" for cells in rows()]
-    lines.insert(1, "|" + "---|" * len(TITLES))
-    table = "\n".join(lines) + "\n"
+    table = to_markdown(rows())
     print(table)
     before, _, after = page.split(MARK)
     return MARK.join([before, f"\n{table}\n", after])
@@ -94,11 +92,7 @@ def with_table(page: str) -> str:
 
 def main() -> None:
     """Prints the table, and writes the page if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
-    write = parser.parse_args().write
+    write = make_parser(__doc__, PAGE).parse_args().write
     page = with_table(PAGE.read_text(encoding="utf-8"))
     if write:
         write_page(PAGE, page, __file__)

@@ -8,17 +8,14 @@ page's own command.
 
 from __future__ import annotations
 
-import argparse
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from boundary_table import to_markdown
+from page_parts import make_parser, replace_part, to_markdown
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = DOCS / "numerics.md"
-BEGIN = "<!-- summary: written by docs/generate/numerics_table.py -->\n"
-END = "<!-- end of summary -->\n"
 HEAD = ["what could be wrong", "tried on", "here", "for comparison", "page"]
 # Rows of docs/no-fall-through.md by their gains, and what they are called here.
 PRESSED = {
@@ -173,30 +170,14 @@ def _find(page: str, pattern: str) -> str:
     return found[1]
 
 
-def span_of(page: str) -> slice:
-    """Returns where in the page the table is.
-
-    Raises:
-        ValueError: a mark is missing.
-    """
-    return slice(page.index(BEGIN) + len(BEGIN), page.index(END))
-
-
 def main() -> None:
     """Prints the table, and with --write puts it into the page."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
-    write = parser.parse_args().write
+    write = make_parser(__doc__, PAGE).parse_args().write
     table = to_markdown(summary_rows())
     print(table)
     if write:
         page = PAGE.read_text(encoding="utf-8")
-        span = span_of(page)
-        PAGE.write_text(
-            f"{page[: span.start]}\n{table}\n{page[span.stop :]}", encoding="utf-8"
-        )
+        PAGE.write_text(replace_part(page, table, "summary"), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -8,12 +8,12 @@ other things too, --keep-times writes all but times, which stay as the page has 
 
 from __future__ import annotations
 
-import argparse
 import io
 import re
 import sys
 from pathlib import Path
 
+from page_parts import make_parser, read_part, replace_part
 from page_stamp import amend_page, write_page
 from PIL import Image
 
@@ -33,21 +33,10 @@ from drake_haptics.report.page import draw_png
 
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "paper.md"
-BEGIN = "<!-- figures: written by docs/generate/paper_table.py -->\n"
-END = "<!-- end of figures -->\n"
 _DPI, _COLORS = 80, 128
 # Heads of columns, and words of sentences, in which times are.
 _TIMED_COLUMN = re.compile(r"µs|seconds|Hz|under 1 ms|^(query|force|whole tick)$")
 _TIMED_SENTENCE = re.compile(r"µs|time (?:that )?grows|takes .* % more")
-
-
-def figures_of(page: str) -> str:
-    """Returns the part of the page between the marks.
-
-    Raises:
-        ValueError: a mark is missing.
-    """
-    return page[page.index(BEGIN) + len(BEGIN) : page.index(END)]
 
 
 def file_of(picture: Picture) -> str:
@@ -55,7 +44,7 @@ def file_of(picture: Picture) -> str:
     return f"paper_{picture.key.replace('-', '_')}.png"
 
 
-def to_markdown(section: Section) -> str:
+def show_section(section: Section) -> str:
     """Returns a section of the page."""
     parts = [f"## {section.title}\n"]
     for block in section.blocks:
@@ -72,9 +61,8 @@ def with_figures(page: str, evaluation: PaperEvaluation) -> str:
     """Returns the page with these figures."""
     sections = make_sections(evaluation)
     parts = [f"{summarize(sections)} {describe_machine_line(evaluation)}\n"]
-    parts += map(to_markdown, sections)
-    start = page.index(BEGIN) + len(BEGIN)
-    return page[:start] + "\n" + "\n".join(parts) + "\n" + page[page.index(END) :]
+    parts += map(show_section, sections)
+    return replace_part(page, "\n".join(parts))
 
 
 def keep_times(new: str, old: str) -> str:
@@ -119,10 +107,7 @@ def write_pictures(evaluation: PaperEvaluation) -> None:
 
 def main() -> None:
     """Measures, and writes page and pictures if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    parser = make_parser(__doc__, PAGE)
     parser.add_argument("--meshes", type=Path, help="folder of real meshes")
     parser.add_argument("--quick", action="store_true", help="measure less")
     parser.add_argument(
@@ -137,10 +122,10 @@ def main() -> None:
     old = PAGE.read_text(encoding="utf-8")
     page = with_figures(old, evaluation)
     if arguments.keep_times:
-        now, before = figures_of(page), figures_of(old)
+        now, before = read_part(page), read_part(old)
         page = old.replace(before, keep_times(now, before))
     if not arguments.write:
-        print(figures_of(page))
+        print(read_part(page))
         return
     if arguments.keep_times:
         amend_page(PAGE, page, __file__, "all but times and pictures")

@@ -8,12 +8,11 @@ loops are taken from docs/benchmarks.md, written by `docs/generate/write_docs.py
 
 from __future__ import annotations
 
-import argparse
 import re
 import sys
 from pathlib import Path
 
-from boundary_table import to_markdown
+from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import describe_commit, make_stamp
 
 from drake_haptics import BuildHapticDiagram, find_scene, list_scenes, load_scene, run
@@ -24,8 +23,6 @@ from drake_haptics.loop.builder import HapticDiagram
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
 BENCHMARKS = ROOT / "docs" / "benchmarks.md"
-BEGIN = "<!-- {}: written by docs/generate/readme_tables.py -->\n"
-END = "<!-- end of {} -->\n"
 # The first is the one of `make demo`.
 SCENES = ("cup_spoon", *(name for name in list_scenes() if name != "cup_spoon"))
 DURATION_S = 10.0
@@ -91,7 +88,7 @@ def make_scenes() -> str:
         "as fast as it can",
     ]
     return (
-        f"{to_markdown(iter([head, *rows]))}\nTool on object. Query and"
+        f"{to_markdown([head, *rows])}\nTool on object. Query and"
         f" whole tick: medians of {DURATION_S:g} s at 1 kHz by the clock, as a device"
         " needs it, and 99th percentile, interruptions by the machine included. Last:"
         " the median where no tick waits, as `--headless` runs."
@@ -106,7 +103,7 @@ def make_loops() -> str:
     rows = [[LOOPS[row[0]], *(f"{x} µs" for x in row[1:4])] for row in found]
     head = ["one tick of `cup_spoon`", "median", *UNDISTURBED]
     return (
-        f"{to_markdown(iter([head, *rows]))}\nAll but the first run as fast as they"
+        f"{to_markdown([head, *rows])}\nAll but the first run as fast as they"
         " can, with warm caches. Undisturbed: the mean of the middle half of the"
         " repeats of each tick.\n"
     )
@@ -122,32 +119,15 @@ def read_rows(page: str, title: str) -> list[list[str]]:
     return [row.split(" | ") for row in re.findall(r"(?m)^\| (.*) \|$", section)[2:]]
 
 
-def span_of(page: str, name: str) -> slice:
-    """Returns where in a page the part of that name is.
-
-    Raises:
-        ValueError: a mark is missing.
-    """
-    begin = BEGIN.format(name)
-    return slice(page.index(begin) + len(begin), page.index(END.format(name)))
-
-
 def main() -> None:
     """Prints the tables, and with --write puts them into their pages."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help="write both pages")
-    write = parser.parse_args().write
+    write = make_parser(__doc__, BENCHMARKS, README).parse_args().write
     for file, name, make in PARTS:
         text = make()
         print(f"{name}\n\n{text}")
         if write:
             page = file.read_text(encoding="utf-8")
-            span = span_of(page, name)
-            file.write_text(
-                f"{page[: span.start]}\n{text}\n{page[span.stop :]}", encoding="utf-8"
-            )
+            file.write_text(replace_part(page, text, name), encoding="utf-8")
 
 
 if __name__ == "__main__":

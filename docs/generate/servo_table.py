@@ -5,7 +5,6 @@ python docs/generate/servo_table.py --write
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -14,6 +13,7 @@ import matplotlib
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
+from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import write_page
 from servo_loop import (
     HELD,
@@ -31,8 +31,6 @@ _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "servo.md"
 MAP = _DOCS / "servo.png"
 TRACES = _DOCS / "servo_stall.png"
-BEGIN = "<!-- {}: written by docs/generate/servo_table.py -->\n"
-END = "<!-- end of {} -->\n"
 RATES_HZ = (100, 250, 500, 1000)
 STALLS_S = (0.0, 0.02, 0.05, 0.121, 0.2)
 STIFFNESSES = (250, 500, 1000, 1500, 2000, 3000)
@@ -85,36 +83,18 @@ def _millimeters(length_m: float) -> str:
     return f"{1e3 * length_m:.1f} mm" if length_m < WILD_M else "over 20 mm"
 
 
-def to_markdown(rows: Iterator[list[str]]) -> str:
-    """The rows as a table, the first one its head."""
-    lines = ["| " + " | ".join(cells) + " |" for cells in rows]
-    lines.insert(1, "|" + "---|" * (lines[0].count("|") - 1))
-    return "\n".join(lines) + "\n"
-
-
 TABLES: dict[str, Callable[[], Iterator[list[str]]]] = {
     "parts": part_rows,
     "stalls": stall_rows,
 }
 
 
-def span_of(page: str, name: str) -> slice:
-    """Returns where in the page the table of that name is.
-
-    Raises:
-        ValueError: a mark is missing.
-    """
-    begin = BEGIN.format(name)
-    return slice(page.index(begin) + len(begin), page.index(END.format(name)))
-
-
 def with_tables(page: str) -> str:
     """Returns the page with the tables of now."""
     for name, rows in TABLES.items():
-        table = f"\n{to_markdown(rows())}\n"
+        table = to_markdown(rows())
         print(table)
-        span = span_of(page, name)
-        page = page[: span.start] + table + page[span.stop :]
+        page = replace_part(page, table, name)
     return page
 
 
@@ -180,11 +160,7 @@ def draw_traces() -> None:
 
 def main() -> None:
     """Prints the tables, and writes page and pictures if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
-    write = parser.parse_args().write
+    write = make_parser(__doc__, PAGE).parse_args().write
     page = with_tables(PAGE.read_text(encoding="utf-8"))
     if write:
         write_page(PAGE, page, __file__)

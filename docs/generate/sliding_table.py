@@ -5,7 +5,6 @@ python docs/generate/sliding_table.py --write
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
+from page_parts import make_parser
 from page_stamp import write_page
 from press_rig import GAINS
 from scipy.spatial.transform import Rotation
@@ -107,11 +107,7 @@ TITLES += [*(f"δ {1e3 * d:g} mm" for d in DELTAS_M), "sideways"]
 
 def main() -> None:
     """Prints the table, and writes the page if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help="write docs/sliding.md")
-    write = parser.parse_args().write
+    write = make_parser(__doc__, PAGE).parse_args().write
     scenes = [
         ("50 pieces", fifty_pieces(), fifty_pieces_path, list(make_slide_tools())),
         ("pitted block", pitted_block(), pitted_block_path, ["box", "ball", "edge"]),

@@ -5,13 +5,12 @@ python docs/generate/stability_table.py --write
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from boundary_table import to_markdown
+from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import write_page
 
 from drake_haptics.analysis.scene_stability import SceneStability, analyze_scene
@@ -23,8 +22,6 @@ from drake_haptics.scene.scene_file import load_scene
 _DOCS = Path(__file__).parents[2] / "docs"
 PAGE = _DOCS / "stability.md"
 PICTURE = _DOCS / "stability_cup_spoon.png"
-BEGIN = "<!-- {}: written by docs/generate/stability_table.py -->\n"
-END = "<!-- end of {} -->\n"
 SCENES = ("cup_spoon", "torus_peg", "can_box")
 DRAWN = "cup_spoon"
 _MAP_SIZE = 20
@@ -90,23 +87,12 @@ def _to_percent(share: float) -> str:
 TABLES = {"places": place_rows, "limits": limit_rows}
 
 
-def span_of(page: str, name: str) -> slice:
-    """Returns where in the page the table of that name is.
-
-    Raises:
-        ValueError: a mark is missing.
-    """
-    begin = BEGIN.format(name)
-    return slice(page.index(begin) + len(begin), page.index(END.format(name)))
-
-
 def with_tables(page: str, results: Results) -> str:
     """Returns the page with the tables of now."""
     for name, rows in TABLES.items():
-        table = f"\n{to_markdown(iter(rows(results)))}\n"
+        table = to_markdown(rows(results))
         print(table)
-        span = span_of(page, name)
-        page = page[: span.start] + table + page[span.stop :]
+        page = replace_part(page, table, name)
     return page
 
 
@@ -118,13 +104,7 @@ def analyze(name: str, map_size: int = 0) -> SceneStability:
 
 def main() -> None:
     """Prints the tables, and writes page and picture if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument(
-        "--write", action="store_true", help=f"write {PAGE.name} and {PICTURE.name}"
-    )
-    write = parser.parse_args().write
+    write = make_parser(__doc__, PAGE, PICTURE).parse_args().write
     results = {
         name: analyze(name, _MAP_SIZE if write and name == DRAWN else 0)
         for name in SCENES

@@ -8,7 +8,6 @@ The second writes the scenes, so that `drake-haptics run` shows them. Half a min
 
 from __future__ import annotations
 
-import argparse
 import sys
 import warnings
 from collections.abc import Iterator, Mapping
@@ -16,6 +15,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import write_page
 from symptom_cases import CASES
 from symptom_run import Case
@@ -25,8 +25,6 @@ from drake_haptics.scene.schema import EncoderParameters
 from drake_haptics.scene.validation import SceneWarning
 
 PAGE = Path(__file__).parents[2] / "docs" / "troubleshooting.md"
-BEGIN = "<!-- {}: written by docs/generate/symptom_table.py -->\n"
-END = "<!-- end of {} -->\n"
 HEAD = ["shown by", "cured by", "is measured", "shown", "cured"]
 
 
@@ -76,22 +74,6 @@ def _round(value: float) -> str:
     return "0" if abs(value) < 5e-4 else f"{value:.3g}"
 
 
-def span_of(page: str, section: str) -> slice:
-    """Returns where in the page the table of a section is.
-
-    Raises:
-        ValueError: a mark is missing.
-    """
-    begin = BEGIN.format(section)
-    return slice(page.index(begin) + len(begin), page.index(END.format(section)))
-
-
-def to_table(rows: list[list[str]]) -> str:
-    """Returns rows below the head, as Markdown."""
-    lines = [HEAD, ["---"] * len(HEAD), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
-
-
 def write_scenes(folder: Path) -> None:
     """Writes the scenes of all cases, provoked and cured."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -103,10 +85,7 @@ def write_scenes(folder: Path) -> None:
 
 def main() -> None:
     """Prints the tables, or writes them into the page, or the scenes to a folder."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    parser = make_parser(__doc__, PAGE)
     parser.add_argument("--scenes", type=Path, help="write the scenes there instead")
     arguments = parser.parse_args()
     if arguments.scenes is not None:
@@ -117,12 +96,11 @@ def main() -> None:
         print(case.section, file=sys.stderr)
         tables.setdefault(case.section, []).append(make_row(case))
     for section, rows in tables.items():
-        print(f"{section}\n\n{to_table(rows)}")
+        table = to_markdown([HEAD, *rows])
+        print(f"{section}\n\n{table}")
         if arguments.write:
             page = PAGE.read_text(encoding="utf-8")
-            span = span_of(page, section)
-            page = f"{page[: span.start]}\n{to_table(rows)}\n{page[span.stop :]}"
-            write_page(PAGE, page, __file__)
+            write_page(PAGE, replace_part(page, table, section), __file__)
 
 
 if __name__ == "__main__":

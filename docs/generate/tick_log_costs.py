@@ -18,6 +18,7 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
+from page_parts import read_part, replace_part
 from page_stamp import amend_page, write_page
 
 from drake_haptics.evaluation.measuring.valgrind import count_instructions, counted
@@ -32,8 +33,6 @@ from drake_haptics.tick_log.tick_log import read_tick_log
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "record-replay.md"
-_BEGIN = "<!-- figures: written by docs/generate/tick_log_costs.py -->\n"
-_END = "<!-- end of figures -->\n"
 _SCENE = "rubbed_sphere"
 _WARM_UP = 1000
 _TICKS = 1000
@@ -100,7 +99,7 @@ def measure_bytes(folder: Path, names: Sequence[str]) -> dict[str, float]:
 
 def read_rows(page: str) -> dict[str, str]:
     """Returns the rows of the page's table."""
-    lines = page[page.index(_BEGIN) : page.index(_END)].splitlines()
+    lines = read_part(page).splitlines()
     rows = [line[2:-2].split(" | ") for line in lines if line.startswith("| ")]
     return {name: value for name, value in rows[2:]}
 
@@ -149,8 +148,7 @@ def main() -> None:
     print(table)
     if "--write" not in sys.argv[1:]:
         return
-    start, end = page.index(_BEGIN) + len(_BEGIN), page.index(_END)
-    page = f"{page[:start]}\n{table}\n\n{page[end:]}"
+    page = replace_part(page, f"{table}\n")
     if keeps_times:
         amend_page(PAGE, page, __file__, "all but times")
     else:

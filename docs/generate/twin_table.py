@@ -5,7 +5,6 @@ python docs/generate/twin_table.py --write
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 from collections.abc import Iterable
@@ -13,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from boundary_table import to_markdown
+from page_parts import make_parser, replace_part, to_markdown
 from page_stamp import write_page
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable
@@ -37,8 +36,6 @@ from drake_haptics.scene.schema import (
 )
 
 PAGE = Path(__file__).parents[2] / "docs" / "device-twin.md"
-BEGIN = "<!-- costs: written by docs/generate/twin_table.py -->\n"
-END = "<!-- end of costs -->\n"
 HEAD = [
     "`device.twin`",
     "eigenvalue, N/m",
@@ -184,28 +181,14 @@ def rows() -> Iterable[list[str]]:
         ]
 
 
-def span_of(page: str) -> slice:
-    """Returns where in the page the table is.
-
-    Raises:
-        ValueError: A mark is missing.
-    """
-    return slice(page.index(BEGIN) + len(BEGIN), page.index(END))
-
-
 def main() -> None:
     """Prints the table, and writes it into the page if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
-    write = parser.parse_args().write
-    table = f"\n{to_markdown(iter(rows()))}\n"
+    write = make_parser(__doc__, PAGE).parse_args().write
+    table = to_markdown(rows())
     print(table)
     if write:
         page = PAGE.read_text(encoding="utf-8")
-        span = span_of(page)
-        write_page(PAGE, page[: span.start] + table + page[span.stop :], __file__)
+        write_page(PAGE, replace_part(page, table, "costs"), __file__)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ python docs/generate/wrench_table.py --write
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -14,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "support"))
+from page_parts import make_parser
 from page_stamp import write_page
 from wrench_chain import (
     DAMPING_NS_PER_M,
@@ -160,11 +160,7 @@ def rows() -> Iterator[list[str]]:
 
 def main() -> None:
     """Prints the table, and writes the page if asked to."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--write", action="store_true", help="write docs/wrenches.md")
-    write = parser.parse_args().write
+    write = make_parser(__doc__, PAGE).parse_args().write
     lines = ["| " + " | ".join(cells) + " |" for cells in (TITLES, *rows())]
     lines.insert(1, "|" + "---|" * len(TITLES))
     print(*lines, sep="\n")

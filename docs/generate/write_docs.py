@@ -13,6 +13,7 @@ import re
 import sys
 from pathlib import Path
 
+from page_parts import replace_part
 from page_stamp import amend_page, write_page
 
 from drake_haptics.evaluation.benchmark.benchmark import (
@@ -23,17 +24,7 @@ from drake_haptics.evaluation.benchmark.benchmark import (
 )
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
-_BEGIN = "<!-- figures: written by docs/generate/write_docs.py -->\n"
 _END = "<!-- end of figures -->\n"
-
-
-def figures_of(page: str) -> str:
-    """Returns the part of the page between the marks.
-
-    Raises:
-        ValueError: a mark is missing.
-    """
-    return page[page.index(_BEGIN) + len(_BEGIN) : page.index(_END)]
 
 
 def with_figures(page: str, figures: BenchFigures) -> str:
@@ -44,8 +35,7 @@ def with_figures(page: str, figures: BenchFigures) -> str:
             "\n".join(f"- {line}" for line in missing_lines(figures)) + "\n"
         )
     sections += [table.to_markdown() for table in make_tables(figures)]
-    start = page.index(_BEGIN) + len(_BEGIN)
-    return page[:start] + "\n" + "\n".join(sections) + "\n" + page[page.index(_END) :]
+    return replace_part(page, "\n".join(sections))
 
 
 def with_tables(page: str, figures: BenchFigures) -> str:

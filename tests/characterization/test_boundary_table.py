@@ -1,7 +1,8 @@
 """The page on stability has the tables that its command prints."""
 
 import pytest
-from boundary_table import PAGE, PICTURE, TABLES, span_of, to_markdown
+from boundary_table import PAGE, PICTURE, TABLES
+from page_parts import read_part, to_markdown
 
 
 def read_cells(text):
@@ -13,7 +14,7 @@ def read_cells(text):
 @pytest.mark.parametrize("name", TABLES)
 def test_the_page_has_the_table_of_now(name):
     page = PAGE.read_text(encoding="utf-8")
-    written = read_cells(page[span_of(page, name)])
+    written = read_cells(read_part(page, name))
     assert len(written) > 5
     assert written == read_cells(to_markdown(TABLES[name]()))
 

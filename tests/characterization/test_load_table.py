@@ -2,6 +2,7 @@
 
 import load_table
 import pytest
+from page_parts import read_part
 
 from drake_haptics.evaluation.benchmark.scenes import scene_makers
 from drake_haptics.systems.contact import load_shedding
@@ -12,7 +13,7 @@ def read_rows():
     page = load_table.PAGE.read_text(encoding="utf-8")
     rows = [
         [cell.strip() for cell in line.strip("|").split("|")]
-        for line in page[load_table.span_of(page)].splitlines()
+        for line in read_part(page, "stages").splitlines()
         if line.startswith("|")
     ]
     return [rows[0], *rows[2:]]

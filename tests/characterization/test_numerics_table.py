@@ -4,7 +4,8 @@ import re
 
 import numerics_table
 import pytest
-from numerics_table import DOCS, PAGE, read_table, span_of, summary_rows
+from numerics_table import DOCS, PAGE, read_table, summary_rows
+from page_parts import read_part, to_markdown
 
 TEXT = PAGE.read_text(encoding="utf-8")
 
@@ -12,7 +13,7 @@ TEXT = PAGE.read_text(encoding="utf-8")
 def test_the_summary_is_not_stale():
     """To mend it: python docs/generate/numerics_table.py --write."""
     rows = list(summary_rows())
-    assert TEXT[span_of(TEXT)].strip() == numerics_table.to_markdown(iter(rows)).strip()
+    assert read_part(TEXT, "summary").strip() == to_markdown(rows).strip()
 
 
 def test_a_table_is_found_by_its_first_heading(tmp_path, monkeypatch):

@@ -4,8 +4,9 @@ import re
 from dataclasses import replace
 
 import pytest
+from page_parts import read_part
 from paper_samples import make_evaluation
-from paper_table import PAGE, figures_of, file_of, keep_times, with_figures
+from paper_table import PAGE, file_of, keep_times, with_figures
 
 from drake_haptics.evaluation.paper.evaluation import Run
 from drake_haptics.evaluation.paper.pen_pass import OURS, measure_pen_pass
@@ -24,7 +25,7 @@ from drake_haptics.evaluation.paper.tables import (
 from drake_haptics.evaluation.paper.words import MEANING
 
 TEXT = PAGE.read_text(encoding="utf-8")
-FIGURES = figures_of(TEXT)
+FIGURES = read_part(TEXT)
 
 
 def headings_of(text):
@@ -44,7 +45,7 @@ def number(cell):
 
 
 def test_the_page_has_the_headings_and_heads_of_now():
-    now = figures_of(with_figures(TEXT, make_evaluation()))
+    now = read_part(with_figures(TEXT, make_evaluation()))
     # Meshes that were measured too have headings of their own.
     real = [h for h in headings_of(FIGURES) if "real mesh" in h]
     rest = [h for h in headings_of(FIGURES) if h not in real]

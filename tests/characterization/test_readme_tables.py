@@ -4,6 +4,7 @@ import re
 
 import pytest
 import readme_tables
+from page_parts import read_part
 from readme_tables import (
     BENCHMARKS,
     README,
@@ -11,7 +12,6 @@ from readme_tables import (
     describe_run,
     describe_shape,
     make_loops,
-    span_of,
 )
 
 from drake_haptics import BuildHapticDiagram, find_scene, list_scenes, load_scene, run
@@ -22,14 +22,14 @@ TEXT = BENCHMARKS.read_text(encoding="utf-8")
 def test_the_loops_of_the_readme_are_those_of_their_page():
     """To mend it: python docs/generate/readme_tables.py --write."""
     page = README.read_text(encoding="utf-8")
-    assert page[span_of(page, "loops")].strip() == make_loops().strip()
+    assert read_part(page, "loops").strip() == make_loops().strip()
 
 
 def read_scene_rows():
     """Returns the cells of the table of scenes, by scene."""
     rows = [
         [cell.strip() for cell in row.split("|")]
-        for row in re.findall(r"(?m)^\| (.*) \|$", TEXT[span_of(TEXT, "scenes")])
+        for row in re.findall(r"(?m)^\| (.*) \|$", read_part(TEXT, "scenes"))
     ]
     return {row[0].strip("`"): row[1:] for row in rows[1:]}
 

@@ -3,8 +3,9 @@
 import re
 
 import pytest
+from page_parts import read_part, to_markdown
 from servo_loop import NOMINAL_HAND, SERVO, simulate
-from servo_table import MAP, PAGE, TABLES, TRACES, span_of, to_markdown
+from servo_table import MAP, PAGE, TABLES, TRACES
 
 
 def read_cells(text):
@@ -23,7 +24,7 @@ def now():
 def test_the_page_has_the_table_of_now(name, now):
     """The same words; motions that grew out of round-off to about a half."""
     page = PAGE.read_text(encoding="utf-8")
-    written = read_cells(page[span_of(page, name)])
+    written = read_cells(read_part(page, name))
     assert len(written) > 7
     assert len(written) == len(now[name])
     number = re.compile(r"\d+\.\d")

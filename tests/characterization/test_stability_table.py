@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from stability_table import PAGE, PICTURE, SCENES, limit_rows, place_rows, span_of
+from page_parts import read_part
+from stability_table import PAGE, PICTURE, SCENES, limit_rows, place_rows
 
 from drake_haptics.analysis import analyze_held_scene, hold_scene
 from drake_haptics.analysis.stiffness_limits import find_stiffness_limits
@@ -16,7 +17,7 @@ TEXT = PAGE.read_text(encoding="utf-8")
 
 def read_rows(name):
     """Returns the cells of a table, its head first."""
-    lines = [line for line in TEXT[span_of(TEXT, name)].splitlines() if line]
+    lines = [line for line in read_part(TEXT, name).splitlines() if line]
     rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
     return [rows[0], *rows[2:]]
 

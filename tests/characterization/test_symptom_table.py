@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 import symptom_run
 import symptom_table
+from page_parts import read_part
 from rich.console import Console
 from symptom_cases import CASES, COUPLING
 from symptom_run import Case, Ticks
-from symptom_table import HEAD, PAGE, describe_case, make_row, span_of
+from symptom_table import HEAD, PAGE, describe_case, make_row
 
 from drake_haptics.cli.status_line import make_summary
 from drake_haptics.scene.scene_file import load_scene
@@ -26,7 +27,7 @@ RISES = {"ticks in contact, %", "largest force, N"}
 
 def read_rows(section):
     """Returns the cells of a section's table, its head first."""
-    lines = [x for x in TEXT[span_of(TEXT, section)].splitlines() if x]
+    lines = [x for x in read_part(TEXT, section).splitlines() if x]
     rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
     return [rows[0], *rows[2:]]
 

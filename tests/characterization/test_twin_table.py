@@ -4,13 +4,13 @@ import math
 
 import pytest
 from other_arm import PRESET
+from page_parts import read_part
 from twin_table import (
     HEAD,
     PAGE,
     TWINS,
     find_eigenvalue_limit,
     measure_swing,
-    span_of,
 )
 
 TEXT = PAGE.read_text(encoding="utf-8")
@@ -18,7 +18,7 @@ TEXT = PAGE.read_text(encoding="utf-8")
 
 def read_rows():
     """Returns the cells of the table, its head first."""
-    lines = [line for line in TEXT[span_of(TEXT)].splitlines() if line]
+    lines = [line for line in read_part(TEXT, "costs").splitlines() if line]
     rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
     return [rows[0], *rows[2:]]
 

@@ -19,11 +19,11 @@ from accuracy_table import (
     make_columns,
     make_prices,
     measure_errors,
-    span_of,
     with_errors,
     with_parts,
 )
 from click.testing import CliRunner
+from page_parts import find_part, read_part
 
 from drake_haptics.cli import main
 from drake_haptics.evaluation.accuracy.knobs import list_settings
@@ -36,7 +36,7 @@ TEXT = PAGE.read_text(encoding="utf-8")
 
 def rows_of(page: str, name: str) -> list[list[str]]:
     """The cells of the table of a part, headings first, without the line below."""
-    rows = re.findall(r"^\| (.*) \|$", page[span_of(page, name)], flags=re.MULTILINE)
+    rows = re.findall(r"^\| (.*) \|$", read_part(page, name), flags=re.MULTILINE)
     cells = [row.split(" | ") for row in rows]
     return [cells[0], *cells[2:]]
 
@@ -84,7 +84,7 @@ def test_errors_of_some_knobs_replace_those_of_their_rows_and_nothing_else() -> 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_every_scene_has_its_sentences(name: str) -> None:
-    part = TEXT[span_of(TEXT, name)]
+    part = read_part(TEXT, name)
     assert "A tick of the scene as it is takes" in part
     assert "Errors are against" in part
     assert "read ratios" in part
@@ -97,7 +97,7 @@ def test_every_scene_has_a_budget() -> None:
 
 
 def test_the_columns_are_those_of_today() -> None:
-    assert TEXT[span_of(TEXT, COLUMNS_NAME)].strip() == make_columns().strip()
+    assert read_part(TEXT, COLUMNS_NAME).strip() == make_columns().strip()
 
 
 def test_the_picture_is_there() -> None:
@@ -120,5 +120,7 @@ def test_new_figures_replace_the_old_ones_and_nothing_else() -> None:
     assert "**as it is**" in prices and "0.5 mm †" in prices and "| CoACD |" in prices
     for page in (TEXT, renewed):
         assert page.count(SCENES[0]) > 1
-    before, after = (page[: span_of(page, SCENES[0]).start] for page in (TEXT, renewed))
+    before, after = (
+        page[: find_part(page, SCENES[0]).start] for page in (TEXT, renewed)
+    )
     assert before == after

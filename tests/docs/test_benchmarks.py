@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 
 from bench_samples import EVERYTHING
-from write_docs import PAGE, figures_of, with_figures
+from page_parts import read_part
+from write_docs import PAGE, with_figures
 
 from drake_haptics.evaluation.benchmark.benchmark import Effort, make_tables
 from drake_haptics.evaluation.benchmark.libraries.with_drake_haptics import LIBRARIES
@@ -20,7 +21,7 @@ from drake_haptics.evaluation.benchmark.scene_runs import (
 )
 from drake_haptics.evaluation.benchmark.scenes import scene_makers
 
-_SECTION = figures_of(PAGE.read_text(encoding="utf-8"))
+_SECTION = read_part(PAGE.read_text(encoding="utf-8"))
 
 
 def rows_below(title: str) -> list[list[str]]:
@@ -90,5 +91,5 @@ def test_a_scene_that_is_run_again_has_the_contacts_of_the_page() -> None:
 def test_new_figures_replace_the_old_ones_and_nothing_else() -> None:
     page = PAGE.read_text(encoding="utf-8")
     renewed = with_figures(page, EVERYTHING)
-    assert "abacus" in figures_of(renewed) and "abacus" not in page
-    assert renewed.replace(figures_of(renewed), "") == page.replace(_SECTION, "")
+    assert "abacus" in read_part(renewed) and "abacus" not in page
+    assert renewed.replace(read_part(renewed), "") == page.replace(_SECTION, "")

@@ -10,7 +10,8 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
-from write_docs import PAGE, figures_of
+from page_parts import read_part
+from write_docs import PAGE
 
 from drake_haptics.evaluation.benchmark.benchmark import (
     BenchFigures,
@@ -166,7 +167,7 @@ def test_figures_survive_json() -> None:
 
 def shown_below(title: str) -> str:
     """What the page has below the title of a table of another scene, `cup`."""
-    section = figures_of(PAGE.read_text(encoding="utf-8"))
+    section = read_part(PAGE.read_text(encoding="utf-8"))
     below = section.split(f"### {title.replace('cup', 'cup_spoon')}\n")[1]
     return below.split("###")[0]
 
