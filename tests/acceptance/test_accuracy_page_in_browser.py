@@ -17,13 +17,7 @@ def test_the_page_is_readable(tmp_path, width, is_phone):
     write_accuracy_page(make_study(peers=make_peers()), path, "cup_spoon")
     path.with_suffix(".png").unlink()  # the page needs nothing beside it
     with HeadlessBrowser(executable) as browser:
-        browser.call(
-            "Emulation.setDeviceMetricsOverride",
-            width=width,
-            height=900,
-            deviceScaleFactor=1,
-            mobile=is_phone,
-        )
+        browser.resize(width, height=900, is_phone=is_phone)
         browser.open(path.as_uri())
         assert browser.evaluate("document.title") == "What accuracy costs in cup_spoon"
         assert browser.evaluate("document.images[0].naturalWidth") > 1200

@@ -91,13 +91,7 @@ def test_the_page_is_readable(page, width):
     if executable is None:
         pytest.skip("no Chromium on the PATH")
     with HeadlessBrowser(executable) as browser:
-        browser.call(
-            "Emulation.setDeviceMetricsOverride",
-            width=width,
-            height=800,
-            deviceScaleFactor=1,
-            mobile=width < 500,
-        )
+        browser.resize(width, is_phone=width < 500)
         browser.open(page.as_uri())
         assert browser.evaluate(
             "[...document.images].every(i => i.naturalWidth > 900 && i.width >= 720)"

@@ -1,10 +1,12 @@
 """Commands that any page names exist, with the options that it gives them."""
 
+import inspect
 import re
 import shlex
 from pathlib import Path
 
 import click
+import page_parts
 import pytest
 from markdown_page import PROGRAM
 
@@ -73,6 +75,8 @@ PROGRAMS = [
 @pytest.mark.parametrize(("file", "options"), PROGRAMS)
 def test_a_program_of_the_repository_and_its_options_exist(file, options):
     source = (ROOT / file).read_text(encoding="utf-8")
+    if "make_parser(" in source:
+        source += inspect.getsource(page_parts)
     for option in re.findall(r"--[a-z][\w-]*", options):
         assert f'"{option}"' in source
 

@@ -162,13 +162,7 @@ class _QuietHandler(http.server.SimpleHTTPRequestHandler):
 def look(page: HeadlessBrowser, address: str) -> None:
     """No page is wider than the screen, on a phone or a desk."""
     for width in WIDTHS:
-        page.call(
-            "Emulation.setDeviceMetricsOverride",
-            width=width,
-            height=800,
-            deviceScaleFactor=1,
-            mobile=width < 500,
-        )
+        page.resize(width, is_phone=width < 500)
         for name in LOOKED_AT:
             page.open(address + name)
             wide = page.evaluate("document.documentElement.scrollWidth")
@@ -177,13 +171,7 @@ def look(page: HeadlessBrowser, address: str) -> None:
 
 def look_at_tables(page: HeadlessBrowser, address: str) -> None:
     """No table is wider than its page's column on a laptop."""
-    page.call(
-        "Emulation.setDeviceMetricsOverride",
-        width=LAPTOP_WIDTH,
-        height=800,
-        deviceScaleFactor=1,
-        mobile=False,
-    )
+    page.resize(LAPTOP_WIDTH)
     for name in WIDE_TABLES:
         page.open(address + name)
         widths = page.evaluate(

@@ -6,12 +6,12 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from pydrake.lcm import DrakeLcm
+from waiting import wait_until
 
 from drake_haptics.device.backend import DeviceCommand, Fault, GateState
 from drake_haptics.device.lcm.lcm_device import LcmDevice
@@ -59,18 +59,10 @@ def press(device):
         device.write(DeviceCommand(F_Ho_B, reading.X_BH, reading.V_BH))
 
 
-def wait_until(condition, act, bound_s=180.0):
-    end_s = time.monotonic() + bound_s
-    while not condition():
-        assert time.monotonic() < end_s, "this never happened"
-        act()
-        time.sleep(1e-3)
-
-
 def test_the_page_in_two_processes(start_device):
     start_device()
     with LcmDevice.open() as device:
-        wait_until(lambda: device.read() is not None, lambda: None)
+        wait_until(lambda: device.read() is not None)
     process = subprocess.run(
         [sys.executable, "-c", HOST],
         capture_output=True,
@@ -103,7 +95,7 @@ def test_host_paused_and_device_killed(url, start_device):
 
         wait_until(is_felt, lambda: press(device))
         # The host pauses: it only listens.
-        wait_until(lambda: is_in(GateState.FAULT, Fault.STALE), lambda: None)
+        wait_until(lambda: is_in(GateState.FAULT, Fault.STALE))
         assert not device.read().F_Ho_B.any()
         wait_until(is_felt, lambda: press(device))
         # The device is killed and another one started.

@@ -2,25 +2,17 @@
 
 import load_table
 import pytest
+from markdown_page import read_table
 from page_parts import read_part
 
 from drake_haptics.evaluation.benchmark.scenes import scene_makers
 from drake_haptics.systems.contact import load_shedding
 
-
-def read_rows():
-    """The cells of the page's table, its head first."""
-    page = load_table.PAGE.read_text(encoding="utf-8")
-    rows = [
-        [cell.strip() for cell in line.strip("|").split("|")]
-        for line in read_part(page, "stages").splitlines()
-        if line.startswith("|")
-    ]
-    return [rows[0], *rows[2:]]
+PART = read_part(load_table.PAGE.read_text(encoding="utf-8"), "stages")
 
 
 def test_the_page_has_each_scene_and_stage():
-    head, *rows = read_rows()
+    head, *rows = read_table(PART)
     assert head == load_table.HEAD
     assert [row[:2] for row in rows] == [
         [scene, stage] for scene in load_table.SCENES for stage in load_table.STAGES
@@ -47,5 +39,5 @@ def test_each_stage_leaves_as_many_contacts_as_the_page_tells(scene, monkeypatch
     contacts, clusters = zip(*counts, strict=True)
     assert list(contacts) == sorted(contacts, reverse=True)
     assert clusters[-1] < clusters[0]
-    told = [row[2:4] for row in read_rows() if row[0] == scene]
+    told = [row[2:4] for row in read_table(PART) if row[0] == scene]
     assert told == [[f"{count:.0f}" for count in pair] for pair in counts]

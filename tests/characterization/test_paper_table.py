@@ -4,6 +4,7 @@ import re
 from dataclasses import replace
 
 import pytest
+from markdown_page import read_table
 from page_parts import read_part
 from paper_samples import make_evaluation
 from paper_table import PAGE, file_of, keep_times, with_figures
@@ -35,9 +36,7 @@ def headings_of(text):
 def read_rows(title):
     """Returns the cells of a table, its head first."""
     section = FIGURES.split(f"### {title}\n")[1].split("\n#")[0]
-    lines = [line for line in section.splitlines() if line.startswith("|")]
-    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
-    return [rows[0], *rows[2:]]
+    return read_table(section)
 
 
 def number(cell):

@@ -3,28 +3,23 @@
 import re
 
 import pytest
+from markdown_page import read_table
 from page_parts import read_part, to_markdown
 from servo_loop import NOMINAL_HAND, SERVO, simulate
 from servo_table import MAP, PAGE, TABLES, TRACES
 
 
-def read_cells(text):
-    """Returns the cells of a table."""
-    lines = [line for line in text.splitlines() if line.startswith("|")]
-    return [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
-
-
 @pytest.fixture(scope="module")
 def now():
     """The tables of now, by name."""
-    return {name: read_cells(to_markdown(rows())) for name, rows in TABLES.items()}
+    return {name: read_table(to_markdown(rows())) for name, rows in TABLES.items()}
 
 
 @pytest.mark.parametrize("name", TABLES)
 def test_the_page_has_the_table_of_now(name, now):
     """The same words; motions that grew out of round-off to about a half."""
     page = PAGE.read_text(encoding="utf-8")
-    written = read_cells(read_part(page, name))
+    written = read_table(read_part(page, name))
     assert len(written) > 7
     assert len(written) == len(now[name])
     number = re.compile(r"\d+\.\d")

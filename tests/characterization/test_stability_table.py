@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from markdown_page import read_table
 from page_parts import read_part
 from stability_table import PAGE, PICTURE, SCENES, limit_rows, place_rows
 
@@ -15,24 +16,17 @@ from drake_haptics.scene.scene_file import load_scene
 TEXT = PAGE.read_text(encoding="utf-8")
 
 
-def read_rows(name):
-    """Returns the cells of a table, its head first."""
-    lines = [line for line in read_part(TEXT, name).splitlines() if line]
-    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
-    return [rows[0], *rows[2:]]
-
-
 @pytest.mark.parametrize(
     ("name", "rows"), [("places", place_rows), ("limits", limit_rows)]
 )
 def test_the_tables_are_those_of_the_command(name, rows):
-    head, *body = read_rows(name)
+    head, *body = read_table(read_part(TEXT, name))
     assert [head] == list(rows({}))
     assert list(dict.fromkeys(row[0] for row in body)) == list(SCENES)
 
 
 def test_the_differences_are_those_of_the_figures():
-    _, *body = read_rows("limits")
+    _, *body = read_table(read_part(TEXT, "limits"))
     assert len(body) == 4 * len(SCENES)
     for row in body:
         eigenvalue = float(row[4])
@@ -44,7 +38,7 @@ def test_the_differences_are_those_of_the_figures():
 
 
 def test_simulation_agrees_and_one_axis_is_the_worst_direction():
-    _, *body = read_rows("limits")
+    _, *body = read_table(read_part(TEXT, "limits"))
     for row in body:
         assert abs(float(row[6].removesuffix(" %"))) < 0.5
         if row[2] == "a rigid wall":
@@ -61,7 +55,7 @@ def number(cell):
 def test_a_scene_that_is_held_again_is_that_of_the_page():
     """Where it is held, and one of its limits in all ways."""
     name, kind, against = "can_box", "rotation", "a rigid wall"
-    head, *places = read_rows("places")
+    head, *places = read_table(read_part(TEXT, "places"))
     [told] = [dict(zip(head, row, strict=True)) for row in places if row[0] == name]
     held = hold_scene(load_scene(find_scene(name)), float(told["held at, s"]))
     loop = analyze_held_scene(held)
@@ -70,7 +64,9 @@ def test_a_scene_that_is_held_again_is_that_of_the_page():
     assert np.linalg.norm(F_To_W[3:]) == number(told["force, N"])
     limits = (find_stiffness_limits(held, kind, against),)
     _, now = limit_rows({name: SimpleNamespace(limits=limits)})
-    [told] = [row for row in read_rows("limits") if row[:3] == now[:3]]
+    [told] = [
+        row for row in read_table(read_part(TEXT, "limits")) if row[:3] == now[:3]
+    ]
     for figure, cell in zip(now[3:], told[3:], strict=True):
         assert float(figure.removesuffix(" %")) == number(cell)
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import symptom_run
 import symptom_table
+from markdown_page import read_table
 from page_parts import read_part
 from rich.console import Console
 from symptom_cases import CASES, COUPLING
@@ -25,22 +26,15 @@ SECTIONS = list(dict.fromkeys(case.section for case in CASES))
 RISES = {"ticks in contact, %", "largest force, N"}
 
 
-def read_rows(section):
-    """Returns the cells of a section's table, its head first."""
-    lines = [x for x in read_part(TEXT, section).splitlines() if x]
-    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
-    return [rows[0], *rows[2:]]
-
-
 def read_row(case):
     """Returns the page's row of a case."""
     place = [x for x in CASES if x.section == case.section].index(case)
-    return read_rows(case.section)[1 + place]
+    return read_table(read_part(TEXT, case.section))[1 + place]
 
 
 @pytest.mark.parametrize("section", SECTIONS)
 def test_the_page_has_the_cases_of_the_command(section):
-    head, *rows = read_rows(section)
+    head, *rows = read_table(read_part(TEXT, section))
     assert head == HEAD
     assert [row[:3] for row in rows] == [
         describe_case(case) for case in CASES if case.section == section

@@ -13,7 +13,6 @@ from drake_haptics.device.backend import GateState
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.simulation.run import RunError
 from drake_haptics.simulation.statistics import RunStatistics
-from drake_haptics.visualization.meshcat import start_meshcat
 from drake_haptics.web.link import open_page_port
 
 BOUND_S = 120.0
@@ -23,11 +22,6 @@ ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.02)
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
     return over_a_plate(tmp_path_factory.mktemp("scene"), [ABOVE])
-
-
-@pytest.fixture(scope="module")
-def meshcat():
-    return start_meshcat()
 
 
 def read_all(page):

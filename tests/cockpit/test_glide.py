@@ -14,7 +14,6 @@ from fake_device import ScriptedDevice, make_reading
 
 from drake_haptics.cockpit import holding
 from drake_haptics.scene.schema import Effects, PassivityParameters
-from drake_haptics.visualization.meshcat import start_meshcat
 
 ABOVE = (0.0, 0.0, 0.0, TOOL_HALF_HEIGHT + 0.005)
 DEEP_M, DOWN_TICKS, ASKED_AT = 6e-3, 100, 250
@@ -53,11 +52,6 @@ def calc_force(K_coupling=K_COUPLING, K_contact=K_CONTACT, tolerance_m=2e-3):
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
     return over_a_plate(tmp_path_factory.mktemp("scene"), [ABOVE])
-
-
-@pytest.fixture(scope="module")
-def meshcat():
-    return start_meshcat()
 
 
 @pytest.mark.parametrize(

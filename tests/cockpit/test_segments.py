@@ -6,12 +6,10 @@ import time
 
 import numpy as np
 import pytest
-from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, over_a_plate
+from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT
 from cockpit_rig import (
-    ABOVE,
     FRICTION,
     MOUSE,
-    PRESSING,
     STIFFER,
     CockpitRig,
     find_tool,
@@ -29,34 +27,10 @@ from drake_haptics.scene.schema import GravityParameters, Pose
 from drake_haptics.scene.validation import SceneError
 from drake_haptics.simulation.run import RunError, run
 from drake_haptics.simulation.transfer_state import find_handle
-from drake_haptics.visualization.meshcat import start_meshcat
 from drake_haptics.web.messages import GATES
 
 RETAKE = {"do": "handle", "to": "device"}
 TURN = {"do": "turn", "by": [0.3, 0.0, 0.0]}
-
-
-@pytest.fixture(scope="module")
-def scene(tmp_path_factory):
-    return over_a_plate(tmp_path_factory.mktemp("scene"), [ABOVE, PRESSING])
-
-
-@pytest.fixture(scope="module")
-def meshcat():
-    return start_meshcat()
-
-
-@pytest.fixture
-def make(scene, meshcat, monkeypatch):
-    rigs = []
-
-    def make(script, **options):
-        rigs.append(CockpitRig(scene, meshcat, monkeypatch, script, **options))
-        return rigs[-1]
-
-    yield make
-    for rig in rigs:
-        rig.holding.close()
 
 
 def test_nothing_asked_is_a_plain_run(make, scene):

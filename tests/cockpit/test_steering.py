@@ -5,14 +5,10 @@ import json
 
 import numpy as np
 import pytest
-from box_scenes import over_a_plate
 from cockpit_rig import (
-    ABOVE,
     FRICTION,
     MOUSE,
-    PRESSING,
     STIFFER,
-    CockpitRig,
     find_tool,
 )
 
@@ -28,31 +24,8 @@ from drake_haptics.scene.schema import (
 from drake_haptics.simulation.live_values import live_keys, write_live_values
 from drake_haptics.simulation.run import run
 from drake_haptics.systems.output.haptic_picture import PICTURE_VIEWS
-from drake_haptics.visualization.meshcat import CAMERAS, start_meshcat
+from drake_haptics.visualization.meshcat import CAMERAS
 from drake_haptics.web.messages import LARGEST_DATAGRAM, read_page_request
-
-
-@pytest.fixture(scope="module")
-def scene(tmp_path_factory):
-    return over_a_plate(tmp_path_factory.mktemp("scene"), [ABOVE, PRESSING])
-
-
-@pytest.fixture(scope="module")
-def meshcat():
-    return start_meshcat()
-
-
-@pytest.fixture
-def make(scene, meshcat, monkeypatch):
-    rigs = []
-
-    def make(script, scene=scene, **options):
-        rigs.append(CockpitRig(scene, meshcat, monkeypatch, script, **options))
-        return rigs[-1]
-
-    yield make
-    for rig in rigs:
-        rig.holding.close()
 
 
 def test_a_page_is_told_what_there_is_to_see_and_to_change(make, scene):

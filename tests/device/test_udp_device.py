@@ -1,11 +1,11 @@
 """The UDP backend against a driver that knows only the layout of the packets."""
 
 import gc
-import time
 
 import numpy as np
 import pytest
 from struct_driver import ACTIVE, FAULT, IDLE, StructDriver
+from waiting import wait_until
 
 from drake_haptics.device.backend import DeviceCommand, DeviceError, Fault, GateState
 from drake_haptics.device.udp_device import UdpDevice
@@ -28,13 +28,6 @@ def device(driver):
         yield device
 
 
-def wait_for(condition, bound_s=120.0):
-    end = time.monotonic() + bound_s
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(1e-3)
-
-
 def test_a_reading_is_the_state_that_was_sent(driver, device):
     assert device.read() is None
     driver.receive()
@@ -44,7 +37,7 @@ def test_a_reading_is_the_state_that_was_sent(driver, device):
         F_Ho_B=(0, 0, 0, 7, 8, 9),
         buttons=3,
     )
-    wait_for(device.read)
+    wait_until(device.read)
     reading = device.read()
     np.testing.assert_allclose(reading.X_BH, [0.6, 0, 0.8, 0, 1, 2, 3])
     np.testing.assert_array_equal(reading.V_BH, [1, 2, 3, 4, 5, 6])
@@ -56,17 +49,17 @@ def test_a_reading_is_the_state_that_was_sent(driver, device):
     )
     assert device.read() is reading  # nothing new has come
     driver.exchange()
-    wait_for(lambda: device.read().sequence == reading.sequence + 1)
+    wait_until(lambda: device.read().sequence == reading.sequence + 1)
 
 
 def test_a_wrench_is_shown_with_its_slopes(driver, device):
     driver.receive()
-    wait_for(lambda: driver.exchange(gate=IDLE).sequence > 3)
+    wait_until(lambda: driver.exchange(gate=IDLE).sequence > 3)
     assert not driver.exchange().enable
     K = np.diag([0, 0, 0, 50.0, 0, 0])
     device.write(DeviceCommand(PUSH.F_Ho_B, AT_REST, STILL, K, np.eye(6)))
-    wait_for(lambda: driver.exchange(gate=IDLE).enable)
-    wait_for(lambda: driver.exchange(gate=ACTIVE).F_Ho_B[3] == 2.0)
+    wait_until(lambda: driver.exchange(gate=IDLE).enable)
+    wait_until(lambda: driver.exchange(gate=ACTIVE).F_Ho_B[3] == 2.0)
     X_BH, V_BH = (1, 0, 0, 0, 0.01, 0, 0), (0, 0, 0, 0.2, 0, 0)
     command = driver.exchange(X_BH=X_BH, V_BH=V_BH)
     np.testing.assert_allclose(command.F_Ho_B, [0, 0, 0, 2 - 0.5 - 0.2, 0, 0])
@@ -75,22 +68,22 @@ def test_a_wrench_is_shown_with_its_slopes(driver, device):
 def test_a_fault_is_told_and_taken_back(driver, device):
     driver.receive()
     device.write(PUSH)
-    wait_for(lambda: driver.exchange(gate=IDLE).enable)
+    wait_until(lambda: driver.exchange(gate=IDLE).enable)
     driver.exchange(gate=FAULT, fault=3)
-    wait_for(lambda: device.read().gate == GateState.FAULT)
+    wait_until(lambda: device.read().gate == GateState.FAULT)
     assert device.read().fault == Fault.OVERSPEED
     device.recover()
-    wait_for(lambda: not driver.exchange(gate=FAULT).enable)
-    wait_for(lambda: driver.exchange(gate=IDLE, fault=0).enable)
-    wait_for(lambda: device.read().gate == GateState.IDLE)
+    wait_until(lambda: not driver.exchange(gate=FAULT).enable)
+    wait_until(lambda: driver.exchange(gate=IDLE, fault=0).enable)
+    wait_until(lambda: device.read().gate == GateState.IDLE)
 
 
 def test_silence_is_told_without_a_new_sample(driver):
     with UdpDevice("127.0.0.1", driver.port, ttl_s=1.0) as device:
         driver.receive()
         device.write(PUSH)
-        wait_for(lambda: driver.exchange(gate=IDLE).enable)
-        wait_for(lambda: device.read().gate == GateState.FAULT)
+        wait_until(lambda: driver.exchange(gate=IDLE).enable)
+        wait_until(lambda: device.read().gate == GateState.FAULT)
         assert device.read().fault == Fault.STALE
 
 
@@ -102,7 +95,7 @@ def test_the_way_is_counted(driver, device):
     driver.exchange()
     driver.socket.sendto(b"nothing of ours", driver.peer)
     driver.exchange()
-    wait_for(lambda: device.get_link_status().received == 3)
+    wait_until(lambda: device.get_link_status().received == 3)
     status = device.get_link_status()
     assert (status.lost, status.rejected) == (5, 1)
     assert len(status.lateness_s) == 3
@@ -112,7 +105,7 @@ def test_a_device_that_is_dropped_ends_at_zero_force(driver):
     device = UdpDevice("127.0.0.1", driver.port, **LONG)
     driver.receive()
     device.write(PUSH)
-    wait_for(lambda: driver.exchange(gate=IDLE).enable)
+    wait_until(lambda: driver.exchange(gate=IDLE).enable)
     del device
     gc.collect()
     last = driver.receive_all()[-1]

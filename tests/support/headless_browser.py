@@ -85,6 +85,16 @@ class HeadlessBrowser:
         self.call("Page.navigate", url=address)
         self.wait_for("document.readyState == 'complete'")
 
+    def resize(self, width: int, height: int = 800, *, is_phone: bool = False) -> None:
+        """Shows the page in a window of this size, px."""
+        self.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=is_phone,
+        )
+
     def wait_for(self, expression: str) -> None:
         """Waits until a JavaScript expression is true, also over a change of page.
 

@@ -4,11 +4,11 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 
 import numpy as np
 import pytest
 from tick_log_samples import HEADER, assert_same_bits, make_rows
+from waiting import wait_until
 
 from drake_haptics.tick_log import tick_recorder
 from drake_haptics.tick_log.log_format import TickLogError, TickRows
@@ -29,13 +29,6 @@ def add_rows(recorder, rows):
             distance_m=distance_m,
             device_time_s=device_time_s,
         )
-
-
-def wait_until(condition):
-    end = time.monotonic() + LONG_S
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 # More than one chunk, and no multiple of a block.

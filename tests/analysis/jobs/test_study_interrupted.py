@@ -15,6 +15,7 @@ import pytest
 from study_functions import (
     Journal,
 )
+from waiting import wait_until
 
 from drake_haptics.analysis.jobs.pool import SerialExecutor
 from drake_haptics.analysis.jobs.study import run_study
@@ -59,14 +60,6 @@ def start(tmp_path):
         with contextlib.suppress(ProcessLookupError):  # as it should be
             os.killpg(driver.pid, signal.SIGKILL)
         driver.communicate()
-
-
-def wait_until(condition, seconds: float = 30.0) -> None:
-    """Waits for what another process does; slow machines have their time."""
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "nothing happened"
-        time.sleep(0.01)
 
 
 def lives(pid: int) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from stalling_host import read_with_the_lock
 from struct_driver import ACTIVE, FAULT, IDLE, StructDriver
+from waiting import wait_until
 
 from drake_haptics._core import UdpServo
 
@@ -48,20 +49,13 @@ def connect(driver, servo):
     assert not driver.receive().enable
     assert not driver.exchange(gate=IDLE).enable
     publish(servo)
-    wait_for(lambda: driver.exchange(gate=IDLE).enable)
+    wait_until(lambda: driver.exchange(gate=IDLE).enable)
     assert driver.exchange(gate=ACTIVE).enable
-
-
-def wait_for(condition, bound_s=120.0):
-    end = time.monotonic() + bound_s
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(1e-3)
 
 
 def engage(driver, servo, **state):
     """Exchanges until all of the wrench is shown."""
-    wait_for(lambda: driver.exchange(**state).enable and servo.status().scale == 1.0)
+    wait_until(lambda: driver.exchange(**state).enable and servo.status().scale == 1.0)
 
 
 def test_it_asks_for_a_driver_and_enables_nothing(driver, servo):
@@ -105,7 +99,7 @@ def test_it_reads_every_field(driver, servo):
         max_force_N=3.5,
         max_torque_Nm=0.25,
     )
-    wait_for(servo.read)
+    wait_until(servo.read)
     state = servo.read()
     np.testing.assert_allclose(state.X_BH, [0.8, 0.6, 0, 0, 1, 2, 3], rtol=1e-15)
     np.testing.assert_array_equal(state.V_BH, [4, 5, 6, 7, 8, 9])
@@ -159,8 +153,8 @@ def test_a_wrench_that_is_not_renewed_is_released(driver):
     servo = UdpServo("127.0.0.1", driver.port, ttl_s=5.0, hold_s=0.2)
     try:
         connect(driver, servo)
-        wait_for(lambda: publish(servo) or driver.exchange().F_Ho_B[3] > 0.0)
-        wait_for(lambda: driver.exchange().F_Ho_B[3] == 0.0)
+        wait_until(lambda: publish(servo) or driver.exchange().F_Ho_B[3] > 0.0)
+        wait_until(lambda: driver.exchange().F_Ho_B[3] == 0.0)
         time.sleep(0.05)
         command = driver.exchange()
         assert command.F_Ho_B == (0.0,) * 6
@@ -189,7 +183,7 @@ def test_what_is_late_lost_or_damaged_is_counted_and_not_used(driver, servo):
     driver.send(X_BH=(1, 0, 0, 0, nan, 0, 0))
     driver.send(X_BH=(0, 0, 0, 0, 0, 0, 0))
     driver.exchange(X_BH=(1, 0, 0, 0, 5, 0, 0))
-    wait_for(lambda: servo.read().X_BH[4] == 5)
+    wait_until(lambda: servo.read().X_BH[4] == 5)
     status = servo.status()
     assert (status.late, status.duplicate) == (1, 1)
     assert (status.damaged, status.not_finite) == (3, 2)
@@ -207,7 +201,7 @@ def test_what_another_peer_sends_is_not_taken(driver, servo):
         for _ in range(10):
             other.send(X_BH=(1, 0, 0, 0, 9, 0, 0), sequence=1000)
         driver.exchange(X_BH=(1, 0, 0, 0, 1, 0, 0))
-    wait_for(lambda: servo.read().X_BH[4] == 1)
+    wait_until(lambda: servo.read().X_BH[4] == 1)
     assert servo.status().received == before.received + 1
     assert servo.status().damaged == 0
 
@@ -220,15 +214,15 @@ def test_a_fault_stays_until_it_is_recovered(driver, servo):
         # It is left at fault: a command that disables would clear that.
         assert command.enable
         assert command.F_Ho_B == (0.0,) * 6
-    wait_for(lambda: servo.read().gate == FAULT)
+    wait_until(lambda: servo.read().gate == FAULT)
     assert servo.read().fault == OVERSPEED
     # Nor does the device's own way out of the fault enable it again.
     assert not driver.exchange(gate=IDLE, fault=0).enable
-    wait_for(lambda: servo.read().number == servo.status().received)
+    wait_until(lambda: servo.read().number == servo.status().received)
     assert (servo.read().gate, servo.read().fault) == (FAULT, OVERSPEED)
     driver.exchange(gate=FAULT, fault=OVERSPEED)
     servo.recover()
-    wait_for(lambda: not driver.exchange(gate=FAULT).enable)
+    wait_until(lambda: not driver.exchange(gate=FAULT).enable)
     assert driver.exchange(gate=IDLE, fault=0).enable
     command = driver.exchange(gate=ACTIVE)
     assert 0.0 < command.F_Ho_B[3] < 0.5  # engages anew
@@ -243,11 +237,11 @@ def test_a_driver_that_was_restarted_is_not_enabled(driver, servo):
     # One of the former run that comes late is no further restart.
     driver.socket.sendto(late.pack(), driver.peer)
     assert not driver.exchange().enable
-    wait_for(lambda: servo.read().gate == FAULT)
+    wait_until(lambda: servo.read().gate == FAULT)
     assert servo.read().fault == DEVICE
     assert (servo.status().restarts, servo.status().late) == (1, 1)
     servo.recover()
-    wait_for(lambda: driver.exchange().enable)
+    wait_until(lambda: driver.exchange().enable)
     assert servo.read().number > 2
 
 
@@ -255,18 +249,18 @@ def test_a_driver_that_is_silent_is_looked_for_disabled(driver):
     servo = UdpServo("127.0.0.1", driver.port, **SHORT)
     try:
         connect(driver, servo)
-        wait_for(lambda: not driver.receive().enable)
+        wait_until(lambda: not driver.receive().enable)
         state = servo.read()
         assert (state.gate, state.fault) == (FAULT, STALE)
         assert not servo.status().is_heard
         assert servo.status().silences >= 1
         # It comes back, is found, and stays disabled until it is recovered.
-        wait_for(
+        wait_until(
             lambda: driver.exchange(gate=IDLE).sequence and servo.status().is_heard
         )
         assert not driver.exchange(gate=IDLE).enable
         servo.recover()
-        wait_for(lambda: driver.exchange(gate=IDLE).enable)
+        wait_until(lambda: driver.exchange(gate=IDLE).enable)
     finally:
         servo.close()
 
@@ -276,14 +270,14 @@ def test_a_driver_that_has_gone_is_not_active_because_it_is_wanted_back(driver):
     try:
         connect(driver, servo)
         engage(driver, servo, gate=ACTIVE)
-        wait_for(lambda: not driver.receive().enable)
+        wait_until(lambda: not driver.receive().enable)
         servo.recover()
         # The thread has seen it by its second command from here on.
         for _ in range(3):
             assert not driver.receive().enable
         assert (servo.read().gate, servo.read().fault) == (FAULT, STALE)
-        wait_for(lambda: driver.exchange(gate=IDLE, boot=8).enable)
-        wait_for(lambda: servo.read().gate == IDLE)
+        wait_until(lambda: driver.exchange(gate=IDLE, boot=8).enable)
+        wait_until(lambda: servo.read().gate == IDLE)
     finally:
         servo.close()
 
@@ -297,7 +291,7 @@ def test_after_a_flood_only_the_newest_state_is_answered(driver):
             driver.send()
         last = driver.exchange()
         assert last.sequence <= 4 + 20 * (time.monotonic() - start)
-        wait_for(lambda: servo.status().received == 61)
+        wait_until(lambda: servo.status().received == 61)
     finally:
         servo.close()
 
@@ -330,7 +324,7 @@ def test_a_closed_socket_on_the_other_side_is_silence(driver):
         port = gone.port
     servo = UdpServo("127.0.0.1", port)
     try:
-        wait_for(lambda: servo.status().sent >= 5)
+        wait_until(lambda: servo.status().sent >= 5)
         assert servo.status().is_running
         assert servo.read() is None
     finally:
@@ -382,7 +376,7 @@ def start_program(driver, sleep_s):
         text=True,
     )
     driver.receive(60.0)
-    wait_for(lambda: driver.exchange(gate=IDLE).enable)
+    wait_until(lambda: driver.exchange(gate=IDLE).enable)
     assert program.stdout.readline() == "ready\n"
     return program
 
@@ -419,8 +413,8 @@ def test_it_answers_while_python_is_stalled_and_shows_nothing_stale():
     servo = UdpServo("127.0.0.1", int(driver.stdout.readline()), ttl_s=5.0)
     try:
         publish(servo)
-        wait_for(lambda: servo.read() and servo.read().gate == ACTIVE)
-        wait_for(lambda: publish(servo) or servo.status().scale == 1.0)
+        wait_until(lambda: servo.read() and servo.read().gate == ACTIVE)
+        wait_until(lambda: publish(servo) or servo.status().scale == 1.0)
         driver.stdin.write(b"!")
         assert read_with_the_lock(driver.stdout.fileno()) == b"s"
         assert servo.status().is_active
@@ -458,7 +452,7 @@ def test_lateness_is_measured(driver, servo):
     driver.receive()
     for _ in range(100):
         driver.exchange()
-    wait_for(lambda: servo.status().received == 100)
+    wait_until(lambda: servo.status().received == 100)
     p50, p99, p999 = servo.lateness_s()
     assert 0.0 < p50 <= p99 <= p999 < 60.0
 

@@ -1,11 +1,11 @@
 """The Haply backend against a service in another thread, over real WebSockets."""
 
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from haply_service import HaplyService, Inverse3
+from waiting import wait_until
 
 from drake_haptics.device.backend import (
     DeviceCommand,
@@ -20,15 +20,6 @@ from drake_haptics.scene.scene_file import load_scene
 
 STIFFNESS_N_PER_M = 300.0
 MAX_FORCE_N = 2.0
-
-
-def wait_until(condition, act=lambda: None, bound_s=120.0):
-    """Acts every millisecond until something holds."""
-    end_s = time.monotonic() + bound_s
-    while not condition():
-        assert time.monotonic() < end_s, "this never happened"
-        act()
-        time.sleep(1e-3)
 
 
 def make_service(**options):
