@@ -16,6 +16,7 @@ from drake_haptics.cli.console import make_console, progress_bar
 from drake_haptics.cli.endings import ExitCode
 from drake_haptics.cli.lessons import CommandWithExamples, LazyGroup, Lesson
 from drake_haptics.cli.options import (
+    file_option,
     json_option,
     require_folder,
     require_writable,
@@ -239,11 +240,8 @@ def replay(
 @click.command(cls=CommandWithExamples, lesson=lessons.LOG_DIFF)
 @click.argument("a", type=click.Path(path_type=Path))
 @click.argument("b", type=click.Path(path_type=Path))
-@click.option(
+@file_option(
     "--plot",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE",
-    callback=require_folder,
     help="Draw forces, depths and where the tools part, as PNG, SVG or PDF.",
 )
 @json_option

@@ -111,6 +111,17 @@ def json_option(function: _Function) -> _Function:
     )(function)
 
 
+def file_option(name: str, **settings: Any) -> Callable[[_Function], _Function]:
+    """Makes an option that takes the path of a file to be written."""
+    return click.option(
+        name,
+        type=click.Path(dir_okay=False, path_type=Path),
+        metavar="FILE",
+        callback=require_folder,
+        **settings,
+    )
+
+
 def require_folder(
     _: click.Context, option: click.Parameter, file: str | Path | None
 ) -> str | Path | None:

@@ -13,9 +13,9 @@ from drake_haptics.cli import lessons
 from drake_haptics.cli.console import make_console, progress_bar
 from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
+    file_option,
     json_option,
     meshes_option,
-    require_folder,
     write_json,
 )
 from drake_haptics.evaluation.paper.evaluation import (
@@ -48,13 +48,10 @@ _ANY_WIDTH = 1000
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
 @click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
 @meshes_option("Measure these meshes too, as many as there are")
-@click.option(
+@file_option(
     "--out",
-    type=click.Path(dir_okay=False, path_type=Path),
     default=Path("paper.html"),
     show_default=True,
-    metavar="FILE",
-    callback=require_folder,
     help="The page; its pictures are written beside it.",
 )
 @json_option

@@ -12,6 +12,7 @@ from drake_haptics.cli.completion import complete_address, complete_file, comple
 from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     FiniteRange,
+    file_option,
     require_folder,
     set_option,
     unit_option,
@@ -76,25 +77,16 @@ _EXPLAINED_S = 2.0
     f" measured in this run. Runs --headless, for {_EXPLAINED_S:g} s where --duration"
     " is not given.",
 )
-@click.option(
+@file_option(
     "--record",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE",
-    callback=require_folder,
     help="Write what is to be seen as one HTML file that plays in any browser.",
 )
-@click.option(
+@file_option(
     "--log",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE",
-    callback=require_folder,
     help="Note every tick in a file, for the command `log`.",
 )
-@click.option(
+@file_option(
     "--write-scene",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE",
-    callback=require_folder,
     help="At the end write the scene, with what --set and the page have changed, as"
     " a scene file to go on from.",
 )

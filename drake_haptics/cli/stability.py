@@ -23,9 +23,9 @@ from drake_haptics.cli.console import make_console, progress_bar
 from drake_haptics.cli.lessons import CommandWithExamples
 from drake_haptics.cli.options import (
     FiniteRange,
+    file_option,
     json_option,
     load_set_scene,
-    require_folder,
     require_writable,
     set_option,
     write_json,
@@ -53,19 +53,13 @@ from drake_haptics.simulation.run import RunError
     show_default=True,
     help="Stiffnesses and dampings of the map, each; 0 for no map, else at least 2.",
 )
-@click.option(
+@file_option(
     "--out",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE",
-    callback=require_folder,
     help="The page to write; its picture goes beside it.  [default:"
     " SCENE-stability.html]",
 )
-@click.option(
+@file_option(
     "--store",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE",
-    callback=require_folder,
     help="Keep the map's results here, and go on from them.",
 )
 @set_option
