@@ -101,14 +101,15 @@ def watch_run(haptic, clock):
 METHODS = {"shared": {}, "octree": {"cluster_size_m": 4e-3}}
 
 
-@pytest.fixture(params=METHODS)
+@pytest.fixture(scope="module", params=METHODS)
 def method(request):
     return {"clustering": request.param, **METHODS[request.param]}
 
 
-@pytest.fixture
-def slow(method, monkeypatch):
-    return watch_run(*build("cup_spoon", monkeypatch, **method))
+@pytest.fixture(scope="module")
+def slow(method):
+    with pytest.MonkeyPatch.context() as patch:
+        return watch_run(*build("cup_spoon", patch, **method))
 
 
 def test_all_is_dropped_in_its_order_and_comes_back(slow):
