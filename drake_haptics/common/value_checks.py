@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
-from numpy.typing import ArrayLike
+
+Numbers = float | Sequence[float] | np.ndarray
 
 
-def check_positive(**values: ArrayLike) -> None:
+def check_positive(**values: Numbers) -> None:
     """Raises ValueError unless all numbers are above 0 and finite.
 
     Args:
@@ -17,7 +20,7 @@ def check_positive(**values: ArrayLike) -> None:
             raise ValueError(f"{name} must be positive and finite, is {value}")
 
 
-def check_at_least(least: float, **values: ArrayLike) -> None:
+def check_at_least(least: float, **values: Numbers) -> None:
     """Raises ValueError unless no number is below a least one and all are finite.
 
     Args:
