@@ -42,7 +42,7 @@ from wrench_scenarios import (
     sphere_on_plane,
 )
 
-PAGE = Path(__file__).parents[2] / "docs" / "wrenches.md"
+PAGE = Path(__file__).parents[2] / "docs" / "verification" / "wrenches.md"
 SCENARIOS: dict[str, Callable[[str], Iterator[Case]]] = {
     s.__name__: s
     for s in (
@@ -163,7 +163,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--write", action="store_true", help="write docs/wrenches.md")
+    parser.add_argument(
+        "--write", action="store_true", help="write docs/verification/wrenches.md"
+    )
     write = parser.parse_args().write
     lines = ["| " + " | ".join(cells) + " |" for cells in (TITLES, *rows())]
     lines.insert(1, "|" + "---|" * len(TITLES))
