@@ -76,7 +76,7 @@ FIGURES = (
         "verification/no-fall-through", "press", 150, "--points", "1000", "--jobs", "2"
     ),
     _table("decomposition", "decomposition", 10, timed=True),
-    _table("under-load", "load", 1, timed=True),
+    _table("troubleshooting", "load", 1, timed=True),
     Figures(
         "docs/record-replay.md",
         ((f"{_PROGRAMS}/tick_log_costs.py", "--write"),),

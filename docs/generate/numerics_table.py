@@ -20,7 +20,7 @@ PAGE = DOCS / "numerics.md"
 BEGIN = "<!-- summary: written by docs/generate/numerics_table.py -->\n"
 END = "<!-- end of summary -->\n"
 HEAD = ["what could be wrong", "tried on", "here", "for comparison", "page"]
-# Rows of docs/verification/no-fall-through.md by their gains, and what they are called here.
+# Rows of verification/no-fall-through.md by their gains, and their names here.
 PRESSED = {
     "default": "default gains",
     "sinking": "a contact that sinks in 1.2 mm",

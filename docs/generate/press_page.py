@@ -1,4 +1,4 @@
-"""docs/verification/no-fall-through.md: the press table as a page, and how it is read."""
+"""The press table as a page, docs/verification/no-fall-through.md."""
 
 from __future__ import annotations
 
