@@ -29,7 +29,7 @@ var Scorer = (() => {
     "glossary#units": "damping stiffness unit",
     "gradients": "AutoDiff Jacobian linearize",
     "install": "pip wheel macOS Windows Python version",
-    "no-fall-through": "thin wall plate tunnel",
+    "verification/no-fall-through": "thin wall plate tunnel",
     "paper": "citing cite reference author bibtex",
     "record-replay": "record log a run CSV",
     "stability": "network delay latency vibration passive",
@@ -38,7 +38,7 @@ var Scorer = (() => {
     "troubleshooting#meshes": "mesh in inch millimeter unit scale",
     "troubleshooting#tunnelling": "tool sink fall through wall",
     "troubleshooting#weak-force": "weak soft force limit",
-    "under-load": "slow overrun",
+    "troubleshooting#late-ticks": "slow overrun load",
   };
   const IN_HEADING = 12, IN_TITLE = 5, OBJECT = -10;
   let query = "";

@@ -22,7 +22,7 @@ from page_stamp import write_page
 from press_rig import GAINS, LARGEST_FORCE_N
 from wrench_chain import METHODS
 
-PAGE = Path(__file__).parents[2] / "docs" / "continuity.md"
+PAGE = Path(__file__).parents[2] / "docs" / "verification" / "continuity.md"
 TITLES = ("scene", "method", "force", "99.9 %", "torque", "99.9 %", f"over {JUMP:g}")
 TITLES += (*CAUSES, "of the largest", "chain alone")
 
@@ -102,7 +102,9 @@ def main() -> None:
     parser.add_argument("--methods", nargs="*", default=METHODS, choices=METHODS)
     parser.add_argument("--steps", type=int, default=100_000)
     parser.add_argument("--jobs", type=int, default=1, help="processes")
-    parser.add_argument("--write", action="store_true", help="write docs/continuity.md")
+    parser.add_argument(
+        "--write", action="store_true", help="write docs/verification/continuity.md"
+    )
     args = parser.parse_args()
     lines = [_line(TITLES), "|" + "---|" * len(TITLES)]
     print(*lines, sep="\n", flush=True)

@@ -16,7 +16,7 @@ from page_stamp import write_page
 from pair_peers import ours, with_coal, with_drake
 from pair_score import Library, Score, score_case
 
-DOCS = Path(__file__).parents[2] / "docs" / "hard-cases.md"
+DOCS = Path(__file__).parents[2] / "docs" / "verification" / "hard-cases.md"
 START, END = "<!-- table -->\n", "<!-- end of table -->\n"
 LIBRARIES = {
     "tracked": Library(ours, is_tracked=True, is_warm=True),

@@ -62,19 +62,21 @@ def _table(
 # In this order: the last ones quote those before.
 FIGURES = (
     _table("stability-theory", "boundary", 1),
-    _table("wrenches", "wrench", 1),
-    _table("hard-cases", "hard_cases", 3),
-    _table("sliding", "sliding", 2),
+    _table("verification/wrenches", "wrench", 1),
+    _table("verification/hard-cases", "hard_cases", 3),
+    _table("verification/sliding", "sliding", 2),
     _table("gradients", "gradient", 5),
     _table("gradients", "loop_gradient", 2),
     _table("device-twin", "twin", 5),
     _table("servo", "servo", 3),
     _table("stability", "stability", 3),
     _table("troubleshooting", "symptom", 1),
-    _table("continuity", "continuity", 30, "--jobs", "2"),
-    _table("no-fall-through", "press", 150, "--points", "1000", "--jobs", "2"),
+    _table("verification/continuity", "continuity", 30, "--jobs", "2"),
+    _table(
+        "verification/no-fall-through", "press", 150, "--points", "1000", "--jobs", "2"
+    ),
     _table("decomposition", "decomposition", 10, timed=True),
-    _table("under-load", "load", 1, timed=True),
+    _table("troubleshooting", "load", 1, timed=True),
     Figures(
         "docs/record-replay.md",
         ((f"{_PROGRAMS}/tick_log_costs.py", "--write"),),

@@ -17,7 +17,7 @@ from page_parts import make_parser, replace_part, to_markdown
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = DOCS / "numerics.md"
 HEAD = ["what could be wrong", "tried on", "here", "for comparison", "page"]
-# Rows of docs/no-fall-through.md by their gains, and what they are called here.
+# Rows of verification/no-fall-through.md by their gains, and their names here.
 PRESSED = {
     "default": "default gains",
     "sinking": "a contact that sinks in 1.2 mm",
@@ -69,7 +69,7 @@ def _percent(rows: list[dict[str, str]], columns: list[str]) -> str:
 def summary_rows() -> Iterator[list[str]]:
     """The table's rows, the first one its head."""
     yield HEAD
-    cases = read_table("hard-cases.md", "case")
+    cases = read_table("verification/hard-cases.md", "case")
     yield [
         "distance, depth, normal or witness of a pair in a degenerate pose",
         f"{len(cases)} cases, {_total(cases, 'poses'):,} poses, held against integers",
@@ -78,9 +78,9 @@ def summary_rows() -> Iterator[list[str]]:
         f"coal {_total(cases, 'coal: wrong'):,},"
         f" {_total(cases, 'gross 3')} of them grossly; Drake"
         f" {_total(cases, 'Drake: wrong'):,}, {_total(cases, 'gross 4'):,} grossly",
-        "[hard cases](hard-cases.md)",
+        "[hard cases](verification/hard-cases.md)",
     ]
-    presses = read_table("no-fall-through.md", "solid")
+    presses = read_table("verification/no-fall-through.md", "solid")
     for gains, words in PRESSED.items():
         rows = [row for row in presses if row["gains"] == gains]
         yield [
@@ -90,9 +90,9 @@ def summary_rows() -> Iterator[list[str]]:
             f"{_total(rows, 'lost')} lost contact, {_total(rows, 'through')} got"
             f" through, {_total(rows, 'hooked')} hooked behind an edge",
             f"{_total(rows, 'inward')} pushed inward, {_total(rows, 'NaN')} NaN",
-            "[no fall-through](no-fall-through.md)",
+            "[no fall-through](verification/no-fall-through.md)",
         ]
-    slides = read_table("sliding.md", "face")
+    slides = read_table("verification/sliding.md", "face")
     octree = [name for name in slides[0] if name.startswith("δ")]
     yield [
         "seams between pieces are felt",
@@ -100,16 +100,16 @@ def summary_rows() -> Iterator[list[str]]:
         f"ripple of the force {_percent(slides, ['shared'])},"
         f" {_total(slides, 'lost')} ticks without contact",
         f"octree up to {_percent(slides, octree)}",
-        "[sliding](sliding.md)",
+        "[sliding](verification/sliding.md)",
     ]
-    wrenches = read_table("wrenches.md", "scenario")
+    wrenches = read_table("verification/wrenches.md", "scenario")
     exact = [row for row in wrenches if row["scenario"] != _TESSELLATED]
     yield [
         "force or torque is not that of the formula",
         f"{len(exact)} scenarios with closed forms",
         f"error {_largest(exact, 'error, shared')} at most",
         f"octree {_largest(exact, 'error, octree')}, where a face is cut",
-        "[wrenches](wrenches.md)",
+        "[wrenches](verification/wrenches.md)",
     ]
     yield _make_jump_row()
     yield _make_derivative_row()
@@ -121,8 +121,10 @@ def _largest(rows: list[dict[str, str]], column: str) -> str:
 
 
 def _make_jump_row() -> list[str]:
-    rows = read_table("continuity.md", "scene")
-    steps = int(_find("continuity.md", r"take ([\d,]+) random").replace(",", ""))
+    rows = read_table("verification/continuity.md", "scene")
+    steps = int(
+        _find("verification/continuity.md", r"take ([\d,]+) random").replace(",", "")
+    )
     over = {
         method: [int(row["over 10"]) for row in rows if row["method"] == method]
         for method in ("shared", "octree")
@@ -138,7 +140,7 @@ def _make_jump_row() -> list[str]:
         f"{share['shared']} of the steps change it by over 10 times what their spring"
         f" explains; of a change of contacts the chain makes at most {chain:g} times",
         f"octree {share['octree']}",
-        "[continuity](continuity.md)",
+        "[continuity](verification/continuity.md)",
     ]
 
 

@@ -1,4 +1,4 @@
-"""docs/no-fall-through.md: the press table as a page, and how it is read."""
+"""The press table as a page, docs/verification/no-fall-through.md."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from page_stamp import describe_commit, write_page
 from press_cells import TITLES
 from press_rig import GAINS, HOLD_S, LARGEST_FORCE_N, START_M
 
-PAGE = Path(__file__).parents[2] / "docs" / "no-fall-through.md"
+PAGE = Path(__file__).parents[2] / "docs" / "verification" / "no-fall-through.md"
 GENERATOR = Path(__file__).with_name("press_table.py")
 COMMAND = f"python docs/generate/{GENERATOR.name}"
 

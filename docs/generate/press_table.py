@@ -55,7 +55,9 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--failures", type=Path, help="file that gets each failure")
     parser.add_argument(
-        "--write", action="store_true", help="write docs/no-fall-through.md"
+        "--write",
+        action="store_true",
+        help="write docs/verification/no-fall-through.md",
     )
     args = parser.parse_args()
     for name in args.solids:

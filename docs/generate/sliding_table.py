@@ -27,7 +27,7 @@ from slide_scenes import (
 
 from drake_haptics import _core
 
-PAGE = Path(__file__).parents[2] / "docs" / "sliding.md"
+PAGE = Path(__file__).parents[2] / "docs" / "verification" / "sliding.md"
 HEIGHTS_M = (1e-3, -5e-4, -1.2e-3)
 DELTAS_M = (1e-3, 2.5e-3, 5e-3, 1e-2, 2e-2, 4e-2)
 UP = np.array([0.0, 0.0, 1.0])

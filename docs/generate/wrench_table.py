@@ -42,7 +42,7 @@ from wrench_scenarios import (
     sphere_on_plane,
 )
 
-PAGE = Path(__file__).parents[2] / "docs" / "wrenches.md"
+PAGE = Path(__file__).parents[2] / "docs" / "verification" / "wrenches.md"
 SCENARIOS: dict[str, Callable[[str], Iterator[Case]]] = {
     s.__name__: s
     for s in (

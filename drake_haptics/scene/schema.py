@@ -344,7 +344,7 @@ class DeviceParameters:
         rate_hz: Ticks per second of the haptic loop, Hz.
         tick_budget_us: What the work of a tick may take, µs. Where ticks take longer,
             drawing stops, then contacts are looked for less far, then fewer push
-            (docs/under-load.md). Nothing is dropped where not given.
+            (docs/troubleshooting.md). Nothing is dropped where not given.
         max_force_N: Largest force shown, N; the preset's where not given. With no more
             is the tool pressed; at 0 nothing is shown, and it is pressed without limit.
         max_torque_Nm: Largest torque shown, N·m; the preset's where not given. With no
