@@ -44,13 +44,13 @@ def find_clearance(
     Args:
         tool: Its pieces, in its frame T.
         objects: Pieces of each object and its pose X_WO.
-        poses: Poses X_WT to look at; those in which there is no room at all, or the
-            tool is deeper than `distance_m` in an object, are left out.
+        poses: Poses X_WT to look at; those in which the tool overlaps an object are
+            left out: there it will not be.
         distance_m: What the tool should be able to keep, m.
     """
-    # From a wall the tool is no deeper than that in; the opposite one is then nearer
-    # than three times as much, if both together leave less than one on each side.
-    tracker = _core.SceneTracker(tool, [body for body, _ in objects], 3 * distance_m)
+    # Two walls that leave less than that on each side are nearer than twice as much,
+    # wherever between them the tool is.
+    tracker = _core.SceneTracker(tool, [body for body, _ in objects], 2 * distance_m)
     for i, (_, X_WO) in enumerate(objects):
         tracker.set_object_pose(i, pose_to_vector(X_WO))
     size_m = float(np.linalg.norm(np.ptp(tool.vertices, axis=0)))
@@ -58,7 +58,7 @@ def find_clearance(
     for X_WT in poses:
         tracker.reset()
         contacts = tracker.query(pose_to_vector(X_WT))
-        if contacts.least_distance < -distance_m:
+        if contacts.least_distance < 0.0:
             continue
         found = _find_room(contacts, size_m, distance_m)
         if found is not None and (least is None or found.distance_m < least.distance_m):
@@ -69,7 +69,7 @@ def find_clearance(
 def _find_room(
     contacts: _core.ContactSet, size_m: float, distance_m: float
 ) -> Clearance | None:
-    """Returns the clearance among contacts if there is some, less than `distance_m`."""
+    """Returns the clearance among contacts if it is less than `distance_m`."""
     n_W, d = contacts.nhat_BA_W, contacts.distance
     if len(d) < 2 or _can_leave(n_W, d, size_m, distance_m):
         return None
@@ -83,7 +83,7 @@ def _find_room(
         bounds=[(-size_m / distance_m, size_m / distance_m)] * 3 + [(None, None)],
     )
     room_m = -float(solved.fun) * distance_m
-    if not 0.0 < room_m < distance_m:
+    if room_m >= distance_m:
         return None
     holding = solved.ineqlin.marginals < 0
     return Clearance(

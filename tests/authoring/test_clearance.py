@@ -17,6 +17,9 @@ from drake_haptics.authoring.plausibility import check_plausibility
 from drake_haptics.geometry.decomposition.decompose import decompose
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.loop.builder import BuildHapticDiagram
+from drake_haptics.models import FOLDER
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import (
     ContactParameters,
     EnvironmentObject,
@@ -60,16 +63,17 @@ def ask(tool, body, distance_m, *p, X_WO=None) -> Clearance | None:
     return find_clearance(tool, objects, poses, distance_m)
 
 
-@pytest.mark.parametrize("shift", [(0, 0), (0.9, 0), (-0.5, 0.8), (1.5, -1.2)])
+@pytest.mark.parametrize("shift", [(0, 0), (0.9, 0), (-0.5, 0.8)])
 @pytest.mark.parametrize("lift_m", [0.0, 0.012])
 def test_half_the_play_of_a_square_peg_is_found(shift, lift_m) -> None:
-    """In the middle, beside it, and a little in the wall: the hole is what it is."""
+    """In the middle and beside it; where the peg is in a wall it cannot be."""
     peg, plate = pieces(make_peg()), pieces(make_plate())
     p = [PLAY_M * shift[0], PLAY_M * shift[1], lift_m]
     found = ask(peg, plate, 1.5 * PLAY_M, p)
     assert found is not None and found.objects == (0,)
     assert found.distance_m == pytest.approx(PLAY_M, rel=1e-6)
     assert ask(peg, plate, 0.99 * PLAY_M, p) is None
+    assert ask(peg, plate, 1.5 * PLAY_M, [1.1 * PLAY_M, 0, lift_m]) is None
 
 
 def test_half_the_play_of_a_round_peg_is_found() -> None:
@@ -154,6 +158,27 @@ def make_scene(folder: Path, tolerance_m: float) -> Scene:
         hand=HandParameters(
             path=HandPathParameters(waypoints=[Waypoint(t, [0, 0, z]) for t, z in way])
         ),
+    )
+
+
+def test_the_shipped_peg_is_told_in_a_smaller_torus() -> None:
+    """The symptom of docs/troubleshooting.md that a smaller tolerance cures."""
+    scene = load_scene(find_scene("torus_peg"))
+    scene.environment[0].scale = 0.57
+    scene.contact.tolerance_m = 2e-3
+    asked = check_plausibility(BuildHapticDiagram(scene))
+    (question,) = [q for q in asked if "on each side" in q]
+    fits_m = float(question.split("contact.tolerance_m: ")[2].split()[0])
+    hole, peg = (
+        trimesh.load(FOLDER / "meshes" / name) for name in ("torus.obj", "peg.obj")
+    )
+    # Both are round about z and as wide along x as along y.
+    inner_m = np.linalg.norm(hole.vertices[:, :2], axis=1).min()
+    room_m = 0.57 * inner_m - peg.extents[0] / 2
+    assert 0.9 * room_m < fits_m <= room_m
+    scene.contact.tolerance_m = 4e-4
+    assert not any(
+        "on each side" in q for q in check_plausibility(BuildHapticDiagram(scene))
     )
 
 
