@@ -139,8 +139,8 @@ class _OutsidePair:
 class PiecePairs:
     """The pairs of a tool's pieces with those of objects, in a library from outside.
 
-    Which are near is found by their bounding spheres, in NumPy, and is timed with the
-    library's queries.
+    Which are near is found by their boxes along the world's axes, in NumPy, and is
+    timed with the library's queries.
     """
 
     def __init__(
@@ -162,7 +162,7 @@ class PiecePairs:
         ]
         self._owner = np.array([i for i, _ in posed], dtype=np.int32)
         self._B = [vertices for _, vertices in posed]
-        self._A_spheres, self._B_spheres = map(_find_spheres, (self._A, self._B))
+        self._A_boxes, self._B_boxes = _Boxes(self._A), _Boxes(self._B).pose(np.eye(4))
         self._pairs: dict[tuple[int, int], OutsideLibrary] = {}
 
     def find(
@@ -173,10 +173,9 @@ class PiecePairs:
         Args:
             X_WT: (4, 4) pose of the tool.
         """
-        (p_T, r_A), (p_W, r_B) = self._A_spheres, self._B_spheres
-        p_WA = p_T @ X_WT[:3, :3].T + X_WT[:3, 3]
-        apart = np.linalg.norm(p_W[:, None] - p_WA, axis=2)
-        near = np.argwhere(apart < r_B[:, None] + r_A + self._tolerance_m)
+        (A_low, A_high), (B_low, B_high) = self._A_boxes.pose(X_WT), self._B_boxes
+        apart = np.maximum(B_low[:, None] - A_high, A_low - B_high[:, None])
+        near = np.argwhere(np.all(apart < self._tolerance_m, axis=2))
         contacts, owners = [], []
         for b, a in near.tolist():
             pair = self._pairs.get((a, b))
@@ -189,16 +188,20 @@ class PiecePairs:
         return contacts, np.array(owners, dtype=np.int32)
 
 
-def _find_spheres(
-    bodies: Sequence[NDArray[np.float64]],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns centers (n, 3) and radii (n,) of spheres about sets of points, m."""
-    centers = np.array([(V.min(axis=0) + V.max(axis=0)) / 2 for V in bodies])
-    radii = [
-        np.linalg.norm(V - center, axis=1).max()
-        for V, center in zip(bodies, centers, strict=True)
-    ]
-    return centers, np.array(radii)
+class _Boxes:
+    """Boxes about sets of points, along the axes of a frame in which they are posed."""
+
+    def __init__(self, bodies: Sequence[NDArray[np.float64]]):
+        self._points = np.concatenate(bodies)
+        self._starts = np.cumsum([0, *map(len, bodies[:-1])])
+
+    def pose(
+        self, X: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Returns lower and upper corners (n, 3) at a pose (4, 4), m."""
+        points = self._points @ X[:3, :3].T + X[:3, 3]
+        low = np.minimum.reduceat(points, self._starts)
+        return low, np.maximum.reduceat(points, self._starts)
 
 
 class OutsideScene:
