@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 from pydrake.math import RigidTransform
 
+from drake_haptics.authoring.clearance import find_clearance
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.geometry.decomposition.decompose import Decomposition
 from drake_haptics.geometry.mesh.checks import (
@@ -47,6 +49,7 @@ def check_plausibility(haptic: HapticDiagram) -> list[str]:
             "the tool",
             max(haptic.tool.mesh.report.extent),
         ),
+        *_question_clearance(haptic),
         *_question_origin(haptic),
         *_question_reach(haptic),
         *_question_device(haptic),
@@ -82,6 +85,32 @@ def _question_size(
         return f"{size}; is its scale ({item.scale:g}) right?"
     factor = METERS_PER_UNIT[unit]
     return f"{size}; if the file is in {unit}: {key}.scale: {factor:g}"
+
+
+def _question_clearance(haptic: HapticDiagram) -> list[str]:
+    """Asks about a tolerance that is wider than the room that objects leave the tool.
+
+    Its way is that of the scene's hand, with a device of your own as well.
+    """
+    scene = haptic.scene
+    tolerance_m = scene.contact.tolerance_m
+    objects = [
+        (part.core, item.pose.to_rigid_transform())
+        for item, part in zip(scene.environment, haptic.environment, strict=True)
+    ]
+    found = find_clearance(haptic.tool.core, objects, _sample_path(haptic), tolerance_m)
+    if found is None:
+        return []
+    names = " and ".join(f"'{scene.environment[i].name}'" for i in found.objects)
+    # Two digits, the second not rounded up.
+    digit_m = 10.0 ** (math.floor(math.log10(found.distance_m)) - 1)
+    fits_m = digit_m * math.floor(found.distance_m / digit_m)
+    return [
+        f"contact.tolerance_m: is {length(tolerance_m)}, but on the hand's path {names}"
+        f" {'leaves' if len(found.objects) == 1 else 'leave'} the tool"
+        f" {length(found.distance_m)} on each side: it is pushed from all sides at once"
+        f" and may not go in; contact.tolerance_m: {fits_m:.2g} fits"
+    ]
 
 
 def _question_origin(haptic: HapticDiagram) -> list[str]:
@@ -130,10 +159,14 @@ def _question_reach(haptic: HapticDiagram) -> list[str]:
 
 def _sample_tool_box(haptic: HapticDiagram) -> np.ndarray:
     """Returns corners of the tool's box along the hand's path, (n, 8, 3), m."""
+    return np.array([_find_corners(haptic.tool, X) for X in _sample_path(haptic)])
+
+
+def _sample_path(haptic: HapticDiagram) -> list[RigidTransform]:
+    """Returns poses X_WT along the hand's path."""
     path = make_hand_path(haptic.scene.hand.path)
     times = np.linspace(0.0, path.duration_s, _PLACES)
-    poses = [vector_to_pose(path.calc(t)[0]) for t in times]
-    return np.array([_find_corners(haptic.tool, X_WT) for X_WT in poses])
+    return [vector_to_pose(path.calc(t)[0]) for t in times]
 
 
 def _find_corners(tool: Decomposition, X_WT: RigidTransform) -> np.ndarray:

@@ -21,15 +21,27 @@ from drake_haptics.evaluation.benchmark.benchmark import (
     missing_lines,
     run_benchmarks,
 )
+from drake_haptics.evaluation.benchmark.outside_library import load_library
 
 
 @click.command(cls=CommandWithExamples, lesson=lessons.BENCH)
 @click.argument("parts", nargs=-1, type=click.Choice(PARTS))
 @click.option("--quick", is_flag=True, help="Measure less: some 20 seconds.")
 @meshes_option("Take the scenes' meshes from here where it has them")
+@click.option(
+    "--library",
+    "libraries",
+    multiple=True,
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Measure yours too: a Python file with a subclass of OutsideLibrary.",
+)
 @json_option
 def bench(
-    parts: tuple[str, ...], quick: bool, meshes: Path | None, json_file: str | None
+    parts: tuple[str, ...],
+    quick: bool,
+    meshes: Path | None,
+    libraries: tuple[Path, ...],
+    json_file: str | None,
 ) -> None:
     """Measure queries and whole loops on this machine, beside other libraries.
 
@@ -39,8 +51,9 @@ def bench(
     pip install "drake_haptics[peers]".
     """
     effort = QUICK if quick else Effort()
+    outside = [load_library(file) for file in libraries]
     with progress_bar() as show:
-        figures = run_benchmarks(parts or PARTS, effort, meshes, show)
+        figures = run_benchmarks(parts or PARTS, effort, meshes, show, outside)
     if json_file is not None:
         write_json(figures.to_dict(), json_file)
     if json_file != "-":

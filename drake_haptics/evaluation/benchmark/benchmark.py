@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -11,6 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from drake_haptics.evaluation.benchmark.loop.figures import LoopFigures, loop_tables
+from drake_haptics.evaluation.benchmark.outside_library import (
+    OutsideLibrary,
+    OutsideScene,
+    make_pair_library,
+)
 from drake_haptics.evaluation.benchmark.pair_library import find_libraries
 from drake_haptics.evaluation.benchmark.pair_runs import PairFigures, run_pair
 from drake_haptics.evaluation.benchmark.pair_tables import (
@@ -117,6 +122,7 @@ def run_benchmarks(
     effort: Effort = Effort(),
     meshes: Path | None = None,
     progress: Progress = lambda what, share: None,
+    outside: Sequence[type[OutsideLibrary]] = (),
 ) -> BenchFigures:
     """Measures this package and the libraries that are installed, in this thread.
 
@@ -125,26 +131,34 @@ def run_benchmarks(
         effort: How much is measured.
         meshes: A folder of real meshes for the scenes, see `scene_makers`.
         progress: Called before each step.
+        outside: Libraries that are measured besides, in every part.
 
     Raises:
         HapticsError: The folder has none of the meshes.
     """
     makers = scene_makers(effort.motions, meshes)  # first, as it may refuse the folder
     figures = BenchFigures(machine=describe_machine())
+    figures.libraries.update({library.name: library.version for library in outside})
     if "pairs" in parts:
-        _run_pairs(figures, effort, progress)
+        _run_pairs(figures, effort, progress, outside)
     if "python" in parts:
-        _run_python(figures, effort, progress)
+        _run_python(figures, effort, progress, outside)
     if "scenes" in parts:
-        _run_scenes(figures, effort, makers, progress)
+        _run_scenes(figures, effort, makers, progress, outside)
     if "loop" in parts:
-        _run_loop(figures, effort, progress)
+        _run_loop(figures, effort, progress, outside)
     return figures
 
 
-def _run_pairs(figures: BenchFigures, effort: Effort, progress: Progress) -> None:
+def _run_pairs(
+    figures: BenchFigures,
+    effort: Effort,
+    progress: Progress,
+    outside: Sequence[type[OutsideLibrary]],
+) -> None:
     progress("looking for libraries, and compiling what calls them", 0.0)
     libraries, missing = find_libraries()
+    libraries += map(make_pair_library, outside)
     figures.libraries.update({library.name: library.version for library in libraries})
     figures.missing.update(missing)
     pairs = [(kind, size) for kind in KINDS for size in effort.sizes]
@@ -154,7 +168,12 @@ def _run_pairs(figures: BenchFigures, effort: Effort, progress: Progress) -> Non
         figures.pairs.extend(run_pair(pair, libraries, effort.presses, effort.repeats))
 
 
-def _run_python(figures: BenchFigures, effort: Effort, progress: Progress) -> None:
+def _run_python(
+    figures: BenchFigures,
+    effort: Effort,
+    progress: Progress,
+    outside: Sequence[type[OutsideLibrary]],
+) -> None:
     if find_spec("coal") is None:
         figures.missing["coal"] = "No module named 'coal'"
         return
@@ -162,7 +181,7 @@ def _run_python(figures: BenchFigures, effort: Effort, progress: Progress) -> No
     for done, (kind, size) in enumerate(pairs):
         progress(f"from Python: {kind}, {size} vertices", done / len(pairs))
         pair = make_pair(kind, size)
-        figures.python.append(run_python_pair(pair, 1, effort.repeats))
+        figures.python.append(run_python_pair(pair, 1, effort.repeats, outside))
 
 
 def _run_scenes(
@@ -170,6 +189,7 @@ def _run_scenes(
     effort: Effort,
     makers: Mapping[str, Callable[[], SceneProblem]],
     progress: Progress,
+    outside: Sequence[type[OutsideLibrary]],
 ) -> None:
     if not effort.large_scenes:
         makers = {n: make for n, make in makers.items() if n not in _LARGE_SCENES}
@@ -178,16 +198,22 @@ def _run_scenes(
         problem = make()
         queries: dict[str, SceneQuery] = {NAME: DrakeHapticsScene(problem)}
         queries.update(_scene_peer(figures, problem))
+        queries.update({one.name: OutsideScene(problem, one) for one in outside})
         figures.scenes.extend(run_scene(problem, queries, effort.repeats))
 
 
-def _run_loop(figures: BenchFigures, effort: Effort, progress: Progress) -> None:
+def _run_loop(
+    figures: BenchFigures,
+    effort: Effort,
+    progress: Progress,
+    outside: Sequence[type[OutsideLibrary]],
+) -> None:
     from drake_haptics.evaluation.benchmark.loop.problem import make_problem
     from drake_haptics.evaluation.benchmark.loop.runs import make_loops, run_loops
 
     progress("loop: recording the hand", 0.0)
     problem = make_problem(duration_s=effort.loop_s)
-    loops, missing = make_loops(problem)
+    loops, missing = make_loops(problem, outside)
     figures.missing.update(missing)
     for library in ("Drake", "MuJoCo"):
         if any(name.startswith(library) for name in loops):

@@ -52,12 +52,14 @@ class PairLibrary:
         version: Version of the library.
         ours: Whether it is this package.
         make_query: Builds the bodies of a pair in the library.
+        outside: Whether it was named for this run, as an `OutsideLibrary`.
     """
 
     name: str
     version: str
     ours: bool
     make_query: Callable[[PairShape], PairQuery]
+    outside: bool = False
 
 
 def ask_each(

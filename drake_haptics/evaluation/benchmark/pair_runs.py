@@ -88,6 +88,7 @@ class PairFigures:
         max_jump_deg: Largest turn of the normal in a frame in which the exact one
             turns by less than 1°.
         failed_frames: Frames without an answer.
+        outside: Whether the library was named for this run.
     """
 
     kind: str
@@ -101,6 +102,7 @@ class PairFigures:
     exact_depth_share: float
     max_jump_deg: float
     failed_frames: int
+    outside: bool = False
 
 
 def run_pair(
@@ -177,6 +179,7 @@ def _figures(
         exact_depth_share=float(right[deep].mean()) if deep.any() else 1.0,
         max_jump_deg=float(np.degrees(np.concatenate(jumps).max(initial=0.0))),
         failed_frames=int((~np.isfinite(distance)).sum()),
+        outside=library.outside,
     )
 
 

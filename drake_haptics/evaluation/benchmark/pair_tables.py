@@ -150,6 +150,7 @@ def time_table(figures: Sequence[PairFigures]) -> Table:
     """Returns times of each pair, this package's and the fastest other library's."""
     ours = [f for f in _libraries(figures) if any(g.ours for g in _of(figures, f))]
     pairs = list(dict.fromkeys((f.kind, f.size) for f in figures))
+    named = [f for f in _libraries(figures) if _of(figures, f)[0].outside]
     others = {f.library for f in figures if not f.ours}
     # One that is alone is named once, in the heads.
     alone = next(iter(others)) if len(others) == 1 else None
@@ -157,7 +158,9 @@ def time_table(figures: Sequence[PairFigures]) -> Table:
     def cells(kind: str, size: int, median: Column, p99: Column) -> list[str]:
         here = [f for f in figures if (f.kind, f.size) == (kind, size)]
         texts = [
-            f"{median(f):.2f} / {p99(f):.2f}" for name in ours for f in _of(here, name)
+            f"{median(f):.2f} / {p99(f):.2f}"
+            for name in [*ours, *named]
+            for f in _of(here, name)
         ]
         peers = [f for f in here if not f.ours]
         if not peers:
@@ -167,7 +170,7 @@ def time_table(figures: Sequence[PairFigures]) -> Table:
         return [*texts, times if alone else f"{times} {fastest.library}"]
 
     headings = [name.removeprefix("drake_haptics, ") for name in ours]
-    headings.append(alone or "fastest")
+    headings += [*named, alone or "fastest"]
     return Table(
         title="Convex pairs: times in µs, median / p99",
         note="Beside the one other library that is installed."
@@ -191,20 +194,24 @@ def time_table(figures: Sequence[PairFigures]) -> Table:
 
 def python_table(figures: Sequence[PythonFigures]) -> Table:
     """Returns what single queries cost from Python."""
-    mean = geometric_mean([f.ratio for f in figures]) if figures else np.nan
+    mean = geometric_mean([f.ratio for f in figures])
     return Table(
         title="One pair query from Python",
         note=(
             "Medians over whole presses, from the (4, 4) pose to the distance; coal "
             f"in the fastest of its starts. Geometric mean of the ratio: {mean:.2f}."
         ),
-        header=("pair, vertices", "drake_haptics, µs", "coal, µs", "ratio"),
+        header=(
+            *("pair, vertices", "drake_haptics, µs", "coal, µs", "ratio"),
+            *(f"{name}, µs" for name in figures[0].outside_us),
+        ),
         rows=[
             (
                 f"{f.kind}, {f.size}",
                 f"{f.ours_us:.2f}",
                 f"{f.coal_us:.2f}",
                 f"{f.ratio:.2f}",
+                *(f"{cost_us:.2f}" for cost_us in f.outside_us.values()),
             )
             for f in figures
         ],

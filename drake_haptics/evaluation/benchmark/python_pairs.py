@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from drake_haptics._core import ConvexPair, ConvexPolytope
+from drake_haptics.evaluation.benchmark.outside_library import OutsideLibrary
 from drake_haptics.evaluation.benchmark.pairs import PairShape, make_presses
 from drake_haptics.evaluation.measuring.timing import typical
 
@@ -22,12 +23,14 @@ class PythonFigures:
         size: Vertices of each body.
         ours_us: Median, this package, tracked, µs.
         coal_us: Median of the faster of coal's starts, µs.
+        outside_us: Medians of the libraries that were named for this run, µs.
     """
 
     kind: str
     size: int
     ours_us: float
     coal_us: float
+    outside_us: dict[str, float] = field(default_factory=dict)
 
     @property
     def ratio(self) -> float:
@@ -35,7 +38,12 @@ class PythonFigures:
         return self.ours_us / self.coal_us
 
 
-def run_python_pair(pair: PairShape, presses: int, repeats: int) -> PythonFigures:
+def run_python_pair(
+    pair: PairShape,
+    presses: int,
+    repeats: int,
+    outside: Sequence[type[OutsideLibrary]] = (),
+) -> PythonFigures:
     """Returns what a single query costs from Python, on all frames of the presses.
 
     Both sides get a (4, 4) pose and give the distance, in turns on each press. Coal
@@ -45,14 +53,17 @@ def run_python_pair(pair: PairShape, presses: int, repeats: int) -> PythonFigure
         pair: The bodies.
         presses: How many presses, see `make_presses`.
         repeats: How often each press is run.
+        outside: Libraries that were named for this run.
     """
     bodies = pair.A_vertices, pair.B_vertices
-    queries: dict[str, Callable[[np.ndarray], float]] = {
+    queries: dict[str, Callable[[np.ndarray], object]] = {
         "ours": _our_query(pair),
         "cold": CoalQuery(*bodies, "DefaultGuess"),
         "boxes": CoalQuery(*bodies, "BoundingVolumeGuess"),
         "warm": CoalQuery(*bodies, "CachedGuess"),
     }
+    for library in outside:
+        queries[library.name] = library(*bodies).query
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in queries}
     for press in make_presses(pair, presses):
         repeated: dict[str, list[list[float]]] = {name: [] for name in queries}
@@ -63,10 +74,12 @@ def run_python_pair(pair: PairShape, presses: int, repeats: int) -> PythonFigure
             seconds[name].append(typical(np.array(repeated[name])))
     medians = {n: 1e6 * float(np.median(np.concatenate(s))) for n, s in seconds.items()}
     ours_us = medians.pop("ours")
-    return PythonFigures(pair.kind, pair.size, ours_us, min(medians.values()))
+    outside_us = {library.name: medians.pop(library.name) for library in outside}
+    coal_us = min(medians.values())
+    return PythonFigures(pair.kind, pair.size, ours_us, coal_us, outside_us)
 
 
-def _timed(query: Callable[[np.ndarray], float], X_WA: np.ndarray) -> list[float]:
+def _timed(query: Callable[[np.ndarray], object], X_WA: np.ndarray) -> list[float]:
     seconds = []
     for X in X_WA:
         start = time.perf_counter()

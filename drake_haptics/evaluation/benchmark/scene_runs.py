@@ -224,7 +224,9 @@ def _figures(
 
 
 def scene_table(figures: Sequence[SceneFigures]) -> Table:
-    """Returns times and sizes of the scenes, this package and its peer."""
+    """Returns times and sizes of the scenes, this package and its peers."""
+    named = list(dict.fromkeys(f.library for f in figures))
+    outside = [name for name in named if name not in (NAME, COAL)]
     return Table(
         title="Scenes: times of a whole query in µs, median / p99",
         note=(
@@ -242,30 +244,32 @@ def scene_table(figures: Sequence[SceneFigures]) -> Table:
             "ours",
             "coal",
             "ratio",
+            *(heading for name in outside for heading in (name, "ratio")),
         ),
         rows=[
-            _row({f.library: f for f in group})
+            _row({f.library: f for f in group}, [COAL, *outside])
             for _, group in groupby(figures, key=lambda f: f.scene)
         ],
     )
 
 
-def _row(by_library: dict[str, SceneFigures]) -> tuple[str, ...]:
+def _row(by_library: dict[str, SceneFigures], peers: Sequence[str]) -> tuple[str, ...]:
     ours = by_library[NAME]
-    peers = [f for name, f in by_library.items() if name != NAME]
-    coal, ratio = "–", "–"
-    if peers:
-        near = peers[0].near
-        coal = f"{near.median_us:.1f} / {near.p99_us:.1f}"
-        ratio = (
+    cells: list[str] = []
+    for name in peers:
+        if name not in by_library:
+            cells += ["–", "–"]
+            continue
+        near = by_library[name].near
+        cells += [
+            f"{near.median_us:.1f} / {near.p99_us:.1f}",
             f"{ours.near.median_us / near.median_us:.2f}"
-            f" / {ours.near.p99_us / near.p99_us:.2f}"
-        )
+            f" / {ours.near.p99_us / near.p99_us:.2f}",
+        ]
     return (
         ours.scene,
         f"{ours.tool_pieces}, {ours.object_pieces}",
         f"{ours.median_contacts:.0f}–{ours.max_contacts}",
         f"{ours.near.median_us:.1f} / {ours.near.p99_us:.1f}",
-        coal,
-        ratio,
+        *cells,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -22,12 +22,21 @@ from drake_haptics.evaluation.benchmark.loop.problem import (
 )
 from drake_haptics.evaluation.benchmark.loop.stock_drake import StockLoop, has_solver
 from drake_haptics.evaluation.benchmark.loop.this_package import NativeLoop, ThisLoop
+from drake_haptics.evaluation.benchmark.loop.with_outside import OutsideLoop
+from drake_haptics.evaluation.benchmark.outside_library import OutsideLibrary
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
 from drake_haptics.evaluation.measuring.timing import take_turns, typical
 
 
-def make_loops(problem: LoopProblem) -> tuple[dict[str, Loop], dict[str, str]]:
-    """Returns name -> loop, this package's first; and library -> why it is missing."""
+def make_loops(
+    problem: LoopProblem, outside: Sequence[type[OutsideLibrary]] = ()
+) -> tuple[dict[str, Loop], dict[str, str]]:
+    """Returns name -> loop, this package's first; and library -> why it is missing.
+
+    Args:
+        problem: What they are given.
+        outside: Libraries that were named for this run.
+    """
     loops: dict[str, Loop] = {
         PACED: ThisLoop(problem, paced=True),
         OURS: ThisLoop(problem),
@@ -45,6 +54,8 @@ def make_loops(problem: LoopProblem) -> tuple[dict[str, Loop], dict[str, str]]:
         loops[MUJOCO] = MujocoLoop(problem)
     except (ImportError, NativeBuildError) as error:
         missing["mujoco"] = str(error)
+    for library in outside:
+        loops[library.name] = OutsideLoop(problem, library)
     return loops, missing
 
 
