@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from pydrake.common.eigen_geometry import Quaternion
 from pydrake.common.value import AbstractValue, Value
-from pydrake.math import RigidTransform
+from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.systems.framework import (
     BasicVector,
     Context,
@@ -106,8 +107,8 @@ class ConstraintToolStep(Diagram):
     * `contact_wrench` is their `ConstraintWrench`.
     * `F_To_W` (6) is their wrench [τ; f] on the tool at its origin, mean of the tick.
     * `F_O_W` (6 for each object that moves) are the wrenches on those objects.
-    * `wrench_model` (78) is [F; K; B] of the contacts, with `F_To_W` as F and zeros: a
-      row does not give way.
+    * `wrench_model` (78) is [F; K; B] of the contacts: what they push with as the tool
+      moves by δ in the tick is F - K δ; B is zero. K is that of the rows that push.
     * `coupling` (78) is that of `VirtualCoupling`.
 
     The state is one discrete group (13), [X_WT; V_WT], updated every period from 0 s
@@ -240,7 +241,7 @@ class _ConstraintStep(LeafSystem):
         self._q_HT = pose_to_vector(X_HT)
         self._tool = tool
         self._objects = tuple(objects)
-        self._skin_m = list(skin_m)
+        self._skin_m = np.array(skin_m, dtype=float)
         self._dynamics = dynamics
         self._period_s = period_s
         # Wrong arguments are refused here, and not at the first tick.
@@ -290,16 +291,12 @@ class _ConstraintStep(LeafSystem):
         self._contact_wrench = self.DeclareAbstractOutputPort(
             "contact_wrench", Value[object], self._calc_contact_wrench, from_result
         )
-        from_wrench = {self._contact_wrench.ticket()}
-        self.DeclareVectorOutputPort("F_To_W", 6, self._calc_F_To_W, from_wrench)
+        self.DeclareVectorOutputPort("F_To_W", 6, self._calc_F_To_W, from_result)
         if self._motions:
             self.DeclareVectorOutputPort(
                 "F_O_W", 6 * len(self._motions), self._calc_F_O_W, from_result
             )
-        self.DeclareVectorOutputPort(
-            "wrench_model", 78, self._calc_wrench_model, from_wrench
-        )
-        self.DeclareVectorOutputPort(
+        coupling = self.DeclareVectorOutputPort(
             "coupling",
             78,
             self._calc_coupling,
@@ -309,6 +306,14 @@ class _ConstraintStep(LeafSystem):
                 self.xd_ticket(),
                 self.pa_ticket(),
             },
+        )
+        self._eval_coupling = coupling.Eval
+        self._M_T = _find_inertia(dynamics)
+        self.DeclareVectorOutputPort(
+            "wrench_model",
+            78,
+            self._calc_wrench_model,
+            from_all,
         )
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
@@ -388,18 +393,45 @@ class _ConstraintStep(LeafSystem):
         )
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
-        wrench_model = np.zeros(78)
-        wrench_model[:6] = self._contact_wrench.Eval(context).F_To_W
-        output.SetFromVector(wrench_model)
+        result = self._eval_result(context)
+        state = context.get_discrete_state_vector().value()
+        # What is left of the step's slope is that of the rows.
+        K = result.hessian - self._calc_free_hessian(context, state)
+        K = 0.5 * (K + K.T) if len(result.contacts) else np.zeros((6, 6))
+        F = self._contact_wrench.Eval(context).F_To_W + K @ (
+            self._period_s * result.V_WT
+        )
+        output.SetFromVector(np.concatenate([F, K.ravel(), np.zeros(36)]))
+
+    def _calc_free_hessian(self, context: Context, state: np.ndarray) -> np.ndarray:
+        """Returns (6, 6) M/h² + B/h + K of the tool on its coupling."""
+        R_WT = RotationMatrix(Quaternion(state[:4])).matrix()
+        both = np.kron(np.eye(2), R_WT)
+        M = both @ self._M_T @ both.T
+        K, B = self._eval_coupling(context)[6:].reshape(2, 6, 6)
+        h = self._period_s
+        return M / h**2 + B / h + K
 
     def _calc_coupling(self, context: Context, output: BasicVector) -> None:
         state = context.get_discrete_state_vector().value()
         wrenches = coupling_wrench(
             self._X_WH.Eval(context),
             self._V_WH.Eval(context),
+            self._q_HT,
             state[:7],
             state[7:],
             context.get_abstract_parameter(self._gains).get_value(),
-            self._q_HT,
         )
         output.SetFromVector(wrenches[:78])
+
+
+def _find_inertia(dynamics: RigidToolDynamics) -> np.ndarray:
+    """Returns the spatial inertia (6, 6) of a tool about its origin, in its frame.
+
+    From rest, without stiffness and damping, a step of a second gives it the velocity
+    M⁻¹ F.
+    """
+    at_rest = np.array([1.0, *np.zeros(12)])
+    models = np.hstack([np.eye(6), np.zeros((6, 72))])
+    inverse = [dynamics.step(at_rest, model, 1.0)[7:] for model in models]
+    return np.linalg.inv(np.array(inverse).T)
