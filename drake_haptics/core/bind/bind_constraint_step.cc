@@ -8,6 +8,7 @@
 #include "bind/bind_array.h"
 #include "bind/bind_columns.h"
 #include "bind/bind_pose.h"
+#include "bind/bind_real_array.h"
 #include "bind/bind_shapes.h"
 #include "bind/bind_turn.h"
 #include "constraint/constraint_step.h"
@@ -22,16 +23,12 @@ using Result = ConstraintStepResult;
 // A stepper whose users take turns.
 class SharedStepper {
  public:
-  SharedStepper(nb::handle tool, nb::handle objects,
-                const Eigen::VectorXd& skin, const ToolInertia& dynamics,
-                const CouplingGains& gains, const PoseVector& q_HT,
-                double period)
+  SharedStepper(nb::handle tool, nb::handle objects, nb::handle skin,
+                const ToolInertia& dynamics, const CouplingGains& gains,
+                const PoseVector& q_HT, double period)
       : stepper_(ToDecomposition(tool, "tool"), ToDecompositions(objects),
-                 {dynamics,
-                  gains,
-                  CheckedPose(q_HT, "q_HT"),
-                  period,
-                  {skin.begin(), skin.end()}}) {}
+                 {dynamics, gains, CheckedPose(q_HT, "q_HT"), period,
+                  ToNumbers(skin)}) {}
   SharedStepper(const SharedStepper& other) : stepper_(other.Copy()) {}
 
   // For what never changes.
@@ -66,6 +63,19 @@ class SharedStepper {
   }
 
  private:
+  static std::vector<double> ToNumbers(nb::handle value) {
+    const RealArray array(value, "skin_m");
+    if (array.ndim() != 1) {
+      throw std::invalid_argument("skin_m must be (num_objects,), has shape " +
+                                  array.shape_text());
+    }
+    std::vector<double> numbers;
+    for (Py_ssize_t i = 0; i < array.shape(0); ++i) {
+      numbers.push_back(RealArray::Load(array.data() + i * array.stride(0)));
+    }
+    return numbers;
+  }
+
   static PoseVector CheckedPose(const PoseVector& q, const char* name) {
     PoseFromVector(q, name);
     return q;
@@ -169,12 +179,11 @@ void BindConstraintStep(nb::module_& m) {
       "step. Threads that share a stepper take turns.");
   stepper
       .def(
-          nb::init<nb::handle, nb::handle, const Eigen::VectorXd&,
-                   const ToolInertia&, const CouplingGains&, const PoseVector&,
-                   double>(),
-          nb::arg("tool").none(), nb::arg("objects").none(), nb::arg("skin_m"),
-          nb::arg("dynamics"), nb::arg("gains"), nb::arg("q_HT"),
-          nb::arg("period_s"),
+          nb::init<nb::handle, nb::handle, nb::handle, const ToolInertia&,
+                   const CouplingGains&, const PoseVector&, double>(),
+          nb::arg("tool").none(), nb::arg("objects").none(),
+          nb::arg("skin_m").none(), nb::arg("dynamics"), nb::arg("gains"),
+          nb::arg("q_HT"), nb::arg("period_s"),
           nb::sig("def __init__(self, tool: "
                   "drake_haptics.geometry.decomposition.decompose."
                   "Decomposition | ConvexPieces, objects: collections.abc."

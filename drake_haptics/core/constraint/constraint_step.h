@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "base/types.h"
+#include "constraint/constraint_problem.h"
+#include "constraint/constraint_rows.h"
 #include "mesh/decomposition.h"
 #include "pair/contact.h"
 #include "tool/rigid_tool.h"
@@ -76,7 +79,7 @@ class ConstraintStepper {
                     std::vector<std::shared_ptr<const Decomposition>> objects,
                     Settings settings);
 
-  int num_objects() const { return static_cast<int>(objects_.size()); }
+  int num_objects() const { return rows_.num_objects(); }
   const Settings& settings() const { return settings_; }
 
   /// Poses object i at the next tick's beginning, and tells how it moves in it.
@@ -95,13 +98,29 @@ class ConstraintStepper {
   void Reset();
 
  private:
-  struct Object {
-    Pose X_WO;
-    Vec6 V_WO = Vec6::Zero();
+  // A row and the springs that hold it, by their places.
+  struct HeldRow {
+    int spring = -1;  // that holds the skin
+    int back = -1;    // that leads back into it
+    double Force(const ConstraintProblem& problem, const Vec6& motion) const;
   };
 
-  std::vector<Object> objects_;
+  void WriteSprings();
+  int AddSpring(const Vec6& a, double b, double k, double limit);
+  bool TurnPlanes(const Pose& X_WT, const Vec6& motion);
+  ConstraintSolution SolveHere(const Pose& X_WT, const Vec6& start,
+                               ConstraintStepResult* result);
+  void WriteContacts(const Pose& X_WT, const Vec6& motion,
+                     ConstraintStepResult* result) const;
+  Vec3 ObjectMotionAt(int i, const Vec3& p_WC) const;
+
+  ConstraintRows rows_;
   Settings settings_;
+  std::vector<Vec6> V_WO_;
+  ConstraintProblem problem_;
+  std::vector<HeldRow> held_;
+  std::vector<std::uint8_t> pushes_;  // of each plane, whether a row of it does
+  ConstraintWorkspace workspace_;
 };
 
 }  // namespace drake_haptics

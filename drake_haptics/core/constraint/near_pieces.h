@@ -47,6 +47,9 @@ class NearPieces {
   /// other pair is nearer than this less the reading, m.
   double mark() const { return mark_; }
 
+  /// The object's box, in its frame.
+  Box bounds() const { return shape_.tree->bounds(); }
+
   PosedPair Posed(const TreedShape& tool, const PiecePair& pieces,
                   const Pose& X_AB) const {
     return {tool.decomposition->pieces[pieces.a],
