@@ -196,10 +196,11 @@ ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
                                                 const Vec6& start,
                                                 ConstraintStepResult* result) {
   is_turned_.assign(rows_.planes().size(), 0);
+  ConstraintSolution solution;
+  solution.motion = start;
   for (int turns = 0;; ++turns) {
     WriteSprings();
-    const ConstraintSolution solution =
-        SolveConstraintProblem(problem_, start, &workspace_);
+    solution = SolveConstraintProblem(problem_, solution.motion, &workspace_);
     result->num_iterations += solution.num_iterations;
     if (turns == kMaxTurns || !TurnPlanes(X_WT, coasting, solution.motion)) {
       return solution;
