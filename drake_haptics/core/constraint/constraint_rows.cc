@@ -187,7 +187,7 @@ void ConstraintRows::AppendRows(int k) {
   const SeparatingPlane& plane = planes_[k];
   const PairContact& contact = plane.contact;
   corners_.clear();
-  corners_.push_back({contact.distance, contact.n, contact.p_a, contact.p_b});
+  corners_.push_back({contact.distance, contact.p_a, contact.p_b});
   if (contact.distance > 0) {
     const PosedPair pair = objects_[plane.object].near.Posed(
         tool_, plane.pieces, RelativePose(X_WT_, objects_[plane.object].X_WO));
@@ -195,10 +195,11 @@ void ConstraintRows::AppendRows(int k) {
                        {contact.support[0], contact.support[1]},
                        reach_of(plane.object), &workspace_.patch, &corners_);
   }
+  const Vec3 n = X_WT_.R * contact.n;
   for (const FacingPoints& points : corners_) {
     ConstraintRow row;
     row.distance = points.distance;
-    row.n = X_WT_.R * points.n;
+    row.n = n;
     const Vec3 arm = X_WT_.R * points.p_a;
     row.a << arm.cross(row.n), row.n;
     row.p_WCa = X_WT_ * points.p_a;

@@ -44,7 +44,12 @@ void RequireFinite(const ToolState& state, const PoseVector& q_WH,
   }
 }
 
-// The pose after a motion ξ of To, [θ; t].
+// The pose after a motion ξ of the origin, [θ; t].
+Pose Moved(const Pose& X, const Vec6& motion) {
+  return {RotationExp<double>(motion.head<3>()).toRotationMatrix() * X.R,
+          X.p + motion.tail<3>()};
+}
+
 PoseVector Moved(const PoseVector& q_WT, const Vec6& motion) {
   const Vec3 turn = motion.head<3>();
   const Eigen::Quaterniond R =
@@ -153,8 +158,11 @@ double ConstraintStepper::HeldRow::Force(const ConstraintProblem& problem,
   return force;
 }
 
-// Turns the planes of the pairs that push. Returns whether any was.
-bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& motion) {
+// Turns the planes of the pairs that push: at first by where the tool comes if
+// it coasts, for what a plane wrongly forbids bends the motion that was found
+// with it; then by that. Returns whether any was turned.
+bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
+                                   const Vec6& motion) {
   const double distance = rows_.MotionOf(X_WT, motion);
   pushes_.assign(rows_.planes().size(), 0);
   for (std::size_t k = 0; k < held_.size(); ++k) {
@@ -162,9 +170,7 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& motion) {
       pushes_[rows_.rows()[k].plane] = 1;
     }
   }
-  const Pose X_next{
-      RotationExp<double>(motion.head<3>()).toRotationMatrix() * X_WT.R,
-      X_WT.p + motion.tail<3>()};
+  const Pose X_coasted = Moved(X_WT, coasting), X_next = Moved(X_WT, motion);
   bool is_any = false;
   for (std::size_t k = 0; k < pushes_.size(); ++k) {
     const SeparatingPlane& plane = rows_.planes()[k];
@@ -173,28 +179,30 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& motion) {
         !(distance > kTurningMotion * skin)) {
       continue;
     }
-    const double h = settings_.period;
-    const Vec6& V = V_WO_[plane.object];
-    const Pose& X_WO = rows_.X_WO(plane.object);
-    const Pose X_WO_next{
-        RotationExp<double>(Vec3(h * V.head<3>())).toRotationMatrix() * X_WO.R,
-        X_WO.p + h * V.tail<3>()};
     const double least =
         std::min(skin, plane.contact.distance) - kTurnedShare * skin;
-    is_any |= rows_.TurnPlane(static_cast<int>(k), X_next, X_WO_next, least);
+    const Pose X_WO_next =
+        Moved(rows_.X_WO(plane.object), settings_.period * V_WO_[plane.object]);
+    is_any |= rows_.TurnPlane(static_cast<int>(k),
+                              is_turned_[k] != 0 ? X_next : X_coasted,
+                              X_WO_next, least);
+    is_turned_[k] = 1;
   }
   return is_any;
 }
 
 ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
+                                                const Vec6& coasting,
                                                 const Vec6& start,
                                                 ConstraintStepResult* result) {
+  is_turned_.assign(rows_.planes().size(), 0);
+  ConstraintSolution solution;
+  solution.motion = start;
   for (int turns = 0;; ++turns) {
     WriteSprings();
-    const ConstraintSolution solution =
-        SolveConstraintProblem(problem_, start, &workspace_);
+    solution = SolveConstraintProblem(problem_, solution.motion, &workspace_);
     result->num_iterations += solution.num_iterations;
-    if (turns == kMaxTurns || !TurnPlanes(X_WT, solution.motion)) {
+    if (turns == kMaxTurns || !TurnPlanes(X_WT, coasting, solution.motion)) {
       return solution;
     }
     rows_.UpdateRows();
@@ -228,7 +236,8 @@ void ConstraintStepper::Step(const ToolState& state, const PoseVector& q_WH,
       result->least_distance = rows_.least_distance();
       result->is_apart = result->least_distance > 0;
     }
-    const ConstraintSolution solution = SolveHere(X_WT, free, result);
+    const ConstraintSolution solution =
+        SolveHere(X_WT, h * state.V_WT - whole, free, result);
     result->is_bounded |= solution.is_bounded;
     Vec6 motion = solution.motion;
     const double distance = rows_.MotionOf(X_WT, motion);

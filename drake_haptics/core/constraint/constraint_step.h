@@ -107,9 +107,9 @@ class ConstraintStepper {
 
   void WriteSprings();
   int AddSpring(const Vec6& a, double b, double k, double limit);
-  bool TurnPlanes(const Pose& X_WT, const Vec6& motion);
-  ConstraintSolution SolveHere(const Pose& X_WT, const Vec6& start,
-                               ConstraintStepResult* result);
+  bool TurnPlanes(const Pose& X_WT, const Vec6& coasting, const Vec6& motion);
+  ConstraintSolution SolveHere(const Pose& X_WT, const Vec6& coasting,
+                               const Vec6& start, ConstraintStepResult* result);
   void WriteContacts(const Pose& X_WT, const Vec6& motion,
                      ConstraintStepResult* result) const;
   Vec3 ObjectMotionAt(int i, const Vec3& p_WC) const;
@@ -119,7 +119,8 @@ class ConstraintStepper {
   std::vector<Vec6> V_WO_;
   ConstraintProblem problem_;
   std::vector<HeldRow> held_;
-  std::vector<std::uint8_t> pushes_;  // of each plane, whether a row of it does
+  // Of each plane: whether a row of it pushes, and whether it has been turned.
+  std::vector<std::uint8_t> pushes_, is_turned_;
   ConstraintWorkspace workspace_;
 };
 

@@ -146,14 +146,13 @@ class Corners {
 
   void Add(double distance, const Vec3& p_b) {
     if (distance > reach_) return;
-    corners_.push_back({distance, n_, p_b + distance * n_, p_b});
+    corners_.push_back({distance, p_b + distance * n_, p_b});
   }
 
   void AddPoints(const Vec3& p_a, const Vec3& p_b) {
-    const Vec3 between = p_a - p_b;
-    const double distance = between.norm();
-    if (!(distance > 0) || distance > reach_) return;
-    corners_.push_back({distance, between / distance, p_a, p_b});
+    const double distance = n_.dot(p_a - p_b);
+    if (distance > reach_) return;
+    corners_.push_back({distance, p_a, p_b});
   }
 
   const PosedPair& pair_;

@@ -22,8 +22,8 @@ struct FacingPoints {
 ///
 /// Two bodies that keep their distance at each corner do so in between, and
 /// they do not rock: one closest point would jump from corner to corner. Each
-/// corner is a valid constraint by itself, since no two points are nearer than
-/// the bodies.
+/// corner is a valid constraint by itself, since along the normal no two points
+/// are nearer than the bodies.
 /// @param n unit normal from B into A, in A's frame, along which they are
 ///     apart.
 /// @param support vertices that support the pair along n.
