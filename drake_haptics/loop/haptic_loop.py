@@ -126,7 +126,7 @@ class BaseSystems:
             raise SceneError(
                 "contact.law is 'constraint', whose tool step finds and answers"
                 " contacts itself: there are no contact_query, contact_clustering and"
-                " penalty_force to ask; take penalty (--set contact.law=penalty)"
+                " penalty_force to ask; take penalty"
             )
         return self.penalty
 

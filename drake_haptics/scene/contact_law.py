@@ -52,10 +52,9 @@ def check_constraint_law(
     idle = [key for key, value in asked.items() if value is not None]
     if idle:
         verb, what = ("does", "it") if len(idle) == 1 else ("do", "them")
-        options = " ".join(f"--set {key}=" for key in idle)
         raise SceneError(
             f"{', '.join(idle)} {verb} nothing under contact.law: constraint: take"
-            f" {what} out of the scene ({options}) or take contact.law: penalty"
+            f" {what} out of the scene, or take contact.law: penalty"
         )
 
 
