@@ -91,8 +91,8 @@ class ConstraintToolStep(Diagram):
         - contact_wrench
         - F_To_W
         - F_O_W (with objects that move)
-        - wrench_model
         - coupling
+        - wrench_model
 
     Poses are [qw qx qy qz x y z] in the world, m; `V_WH`, `V_WT` and `V_WO_<name>` are
     spatial velocities [ω; v] of the frame's origin, rad/s and m/s. Each other input is
