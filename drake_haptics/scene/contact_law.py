@@ -58,6 +58,23 @@ def check_constraint_law(
         )
 
 
+def require_penalty(contact: ContactParameters, what: str) -> None:
+    """Refuses the constraint law where only the other one can be treated.
+
+    Args:
+        contact: Of a scene.
+        what: What is asked for, as the subject of a sentence.
+
+    Raises:
+        SceneError: Contact is by constraints.
+    """
+    if is_constraint(contact):
+        raise SceneError(
+            f"contact.law is '{contact.law}': {what} of the penalty law alone; take"
+            " contact.law: penalty"
+        )
+
+
 def question_overlap(depth_m: float) -> str:
     """Asks about an overlap under the constraint law, which keeps surfaces apart.
 
