@@ -87,6 +87,7 @@ void ConstraintRows::Query(const Pose& X_WT, double reach) {
   deadlines_.Collect(odometer_ + reach, &due_);
   const Pose last_X_WT = std::exchange(X_WT_, X_WT);
   for (const int i : due_) QueryObject(i, last_X_WT, step);
+  found_ = planes_;
   UpdateRows();
 }
 
@@ -109,7 +110,14 @@ void ConstraintRows::QueryObject(int i, const Pose& last_X_WT,
   const std::size_t first = planes_.size();
   object.near.Query({tool_, X_AB, odometer_ + object.ahead, reach_of(i)},
                     &workspace_, &planes_);
-  for (std::size_t k = first; k < planes_.size(); ++k) planes_[k].object = i;
+  double least = kForever;
+  for (std::size_t k = first; k < planes_.size(); ++k) {
+    least = std::min(least, planes_[k].nearest);
+  }
+  for (std::size_t k = first; k < planes_.size(); ++k) {
+    planes_[k].object = i;
+    planes_[k].least = least;
+  }
   // Pairs within reach are due at every query.
   marks_[i] = object.near.mark() - object.ahead - skin_[i] - object.sweep;
   deadlines_.Set(i, planes_.size() > first ? -kForever : marks_[i]);
@@ -129,17 +137,31 @@ double ConstraintRows::FreeMotion() const {
   return std::max(reach_, least - odometer_);
 }
 
+PosedPair ConstraintRows::PosedThen(int plane, const Pose& X_WT,
+                                    const Pose& X_WO) const {
+  const SeparatingPlane& moved = planes_[plane];
+  return objects_[moved.object].near.Posed(tool_, moved.pieces,
+                                           RelativePose(X_WT, X_WO));
+}
+
+double ConstraintRows::DistanceThen(int plane, const Pose& X_WT,
+                                    const Pose& X_WO) const {
+  const SeparatingPlane& moved = planes_[plane];
+  return ComputeSeparation(PosedThen(plane, X_WT, X_WO),
+                           objects_[moved.object].near.simplex(moved.watched),
+                           kForever)
+      .distance;
+}
+
 bool ConstraintRows::TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO,
                                double least) {
   SeparatingPlane& turned = planes_[plane];
   const Object& object = objects_[turned.object];
-  const PosedPair then =
-      object.near.Posed(tool_, turned.pieces, RelativePose(X_WT, X_WO));
+  const PosedPair then = PosedThen(plane, X_WT, X_WO);
   const Separation separation =
       ComputeSeparation(then, object.near.simplex(turned.watched), kForever);
   if (separation.status != SeparationStatus::kApart) return false;
-  const PosedPair now =
-      object.near.Posed(tool_, turned.pieces, RelativePose(X_WT_, object.X_WO));
+  const PosedPair now = PosedThen(plane, X_WT_, object.X_WO);
   const Vec3 from = turned.contact.n;
   const Vec3 to = X_WT_.R.transpose() * (X_WT.R * separation.n);
   if ((to - from).norm() <= kSameDirection) return false;
@@ -173,6 +195,9 @@ bool ConstraintRows::TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO,
   contact.p_b = contact.p_a - best_gap * best;
   contact.feature_A = Feature(FeatureKind::kVertex, best_support.a);
   contact.feature_B = Feature(FeatureKind::kVertex, best_support.b);
+  // The tool may have turned as well, and rest on other vertices then.
+  turned.next_support = best_support;
+  SupportGap(then, X_WT.R.transpose() * (X_WT_.R * best), &turned.next_support);
   return true;
 }
 
@@ -183,17 +208,30 @@ void ConstraintRows::UpdateRows() {
   }
 }
 
+void ConstraintRows::RestorePlanes() {
+  planes_ = found_;
+  UpdateRows();
+}
+
 void ConstraintRows::AppendRows(int k) {
   const SeparatingPlane& plane = planes_[k];
   const PairContact& contact = plane.contact;
+  const MinkowskiVertex support{contact.support[0], contact.support[1]};
   corners_.clear();
   corners_.push_back({contact.distance, contact.p_a, contact.p_b});
   if (contact.distance > 0) {
     const PosedPair pair = objects_[plane.object].near.Posed(
         tool_, plane.pieces, RelativePose(X_WT_, objects_[plane.object].X_WO));
-    AppendFlushCorners(pair, contact.n,
-                       {contact.support[0], contact.support[1]},
-                       reach_of(plane.object), &workspace_.patch, &corners_);
+    const double reach = reach_of(plane.object);
+    AppendFlushCorners(pair, contact.n, support, reach, &workspace_.patch,
+                       &corners_);
+    if (!(plane.next_support == support)) {
+      const Vec3 p_a = pair.a(plane.next_support.a);
+      const Vec3 p_b = pair.b(plane.next_support.b);
+      corners_.push_back({contact.n.dot(p_a - p_b), p_a, p_b});
+      AppendFlushCorners(pair, contact.n, plane.next_support, reach,
+                         &workspace_.patch, &corners_);
+    }
   }
   const Vec3 n = X_WT_.R * contact.n;
   for (const FacingPoints& points : corners_) {

@@ -77,8 +77,15 @@ class ConstraintRows {
   /// @returns whether the plane changed.
   bool TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO, double least);
 
+  /// The distance of a plane's pieces where tool and object will be, m; zero
+  /// where they overlap.
+  double DistanceThen(int plane, const Pose& X_WT, const Pose& X_WO) const;
+
   /// Writes the rows of all planes again.
   void UpdateRows();
+
+  /// Takes back all that was turned since the query, and writes the rows again.
+  void RestorePlanes();
 
   /// Forgets everything learnt from earlier ticks.
   void Reset();
@@ -96,6 +103,7 @@ class ConstraintRows {
 
   void QueryObject(int i, const Pose& X_WT, double tool_step);
   void AppendRows(int plane);
+  PosedPair PosedThen(int plane, const Pose& X_WT, const Pose& X_WO) const;
   double reach_of(int i) const { return skin_[i] + objects_[i].sweep + reach_; }
 
   TreedShape tool_;
@@ -111,7 +119,7 @@ class ConstraintRows {
   std::vector<double> marks_;  // the same deadlines, by object
   std::vector<int> due_;
   PairWorkspace workspace_;
-  std::vector<SeparatingPlane> planes_;
+  std::vector<SeparatingPlane> planes_, found_;  // as they are, as queried
   std::vector<FacingPoints> corners_;
   std::vector<ConstraintRow> rows_;
 };

@@ -28,10 +28,10 @@ constexpr double kMostOutward = 3;
 // between twice the motion without contact and a little.
 constexpr double kLeastReach = 1e-4, kMostReach = 1e-3, kMoreReach = 2e-5;
 constexpr int kMaxSubsteps = 6;
-// A motion of so much of the skin in a tick turns planes; the squared sine of
-// what is left to turn, and how much of the skin a turned plane may cost.
+// A motion of so much of the skin in a tick turns planes; and what of the skin
+// rounding may cost that, and then the tool's own turning.
 constexpr double kTurningMotion = 0.05;
-constexpr double kTurnedShare = 0.005;
+constexpr double kRounding = 1e-6, kTurningLoss = 1e-3;
 constexpr int kMaxTurns = 3;
 
 void RequireFinite(const ToolState& state, const PoseVector& q_WH,
@@ -131,14 +131,16 @@ void ConstraintStepper::WriteSprings() {
   problem_.springs.clear();
   held_.clear();
   for (const ConstraintRow& row : rows_.rows()) {
-    const int object = rows_.planes()[row.plane].object;
-    const double skin = settings_.skin[object];
-    const double closer = row.n.dot(ObjectMotionAt(object, row.p_WCb));
-    const double missing = skin - row.distance;
+    const SeparatingPlane& plane = rows_.planes()[row.plane];
+    const double skin = settings_.skin[plane.object];
+    const double closer = row.n.dot(ObjectMotionAt(plane.object, row.p_WCb));
+    // Of a plane that was turned the pieces are farther than it tells.
+    const double missing = skin - std::max(row.distance, plane.nearest);
     const double wanted = std::min(missing, back) + closer;
     HeldRow held;
     if (row.distance > 0) {
-      const double kept = std::min(missing, 0.0) + std::min(closer, 0.0);
+      const double kept =
+          std::min(skin - row.distance, 0.0) + std::min(closer, 0.0);
       held.spring = AddSpring(row.a, kept, kHard, kNoLimit);
       if (wanted > kept) {
         held.back = AddSpring(row.a, wanted, kBack, kBack * back);
@@ -156,6 +158,26 @@ double ConstraintStepper::HeldRow::Force(const ConstraintProblem& problem,
   if (spring >= 0) force += problem.springs[spring].Force(motion);
   if (back >= 0) force += problem.springs[back].Force(motion);
   return force;
+}
+
+Pose ConstraintStepper::NextPoseOf(int object) const {
+  return Moved(rows_.X_WO(object), settings_.period * V_WO_[object]);
+}
+
+// Whether pairs with planes that were turned keep their skin at the next pose,
+// or what is left of it.
+bool ConstraintStepper::AreTurnedPiecesApart(const Pose& X_next) const {
+  for (std::size_t k = 0; k < is_turned_.size(); ++k) {
+    if (is_turned_[k] == 0) continue;
+    const SeparatingPlane& plane = rows_.planes()[k];
+    const double skin = settings_.skin[plane.object];
+    const double distance = rows_.DistanceThen(static_cast<int>(k), X_next,
+                                               NextPoseOf(plane.object));
+    if (distance < std::min(plane.least, skin) - kTurningLoss * skin) {
+      return false;
+    }
+  }
+  return true;
 }
 
 // Turns the planes of the pairs that push: at first by where the tool comes if
@@ -179,13 +201,11 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
         !(distance > kTurningMotion * skin)) {
       continue;
     }
-    const double least =
-        std::min(skin, plane.contact.distance) - kTurnedShare * skin;
-    const Pose X_WO_next =
-        Moved(rows_.X_WO(plane.object), settings_.period * V_WO_[plane.object]);
+    // No nearer than what is nearest: nothing of the skin is given up.
+    const double least = std::min(plane.least, skin) - kRounding * skin;
     is_any |= rows_.TurnPlane(static_cast<int>(k),
                               is_turned_[k] != 0 ? X_next : X_coasted,
-                              X_WO_next, least);
+                              NextPoseOf(plane.object), least);
     is_turned_[k] = 1;
   }
   return is_any;
@@ -196,17 +216,25 @@ ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
                                                 const Vec6& start,
                                                 ConstraintStepResult* result) {
   is_turned_.assign(rows_.planes().size(), 0);
-  ConstraintSolution solution;
-  solution.motion = start;
-  for (int turns = 0;; ++turns) {
+  WriteSprings();
+  const ConstraintSolution first =
+      SolveConstraintProblem(problem_, start, &workspace_);
+  result->num_iterations += first.num_iterations;
+  ConstraintSolution solution = first;
+  for (int turns = 0; turns < kMaxTurns; ++turns) {
+    if (!TurnPlanes(X_WT, coasting, solution.motion)) break;
+    rows_.UpdateRows();
     WriteSprings();
     solution = SolveConstraintProblem(problem_, solution.motion, &workspace_);
     result->num_iterations += solution.num_iterations;
-    if (turns == kMaxTurns || !TurnPlanes(X_WT, coasting, solution.motion)) {
-      return solution;
+    // What a plane proves holds for translations.
+    if (!AreTurnedPiecesApart(Moved(X_WT, solution.motion))) {
+      rows_.RestorePlanes();
+      WriteSprings();
+      return first;
     }
-    rows_.UpdateRows();
   }
+  return solution;
 }
 
 void ConstraintStepper::Step(const ToolState& state, const PoseVector& q_WH,

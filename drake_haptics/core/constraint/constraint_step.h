@@ -107,6 +107,8 @@ class ConstraintStepper {
 
   void WriteSprings();
   int AddSpring(const Vec6& a, double b, double k, double limit);
+  Pose NextPoseOf(int object) const;
+  bool AreTurnedPiecesApart(const Pose& X_next) const;
   bool TurnPlanes(const Pose& X_WT, const Vec6& coasting, const Vec6& motion);
   ConstraintSolution SolveHere(const Pose& X_WT, const Vec6& coasting,
                                const Vec6& start, ConstraintStepResult* result);

@@ -40,8 +40,13 @@ void NearPieces::Query(const Tick& tick, PairWorkspace* workspace,
     }
     if (kept != pair) *kept = *pair;
     if (is_near) {
-      planes->push_back({contact, kept->pieces, 0,
-                         static_cast<int>(kept - watched_.begin())});
+      planes->push_back({contact,
+                         kept->pieces,
+                         0,
+                         static_cast<int>(kept - watched_.begin()),
+                         contact.distance,
+                         0,
+                         {contact.support[0], contact.support[1]}});
     } else {
       mark_ = std::min(mark_, kept->mark);
     }

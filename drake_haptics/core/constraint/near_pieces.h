@@ -19,7 +19,12 @@ struct SeparatingPlane {
   PairContact contact;
   PiecePair pieces;
   int object = 0;
-  int watched = 0;  ///< the pair's place among those of its object
+  int watched = 0;     ///< the pair's place among those of its object
+  double nearest = 0;  ///< distance of the pieces, m, which turning keeps
+  double least = 0;    ///< smallest distance of the object's pairs, m
+  /// Vertices that support the pair where the tool will be; of a plane that was
+  /// not turned those that do now.
+  MinkowskiVertex next_support;
 };
 
 /// The pairs of convex pieces of a tool (A) and an object (B) that are within
