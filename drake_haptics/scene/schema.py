@@ -282,16 +282,15 @@ class EnvironmentObject:
 class ContactParameters:
     """How contact is found and answered.
 
-    There are two laws. Each reads its own keys and leaves those of the other alone, so
-    that a scene can have both, and `law` chooses.
+    There are two laws. `constraint` reads `skin_m` alone; all other keys are those of
+    `penalty`. A scene can have both, and `law` chooses.
 
     Attributes:
         law: `penalty`, springs and dampers that push surfaces apart, or `constraint`,
             by which the tool's step keeps all surfaces `skin_m` apart.
         skin_m: For `constraint`: distance that the tool keeps from each object, m (the
             δ of a row). What is to fit needs more play on each side than this.
-        tolerance_m: For `penalty`, as all that follows: pieces nearer than this push
-            each other apart, m (the paper's t).
+        tolerance_m: Pieces nearer than this push each other apart, m (the paper's t).
         stiffness_N_per_m: Force per meter below the tolerance, N/m (k of Eq. 6).
         damping_Ns_per_m: Force per speed of approach, N·s/m (k_v of Eq. 6).
         clustering: How few contacts are made of many: `shared`, which is
