@@ -108,4 +108,4 @@ def test_contact_begins_at_the_skin_and_no_speed_skips_it():
 
 def test_only_an_overlap_is_asked_about():
     assert question_overlap(0.0) == question_overlap(-1e-4) == ""
-    assert "0.5 mm deep" in question_overlap(5e-4)
+    assert "2 mm deep" in question_overlap(2e-3)
