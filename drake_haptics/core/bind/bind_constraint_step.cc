@@ -1,3 +1,4 @@
+#include <chrono>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -53,7 +54,12 @@ class SharedStepper {
               const Vec6& V_WH, const Vec6& F_applied) {
     Result result;
     const Turn turn(&mutex_, Turn::Gil::kHold);
+    const auto start = std::chrono::steady_clock::now();
     stepper_.Step({q_WT, V_WT}, q_WH, V_WH, F_applied, &result);
+    const std::chrono::duration<double> elapsed =
+        std::chrono::steady_clock::now() - start;
+    // The search and the step are one: all of it counts as the query.
+    result.contacts.query_seconds = elapsed.count();
     return result;
   }
 
