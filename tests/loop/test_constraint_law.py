@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate
+from fake_device import ScriptedDevice
 from pydrake.geometry import Meshcat, MeshcatParams
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import DiagramBuilder
@@ -26,7 +27,9 @@ from drake_haptics import (
 from drake_haptics.analysis.scene_stability import analyze_scene
 from drake_haptics.authoring.plausibility import check_plausibility
 from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.device.backend import DeviceReading
 from drake_haptics.loop.add_haptic_loop import AddHapticLoop
+from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.haptic_loop import ConnectMovingObject
 from drake_haptics.scene.schema import Effects, FrictionParameters, GravityParameters
 from drake_haptics.scene.settings import change_scene
@@ -291,6 +294,30 @@ def test_an_object_that_moves_gets_the_reaction(pressed):
     F_O = loop.haptic_tool.GetOutputPort("F_O_W").Eval(step)
     assert F_T[5] > 0.5
     np.testing.assert_allclose(F_O[3:], -F_T[3:], atol=1e-9)
+
+
+def test_a_servo_is_told_what_the_handle_feels_between_ticks(pressed):
+    # A device that goes down from where the hand begins, and stays 2 mm too deep.
+    site = find_device_site(pressed)
+    down_B = site.X_WB.rotation().inverse() @ np.array([0.0, 0.0, -1.0])
+    deepest_m = ABOVE - TOOL_HALF_HEIGHT - SKIN + 2e-3
+
+    def read_handle(k):
+        X_BH = pose_to_vector(site.X_BH)
+        X_BH[4:] += min(5e-5 * k, deepest_m) * down_B
+        return DeviceReading(k, 1e-3 * k, X_BH, np.zeros(6), np.zeros(6))
+
+    haptic = BuildHapticDiagram(pressed, device=ScriptedDevice(read_handle))
+    context = advance(haptic, 0.5)
+    assert read(haptic, context, "F_Ho_W_commanded")[5] > 1.0
+    model = haptic.diagram.GetSubsystemByName("handle_model")
+    slopes = model.GetOutputPort("handle_slopes").Eval(
+        model.GetMyContextFromRoot(context)
+    )
+    K = slopes[:36].reshape(6, 6)
+    # In series with what does not give way; along the plate the tool follows.
+    np.testing.assert_allclose(K[5, 5], pressed.coupling.stiffness_N_per_m, rtol=1e-3)
+    assert abs(K[3, 3]) < 1.0 and abs(K[4, 4]) < 1.0
 
 
 def test_it_is_drawn(pressed):
