@@ -271,7 +271,7 @@ void ConstraintRows::AppendRows(int k) {
   const PairContact& contact = plane.contact;
   const MinkowskiVertex support{contact.support[0], contact.support[1]};
   corners_.clear();
-  corners_.push_back({contact.distance, contact.p_a, contact.p_b});
+  corners_.push_back({contact.distance, contact.p_a});
   if (contact.distance > 0) {
     const PosedPair pair = objects_[plane.object].near.Posed(
         tool_, plane.pieces, RelativePose(X_WT_, objects_[plane.object].X_WO));
@@ -281,20 +281,21 @@ void ConstraintRows::AppendRows(int k) {
     if (!(plane.next_support == support)) {
       const Vec3 p_a = pair.a(plane.next_support.a);
       const Vec3 p_b = pair.b(plane.next_support.b);
-      corners_.push_back({contact.n.dot(p_a - p_b), p_a, p_b});
+      corners_.push_back({contact.n.dot(p_a - p_b), p_a});
       AppendFlushCorners(pair, contact.n, plane.next_support, reach,
                          &workspace_.patch, &corners_);
     }
   }
   const Vec3 n = X_WT_.R * contact.n;
-  for (const FacingPoints& points : corners_) {
+  for (const FacingPoint& point : corners_) {
     ConstraintRow row;
-    row.distance = points.distance;
+    row.distance = point.distance;
     row.n = n;
-    const Vec3 arm = X_WT_.R * points.p_a;
+    const Vec3 arm = X_WT_.R * point.p_a;
     row.a << arm.cross(row.n), row.n;
-    row.p_WCa = X_WT_ * points.p_a;
-    row.p_WCb = X_WT_ * points.p_b;
+    row.p_WCa = X_WT_ * point.p_a;
+    // On one line with the normal: what pushes here has no torque on the whole.
+    row.p_WCb = row.p_WCa - row.distance * n;
     row.plane = k;
     rows_.push_back(row);
   }

@@ -130,7 +130,7 @@ class ConstraintRows {
   PairWorkspace workspace_;
   std::vector<SeparatingPlane> planes_, found_;  // as they are, as queried
   double least_distance_ = 0;
-  std::vector<FacingPoints> corners_;
+  std::vector<FacingPoint> corners_;
   ContactTracker overlaps_;  // asked while there are any
   bool is_apart_ = true;
   ContactSet contacts_;
