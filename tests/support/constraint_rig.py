@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
+from press_rig import START_M, Press
 from press_tools import PressTool
 
 from drake_haptics import _core
@@ -68,10 +69,26 @@ class ConstraintLoop:
         return result
 
 
-def contact_wrench(
-    result: _core.ConstraintStepResult, p_WTo: np.ndarray
-) -> np.ndarray:
+def contact_wrench(result: _core.ConstraintStepResult, p_WTo: np.ndarray) -> np.ndarray:
     """What all rows push with on the tool at To, (6,) N·m and N."""
     f = result.lambda_N[:, None] * result.contacts.nhat_BA_W
     arms = result.contacts.p_WCa - p_WTo
     return np.concatenate([np.cross(arms, f).sum(axis=0), f.sum(axis=0)])
+
+
+def run_press(
+    loop: ConstraintLoop, press: Press
+) -> Iterator[_core.ConstraintStepResult]:
+    """Each tick of a press: in until it resists as much as it stops at, a rest, out."""
+    step_m = press.speed_m_per_s * PERIOD_S
+    travel_m = force_N = 0.0
+    while travel_m < START_M + press.stop_m and force_N < press.stop_N:
+        travel_m += step_m
+        result = loop.tick(press.q_WH(travel_m, 0.0))
+        force_N = float(np.linalg.norm(result.F_Ho_W_commanded[3:]))
+        yield result
+    for _ in range(200):
+        yield loop.tick(press.q_WH(travel_m, 0.0))
+    while travel_m > 0:
+        travel_m -= step_m
+        yield loop.tick(press.q_WH(travel_m, 0.0))

@@ -18,6 +18,31 @@ constexpr int kHalvings = 5;
 // Directions that differ by no more are one.
 constexpr double kSameDirection = 1e-7;
 
+double Largest(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+// The plane of a contact in the world.
+SeparatingPlane PlaneOf(const Contact& contact, const Pose& X_WT) {
+  SeparatingPlane plane;
+  const Pose X_TW = X_WT.inverse();
+  plane.contact.distance = contact.distance;
+  plane.contact.n = X_TW.R * contact.nhat_BA_W;
+  plane.contact.p_a = X_TW * contact.p_WCa;
+  plane.contact.p_b = X_TW * contact.p_WCb;
+  const auto [kind_A, index_A] = contact.feature_A;
+  const auto [kind_B, index_B] = contact.feature_B;
+  plane.contact.feature_A = Feature(static_cast<FeatureKind>(kind_A), index_A);
+  plane.contact.feature_B = Feature(static_cast<FeatureKind>(kind_B), index_B);
+  plane.contact.status = static_cast<ContactStatus>(contact.status);
+  plane.contact.support = contact.support;
+  plane.pieces = {contact.piece_A, contact.piece_B};
+  plane.object = contact.object;
+  plane.nearest = plane.least = contact.distance;
+  plane.next_support = {contact.support[0], contact.support[1]};
+  return plane;
+}
+
 }  // namespace
 
 ConstraintRows::ConstraintRows(
@@ -26,8 +51,8 @@ ConstraintRows::ConstraintRows(
     std::vector<double> skin)
     : skin_(std::move(skin)),
       deadlines_(static_cast<int>(objects.size())),
-      marks_(objects.size(), -kForever) {
-  if (tool == nullptr) throw std::invalid_argument("the tool is missing");
+      marks_(objects.size(), -kForever),
+      overlaps_(tool, objects, Largest(skin_)) {
   std::map<const Decomposition*, TreedShape> shapes;
   const auto shape_of = [&](std::shared_ptr<const Decomposition> pieces) {
     TreedShape& shape = shapes[pieces.get()];
@@ -43,7 +68,6 @@ ConstraintRows::ConstraintRows(
   radius_ = box.half.norm();
   objects_.reserve(objects.size());
   for (auto& pieces : objects) {
-    if (pieces == nullptr) throw std::invalid_argument("an object is missing");
     objects_.push_back({NearPieces(shape_of(std::move(pieces))), {}, {}});
   }
 }
@@ -54,6 +78,7 @@ void ConstraintRows::SetObjectPose(int i, const Pose& X_WO, double sweep) {
   if (object.has_moved || sweep > object.sweep) deadlines_.MakeDue(i);
   object.X_WO = X_WO;
   object.sweep = sweep;
+  overlaps_.SetObjectPose(i, X_WO);
 }
 
 double ConstraintRows::ReachOf(int i, const Vec3& p_O) const {
@@ -87,6 +112,12 @@ void ConstraintRows::Query(const Pose& X_WT, double reach) {
   deadlines_.Collect(odometer_ + reach, &due_);
   const Pose last_X_WT = std::exchange(X_WT_, X_WT);
   for (const int i : due_) QueryObject(i, last_X_WT, step);
+  least_distance_ = kForever;
+  for (const SeparatingPlane& plane : planes_) {
+    least_distance_ = std::min(least_distance_, plane.nearest);
+  }
+  if (!(least_distance_ > 0)) QueryOverlaps();
+  is_apart_ = least_distance_ > 0;
   found_ = planes_;
   UpdateRows();
 }
@@ -123,12 +154,34 @@ void ConstraintRows::QueryObject(int i, const Pose& last_X_WT,
   deadlines_.Set(i, planes_.size() > first ? -kForever : marks_[i]);
 }
 
-double ConstraintRows::least_distance() const {
-  double least = kForever;
-  for (const SeparatingPlane& plane : planes_) {
-    least = std::min(least, plane.contact.distance);
+// Whether the tool presses into an object, by the contacts that count.
+bool ConstraintRows::IsDeep(int object) const {
+  const auto& contacts = contacts_.contacts;
+  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
+    return c.object == object && !(c.distance > 0);
+  });
+}
+
+// Takes the contacts that count in place of the planes of objects that the tool
+// overlaps with.
+void ConstraintRows::QueryOverlaps() {
+  // How it came in is not known where nothing was asked before.
+  if (is_apart_) overlaps_.Reset();
+  overlaps_.Query(X_WT_, &contacts_);
+  found_.clear();
+  auto plane = planes_.begin();
+  auto contact = contacts_.contacts.begin();
+  for (int i = 0; i < num_objects(); ++i) {
+    const bool is_deep = IsDeep(i);
+    for (; plane != planes_.end() && plane->object == i; ++plane) {
+      if (!is_deep) found_.push_back(*plane);
+    }
+    for (; contact != contacts_.contacts.end() && contact->object == i;
+         ++contact) {
+      if (is_deep) found_.push_back(PlaneOf(*contact, X_WT_));
+    }
   }
-  return least;
+  planes_ = found_;
 }
 
 double ConstraintRows::FreeMotion() const {
@@ -218,7 +271,7 @@ void ConstraintRows::AppendRows(int k) {
   const PairContact& contact = plane.contact;
   const MinkowskiVertex support{contact.support[0], contact.support[1]};
   corners_.clear();
-  corners_.push_back({contact.distance, contact.p_a, contact.p_b});
+  corners_.push_back({contact.distance, contact.p_a});
   if (contact.distance > 0) {
     const PosedPair pair = objects_[plane.object].near.Posed(
         tool_, plane.pieces, RelativePose(X_WT_, objects_[plane.object].X_WO));
@@ -228,20 +281,21 @@ void ConstraintRows::AppendRows(int k) {
     if (!(plane.next_support == support)) {
       const Vec3 p_a = pair.a(plane.next_support.a);
       const Vec3 p_b = pair.b(plane.next_support.b);
-      corners_.push_back({contact.n.dot(p_a - p_b), p_a, p_b});
+      corners_.push_back({contact.n.dot(p_a - p_b), p_a});
       AppendFlushCorners(pair, contact.n, plane.next_support, reach,
                          &workspace_.patch, &corners_);
     }
   }
   const Vec3 n = X_WT_.R * contact.n;
-  for (const FacingPoints& points : corners_) {
+  for (const FacingPoint& point : corners_) {
     ConstraintRow row;
-    row.distance = points.distance;
+    row.distance = point.distance;
     row.n = n;
-    const Vec3 arm = X_WT_.R * points.p_a;
+    const Vec3 arm = X_WT_.R * point.p_a;
     row.a << arm.cross(row.n), row.n;
-    row.p_WCa = X_WT_ * points.p_a;
-    row.p_WCb = X_WT_ * points.p_b;
+    row.p_WCa = X_WT_ * point.p_a;
+    // On one line with the normal: what pushes here has no torque on the whole.
+    row.p_WCb = row.p_WCa - row.distance * n;
     row.plane = k;
     rows_.push_back(row);
   }
@@ -256,6 +310,7 @@ void ConstraintRows::Reset() {
   }
   odometer_ = 0;
   is_first_ = true;
+  is_apart_ = true;
 }
 
 }  // namespace drake_haptics

@@ -9,6 +9,7 @@
 #include "constraint/flush_corners.h"
 #include "constraint/near_pieces.h"
 #include "mesh/decomposition.h"
+#include "tracker/contact_tracker.h"
 
 namespace drake_haptics {
 
@@ -30,7 +31,13 @@ struct ConstraintRow {
 /// (P1) For convex bodies that a plane with normal n parts by h(n), the
 /// distance after a translation t is at least h(n) + n·t, whatever the size of
 /// t. A row thus proves for its pair what it demands, and all pairs without a
-/// row are farther away than the reach. Copies are independent.
+/// row are farther away than the reach.
+///
+/// That holds for as long as the solids are apart. An object that the tool
+/// overlaps with is asked as by the penalty law, contact by contact
+/// (contact_tracker.h): pieces inside a solid tell no way out of it.
+///
+/// Copies are independent.
 class ConstraintRows {
  public:
   /// Objects that share a decomposition share its tree.
@@ -61,7 +68,7 @@ class ConstraintRows {
   const std::vector<ConstraintRow>& rows() const { return rows_; }
 
   /// Smallest distance of the pairs within reach, m; infinite if none is.
-  double least_distance() const;
+  double least_distance() const { return least_distance_; }
 
   /// How far the tool may move before a pair without a plane comes nearer than
   /// its skin, m; at least the reach.
@@ -101,7 +108,9 @@ class ConstraintRows {
     double ahead = 0;
   };
 
-  void QueryObject(int i, const Pose& X_WT, double tool_step);
+  void QueryObject(int i, const Pose& last_X_WT, double tool_step);
+  void QueryOverlaps();
+  bool IsDeep(int object) const;
   void AppendRows(int plane);
   PosedPair PosedThen(int plane, const Pose& X_WT, const Pose& X_WO) const;
   double reach_of(int i) const { return skin_[i] + objects_[i].sweep + reach_; }
@@ -120,7 +129,11 @@ class ConstraintRows {
   std::vector<int> due_;
   PairWorkspace workspace_;
   std::vector<SeparatingPlane> planes_, found_;  // as they are, as queried
-  std::vector<FacingPoints> corners_;
+  double least_distance_ = 0;
+  std::vector<FacingPoint> corners_;
+  ContactTracker overlaps_;  // asked while there are any
+  bool is_apart_ = true;
+  ContactSet contacts_;
   std::vector<ConstraintRow> rows_;
 };
 

@@ -42,7 +42,7 @@ struct Segment {
 class Corners {
  public:
   Corners(const PosedPair& pair, const Vec3& n, double reach,
-          PatchWorkspace* workspace, std::vector<FacingPoints>* corners)
+          PatchWorkspace* workspace, std::vector<FacingPoint>* corners)
       : pair_(pair),
         n_(n),
         u_(n.unitOrthogonal()),
@@ -72,7 +72,8 @@ class Corners {
     const double offset = pair_.A.facets[facet_A].offset;
     for (const Vec3& corner : workspace_.polygon) {
       const Vec3 p_b = FromPlane(corner);
-      Add((offset - normal.dot(p_b)) / normal.dot(n_), p_b);
+      const double distance = (offset - normal.dot(p_b)) / normal.dot(n_);
+      Add(distance, p_b + distance * n_);
     }
   }
 
@@ -85,9 +86,9 @@ class Corners {
     if (!(sine_squared < kFlushSine * kFlushSine)) return;
     for (const double share : {0.0, 1.0}) {
       const Vec3 p_b = b.p + share * b.along;
-      AddPoints(a.Nearest(p_b), p_b);
+      AddBetween(a.Nearest(p_b), p_b);
       const Vec3 p_a = a.p + share * a.along;
-      AddPoints(p_a, b.Nearest(p_a));
+      AddBetween(p_a, b.Nearest(p_a));
     }
   }
 
@@ -121,7 +122,7 @@ class Corners {
     for (const Vec3& corner : workspace_.polygon) {
       const Vec3 p_a = FromPlane(corner);
       const double distance = (normal.dot(p_a) - offset) / normal.dot(n_);
-      Add(distance, p_a - distance * n_);
+      Add(distance, p_a);
     }
   }
 
@@ -144,22 +145,18 @@ class Corners {
     }
   }
 
-  void Add(double distance, const Vec3& p_b) {
-    if (distance > reach_) return;
-    corners_.push_back({distance, p_b + distance * n_, p_b});
+  void Add(double distance, const Vec3& p_a) {
+    if (distance <= reach_) corners_.push_back({distance, p_a});
   }
-
-  void AddPoints(const Vec3& p_a, const Vec3& p_b) {
-    const double distance = n_.dot(p_a - p_b);
-    if (distance > reach_) return;
-    corners_.push_back({distance, p_a, p_b});
+  void AddBetween(const Vec3& p_a, const Vec3& p_b) {
+    Add(n_.dot(p_a - p_b), p_a);
   }
 
   const PosedPair& pair_;
   const Vec3 n_, u_, v_;
   const double reach_;
   PatchWorkspace& workspace_;
-  std::vector<FacingPoints>& corners_;
+  std::vector<FacingPoint>& corners_;
 };
 
 template <typename Visitor>
@@ -175,7 +172,7 @@ void VisitEdges(const Polytope& P, int vertex, const Vec3& n,
 void AppendFlushCorners(const PosedPair& pair, const Vec3& n,
                         const MinkowskiVertex& support, double reach,
                         PatchWorkspace* workspace,
-                        std::vector<FacingPoints>* corners) {
+                        std::vector<FacingPoint>* corners) {
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
   const int facet_A = FlushFacet(pair.A, support.a, -n);
   const int facet_B = FlushFacet(pair.B, support.b, n_B);

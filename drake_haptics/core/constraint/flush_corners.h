@@ -8,11 +8,10 @@
 
 namespace drake_haptics {
 
-/// A point of A that faces a point of B, in A's frame.
-struct FacingPoints {
-  double distance = 0;                          ///< m
-  Vec3 n = Vec3::UnitX();                       ///< unit, from p_b to p_a
-  Vec3 p_a = Vec3::Zero(), p_b = Vec3::Zero();  ///< m
+/// A point of A that faces B, in A's frame.
+struct FacingPoint {
+  double distance = 0;      ///< from there to B, against the normal, m
+  Vec3 p_a = Vec3::Zero();  ///< m
 };
 
 /// Appends the corners of the overlap of features that face each other flush,
@@ -30,6 +29,6 @@ struct FacingPoints {
 void AppendFlushCorners(const PosedPair& pair, const Vec3& n,
                         const MinkowskiVertex& support, double reach,
                         PatchWorkspace* workspace,
-                        std::vector<FacingPoints>* corners);
+                        std::vector<FacingPoint>* corners);
 
 }  // namespace drake_haptics
