@@ -5,7 +5,8 @@ import math
 
 import numpy as np
 import pytest
-from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate
+import trimesh
+from box_scenes import PLATE_TOP, TOOL_HALF_HEIGHT, TOOL_MASS, over_a_plate, write
 from fake_device import ScriptedDevice
 from pydrake.geometry import Meshcat, MeshcatParams
 from pydrake.math import RigidTransform
@@ -38,6 +39,8 @@ from drake_haptics.simulation.live_values import write_live_values
 from drake_haptics.simulation.replay_log import replay
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.simulation.transfer_state import transfer_context
+from drake_haptics.systems.device.haptic_device import HapticDevice
+from drake_haptics.systems.device.replayed_handle import ReplayedHandle
 from drake_haptics.tick_log.log_diff import compare_logs
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
@@ -178,6 +181,45 @@ def test_the_peg_goes_in_and_comes_out_under_this_law_alone():
     assert last > 0.040
     # Springs that begin 2 mm before surfaces touch keep it out.
     assert lowest_and_last("penalty")[0] > 0.025
+
+
+@pytest.mark.parametrize("thickness", [5e-5, 3e-3])
+@pytest.mark.parametrize("speed", [0.5, 3.0])
+def test_a_fast_hand_gets_through_no_wall(tmp_path, speed, thickness):
+    scene = over_a_plate(tmp_path, [(0.0, 0.0, 0.0, 0.05)])
+    wall = trimesh.creation.box([0.2, 0.2, thickness])
+    scene.environment[0].mesh = write(tmp_path, "wall", wall)
+    scene.contact.law = "constraint"
+    # The handle goes on below the wall, and stays there.
+    height = np.maximum(0.05 - speed * 1e-3 * np.arange(400), -0.05)
+    X_WH = np.zeros((400, 7))
+    X_WH[:, 0], X_WH[:, 6] = 1.0, height
+    V_WH = np.zeros((400, 6))
+    V_WH[height > -0.05, 5] = -speed
+    device = HapticDevice(
+        ReplayedHandle(X_WH, V_WH, 1e-3),
+        period_s=1e-3,
+        max_force_N=8.5,
+        max_torque_Nm=0.188,
+    )
+    haptic = BuildHapticDiagram(scene, device=device)
+    heights = []
+    simulator = make_simulator(haptic)
+    tool = haptic.loop.haptic_tool.GetMyMutableContextFromRoot(
+        simulator.get_mutable_context()
+    )
+    tool.SetDiscreteState(np.array([*X_WH[0], *np.zeros(6)]))
+    simulator.set_monitor(
+        lambda context: heights.append(read(haptic, context, "X_WT")[6])
+    )
+    simulator.AdvanceTo(0.399)
+    top = thickness / 2 + TOOL_HALF_HEIGHT
+    assert min(heights) > top
+    assert heights[-1] == pytest.approx(top + SKIN, abs=1e-6)
+    # It is pressed with all that the device shows.
+    assert read(haptic, simulator.get_context(), "F_To_W")[5] == pytest.approx(
+        8.5, rel=1e-3
+    )
 
 
 def record(path, scene):
