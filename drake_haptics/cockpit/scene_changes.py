@@ -123,7 +123,7 @@ class SceneChanges:
         """Chooses one of several ways.
 
         Raises:
-            ChangeError: There is no such choice, or it is none of the scene's law.
+            ChangeError: There is no such choice, or not under the scene's law.
         """
         if key != CLUSTERING or to not in CLUSTERINGS:
             raise ChangeError(f"There is no choice {to!r} of {key!r}.")

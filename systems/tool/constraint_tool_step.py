@@ -162,10 +162,17 @@ class ConstraintToolStep(Diagram):
         self._step = builder.AddNamedSystem(
             "step",
             _ConstraintStep(
-                tool, objects, skin_m, dynamics, gains, X_HT, X_WT, period_s,
+                tool,
+                objects,
+                skin_m,
+                dynamics,
+                gains,
+                X_HT,
+                X_WT,
+                period_s,
                 wrench_names,
             ),
-        )  # fmt: skip
+        )
         step = self._step
         for port in map(step.get_input_port, range(step.num_input_ports())):
             builder.ExportInput(port, port.get_name())
