@@ -7,8 +7,8 @@
 namespace drake_haptics {
 namespace {
 
-// The minimum is where Newton's step from it is none: a motion that changes by
-// less than this share, or by a millionth of an atom, is that.
+// A step that changes the motion by less than this share, or by a millionth of
+// an atom, ends the search.
 constexpr double kRelativeStep = 1e-12;
 constexpr double kStep = 1e-16;  // m, and rad
 
