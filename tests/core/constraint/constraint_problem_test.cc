@@ -159,7 +159,7 @@ void ItsHessianIsItsSlope() {
     ConstraintProblem problem = RandomProblem(5);
     const ConstraintSolution at =
         SolveConstraintProblem(problem, Vec6::Zero(), &workspace);
-    const Vec6 force = 1e-7 * RandomVector();
+    const Vec6 force = 1e-4 * RandomVector();
     problem.r += force;
     const ConstraintSolution beside =
         SolveConstraintProblem(problem, Vec6::Zero(), &workspace);
