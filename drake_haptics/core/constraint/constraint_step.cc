@@ -197,7 +197,7 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
   for (std::size_t k = 0; k < pushes_.size(); ++k) {
     const SeparatingPlane& plane = rows_.planes()[k];
     const double skin = settings_.skin[plane.object];
-    if (!pushes_[k] || plane.watched < 0 || !(plane.contact.distance > 0) ||
+    if (!pushes_[k] || plane.watched < 0 || !(plane.least > 0) ||
         !(distance > kTurningMotion * skin)) {
       continue;
     }
