@@ -133,8 +133,9 @@ void BindResult(nb::module_& m) {
       .def_prop_ro(
           "hessian", [](const Result& r) { return r.hessian; },
           "(6, 6) slope of the forces of the step by the tool's motion in it, "
-          "[N·m; N] by [rad; m]: M/h² + B/h + K + Σ k a aᵀ over rows that "
-          "push.")
+          "[N·m; N] by [rad; m]: A = M/h² + B/h + K + Σ k a aᵀ over rows "
+          "that push. What adds dF to the wrench on the tool adds A⁻¹ dF to "
+          "its motion, and A⁻¹ dF / h to V_WT.")
       .def_ro("num_rows", &Result::num_rows,
               "Rows within reach, those that do not push among them.")
       .def_ro("num_substeps", &Result::num_substeps,
@@ -179,7 +180,8 @@ void BindConstraintStep(nb::module_& m) {
       "back at 20 mm/s with at most 200 N; pieces that overlap are led out at "
       "that speed with 3 N together. No contact makes energy: a_iᵀ ξ <= 0 "
       "wherever a row that holds pushes. Without rows it is "
-      "`RigidToolDynamics.step` with `coupling_wrench`.\n\n"
+      "`RigidToolDynamics.step` with `coupling_wrench`. A fast motion is "
+      "divided, so that nothing is passed through.\n\n"
       "As in SAP (Castro et al., \"An Unconstrained Convex Formulation of "
       "Compliant Contact\", 2023), contact is a convex problem of one implicit "
       "step. Threads that share a stepper take turns.");

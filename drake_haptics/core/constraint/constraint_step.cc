@@ -197,7 +197,7 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
   for (std::size_t k = 0; k < pushes_.size(); ++k) {
     const SeparatingPlane& plane = rows_.planes()[k];
     const double skin = settings_.skin[plane.object];
-    if (!pushes_[k] || plane.watched < 0 || !(plane.contact.distance > 0) ||
+    if (!pushes_[k] || plane.watched < 0 || !(plane.least > 0) ||
         !(distance > kTurningMotion * skin)) {
       continue;
     }
@@ -241,6 +241,18 @@ void ConstraintStepper::Step(const ToolState& state, const PoseVector& q_WH,
                              const Vec6& V_WH, const Vec6& F_applied,
                              ConstraintStepResult* result) {
   RequireFinite(state, q_WH, V_WH, F_applied);
+  try {
+    StepFrom(state, q_WH, V_WH, F_applied, result);
+  } catch (...) {
+    // There was no memory: what is half learnt must not be trusted.
+    Reset();
+    throw;
+  }
+}
+
+void ConstraintStepper::StepFrom(const ToolState& state, const PoseVector& q_WH,
+                                 const Vec6& V_WH, const Vec6& F_applied,
+                                 ConstraintStepResult* result) {
   const double h = settings_.period;
   const CouplingWrench coupling = ComputeCoupling(
       q_WH, V_WH, settings_.q_HT, state.q_WT, state.V_WT, settings_.gains);

@@ -25,7 +25,8 @@ struct ConstraintStepResult {
   /// On each object at the origin of its frame, in W: [torque; force].
   std::vector<Vec6> F_Oo_W;
   /// Slope of the step's forces by the tool's motion [rad; m] in the tick,
-  /// M/h² + B/h + K + Σ k a aᵀ over the rows that push.
+  /// A = M/h² + B/h + K + Σ k a aᵀ over the rows that push. What adds dF to the
+  /// wrench on the tool adds A⁻¹ dF to its motion, and A⁻¹ dF / h to V_WT.
   Mat6 hessian = Mat6::Zero();
   int num_rows = 0;        ///< of the last sub-step
   int num_substeps = 0;    ///< at least 1
@@ -60,6 +61,13 @@ struct ConstraintStepResult {
 /// of the coupling is that of Colgate, Stanley and Brown ("Issues in the Haptic
 /// Display of Tool Use", 1995).
 ///
+/// A row that pushes in a fast tick has its plane turned (ConstraintRows), so
+/// that seams of a flat face are not felt; where the tool turns too fast for
+/// that, the planes stay as they were found. The motion of a tick is limited to
+/// what its rows see, and goes on from there with new rows: nothing is passed
+/// through. Where a row has lost skin, a second spring leads back at 20 mm/s
+/// with at most 200 N; overlaps are led out at that speed, with 3 N together.
+///
 /// Deterministic. Copies are independent and keep what was learnt.
 class ConstraintStepper {
  public:
@@ -91,6 +99,7 @@ class ConstraintStepper {
   /// @param F_applied other wrenches on the tool at To in W, weight among them.
   /// @throws std::invalid_argument for values that are not finite, before any
   ///         remembered state is touched.
+  ///         std::bad_alloc, after which nothing is remembered.
   void Step(const ToolState& state, const PoseVector& q_WH, const Vec6& V_WH,
             const Vec6& F_applied, ConstraintStepResult* result);
 
@@ -98,6 +107,9 @@ class ConstraintStepper {
   void Reset();
 
  private:
+  void StepFrom(const ToolState& state, const PoseVector& q_WH,
+                const Vec6& V_WH, const Vec6& F_applied,
+                ConstraintStepResult* result);
   // A row and the springs that hold it, by their places.
   struct HeldRow {
     int spring = -1;  // that holds the skin

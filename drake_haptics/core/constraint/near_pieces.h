@@ -19,7 +19,9 @@ struct SeparatingPlane {
   PairContact contact;
   PiecePair pieces;
   int object = 0;
-  int watched = 0;     ///< the pair's place among those of its object
+  /// The pair's place among those of its object; -1 for what a tracker found
+  /// where the bodies overlap.
+  int watched = -1;
   double nearest = 0;  ///< distance of the pieces, m, which turning keeps
   double least = 0;    ///< smallest distance of the object's pairs, m
   /// Vertices that support the pair where the tool will be; of a plane that was

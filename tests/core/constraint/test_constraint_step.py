@@ -236,3 +236,28 @@ def test_what_it_cannot_use_is_refused(box, plate):
         stepper.step(np.full(7, np.nan), np.zeros(6), REST, np.zeros(6))
     with pytest.raises(ValueError, match="finite"):
         stepper.step(REST, np.full(6, np.inf), REST, np.zeros(6))
+
+
+@pytest.mark.parametrize("gap_m", [5e-3, -1e-3])
+def test_its_hessian_gives_the_derivatives_by_wrench_and_handle(box, plate, gap_m):
+    """By central differences, apart and pressed: one 6 by 6 solution for all."""
+    loop = ConstraintLoop(box, [plate], above(1e-3))
+    q_WH, still = above(gap_m), np.zeros(6)
+    settle(loop, q_WH)
+
+    def next_V(F: np.ndarray, q_WH: np.ndarray = q_WH) -> np.ndarray:
+        result = copy.copy(loop.stepper).step(loop.q_WT, loop.V_WT, q_WH, still, F)
+        return result.V_WT
+
+    result = copy.copy(loop.stepper).step(loop.q_WT, loop.V_WT, q_WH, still)
+    assert (len(result.contacts) > 0) == (gap_m < 0)
+    slope = np.linalg.inv(result.hessian) / PERIOD_S
+    scale = np.abs(slope).max()
+    for e in 1e-7 * np.eye(6):
+        by_wrench = (next_V(e) - next_V(-e)) / 2e-7
+        np.testing.assert_allclose(slope @ e / 1e-7, by_wrench, atol=1e-5 * scale)
+    for e in 1e-6 * np.eye(3):
+        move = np.concatenate([np.zeros(4), e])
+        by_handle = (next_V(still, q_WH + move) - next_V(still, q_WH - move)) / 2e-6
+        dF = np.concatenate([np.zeros(3), 800 * e / 1e-6])
+        np.testing.assert_allclose(slope @ dF, by_handle, atol=1e-2 * scale)
