@@ -26,6 +26,7 @@ SCENES = [
     "can_box",
     "cup_spoon",
     "hammer_block",
+    "peg_in_hole",
     "rubbed_sphere",
     "sphere_pen",
     "torus_peg",
@@ -79,8 +80,12 @@ def test_a_run_tells_where_its_energy_went(stats):
     assert books["contact"]["in"] > 0.0
 
 
-def test_every_scene_penetrates_only_lightly(stats):
-    assert 0.0 < stats["max_penetration_m"] < 1e-3
+def test_every_scene_of_springs_penetrates_lightly_and_no_other_does(stats):
+    if stats["contact_law"] == "penalty":
+        assert 0.0 < stats["max_penetration_m"] < 1e-3
+    else:
+        assert stats["max_penetration_m"] == 0.0
+        assert stats["least_distance_m"] == pytest.approx(8e-5, rel=0.1)
 
 
 def test_scenes_lists_every_scene_with_its_description():

@@ -13,6 +13,8 @@ from drake_haptics.evaluation.accuracy.knobs import AS_IT_IS
 from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.accuracy.study import run_accuracy_study
 from drake_haptics.evaluation.measuring import valgrind
+from drake_haptics.scene.library import find_scene
+from drake_haptics.scene.scene_file import load_scene
 
 OWN = Setting("device.rate_hz", "1000 Hz", {"device.rate_hz": 1000.0})
 SLOW = Setting("device.rate_hz", "500 Hz", {"device.rate_hz": 500.0})
@@ -131,3 +133,9 @@ def test_without_valgrind_it_says_so_at_once(scene, monkeypatch):
     monkeypatch.setattr(valgrind.shutil, "which", lambda name: None)
     with pytest.raises(HapticsError, match="not installed"):
         _study(scene, count_instructions=True)
+
+
+def test_a_scene_by_the_other_law_is_refused_before_anything_is_measured():
+    scene = load_scene(find_scene("peg_in_hole"))
+    with pytest.raises(HapticsError, match=r"contact\.law is 'constraint'.*penalty"):
+        run_accuracy_study(scene, "peg_in_hole", progress=pytest.fail)
