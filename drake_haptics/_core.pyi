@@ -1164,6 +1164,152 @@ class RigidToolDynamics:
     def step(self, state: AutoDiffVector, wrench_model: AutoDiffVector, h: float) -> AutoDiffVector:
         """The same with derivatives."""
 
+class ConstraintStepResult:
+    """What one tick of a `ConstraintStepper` found and did. Immutable."""
+
+    def __deepcopy__(self, arg: object, /) -> object: ...
+
+    def __copy__(self) -> object: ...
+
+    @property
+    def q_WT(self) -> Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]:
+        """(7,) pose [qw qx qy qz x y z] of the tool at the tick's end."""
+
+    @property
+    def V_WT(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """(6,) spatial velocity [rad/s; m/s] of the tool at the tick's end."""
+
+    @property
+    def F_Ho_W_commanded(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
+        """
+        (6,) [torque; force] of the coupling on the handle at Ho in W, at the tick's beginning: that of `coupling_wrench`.
+        """
+
+    @property
+    def contacts(self) -> ContactSet:
+        """
+        `ContactSet` of the rows that push, ordered by object and pieces. A pair has several where it is flush.
+        """
+
+    @property
+    def F_Oo_W(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
+        """
+        (num_objects, 6) [torque; force] of contact on each object at the origin of its frame, in W.
+        """
+
+    @property
+    def hessian(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
+        """
+        (6, 6) slope of the forces of the step by the tool's motion in it, [N·m; N] by [rad; m]: M/h² + B/h + K + Σ k a aᵀ over rows that push.
+        """
+
+    @property
+    def num_rows(self) -> int:
+        """Rows within reach, those that do not push among them."""
+
+    @property
+    def num_substeps(self) -> int:
+        """Parts into which a fast motion was divided, at least 1."""
+
+    @property
+    def num_iterations(self) -> int:
+        """Iterations of Newton's method, all solutions of the tick together."""
+
+    @property
+    def is_bounded(self) -> bool:
+        """
+        Whether a bound on iterations or parts ended the tick: the tool has then gone less far than it should.
+        """
+
+    @property
+    def least_distance_m(self) -> float:
+        """
+        Smallest distance of the tool to an object at the tick's beginning, m; infinite where none is within reach.
+        """
+
+    @property
+    def is_apart(self) -> bool:
+        """
+        Whether no pieces touch or overlap at the tick's beginning. Else the tool is led out at a bounded speed.
+        """
+
+    def __repr__(self) -> str: ...
+
+    @property
+    def lambda_N(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """(n,) force along the normal of each contact, N."""
+
+class ConstraintStepper:
+    """
+    Contact as a constraint: a rigid tool on a virtual coupling that stays a skin away from all objects, tick after tick.
+
+    The motion ξ = [θ; t] of To in a tick is the minimum of
+
+        ½ ξᵀ H ξ − rᵀ ξ + Σ φ_i(b_i − a_iᵀ ξ),  H = M/h² + B/h + K,
+        r = M V/h + B V + F − b_M,  a_i = [r_i × n_i; n_i],
+
+    with the inertia M and its velocity terms b_M, the model F, K, B of the coupling and applied wrench, and a row for each pair of convex pieces within reach and for each corner where they are flush: the distance d_i along n_i does not fall below the skin, φ_i(x) = ½ k max(0, x)² with k = 1e9 N/m and b_i = min(δ, d_i) − d_i. A row that has lost skin leads back at 20 mm/s with at most 200 N; pieces that overlap are led out at that speed with 3 N together. No contact makes energy: a_iᵀ ξ <= 0 wherever a row that holds pushes. Without rows it is `RigidToolDynamics.step` with `coupling_wrench`.
+
+    As in SAP (Castro et al., "An Unconstrained Convex Formulation of Compliant Contact", 2023), contact is a convex problem of one implicit step. Threads that share a stepper take turns.
+    """
+
+    def __init__(self, tool: drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces, objects: Sequence[drake_haptics.geometry.decomposition.decompose.Decomposition | ConvexPieces], skin_m: numpy.typing.ArrayLike, dynamics: RigidToolDynamics, gains: CouplingGains, q_HT: numpy.typing.ArrayLike, period_s: float) -> None:
+        """
+        Puts all objects at rest at the identity pose.
+
+        Args:
+            tool: Pieces of the tool.
+            objects: Pieces of each object.
+            skin_m: (num_objects,) distance δ that the tool keeps from each object, m. What is to fit needs more clearance than it.
+            dynamics: Inertia of the tool.
+            gains: Spring and damper of the coupling, and their limits.
+            q_HT: (7,) pose of the tool in the handle.
+            period_s: Duration h of a tick, s.
+
+        Raises:
+            ValueError: not decompositions, not one skin for each object, or a number is out of range.
+        """
+
+    @property
+    def num_objects(self) -> int:
+        """How many objects there are."""
+
+    def set_object_pose(self, i: int, X_WO: drake_haptics.common.pose_like.PoseLike, V_WO: numpy.typing.ArrayLike = ...) -> None:
+        """
+        Poses object i at the next tick's beginning.
+
+        Args:
+            i: Which object.
+            X_WO: Its pose, as a tracker takes it.
+            V_WO: (6,) spatial velocity [rad/s; m/s] of its frame in the tick. Defaults to rest.
+
+        Raises:
+            ValueError: not a pose, or not finite; the object stays where it is.
+            IndexError: no such object.
+        """
+
+    def step(self, q_WT: numpy.typing.ArrayLike, V_WT: numpy.typing.ArrayLike, q_WH: numpy.typing.ArrayLike, V_WH: numpy.typing.ArrayLike, F_applied_To_W: numpy.typing.ArrayLike = ...) -> ConstraintStepResult:
+        """
+        Advances the tool by a tick.
+
+        Args:
+            q_WT, V_WT: (7,) pose [qw qx qy qz x y z] and (6,) spatial velocity [rad/s; m/s] of the tool.
+            q_WH, V_WH: The same of the handle.
+            F_applied_To_W: (6,) all other wrenches on the tool, [torque; force] at To in W, its weight among them. Defaults to zero.
+
+        Raises:
+            ValueError: a value is not finite; what was learnt stays.
+        """
+
+    def reset(self) -> None:
+        """Forgets what earlier ticks found; the objects stay."""
+
+    def __deepcopy__(self, arg: object, /) -> ConstraintStepper: ...
+
+    def __copy__(self) -> ConstraintStepper: ...
+
+    def __repr__(self) -> str: ...
+
 class WrenchJacobian:
     """
     Derivatives of the contact wrench on the tool at To, [N·m; N], by displacements [rotation vector (rad); translation (m)] and velocities [rad/s; m/s] of the bodies about their origins, all in the world. Immutable.

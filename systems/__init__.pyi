@@ -40,6 +40,8 @@ from .output.haptic_visualizer import HapticVisualizer as HapticVisualizer
 from .output.tick_log_sink import TickLogSink as TickLogSink
 from .plant.applied_wrenches import AppliedWrenches as AppliedWrenches
 from .plant.body_motions import BodyMotions as BodyMotions
+from .tool.constraint_tool_step import ConstraintToolStep as ConstraintToolStep
+from .tool.constraint_tool_step import ConstraintWrench as ConstraintWrench
 from .tool.handle_model import HandleModel as HandleModel
 from .tool.haptic_tool import HapticTool as HapticTool
 from .tool.passivity_control import PassivityControl as PassivityControl

@@ -26,8 +26,10 @@ from drake_haptics.geometry.mesh.units import METERS_PER_UNIT, guess_unit
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.loop.simulated_device import make_hand_path
+from drake_haptics.scene.contact_law import calc_first_touch, is_constraint
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import EnvironmentObject, Tool
+from drake_haptics.systems.contact.contact_query import ContactObject, ContactQuery
 
 # A tool is held in one hand.
 _LARGEST_USUAL_TOOL_M = 1.0
@@ -45,7 +47,7 @@ def check_plausibility(haptic: HapticDiagram) -> list[str]:
     return [
         *_question_sizes(haptic),
         *question_tolerance(
-            haptic.scene.contact.tolerance_m,
+            calc_first_touch(haptic.scene.contact),
             "the tool",
             max(haptic.tool.mesh.report.extent),
         ),
@@ -148,7 +150,7 @@ def _question_reach(haptic: HapticDiagram) -> list[str]:
         ),
     )
     gap_m -= radius_m
-    if gap_m <= haptic.scene.contact.tolerance_m:
+    if gap_m <= calc_first_touch(haptic.scene.contact):
         return []
     return [
         f"no object is within reach {where}; the nearest is {length(gap_m)} away:"
@@ -246,9 +248,8 @@ def question_start(haptic: HapticDiagram) -> list[str]:
     if haptic.backend is None:
         X_WT = make_hand_path(scene.hand.path).start
         # A scene's own hand may begin pressed, but not against all of its device.
-        allowed_m = (
-            find_device_site(scene).max_force_N / scene.contact.stiffness_N_per_m
-        )
+        max_force_N = find_device_site(scene).max_force_N
+        allowed_m = max_force_N / scene.contact.stiffness_N_per_m
         remedy = "move hand.path.waypoints[0] to a place beside it"
     else:
         reading = haptic.backend.read()
@@ -258,6 +259,8 @@ def question_start(haptic: HapticDiagram) -> list[str]:
         X_WT = X_WH @ scene.tool.grasp.to_rigid_transform()
         allowed_m = scene.contact.tolerance_m
         remedy = "lead the device's handle to a place beside it and start again"
+    if is_constraint(scene.contact):
+        allowed_m = 0.0
     depths_m = _calc_depths(haptic, X_WT)
     sentences = []
     for item, part, depth_m in zip(
@@ -279,9 +282,10 @@ def _calc_depths(haptic: HapticDiagram, X_WT: RigidTransform) -> list[float]:
     """Returns how deep the tool is in each object, m; 0 where there is no contact.
 
     The run's own query is asked, in a Context of its own, so that the depth is that
-    which the run begins with.
+    which the run begins with; where the law of contact has none, one like it.
     """
-    query = haptic.loop.contact_query
+    penalty = haptic.loop.penalty
+    query = _make_query(haptic) if penalty is None else penalty.contact_query
     context = query.CreateDefaultContext()
     query.GetInputPort("X_WT").FixValue(context, pose_to_vector(X_WT))
     if query.HasInputPort("load_shedding"):
@@ -290,6 +294,16 @@ def _calc_depths(haptic: HapticDiagram, X_WT: RigidTransform) -> list[float]:
     depths_m = np.zeros(len(haptic.environment))
     np.maximum.at(depths_m, contacts.object_index, -contacts.distance)
     return depths_m.tolist()
+
+
+def _make_query(haptic: HapticDiagram) -> ContactQuery:
+    """Returns a query of a scene's tool and objects."""
+    environment = zip(haptic.scene.environment, haptic.environment, strict=True)
+    objects = [
+        ContactObject(item.name, part.core, item.pose.to_rigid_transform())
+        for item, part in environment
+    ]
+    return ContactQuery(haptic.tool.core, objects, 0.0)
 
 
 def _is_inside(tool: Decomposition, part: Decomposition, X_OT: RigidTransform) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from drake_haptics.scene.contact_law import is_constraint
 from drake_haptics.scene.schema import Scene
 from drake_haptics.simulation.profiling import Part
 
@@ -75,7 +76,7 @@ def _find_key(name: str, scene: Scene) -> str | None:
                 " the tool, makes few contacts of many (the force then jumps a little)"
             )
         return _find_fewer_pieces(scene)
-    if name == "contact_query":
+    if name in ("contact_query", "constraint_tool_step"):
         return _find_fewer_pieces(scene)
     if name == "haptic_visualizer":
         return "device.tick_budget_us leaves drawing out of ticks that take longer"
@@ -84,7 +85,7 @@ def _find_key(name: str, scene: Scene) -> str | None:
     return None
 
 
-def _find_fewer_pieces(scene: Scene) -> str:
+def _find_fewer_pieces(scene: Scene) -> str | None:
     """Returns the key that gives the query fewer pairs of pieces to look at."""
     if scene.tool.decomposition == "surface":
         return (
@@ -97,4 +98,6 @@ def _find_fewer_pieces(scene: Scene) -> str:
                 f"environment[{place}].decomposition: merged, with"
                 " decomposition_error_m: 0.0001, cuts it into fewer pieces"
             )
+    if is_constraint(scene.contact):
+        return None
     return "contact.tolerance_m: a smaller one finds fewer contacts"

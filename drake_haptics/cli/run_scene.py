@@ -183,7 +183,8 @@ def run_scene(
             console.print()
             console.print(make_parts_table(session.parts))
             speed = session.figures["skin_speed_m_per_s"]
-            console.print(describe_skin(speed), soft_wrap=True, markup=False)
+            if speed is not None:
+                console.print(describe_skin(speed), soft_wrap=True, markup=False)
             relief = suggest_speedup(session.parts, session.scene)
             if relief is not None:
                 console.print(relief, soft_wrap=True, markup=False)

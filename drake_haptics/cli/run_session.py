@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import select
 import socket
@@ -117,9 +118,9 @@ class Session:
     Attributes:
         haptic: The diagram that ran last.
         scene: The scene at the end, with the changes of the page.
-        figures: As `RunStatistics.to_dict` has them, `skin_speed_m_per_s` as of a
-            `HapticDiagram`, and of a device under `device` those of
-            `DeviceWatch.to_dict`.
+        figures: As `RunStatistics.to_dict` has them, `contact_law`,
+            `skin_speed_m_per_s` as of a `HapticDiagram` but None where it is infinite,
+            and of a device under `device` those of `DeviceWatch.to_dict`.
         parts: Parts of a tick, if an explanation was asked for.
         error: Why the run was stopped, if it was.
     """
@@ -252,7 +253,8 @@ def run_session(
         speed = calc_skin_speed(last.contact, 1.0 / last.device.rate_hz)
         figures = {
             **statistics.to_dict(),
-            "skin_speed_m_per_s": speed,
+            "contact_law": last.contact.law,
+            "skin_speed_m_per_s": speed if math.isfinite(speed) else None,
             **onlookers.describe_device(),
         }
     for warning in caught:

@@ -202,8 +202,8 @@ class StatusLine(LiveLine):
         loop = self._haptic.loop
         found = loop.found_contacts
         contacts = found.Eval(found.get_system().GetMyContextFromRoot(context))
-        clustering = loop.contact_clustering.GetMyContextFromRoot(context)
-        clusters = loop.contact_clustering.GetOutputPort("clusters").Eval(clustering)
+        pushing = loop.clusters
+        clusters = pushing.Eval(pushing.get_system().GetMyContextFromRoot(context))
         device = loop.device.GetMyContextFromRoot(context)
         F_Ho_W_rendered = loop.device.GetOutputPort("F_Ho_W_rendered").Eval(device)
         deepest_mm = 1e3 * max(0.0, -contacts.distance.min(initial=0.0))
@@ -276,11 +276,13 @@ def make_summary(figures: dict[str, Any]) -> Table:
 def _explain_near_force(figures: dict[str, Any]) -> str:
     """Returns where a force without penetration comes from; empty if there is none."""
     distance_m = figures["least_distance_m"]
+    is_constraint = figures.get("contact_law") == "constraint"
+    key = "contact.skin_m" if is_constraint else "contact.tolerance_m"
     if distance_m is None or distance_m < 0.0 or figures["max_force_N"] == 0.0:
         return ""
     return (
         f"; surfaces stayed {1e3 * distance_m:.3f} mm apart: force begins before they"
-        " touch, at contact.tolerance_m; what is to fit needs one below its clearance"
+        f" touch, at {key}; what is to fit needs one below its clearance"
     )
 
 

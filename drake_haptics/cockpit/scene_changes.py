@@ -19,6 +19,7 @@ from drake_haptics.bounds.held_handle import (
 )
 from drake_haptics.common.errors import HapticsError, SceneError
 from drake_haptics.loop.simulated_device import make_hand_path, make_simulated_device
+from drake_haptics.scene.contact_law import check_constraint_law, is_constraint
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import (
     BrakingParameters,
@@ -122,10 +123,12 @@ class SceneChanges:
         """Chooses one of several ways.
 
         Raises:
-            ChangeError: There is no such choice.
+            ChangeError: There is no such choice, or it is none of the scene's law.
         """
         if key != CLUSTERING or to not in CLUSTERINGS:
             raise ChangeError(f"There is no choice {to!r} of {key!r}.")
+        if is_constraint(self.scene.contact):
+            raise ChangeError(f"{key} does nothing under contact.law: constraint.")
         if to == self.scene.contact.clustering:
             return
         size_m = self._cluster_size_m if to == "octree" else None
@@ -138,12 +141,18 @@ class SceneChanges:
         """Adds an effect, with the file's values or its defaults, or takes it out.
 
         Raises:
-            ChangeError: There is no such effect.
+            ChangeError: There is no such effect, or it does nothing under the scene's
+                law of contact.
         """
         if name not in EFFECTS:
             raise ChangeError(f"There is no effect {name!r}.")
         effect = (getattr(self._file.effects, name) or EFFECTS[name]()) if on else None
         effects = dataclasses.replace(self.scene.effects, **{name: effect})
+        if is_constraint(self.scene.contact):
+            try:
+                check_constraint_law(self.scene.contact, effects, sheds_load=False)
+            except SceneError as error:
+                raise ChangeError(str(error)) from error
         environment = [
             dataclasses.replace(
                 now, material=_make_material(file.material, now.material, effects)

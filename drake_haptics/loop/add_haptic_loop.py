@@ -14,9 +14,11 @@ from drake_haptics.loop.contact import (
     add_contact_systems,
     connect_by_name,
     find_contact_gains,
+    find_skins,
 )
 from drake_haptics.loop.effects import EffectSite, add_effects, find_springs
 from drake_haptics.loop.haptic_loop import BaseSystems, HapticLoop
+from drake_haptics.scene.contact_law import check_constraint_law, is_constraint
 from drake_haptics.scene.schema import (
     ContactParameters,
     CouplingParameters,
@@ -88,8 +90,9 @@ def AddHapticLoop(
         The systems.
 
     Raises:
-        ValueError: A gain or size is out of range, two objects share a name, or
-            there is not a material for each object.
+        ValueError: A gain or size is out of range, two objects share a name, there is
+            not a material for each object, or something is asked for that the law of
+            contact does not have.
         TypeError: An argument is of another kind; the message names it.
     """
     require_kinds(
@@ -114,17 +117,35 @@ def AddHapticLoop(
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
     if load_shedding is not None:
         builder.AddNamedSystem("load_shedding", load_shedding)
-    base = BaseSystems(
-        load_shedding=load_shedding,
-        device=builder.AddNamedSystem("device", device),
-        virtual_coupling=builder.AddNamedSystem(
-            "virtual_coupling", VirtualCoupling(gains, X_HT)
-        ),
-        haptic_tool=builder.AddNamedSystem(
-            "haptic_tool",
-            HapticTool(tool_dynamics, period_s, ["coupling", "contact", *forces], X_WT),
-        ),
-        **vars(
+    builder.AddNamedSystem("device", device)
+    sheds_load = load_shedding is not None
+    if is_constraint(contact):
+        check_constraint_law(contact, effects, sheds_load=sheds_load)
+        from drake_haptics.systems.tool.constraint_tool_step import ConstraintToolStep
+
+        step = ConstraintToolStep(
+            tool,
+            objects,
+            find_skins(contact, materials),
+            tool_dynamics,
+            gains,
+            X_HT,
+            X_WT,
+            period_s,
+            forces,
+        )
+        builder.AddNamedSystem("constraint_tool_step", step)
+        base = BaseSystems(device, step, step, load_shedding, None)
+        contacts_N_per_m = []
+    else:
+        names = ["coupling", "contact", *forces]
+        base = BaseSystems(
+            device,
+            builder.AddNamedSystem("virtual_coupling", VirtualCoupling(gains, X_HT)),
+            builder.AddNamedSystem(
+                "haptic_tool", HapticTool(tool_dynamics, period_s, names, X_WT)
+            ),
+            load_shedding,
             add_contact_systems(
                 builder,
                 tool,
@@ -133,10 +154,11 @@ def AddHapticLoop(
                 effects,
                 materials,
                 period_s,
-                enable_load_shedding=load_shedding is not None,
-            )
-        ),
-    )
+                enable_load_shedding=sheds_load,
+            ),
+        )
+        stiffness = find_contact_gains(contact, materials).stiffness_N_per_m
+        contacts_N_per_m = stiffness.tolist()
     _connect_base(builder, base)
     site = EffectSite(
         effects=effects,
@@ -148,61 +170,44 @@ def AddHapticLoop(
         objects=objects,
         materials=materials,
         period_s=period_s,
-        springs=find_springs(
-            device,
-            gains,
-            find_contact_gains(contact, materials).stiffness_N_per_m.tolist(),
-        ),
+        springs=find_springs(device, gains, contacts_N_per_m),
     )
     systems = add_effects(site)
     sources = {
-        "coupling": base.virtual_coupling.GetOutputPort("wrench_model"),
-        "contact": base.penalty_force.GetOutputPort("wrench_model"),
+        "coupling": base.coupling_model,
+        "contact": base.contact_model,
         **{
             name: getattr(systems, name).GetOutputPort("wrench_model")
             for name in forces
         },
     }
-    for name, source in sources.items():
-        builder.Connect(source, base.haptic_tool.GetInputPort(name))
+    connect_by_name(builder, base.haptic_tool, sources)
     if device.wants_slopes:
         _add_handle_model(builder, base, sources)
     loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
-    builder.Connect(loop.contacts, loop.contact_clustering.GetInputPort("contacts"))
+    if loop.penalty is not None:
+        connect_by_name(
+            builder, loop.penalty.contact_clustering, {"contacts": loop.contacts}
+        )
     builder.Connect(loop.commanded_wrench, device.GetInputPort("F_Ho_W_commanded"))
     return loop
 
 
 def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
     """Connects the systems of every loop where no effect can come between."""
-    device, tool = base.device, base.haptic_tool
-    coupling, force = base.virtual_coupling, base.penalty_force
-    X_WT, V_WT = tool.GetOutputPort("X_WT"), tool.GetOutputPort("V_WT")
-    for output, input in [
-        (device.GetOutputPort("X_WH"), coupling.GetInputPort("X_WH")),
-        (
-            device.GetOutputPort("V_WH"),
-            coupling.GetInputPort("V_WH"),
-        ),
-        (X_WT, coupling.GetInputPort("X_WT")),
-        (V_WT, coupling.GetInputPort("V_WT")),
-        (
-            base.contact_clustering.GetOutputPort("clusters"),
-            force.GetInputPort("clusters"),
-        ),
-        (X_WT, force.GetInputPort("X_WT")),
-        (V_WT, force.GetInputPort("V_WT")),
-    ]:
-        builder.Connect(output, input)
-    sources = {"X_WT": X_WT}
+    sources = {
+        "X_WH": base.device.GetOutputPort("X_WH"),
+        "V_WH": base.device.GetOutputPort("V_WH"),
+    }
+    if base.penalty is None:
+        connect_by_name(builder, base.haptic_tool, sources)
+        return
+    sources["X_WT"] = base.haptic_tool.GetOutputPort("X_WT")
+    sources["V_WT"] = base.haptic_tool.GetOutputPort("V_WT")
+    sources["clusters"] = base.clusters
     if base.load_shedding is not None:
         sources["load_shedding"] = base.load_shedding.GetOutputPort("load_shedding")
-    for system in (
-        base.contact_query,
-        base.contact_clustering,
-        base.pose_sampler,
-        base.contact_extrapolator,
-    ):
+    for system in (base.virtual_coupling, *vars(base.penalty).values()):
         if system is not None:
             connect_by_name(builder, system, sources)
 
@@ -243,8 +248,8 @@ def _find_sources(base: BaseSystems) -> dict[str, OutputPort]:
         "F_Ho_W_rendered": base.device.GetOutputPort("F_Ho_W_rendered"),
         "F_Ho_W_desired": base.virtual_coupling.GetOutputPort("F_Ho_W_commanded"),
         "contacts": base.found_contacts,
-        "clusters": base.contact_clustering.GetOutputPort("clusters"),
-        "contact_wrench": base.penalty_force.GetOutputPort("contact_wrench"),
+        "clusters": base.clusters,
+        "contact_wrench": base.contact_wrench,
     }
 
 

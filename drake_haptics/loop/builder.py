@@ -77,7 +77,8 @@ class HapticDiagram:
         """Speed at which the tool crosses `contact.tolerance_m` in one step, m/s.
 
         Above it a step may carry the tool from beyond the tolerance into a shape: it is
-        met all the same, but as deep as the step has taken it.
+        met all the same, but as deep as the step has taken it. Infinite under
+        `contact.law: constraint`, whose step sees as far as it goes.
         """
         return calc_skin_speed(self.scene.contact, self.period_s)
 

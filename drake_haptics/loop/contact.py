@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
-from pydrake.systems.framework import DiagramBuilder, OutputPort, System
+from pydrake.systems.framework import Context, DiagramBuilder, OutputPort, System
 
 from drake_haptics import _core
 from drake_haptics.scene.schema import ContactParameters, Effects, Material
@@ -52,6 +52,16 @@ class ContactSystems:
         if self.contact_extrapolator is not None:
             return self.contact_extrapolator.GetOutputPort("contacts")
         return self.contact_query.GetOutputPort("contacts")
+
+    def read_tolerance(self, root: Context) -> float:
+        """Returns the distance below which contacts push, m.
+
+        Args:
+            root: Context of the diagram that holds the systems.
+        """
+        clustering = self.contact_clustering
+        rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
+        return rule.tolerance_m
 
 
 def add_contact_systems(
@@ -168,6 +178,14 @@ def find_contact_gains(
         np.array([contact.stiffness_N_per_m if k is None else k for k in stiffness]),
         np.array([contact.damping_Ns_per_m if b is None else b for b in damping]),
     )
+
+
+def find_skins(
+    contact: ContactParameters, materials: Sequence[Material]
+) -> list[float]:
+    """Returns the skin (m) of each object: its material's, or else the contact's."""
+    skins = [material.skin_m for material in materials]
+    return [contact.skin_m if skin is None else skin for skin in skins]
 
 
 def find_query_tolerance(contact: ContactParameters, effects: Effects) -> float:

@@ -72,12 +72,13 @@ def find_springs(
     Args:
         device: Its limits load them.
         gains: Gains of the coupling.
-        contacts_N_per_m: Stiffness of contact with each object, N/m.
+        contacts_N_per_m: Stiffness of contact with each object, N/m; empty where
+            contact stores no energy.
     """
     return [
         (device.max_force_N, gains.stiffness_N_per_m),
         (device.max_torque_Nm, gains.rotational_stiffness_Nm_per_rad),
-        (device.max_force_N, min(contacts_N_per_m)),
+        *((device.max_force_N, min(contacts_N_per_m)) for _ in contacts_N_per_m[:1]),
     ]
 
 

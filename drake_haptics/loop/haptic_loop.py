@@ -8,35 +8,127 @@ from typing import TYPE_CHECKING
 
 from pydrake.systems.framework import DiagramBuilder, OutputPort, System
 
+from drake_haptics.common.errors import SceneError
 from drake_haptics.loop.contact import ContactSystems
 from drake_haptics.systems.device.haptic_device import HapticDevice
 from drake_haptics.systems.tool.haptic_tool import HapticTool
 from drake_haptics.systems.tool.virtual_coupling import VirtualCoupling
 
 if TYPE_CHECKING:
+    from drake_haptics.systems.contact.contact_clustering import ContactClustering
+    from drake_haptics.systems.contact.contact_extrapolator import ContactExtrapolator
+    from drake_haptics.systems.contact.contact_query import ContactQuery
     from drake_haptics.systems.contact.force_shading import ForceShading
     from drake_haptics.systems.contact.load_shedding import LoadShedding
+    from drake_haptics.systems.contact.penalty_force import PenaltyForce
+    from drake_haptics.systems.contact.pose_sampler import PoseSampler
     from drake_haptics.systems.contact.pre_contact_braking import PreContactBraking
     from drake_haptics.systems.contact.stick_slip_friction import StickSlipFriction
+    from drake_haptics.systems.tool.constraint_tool_step import ConstraintToolStep
     from drake_haptics.systems.tool.passivity_control import PassivityControl
     from drake_haptics.systems.tool.tool_gravity import ToolGravity
 
 
 @dataclass(frozen=True)
-class BaseSystems(ContactSystems):
+class BaseSystems:
     """The systems that every loop has, those of contact among them.
 
     Attributes:
         device: The device port.
-        virtual_coupling: Between the device's handle and the tool.
+        virtual_coupling: Between the device's handle and the tool; under
+            `contact.law: constraint` the same system as `haptic_tool`.
         haptic_tool: The tool's body.
         load_shedding: Says what to leave out; None without a budget of ticks.
+        penalty: The systems that find contacts and answer them; None under
+            `contact.law: constraint`, where `haptic_tool` does.
     """
 
     device: HapticDevice
-    virtual_coupling: VirtualCoupling
-    haptic_tool: HapticTool
+    virtual_coupling: VirtualCoupling | ConstraintToolStep
+    haptic_tool: HapticTool | ConstraintToolStep
     load_shedding: LoadShedding | None
+    penalty: ContactSystems | None
+
+    @property
+    def contact_query(self) -> ContactQuery:
+        """Finds the contacts; a `SceneError` under `contact.law: constraint`."""
+        return self.require_penalty().contact_query
+
+    @property
+    def contact_clustering(self) -> ContactClustering:
+        """Shares their stiffness; a `SceneError` under `contact.law: constraint`."""
+        return self.require_penalty().contact_clustering
+
+    @property
+    def penalty_force(self) -> PenaltyForce:
+        """Answers them; a `SceneError` under `contact.law: constraint`."""
+        return self.require_penalty().penalty_force
+
+    @property
+    def pose_sampler(self) -> PoseSampler | None:
+        """Says where contacts are looked for, if not at every tick."""
+        return None if self.penalty is None else self.penalty.pose_sampler
+
+    @property
+    def contact_extrapolator(self) -> ContactExtrapolator | None:
+        """Carries contacts along then."""
+        return None if self.penalty is None else self.penalty.contact_extrapolator
+
+    @property
+    def found_contacts(self) -> OutputPort:
+        """The contacts where the bodies are now."""
+        if self.penalty is None:
+            return self.haptic_tool.GetOutputPort("contacts")
+        return self.penalty.found_contacts
+
+    @property
+    def clusters(self) -> OutputPort:
+        """What pushes: clusters, or under `contact.law: constraint` contacts."""
+        if self.penalty is None:
+            return self.haptic_tool.GetOutputPort("contacts")
+        return self.penalty.contact_clustering.GetOutputPort("clusters")
+
+    @property
+    def contact_wrench(self) -> OutputPort:
+        """What each of `clusters` pushes with."""
+        return self._answer.GetOutputPort("contact_wrench")
+
+    @property
+    def F_To_W(self) -> OutputPort:
+        """The wrench (6) [τ; f] of contact on the tool at its origin, N·m and N."""
+        return self._answer.GetOutputPort("F_To_W")
+
+    @property
+    def coupling_model(self) -> OutputPort:
+        """The wrench model (78) of the coupling on the tool."""
+        name = "coupling" if self.penalty is None else "wrench_model"
+        return self.virtual_coupling.GetOutputPort(name)
+
+    @property
+    def contact_model(self) -> OutputPort:
+        """The wrench model (78) of contact on the tool."""
+        return self._answer.GetOutputPort("wrench_model")
+
+    @property
+    def _answer(self) -> System:
+        """The system that answers contacts."""
+        if self.penalty is None:
+            return self.haptic_tool
+        return self.penalty.penalty_force
+
+    def require_penalty(self) -> ContactSystems:
+        """Returns the systems of the penalty law.
+
+        Raises:
+            SceneError: The loop is by the other law.
+        """
+        if self.penalty is None:
+            raise SceneError(
+                "contact.law is 'constraint', whose tool step finds and answers"
+                " contacts itself: there are no contact_query, contact_clustering and"
+                " penalty_force to ask; take penalty"
+            )
+        return self.penalty
 
 
 @dataclass(frozen=True)
@@ -107,10 +199,12 @@ class HapticLoop(BaseSystems):
           `clusters` a `drake_haptics._core.ClusterSet`.
         * `contact_wrench` and `F_To_W` (6) are those of `PenaltyForce`: contact
           alone, on the tool.
+        * Under `contact.law: constraint` they are those of `ConstraintToolStep`, and
+          `clusters` are its `contacts`: each pushes by itself.
         * `friction_force` (with friction) is that of `StickSlipFriction`, `energy_J`
           (with passivity control) that of `PassivityControl`.
         """
-        device, tool, force = self.device, self.haptic_tool, self.penalty_force
+        device, tool = self.device, self.haptic_tool
         outputs = {
             "X_WT": tool.GetOutputPort("X_WT"),
             "V_WT": tool.GetOutputPort("V_WT"),
@@ -120,9 +214,9 @@ class HapticLoop(BaseSystems):
             "F_Ho_W_rendered": device.GetOutputPort("F_Ho_W_rendered"),
             "status": device.GetOutputPort("status"),
             "contacts": self.contacts,
-            "clusters": self.contact_clustering.GetOutputPort("clusters"),
-            "contact_wrench": force.GetOutputPort("contact_wrench"),
-            "F_To_W": force.GetOutputPort("F_To_W"),
+            "clusters": self.clusters,
+            "contact_wrench": self.contact_wrench,
+            "F_To_W": self.F_To_W,
         }
         if self.effects.friction is not None:
             port = self.effects.friction.GetOutputPort("friction_force")
@@ -151,11 +245,14 @@ def ConnectMovingObject(
     Raises:
         ValueError: There is no such object, or it does not move.
     """
-    parts = [loop.penalty_force, *vars(loop.effects).values()]
-    if loop.pose_sampler is None:
-        parts.append(loop.contact_query)
-    parts += [loop.pose_sampler, loop.contact_extrapolator]
-    systems: list[System] = [part for part in parts if part is not None]
+    parts: list[System | None] = [*vars(loop.effects).values()]
+    if loop.penalty is None:
+        parts.append(loop.haptic_tool)
+    else:
+        parts += [loop.penalty_force, loop.pose_sampler, loop.contact_extrapolator]
+        if loop.pose_sampler is None:
+            parts.append(loop.contact_query)
+    systems = [part for part in parts if part is not None]
     sources = {f"X_WO_{name}": X_WO, f"V_WO_{name}": V_WO}
     inputs = [
         (sources[port.get_name()], port)

@@ -64,14 +64,8 @@ def add_picture(
             visualizer.GetInputPort("X_WT"),
         ),
         (loop.contacts, visualizer.GetInputPort("contacts")),
-        (
-            loop.contact_clustering.GetOutputPort("clusters"),
-            visualizer.GetInputPort("clusters"),
-        ),
-        (
-            loop.penalty_force.GetOutputPort("contact_wrench"),
-            visualizer.GetInputPort("contact_wrench"),
-        ),
+        (loop.clusters, visualizer.GetInputPort("clusters")),
+        (loop.contact_wrench, visualizer.GetInputPort("contact_wrench")),
         (loop.commanded_wrench, visualizer.GetInputPort("F_Ho_W_commanded")),
     ]:
         builder.Connect(output, input)
@@ -131,7 +125,7 @@ def AddTickLog(
         "V_WT": tool.GetOutputPort("V_WT"),
         "status": device.GetOutputPort("status"),
         "contacts": loop.found_contacts,
-        "clusters": loop.contact_clustering.GetOutputPort("clusters"),
+        "clusters": loop.clusters,
     }
     if device.HasOutputPort("reading"):
         sources["reading"] = device.GetOutputPort("reading")

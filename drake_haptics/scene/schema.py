@@ -21,12 +21,14 @@ class Material:
         friction_coefficient: Instead of `effects.friction.coefficient`; the scene
             must name that effect.
         shading: Whether the object is shaded; the scene must name that effect.
+        skin_m: Instead of `contact.skin_m`, m.
     """
 
     stiffness_N_per_m: float | None = None
     damping_Ns_per_m: float | None = None
     friction_coefficient: float | None = None
     shading: bool | None = None
+    skin_m: float | None = None
 
 
 @dataclass(slots=True)
@@ -280,9 +282,15 @@ class EnvironmentObject:
 class ContactParameters:
     """How contact is found and answered.
 
+    There are two laws. `constraint` reads `skin_m` alone; all other keys are those of
+    `penalty`. A scene can have both, and `law` chooses.
+
     Attributes:
-        tolerance_m: Pieces nearer than this push each other apart, m (the
-            paper's t).
+        law: `penalty`, springs and dampers that push surfaces apart, or `constraint`,
+            by which the tool's step keeps all surfaces `skin_m` apart.
+        skin_m: For `constraint`: distance that the tool keeps from each object, m (the
+            δ of a row). What is to fit needs more play on each side than this.
+        tolerance_m: Pieces nearer than this push each other apart, m (the paper's t).
         stiffness_N_per_m: Force per meter below the tolerance, N/m (k of Eq. 6).
         damping_Ns_per_m: Force per speed of approach, N·s/m (k_v of Eq. 6).
         clustering: How few contacts are made of many: `shared`, which is
@@ -300,6 +308,8 @@ class ContactParameters:
             not given, at every tick.
     """
 
+    law: str = "penalty"
+    skin_m: float = 3e-4
     tolerance_m: float = 2e-3
     stiffness_N_per_m: float = 2e4
     damping_Ns_per_m: float = 5.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,6 +11,7 @@ from drake_haptics.common.errors import SceneError
 from drake_haptics.geometry.decomposition.decompose import METHODS
 from drake_haptics.geometry.mesh.report import length
 from drake_haptics.geometry.parsing.model_file import is_model_file
+from drake_haptics.scene.contact_law import check_constraint_law, check_law
 from drake_haptics.scene.schema import (
     ContactParameters,
     CouplingParameters,
@@ -69,6 +71,12 @@ def check_values(scene: Scene) -> None:
     )
     require_none_negative(scene.device, "device", ["max_force_N", "max_torque_Nm"])
     _check_tick_budget(scene.device)
+    if scene.contact.law == "constraint":
+        check_constraint_law(
+            scene.contact,
+            scene.effects,
+            sheds_load=scene.device.tick_budget_us is not None,
+        )
     if scene.device.base is not None:
         _check_pose(scene.device.base, "device.base")
     _check_twin(scene.device.twin)
@@ -90,9 +98,15 @@ def check_rendering(
         coupling: As in a scene, if there is a handle.
 
     Raises:
-        SceneError: A value out of its range.
+        SceneError: A value out of its range, or contact is not by the penalty law.
     """
     _check_contact(contact)
+    require(
+        contact.law == "penalty",
+        "contact.law",
+        f"is '{contact.law}', which moves the tool itself; a body of a plant is moved"
+        " by the plant: take penalty",
+    )
     _check_effects(effects)
     for name, material in materials.items():
         _check_material(material, f"materials[{name!r}]", effects)
@@ -130,7 +144,10 @@ def _check_shape(item: Tool | EnvironmentObject, where: str) -> None:
 
 def _check_contact(contact: ContactParameters) -> None:
     """Checks how contact is found and answered."""
-    require_all_positive(contact, "contact", ["stiffness_N_per_m", "cluster_size_m"])
+    check_law(contact.law)
+    require_all_positive(
+        contact, "contact", ["skin_m", "stiffness_N_per_m", "cluster_size_m"]
+    )
     require_none_negative(contact, "contact", ["tolerance_m", "damping_Ns_per_m"])
     require(
         contact.clustering in _CLUSTERINGS,
@@ -193,7 +210,7 @@ def _check_tick_budget(device: DeviceParameters) -> None:
 
 def _check_material(material: Material, where: str, effects: Effects) -> None:
     """Checks a material, and that the scene names the effects it speaks of."""
-    require_all_positive(material, where, ["stiffness_N_per_m"])
+    require_all_positive(material, where, ["stiffness_N_per_m", "skin_m"])
     require_none_negative(material, where, ["damping_Ns_per_m", "friction_coefficient"])
     for key, effect in [("friction_coefficient", "friction"), ("shading", "shading")]:
         require(
@@ -322,10 +339,14 @@ def require(condition: bool, where: str, complaint: str) -> None:
 def calc_skin_speed(contact: ContactParameters, period_s: float) -> float:
     """Returns the speed at which one step crosses the tolerance, m/s.
 
+    Infinite under the constraint law, whose step sees as far as it goes.
+
     Args:
-        contact: Tolerance, and how often contacts are looked for.
+        contact: Law, tolerance, and how often contacts are looked for.
         period_s: How often they are where `contact` does not say, s.
     """
+    if contact.law == "constraint":
+        return math.inf
     return contact.tolerance_m * (contact.query_rate_hz or 1.0 / period_s)
 
 

@@ -134,17 +134,23 @@ def _reader(port: OutputPort, root: Context) -> Callable[[], Any]:
 
 
 class _Gains(NamedTuple):
-    """What can be changed in a context, and changes the energy of springs."""
+    """What can be changed in a context, and changes the energy of springs.
+
+    Contact has none under `contact.law: constraint`.
+    """
 
     coupling: _core.CouplingGains
-    contact: ContactGains
-    clustering: ClusteringRule
+    contact: ContactGains | None = None
+    clustering: ClusteringRule | None = None
 
 
 def _make_gains_reader(loop: HapticLoop, root: Context) -> Callable[[], _Gains]:
     """Returns what reads the gains of a context."""
-    coupling, force = loop.virtual_coupling, loop.penalty_force
-    clustering = loop.contact_clustering
+    coupling, penalty = loop.virtual_coupling, loop.penalty
+    if penalty is None:
+        own = coupling.GetMyContextFromRoot(root)
+        return lambda: _Gains(coupling.get_gains(own))
+    force, clustering = penalty.penalty_force, penalty.contact_clustering
     contexts = [
         part.GetMyContextFromRoot(root) for part in (coupling, force, clustering)
     ]
@@ -159,14 +165,17 @@ def _make_stored_readers(
     loop: HapticLoop, root: Context, get_gains: Callable[[], _Gains]
 ) -> dict[str, Callable[[], float]]:
     """Returns what tells the energy (J) of each source of wrench that stores some."""
-    clusters = _reader(loop.contact_clustering.GetOutputPort("clusters"), root)
+    clusters = _reader(loop.clusters, root)
 
     def contact_energy() -> float:
         gains = get_gains()
+        assert gains.contact is not None and gains.clustering is not None
         stiffness = gains.contact.stiffness_N_per_m.tolist()
         return _core.contact_energy(clusters(), stiffness, gains.clustering.tolerance_m)
 
-    readers: dict[str, Callable[[], float]] = {"contact": contact_energy}
+    readers: dict[str, Callable[[], float]] = {}
+    if loop.penalty is not None:
+        readers["contact"] = contact_energy
     if (friction := loop.effects.friction) is not None:
         friction_force = _reader(friction.GetOutputPort("friction_force"), root)
         readers["friction"] = lambda: friction_force().stored_J

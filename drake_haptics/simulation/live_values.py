@@ -15,6 +15,7 @@ from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.add_haptic_loop import make_coupling_gains
 from drake_haptics.loop.builder import HapticDiagram
 from drake_haptics.loop.contact import find_contact_gains, find_query_tolerance
+from drake_haptics.scene.contact_law import is_constraint
 from drake_haptics.scene.schema import ContactParameters, CouplingParameters, Scene
 from drake_haptics.systems.contact.contact_clustering import (
     ClusteringMethod,
@@ -81,7 +82,7 @@ def live_keys(scene: Scene) -> tuple[LiveKey, ...]:
     """Returns the values of a scene that `write_live_values` writes into a context.
 
     Of contact those that no material overrides everywhere, and the cluster size where
-    there are clusters.
+    there are clusters; none under `contact.law: constraint`.
     """
     found = [
         _make_key(scene, "coupling.stiffness_N_per_m", "Stiffness", "N/m", 50.0, 5e3),
@@ -103,6 +104,8 @@ def live_keys(scene: Scene) -> tuple[LiveKey, ...]:
             0.04,
         ),
     ]
+    if is_constraint(scene.contact):
+        return tuple(found)
     materials = [item.material for item in scene.environment]
     if any(material.stiffness_N_per_m is None for material in materials):
         key = "contact.stiffness_N_per_m"
@@ -205,6 +208,10 @@ def put_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
     """
     contact, loop = scene.contact, haptic.loop
     gains = make_coupling_gains(scene.coupling, loop.device)
+    coupling = loop.virtual_coupling
+    if loop.penalty is None:
+        coupling.set_gains(coupling.GetMyMutableContextFromRoot(root), gains)
+        return
     rule = ClusteringRule(
         cast(ClusteringMethod, contact.clustering),
         contact.tolerance_m,
@@ -213,8 +220,8 @@ def put_live_values(haptic: HapticDiagram, root: Context, scene: Scene) -> None:
     contact_gains = find_contact_gains(
         contact, [item.material for item in scene.environment]
     )
-    coupling, force = loop.virtual_coupling, loop.penalty_force
-    clustering, query = loop.contact_clustering, loop.contact_query
+    force = loop.penalty.penalty_force
+    clustering, query = loop.penalty.contact_clustering, loop.penalty.contact_query
     coupling.set_gains(coupling.GetMyMutableContextFromRoot(root), gains)
     force.set_gains(force.GetMyMutableContextFromRoot(root), contact_gains)
     clustering.set_rule(clustering.GetMyMutableContextFromRoot(root), rule)

@@ -35,6 +35,7 @@ _WHY = {
     "simulated_arm": "device.preset, hand: the arm that is held",
     "virtual_coupling": "always: couples the tool to the handle",
     "haptic_tool": "always: moves the tool",
+    "constraint_tool_step": "contact.law: constraint: finds, couples, moves, answers",
     "contact_query": "always: finds the contacts",
     "pose_sampler": "contact.query_rate_hz: says where contacts are looked for",
     "contact_extrapolator": "contact.query_rate_hz: moves contacts on in between",

@@ -19,6 +19,7 @@ from pydrake.systems.framework import Context, EventStatus
 from drake_haptics.common.real_time import RealTimePacer, realtime_priority
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.builder import HapticDiagram
+from drake_haptics.scene.contact_law import question_overlap
 from drake_haptics.scene.validation import SceneWarning, question_depth
 from drake_haptics.simulation.energy import EnergyLedger
 from drake_haptics.simulation.statistics import RunStatistics
@@ -93,8 +94,8 @@ def run(
         What was measured.
 
     Warns:
-        SceneWarning: At the end, a contact was deeper than ten tolerances, and none
-            was in the runs before.
+        SceneWarning: At the end, a contact was deeper than ten tolerances, or under
+            `contact.law: constraint` deep at all, and none was in the runs before.
 
     Raises:
         ValueError: `duration_s` is negative, `energy` is asked for, but the device is
@@ -147,14 +148,22 @@ def run(
         raise RunError(f"stopped at {time_s:.4f} s: {error}", statistics) from error
     finally:
         gc.unfreeze()
-        clustering = haptic.loop.contact_clustering
-        rule = clustering.get_rule(
-            clustering.GetMyContextFromRoot(simulator.get_context())
-        )
-        question = question_depth(statistics.max_penetration_m, rule.tolerance_m)
-        if question and not question_depth(before_m, rule.tolerance_m):
+        ask = _make_depth_question(haptic, simulator.get_context())
+        question = ask(statistics.max_penetration_m)
+        if question and not ask(before_m):
             warnings.warn(question, SceneWarning, stacklevel=2)
     return statistics
+
+
+def _make_depth_question(
+    haptic: HapticDiagram, root: Context
+) -> Callable[[float], str]:
+    """Returns what asks about a depth (m) that the law of contact should not let be."""
+    penalty = haptic.loop.penalty
+    if penalty is None:
+        return question_overlap
+    tolerance_m = penalty.read_tolerance(root)
+    return lambda depth_m: question_depth(depth_m, tolerance_m)
 
 
 def _find_end(start_s: float, duration_s: float, haptic: HapticDiagram) -> float:
@@ -203,7 +212,6 @@ def _make_measure(
     tool_context = loop.haptic_tool.GetMyContextFromRoot(root)
     hold = loop.device.GetSubsystemByName("rendered_force_hold")
     hold_context = hold.GetMyContextFromRoot(root)
-    clustering_context = loop.contact_clustering.GetMyContextFromRoot(root)
     contacts_port = loop.found_contacts
     contacts_context = contacts_port.get_system().GetMyContextFromRoot(root)
     shed_context = (
@@ -211,7 +219,8 @@ def _make_measure(
         if loop.load_shedding is None
         else loop.load_shedding.GetMyContextFromRoot(root)
     )
-    clusters_port = loop.contact_clustering.GetOutputPort("clusters")
+    clusters_port = loop.clusters
+    clusters_context = clusters_port.get_system().GetMyContextFromRoot(root)
 
     def measure(context: Context, tick_s: float) -> None:
         shown = hold_context.get_discrete_state_vector().value().tolist()
@@ -231,7 +240,7 @@ def _make_measure(
             tick_s,
             contacts.query_seconds,
             len(contacts),
-            len(clusters_port.Eval(clustering_context)),
+            len(clusters_port.Eval(clusters_context)),
             contacts.least_distance,
             shown,
         )

@@ -65,12 +65,18 @@ def transfer_context(
         control = new.loop.effects.passivity
         control.begin(control.GetMyMutableContextFromRoot(context))
     if is_reached:
-        query, known = new.loop.contact_query, old.loop.contact_query
-        query.learn(
-            query.GetMyMutableContextFromRoot(context),
-            known,
-            known.GetMyContextFromRoot(old_context),
+        # The tool's body is another system under another law of contact.
+        state = old.loop.haptic_tool.GetMyContextFromRoot(old_context)
+        new.loop.haptic_tool.GetMyMutableContextFromRoot(context).SetDiscreteState(
+            state.get_discrete_state_vector().value()
         )
+        if new.loop.penalty is not None and old.loop.penalty is not None:
+            query, known = new.loop.contact_query, old.loop.contact_query
+            query.learn(
+                query.GetMyMutableContextFromRoot(context),
+                known,
+                known.GetMyContextFromRoot(old_context),
+            )
     return context
 
 

@@ -16,7 +16,13 @@ from system_block import Port, find_blocks, parse_block
 from system_pages import find_systems, list_system_modules
 
 import drake_haptics.systems
-from drake_haptics import BuildHapticDiagram, TickRecorder, load_scene, make_log_header
+from drake_haptics import (
+    BuildHapticDiagram,
+    TickRecorder,
+    find_scene,
+    load_scene,
+    make_log_header,
+)
 from drake_haptics.scene.schema import (
     BrakingParameters,
     CouplingParameters,
@@ -69,6 +75,9 @@ def systems(tmp_path_factory):
         *list_systems(held.diagram),
         *list_systems(rendering),
         with_device,
+        *list_systems(
+            BuildHapticDiagram(load_scene(find_scene("peg_in_hole"))).diagram
+        ),
         HandleModel(["contact"]),
         ReplayedHandle(np.eye(1, 7), np.zeros((1, 6)), PERIOD_S),
         HapticStatusReceiver(),

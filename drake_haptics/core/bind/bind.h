@@ -31,6 +31,7 @@ void BindConvexPair(nanobind::module_& m);
 void BindTracker(nanobind::module_& m);
 void BindClustering(nanobind::module_& m);
 void BindPenaltyForce(nanobind::module_& m);
+void BindConstraintStep(nanobind::module_& m);
 void BindTool(nanobind::module_& m);
 void BindJacobian(nanobind::module_& m);
 void BindAutoDiffContact(nanobind::module_& m);

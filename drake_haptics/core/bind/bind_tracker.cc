@@ -12,6 +12,7 @@
 #include "bind/bind_depth.h"
 #include "bind/bind_pose.h"
 #include "bind/bind_real_array.h"
+#include "bind/bind_shapes.h"
 #include "bind/bind_trajectory.h"
 #include "bind/bind_turn.h"
 #include "tracker/contact_tracker.h"
@@ -30,9 +31,6 @@ namespace nb = nanobind;
   "`BOUNDED`, and the depth may be too large, never too small.\n\n"
 
 namespace drake_haptics {
-namespace {
-
-using DecompositionPtr = std::shared_ptr<const Decomposition>;
 
 // The public Decomposition holds the core's one as its attribute `core`.
 DecompositionPtr ToDecomposition(nb::handle value, const std::string& name) {
@@ -60,6 +58,8 @@ std::vector<DecompositionPtr> ToDecompositions(nb::handle values) {
   }
   return decompositions;
 }
+
+namespace {
 
 DepthSearch ToDepthSearch(nb::handle depth, nb::handle max_walk_steps) {
   const bool is_global = IsGlobalDepth(depth);

@@ -50,6 +50,7 @@ from drake_haptics.evaluation.accuracy.setting import Setting
 from drake_haptics.evaluation.accuracy.truth import Truth, find_truth, measure_open_loop
 from drake_haptics.evaluation.measuring.timing import TickTimes, describe_machine
 from drake_haptics.evaluation.measuring.valgrind import require_valgrind
+from drake_haptics.scene.contact_law import require_penalty
 from drake_haptics.scene.schema import Scene
 
 # Under valgrind a tick takes fifty times as long; no more are needed, as counts do not
@@ -288,11 +289,12 @@ def run_accuracy_study(
 
     Raises:
         HapticsError: Instructions are asked for, but valgrind is not installed.
-        SceneError: The scene itself cannot be built.
+        SceneError: The scene itself cannot be built, or is not by the penalty law.
         drake_haptics.simulation.run.RunError: It diverges.
         KeyboardInterrupt: At Ctrl-C; what is done is in the store.
     """
     report = progress or (lambda what, share: None)
+    require_penalty(scene.contact, "errors and knobs are")
     if count_instructions:
         require_valgrind()
     measurement = _prepare(scene, report, quick, stability and not quick)

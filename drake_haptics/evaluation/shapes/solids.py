@@ -1,4 +1,4 @@
-"""Makes solids: block, cup, peg, pen, sphere, spoon and torus."""
+"""Makes solids: block, cup, peg, pen, socket, sphere, spoon and torus."""
 
 from itertools import combinations, pairwise
 
@@ -12,6 +12,10 @@ from drake_haptics.evaluation.shapes.surface import (
     revolve,
 )
 
+_PEG_RADIUS_M = 0.012
+_PEG_SIDES = 24
+SOCKET_PLAY_M = 1e-4
+"""Between the peg and the wall of the socket where they are coaxial, at least, m."""
 _CUP_SECTORS = 16
 # Outer wall, (radius, height) in m from the table to the rim. Rows 1-3 and 5-7 bound
 # the two openings where the handle leaves.
@@ -160,12 +164,32 @@ def make_peg() -> Surface:
     profile = [
         (0.0, 0.0),
         (0.009, 0.0),
-        (0.012, 0.004),
-        (0.012, 0.117),
+        (_PEG_RADIUS_M, 0.004),
+        (_PEG_RADIUS_M, 0.117),
         (0.010, 0.120),
         (0.0, 0.120),
     ]
-    return revolve(profile, 24)
+    return revolve(profile, _PEG_SIDES)
+
+
+def make_socket() -> Surface:
+    """Returns a round block that stands at the origin, with a blind hole for the peg.
+
+    64 mm in diameter, 35 mm high, 24-sided. The hole is 30 mm deep, with a chamfer of
+    1.5 mm at its mouth. Its flats are `SOCKET_PLAY_M` outside of the circle through the
+    edges of the peg, so that there is as much play however the peg is turned.
+    """
+    wall = (_PEG_RADIUS_M + SOCKET_PLAY_M) / np.cos(np.pi / _PEG_SIDES)
+    profile = [
+        (0.0, 0.0),
+        (0.032, 0.0),
+        (0.032, 0.035),
+        (wall + 0.0015, 0.035),
+        (wall, 0.0335),
+        (wall, 0.005),
+        (0.0, 0.005),
+    ]
+    return revolve(profile, _PEG_SIDES)
 
 
 def make_pen() -> Surface:

@@ -18,7 +18,11 @@ from drake_haptics.scene.scene_file import load_scene
 from drake_haptics.scene.schema import GravityParameters, Scene
 from drake_haptics.scene.validation import check_values
 
-SCENES = list(list_scenes())
+SCENES = [
+    name
+    for name, path in list_scenes().items()
+    if load_scene(path).contact.law == "penalty"
+]
 # A key, or a part with all that is in it: why no accuracy is bought or sold with it.
 NOT_KNOBS = {
     "description": "is for people",
@@ -33,6 +37,8 @@ NOT_KNOBS = {
     "environment.center": "is where its frame is",
     "environment.pose": "is where it stands",
     "environment.material": "is what it is made of",
+    "contact.law": "is another model; the study is of the penalty law alone",
+    "contact.skin_m": "is of the constraint law",
     "contact.stiffness_N_per_m": "is how hard things are; every value takes as long",
     "contact.damping_Ns_per_m": "is how things bounce; every value takes as long",
     "coupling": "is how firmly the handle holds the tool; every value takes as long",

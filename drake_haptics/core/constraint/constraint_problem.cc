@@ -1,0 +1,103 @@
+#include "constraint/constraint_problem.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace drake_haptics {
+namespace {
+
+// The minimum is where Newton's step from it is none: a motion that changes by
+// less than this share, or by a millionth of an atom, is that.
+constexpr double kRelativeStep = 1e-12;
+constexpr double kStep = 1e-16;  // m, and rad
+
+// What a spring adds to the Hessian at a shortfall x: nothing where it rests or
+// is at its limit.
+double Slope(const OneSidedSpring& spring, double x) {
+  return x > 0 && spring.k * x < spring.limit ? spring.k : 0.0;
+}
+
+// Where along start + s · step the function is least, for s in [0, 1]: the
+// slope grows along the line, bent at the kinks. A spring bends it where it
+// begins to push and where it comes to its limit.
+double LineMinimum(const ConstraintProblem& problem, const Vec6& start,
+                   const Vec6& step, const Vec6& gradient,
+                   ConstraintWorkspace* workspace) {
+  double slope = gradient.dot(step);
+  double bend = step.dot(problem.H * step);
+  workspace->kinks.clear();
+  for (std::size_t i = 0; i < problem.springs.size(); ++i) {
+    const OneSidedSpring& spring = problem.springs[i];
+    const double rise = spring.a.dot(step);
+    if (rise == 0) continue;
+    const double x = spring.b - spring.a.dot(start);
+    const double full = spring.limit / spring.k;
+    const double change = spring.k * rise * rise;
+    // x falls along the line where the step rises along a.
+    const double first = rise > 0 ? full : 0.0;
+    const double last = rise > 0 ? 0.0 : full;
+    const double begin = (x - first) / rise, end = (x - last) / rise;
+    if (begin <= 0 && end > 0) bend += change;
+    if (begin > 0 && begin < 1) workspace->kinks.push_back({begin, change});
+    if (end > 0 && end < 1) workspace->kinks.push_back({end, -change});
+  }
+  std::sort(workspace->kinks.begin(), workspace->kinks.end(),
+            [](const auto& p, const auto& q) { return p.place < q.place; });
+  double place = 0;
+  for (const auto& kink : workspace->kinks) {
+    const double next = slope + bend * (kink.place - place);
+    if (next >= 0) break;
+    slope = next;
+    place = kink.place;
+    bend += kink.change;
+  }
+  return std::min(1.0, place - slope / bend);
+}
+
+}  // namespace
+
+Vec6 ConstraintProblem::Gradient(const Vec6& motion) const {
+  Vec6 gradient = H * motion - r;
+  for (const OneSidedSpring& spring : springs) {
+    const double force = spring.Force(motion);
+    if (force > 0) gradient -= force * spring.a;
+  }
+  return gradient;
+}
+
+ConstraintSolution SolveConstraintProblem(const ConstraintProblem& problem,
+                                          const Vec6& start,
+                                          ConstraintWorkspace* workspace,
+                                          int max_iterations) {
+  ConstraintSolution solution;
+  solution.motion = start;
+  for (;;) {
+    Vec6 gradient = problem.H * solution.motion - problem.r;
+    solution.hessian = problem.H;
+    for (const OneSidedSpring& spring : problem.springs) {
+      const double x = spring.b - spring.a.dot(solution.motion);
+      if (!(x > 0)) continue;
+      gradient -= std::min(spring.k * x, spring.limit) * spring.a;
+      const double slope = Slope(spring, x);
+      if (slope > 0) {
+        solution.hessian.noalias() += slope * spring.a * spring.a.transpose();
+      }
+    }
+    const Vec6 step = -solution.hessian.ldlt().solve(gradient);
+    const double length = step.cwiseAbs().maxCoeff();
+    if (!(length >
+          kStep + kRelativeStep * solution.motion.cwiseAbs().maxCoeff())) {
+      return solution;
+    }
+    if (solution.num_iterations == max_iterations) {
+      solution.is_bounded = true;
+      return solution;
+    }
+    ++solution.num_iterations;
+    solution.motion +=
+        LineMinimum(problem, solution.motion, step, gradient, workspace) * step;
+  }
+}
+
+}  // namespace drake_haptics

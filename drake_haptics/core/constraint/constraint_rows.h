@@ -1,0 +1,127 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/deadline_tree.h"
+#include "base/motion.h"
+#include "base/types.h"
+#include "constraint/flush_corners.h"
+#include "constraint/near_pieces.h"
+#include "mesh/decomposition.h"
+
+namespace drake_haptics {
+
+/// One linear constraint on the tool's motion: the distance of two points along
+/// a normal, distance + aᵀ ξ, where the object rests.
+struct ConstraintRow {
+  Vec6 a = Vec6::Zero();   ///< [r × n; n] about To, in W
+  double distance = 0;     ///< m; negative where the pieces overlap
+  Vec3 n = Vec3::UnitX();  ///< in W, into the tool
+  Vec3 p_WCa = Vec3::Zero(), p_WCb = Vec3::Zero();  ///< m
+  int plane = 0;                                    ///< which one it is of
+};
+
+/// Finds the rows of a tool among objects: for each pair of convex pieces
+/// within reach the plane between them, and a row for each corner where they
+/// are flush. There are no rules which of them count: a row that says what
+/// others say changes nothing.
+///
+/// (P1) For convex bodies that a plane with normal n parts by h(n), the
+/// distance after a translation t is at least h(n) + n·t, whatever the size of
+/// t. A row thus proves for its pair what it demands, and all pairs without a
+/// row are farther away than the reach. Copies are independent.
+class ConstraintRows {
+ public:
+  /// Objects that share a decomposition share its tree.
+  /// @param skin of each object, m.
+  /// @throws std::invalid_argument if a decomposition is missing.
+  ConstraintRows(std::shared_ptr<const Decomposition> tool,
+                 std::vector<std::shared_ptr<const Decomposition>> objects,
+                 std::vector<double> skin);
+
+  int num_objects() const { return static_cast<int>(objects_.size()); }
+  const Pose& X_WO(int i) const { return objects_[i].X_WO; }
+
+  /// Poses object i.
+  /// @param sweep bound on the motion of its points in the tick, m: it is
+  ///     looked for so much farther.
+  void SetObjectPose(int i, const Pose& X_WO, double sweep);
+
+  /// Largest distance of an object's points from a point given in its frame, m.
+  double ReachOf(int i, const Vec3& p_O) const;
+
+  /// Bound on the motion of the tool's points under ξ = [θ; t], m.
+  double MotionOf(const Pose& X_WT, const Vec6& motion) const;
+
+  /// Finds all planes of pairs nearer than the object's skin plus `reach` (m).
+  void Query(const Pose& X_WT, double reach);
+
+  const std::vector<SeparatingPlane>& planes() const { return planes_; }
+  const std::vector<ConstraintRow>& rows() const { return rows_; }
+
+  /// Smallest distance of the pairs within reach, m; infinite if none is.
+  double least_distance() const;
+
+  /// How far the tool may move before a pair without a plane comes nearer than
+  /// its skin, m; at least the reach.
+  double FreeMotion() const;
+
+  /// Turns a pair's plane, as far as it still parts the pieces here by
+  /// `least` (m), toward the one that parts them best where the tool will be.
+  /// A fixed plane forbids more than the distance does: beside the next piece
+  /// of a flat face it is slanted, and makes a fast tool hop. One that parts
+  /// the pieces both now and then forbids nothing of the way between.
+  /// @param X_WT where the tool will be.
+  /// @param X_WO where the object will be.
+  /// @returns whether the plane changed.
+  bool TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO, double least);
+
+  /// The distance of a plane's pieces where tool and object will be, m; zero
+  /// where they overlap.
+  double DistanceThen(int plane, const Pose& X_WT, const Pose& X_WO) const;
+
+  /// Writes the rows of all planes again.
+  void UpdateRows();
+
+  /// Takes back all that was turned since the query, and writes the rows again.
+  void RestorePlanes();
+
+  /// Forgets everything learnt from earlier ticks.
+  void Reset();
+
+ private:
+  struct Object {
+    NearPieces near;
+    Pose X_WO;
+    Pose last_X_WO;  // at the last query
+    double sweep = 0;
+    bool has_moved = false;
+    // What its own odometer is ahead of the tool's, by its own motion, m.
+    double ahead = 0;
+  };
+
+  void QueryObject(int i, const Pose& X_WT, double tool_step);
+  void AppendRows(int plane);
+  PosedPair PosedThen(int plane, const Pose& X_WT, const Pose& X_WO) const;
+  double reach_of(int i) const { return skin_[i] + objects_[i].sweep + reach_; }
+
+  TreedShape tool_;
+  std::vector<Object> objects_;
+  std::vector<double> skin_;
+  Vec3 middle_;    // of the tool, in its frame, m
+  double radius_;  // of the tool about its middle, m
+  Pose X_WT_;      // at the last query
+  double reach_ = 0;
+  bool is_first_ = true;
+  double odometer_ = 0;        // of the tool in the world, m
+  DeadlineTree deadlines_;     // of the objects, by the tool's odometer
+  std::vector<double> marks_;  // the same deadlines, by object
+  std::vector<int> due_;
+  PairWorkspace workspace_;
+  std::vector<SeparatingPlane> planes_, found_;  // as they are, as queried
+  std::vector<FacingPoints> corners_;
+  std::vector<ConstraintRow> rows_;
+};
+
+}  // namespace drake_haptics

@@ -1,0 +1,321 @@
+#include "constraint/constraint_step.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "base/positive_semidefinite.h"
+#include "base/require.h"
+#include "base/rotation.h"
+
+namespace drake_haptics {
+namespace {
+
+// Stiffness of a row that holds the skin, N/m: hard, for a hand's force takes a
+// hundred-millionth of a meter off it.
+constexpr double kHard = 1e9;
+// Of one that leads back into the skin, N/m, and the speed at which, m/s. Its
+// force is limited to what it has at that speed in one tick: two walls that
+// leave less room than two skins share it.
+constexpr double kBack = 1e7;
+constexpr double kBackSpeed = 0.02;
+// What all pieces in overlap push with together, N.
+constexpr double kMostOutward = 3;
+// The motion that rows look ahead, m: so much at least, so much at most, and in
+// between twice the motion without contact and a little.
+constexpr double kLeastReach = 1e-4, kMostReach = 1e-3, kMoreReach = 2e-5;
+constexpr int kMaxSubsteps = 6;
+// A motion of so much of the skin in a tick turns planes; and what of the skin
+// rounding may cost that, and then the tool's own turning.
+constexpr double kTurningMotion = 0.05;
+constexpr double kRounding = 1e-6, kTurningLoss = 1e-3;
+constexpr int kMaxTurns = 3;
+
+void RequireFinite(const ToolState& state, const PoseVector& q_WH,
+                   const Vec6& V_WH, const Vec6& F_applied) {
+  PoseFromVector(state.q_WT, "q_WT");
+  PoseFromVector(q_WH, "q_WH");
+  if (!state.V_WT.allFinite() || !V_WH.allFinite() || !F_applied.allFinite()) {
+    throw std::invalid_argument(
+        "velocities and the applied wrench must be finite");
+  }
+}
+
+// The pose after a motion ξ of the origin, [θ; t].
+Pose Moved(const Pose& X, const Vec6& motion) {
+  return {RotationExp<double>(motion.head<3>()).toRotationMatrix() * X.R,
+          X.p + motion.tail<3>()};
+}
+
+PoseVector Moved(const PoseVector& q_WT, const Vec6& motion) {
+  const Vec3 turn = motion.head<3>();
+  const Eigen::Quaterniond R =
+      (RotationExp<double>(turn) * QuaternionOf(q_WT)).normalized();
+  PoseVector moved;
+  moved << R.w(), R.vec(), q_WT.tail<3>() + motion.tail<3>();
+  return moved;
+}
+
+Pose PoseOfVector(const PoseVector& q) {
+  return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
+}
+
+// A stiffness that is the slope of a potential. That of a spring and damper
+// that yield along different directions is not.
+Mat6 Symmetric(const Mat6& K) {
+  if (K.isApprox(K.transpose(), 1e-12)) return K;
+  bool changed = false;
+  return ProjectToPositiveSemidefinite(K, &changed);
+}
+
+}  // namespace
+
+ConstraintStepper::ConstraintStepper(
+    std::shared_ptr<const Decomposition> tool,
+    std::vector<std::shared_ptr<const Decomposition>> objects,
+    Settings settings)
+    : rows_(std::move(tool), objects, settings.skin),
+      settings_(std::move(settings)),
+      V_WO_(objects.size(), Vec6::Zero()) {
+  if (settings_.skin.size() != objects.size()) {
+    throw std::invalid_argument("there must be a skin for each object");
+  }
+  for (const double skin : settings_.skin) RequirePositive(skin, "skin_m");
+  RequirePositive(settings_.period, "period_s");
+  RequirePhysical(settings_.inertia);
+}
+
+void ConstraintStepper::SetObjectPose(int i, const Pose& X_WO,
+                                      const Vec6& V_WO) {
+  if (i < 0 || i >= num_objects()) {
+    throw std::out_of_range("there is no object " + std::to_string(i));
+  }
+  if (!X_WO.R.allFinite() || !X_WO.p.allFinite() || !V_WO.allFinite()) {
+    throw std::invalid_argument(
+        "the pose or velocity of an object holds a value that is not finite");
+  }
+  const double sweep = settings_.period *
+                       (V_WO.tail<3>().norm() +
+                        V_WO.head<3>().norm() * rows_.ReachOf(i, Vec3::Zero()));
+  rows_.SetObjectPose(i, X_WO, sweep);
+  V_WO_[i] = V_WO;
+}
+
+// How an object's point moves in the tick, m.
+Vec3 ConstraintStepper::ObjectMotionAt(int i, const Vec3& p_WC) const {
+  const Vec6& V = V_WO_[i];
+  return settings_.period *
+         (V.tail<3>() + V.head<3>().cross(p_WC - rows_.X_WO(i).p));
+}
+
+int ConstraintStepper::AddSpring(const Vec6& a, double b, double k,
+                                 double limit) {
+  problem_.springs.push_back({a, b, k, limit});
+  return static_cast<int>(problem_.springs.size()) - 1;
+}
+
+// Apart, a row does not come nearer than its skin, or than it is: the tick's
+// beginning meets that wherever the object does not come closer, so that a hard
+// row never pushes by itself. What is missing of the skin, and what an object
+// comes closer by, a second spring makes up for. In overlap there is that one
+// alone, and weak.
+void ConstraintStepper::WriteSprings() {
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  const double back = kBackSpeed * settings_.period;
+  const auto num_overlaps = static_cast<double>(std::count_if(
+      rows_.planes().begin(), rows_.planes().end(),
+      [](const auto& plane) { return !(plane.contact.distance > 0); }));
+  problem_.springs.clear();
+  held_.clear();
+  for (const ConstraintRow& row : rows_.rows()) {
+    const SeparatingPlane& plane = rows_.planes()[row.plane];
+    const double skin = settings_.skin[plane.object];
+    const double closer = row.n.dot(ObjectMotionAt(plane.object, row.p_WCb));
+    // Of a plane that was turned the pieces are farther than it tells.
+    const double missing = skin - std::max(row.distance, plane.nearest);
+    const double wanted = std::min(missing, back) + closer;
+    HeldRow held;
+    if (row.distance > 0) {
+      const double kept =
+          std::min(skin - row.distance, 0.0) + std::min(closer, 0.0);
+      held.spring = AddSpring(row.a, kept, kHard, kNoLimit);
+      if (wanted > kept) {
+        held.back = AddSpring(row.a, wanted, kBack, kBack * back);
+      }
+    } else {
+      held.back = AddSpring(row.a, wanted, kBack, kMostOutward / num_overlaps);
+    }
+    held_.push_back(held);
+  }
+}
+
+double ConstraintStepper::HeldRow::Force(const ConstraintProblem& problem,
+                                         const Vec6& motion) const {
+  double force = 0;
+  if (spring >= 0) force += problem.springs[spring].Force(motion);
+  if (back >= 0) force += problem.springs[back].Force(motion);
+  return force;
+}
+
+Pose ConstraintStepper::NextPoseOf(int object) const {
+  return Moved(rows_.X_WO(object), settings_.period * V_WO_[object]);
+}
+
+// Whether pairs with planes that were turned keep their skin at the next pose,
+// or what is left of it.
+bool ConstraintStepper::AreTurnedPiecesApart(const Pose& X_next) const {
+  for (std::size_t k = 0; k < is_turned_.size(); ++k) {
+    if (is_turned_[k] == 0) continue;
+    const SeparatingPlane& plane = rows_.planes()[k];
+    const double skin = settings_.skin[plane.object];
+    const double distance = rows_.DistanceThen(static_cast<int>(k), X_next,
+                                               NextPoseOf(plane.object));
+    if (distance < std::min(plane.least, skin) - kTurningLoss * skin) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Turns the planes of the pairs that push: at first by where the tool comes if
+// it coasts, for what a plane wrongly forbids bends the motion that was found
+// with it; then by that. Returns whether any was turned.
+bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
+                                   const Vec6& motion) {
+  const double distance = rows_.MotionOf(X_WT, motion);
+  pushes_.assign(rows_.planes().size(), 0);
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    if (held_[k].Force(problem_, motion) > 0) {
+      pushes_[rows_.rows()[k].plane] = 1;
+    }
+  }
+  const Pose X_coasted = Moved(X_WT, coasting), X_next = Moved(X_WT, motion);
+  bool is_any = false;
+  for (std::size_t k = 0; k < pushes_.size(); ++k) {
+    const SeparatingPlane& plane = rows_.planes()[k];
+    const double skin = settings_.skin[plane.object];
+    if (!pushes_[k] || !(plane.contact.distance > 0) ||
+        !(distance > kTurningMotion * skin)) {
+      continue;
+    }
+    // No nearer than what is nearest: nothing of the skin is given up.
+    const double least = std::min(plane.least, skin) - kRounding * skin;
+    is_any |= rows_.TurnPlane(static_cast<int>(k),
+                              is_turned_[k] != 0 ? X_next : X_coasted,
+                              NextPoseOf(plane.object), least);
+    is_turned_[k] = 1;
+  }
+  return is_any;
+}
+
+ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
+                                                const Vec6& coasting,
+                                                const Vec6& start,
+                                                ConstraintStepResult* result) {
+  is_turned_.assign(rows_.planes().size(), 0);
+  WriteSprings();
+  const ConstraintSolution first =
+      SolveConstraintProblem(problem_, start, &workspace_);
+  result->num_iterations += first.num_iterations;
+  ConstraintSolution solution = first;
+  for (int turns = 0; turns < kMaxTurns; ++turns) {
+    if (!TurnPlanes(X_WT, coasting, solution.motion)) break;
+    rows_.UpdateRows();
+    WriteSprings();
+    solution = SolveConstraintProblem(problem_, solution.motion, &workspace_);
+    result->num_iterations += solution.num_iterations;
+    // What a plane proves holds for translations.
+    if (!AreTurnedPiecesApart(Moved(X_WT, solution.motion))) {
+      rows_.RestorePlanes();
+      WriteSprings();
+      return first;
+    }
+  }
+  return solution;
+}
+
+void ConstraintStepper::Step(const ToolState& state, const PoseVector& q_WH,
+                             const Vec6& V_WH, const Vec6& F_applied,
+                             ConstraintStepResult* result) {
+  RequireFinite(state, q_WH, V_WH, F_applied);
+  const double h = settings_.period;
+  const CouplingWrench coupling = ComputeCoupling(
+      q_WH, V_WH, settings_.q_HT, state.q_WT, state.V_WT, settings_.gains);
+  result->F_Ho_W_commanded = coupling.F_Ho_W_commanded;
+  const auto [M, b] = ComputeMotionTerms(settings_.inertia, state);
+  const Mat6& B = coupling.tool.B;
+  problem_.H = M / (h * h) + B / h + Symmetric(coupling.tool.K);
+  problem_.r =
+      M * state.V_WT / h + B * state.V_WT + coupling.tool.F + F_applied - b;
+  const Vec6 force = problem_.r;
+  Vec6 whole = Vec6::Zero();
+  PoseVector q = state.q_WT;
+  result->num_iterations = 0;
+  result->is_bounded = false;
+  for (int substep = 1;; ++substep) {
+    const Pose X_WT = PoseOfVector(q);
+    const Vec6 free = problem_.H.ldlt().solve(problem_.r);
+    rows_.Query(X_WT, std::clamp(2 * rows_.MotionOf(X_WT, free) + kMoreReach,
+                                 kLeastReach, kMostReach));
+    if (substep == 1) {
+      result->least_distance = rows_.least_distance();
+      result->is_apart = result->least_distance > 0;
+    }
+    const ConstraintSolution solution =
+        SolveHere(X_WT, h * state.V_WT - whole, free, result);
+    result->is_bounded |= solution.is_bounded;
+    Vec6 motion = solution.motion;
+    const double distance = rows_.MotionOf(X_WT, motion);
+    const double most = rows_.FreeMotion();
+    const bool is_far = distance > most;
+    if (is_far) motion *= most / distance;
+    q = Moved(q, motion);
+    whole += motion;
+    if (!is_far || substep == kMaxSubsteps) {
+      result->is_bounded |= is_far;
+      result->hessian = solution.hessian;
+      result->num_rows = static_cast<int>(rows_.rows().size());
+      result->num_substeps = substep;
+      WriteContacts(X_WT, solution.motion, result);
+      break;
+    }
+    problem_.r = force - problem_.H * whole;
+  }
+  result->next.q_WT = q;
+  result->next.V_WT = whole / h;
+}
+
+void ConstraintStepper::WriteContacts(const Pose& X_WT, const Vec6& motion,
+                                      ConstraintStepResult* result) const {
+  result->contacts.contacts.clear();
+  result->force.clear();
+  result->F_Oo_W.assign(static_cast<std::size_t>(num_objects()), Vec6::Zero());
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    const double force = held_[k].Force(problem_, motion);
+    if (!(force > 0)) continue;
+    const ConstraintRow& row = rows_.rows()[k];
+    const SeparatingPlane& plane = rows_.planes()[row.plane];
+    Contact contact = InWorld(plane.contact, X_WT);
+    contact.distance = row.distance;
+    contact.nhat_BA_W = row.n;
+    contact.p_WCa = row.p_WCa;
+    contact.p_WCb = row.p_WCb;
+    contact.p_WC = (row.p_WCa + row.p_WCb) / 2;
+    contact.object = plane.object;
+    contact.piece_A = plane.pieces.a;
+    contact.piece_B = plane.pieces.b;
+    result->contacts.contacts.push_back(contact);
+    result->force.push_back(force);
+    const Vec3 f = -force * row.n;
+    Vec6& F_Oo_W = result->F_Oo_W[plane.object];
+    F_Oo_W.head<3>() += (row.p_WCb - rows_.X_WO(plane.object).p).cross(f);
+    F_Oo_W.tail<3>() += f;
+  }
+}
+
+void ConstraintStepper::Reset() { rows_.Reset(); }
+
+}  // namespace drake_haptics

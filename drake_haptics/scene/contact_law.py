@@ -1,0 +1,93 @@
+"""The two laws of contact: what each leaves out, and what is said of an overlap."""
+
+from __future__ import annotations
+
+from drake_haptics.common.errors import SceneError
+from drake_haptics.geometry.mesh.report import length
+from drake_haptics.scene.schema import ContactParameters, Effects
+from drake_haptics.scene.yaml_loading import make_hint
+
+_LAWS = ("penalty", "constraint")
+# Effects that act on the springs of the penalty law.
+_OF_PENALTY = ("shading", "friction", "braking")
+
+
+def is_constraint(contact: ContactParameters) -> bool:
+    """Returns whether contact is by constraints on the tool's step, not by springs."""
+    return contact.law == "constraint"
+
+
+def calc_first_touch(contact: ContactParameters) -> float:
+    """Returns the distance at which contact begins to push, m."""
+    return contact.skin_m if is_constraint(contact) else contact.tolerance_m
+
+
+def check_law(law: str) -> None:
+    """Checks the name of a law.
+
+    Raises:
+        SceneError: There is no such law.
+    """
+    if law not in _LAWS:
+        raise SceneError(f"contact.law is '{law}'; {make_hint(law, _LAWS)}")
+
+
+def check_constraint_law(
+    contact: ContactParameters, effects: Effects, *, sheds_load: bool
+) -> None:
+    """Refuses what does nothing under the constraint law.
+
+    Args:
+        contact: Of that law.
+        effects: As in a scene.
+        sheds_load: Whether ticks have a budget.
+
+    Raises:
+        SceneError: Something is asked for that this law does not have; it says what to
+            do.
+    """
+    asked = {f"effects.{name}": getattr(effects, name) for name in _OF_PENALTY}
+    asked["contact.query_rate_hz"] = contact.query_rate_hz
+    asked["device.tick_budget_us"] = sheds_load or None
+    idle = [key for key, value in asked.items() if value is not None]
+    if idle:
+        verb, what = ("does", "it") if len(idle) == 1 else ("do", "them")
+        raise SceneError(
+            f"{', '.join(idle)} {verb} nothing under contact.law: constraint: take"
+            f" {what} out of the scene, or take contact.law: penalty"
+        )
+
+
+def require_penalty(contact: ContactParameters, what: str) -> None:
+    """Refuses the constraint law where only the other one can be treated.
+
+    Args:
+        contact: Of a scene.
+        what: What is asked for, as the subject of a sentence.
+
+    Raises:
+        SceneError: Contact is by constraints.
+    """
+    if is_constraint(contact):
+        raise SceneError(
+            f"contact.law is '{contact.law}': {what} of the penalty law alone; take"
+            " contact.law: penalty"
+        )
+
+
+def question_overlap(depth_m: float) -> str:
+    """Asks about an overlap under the constraint law, which keeps surfaces apart.
+
+    Args:
+        depth_m: Depth of the deepest contact, m; not positive if none penetrates.
+
+    Returns:
+        A sentence if there is one; nothing if not.
+    """
+    if not depth_m > 0.0:
+        return ""
+    return (
+        f"a contact is {length(depth_m)} deep, and contact.law: constraint keeps apart"
+        " only what begins apart: the tool began in a shape, or something was driven"
+        " into it; the tool is led out slowly"
+    )

@@ -1,0 +1,437 @@
+"""The tool as a rigid body whose step keeps it a skin apart from all it meets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.common.eigen_geometry import Quaternion
+from pydrake.common.value import AbstractValue, Value
+from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    Diagram,
+    DiagramBuilder,
+    DiscreteValues,
+    LeafSystem,
+    ValueProducer,
+)
+
+from drake_haptics._core import (
+    ConstraintStepper,
+    ConstraintStepResult,
+    ContactSet,
+    ConvexPieces,
+    CouplingGains,
+    RigidToolDynamics,
+    coupling_wrench,
+)
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.contact.contact_query import ContactObject
+from drake_haptics.systems.framework.differentiable_system import export_parts
+
+# What is known before the first step. (A Value of Drake 1.58 cannot hold None.)
+_NOTHING = "nothing"
+
+
+@dataclass(frozen=True, eq=False)
+class ConstraintWrench:
+    """What the contacts of a step push with. Immutable.
+
+    Attributes:
+        contacts: (n,) those that push.
+        lambda_N: (n,) force along the normal of each, N; not negative.
+        F_To_W: (6,) wrench on the tool at its origin in the world, [N·m; N].
+        F_objects_W: (m, 6) wrench on each object at its origin, the same.
+    """
+
+    contacts: ContactSet
+    lambda_N: np.ndarray
+    F_To_W: np.ndarray
+    F_objects_W: np.ndarray
+
+    @property
+    def f_cluster_W(self) -> np.ndarray:
+        """(n, 3) force of each contact on the tool, N: each is by itself."""
+        return self.lambda_N[:, None] * self.contacts.nhat_BA_W
+
+    def __deepcopy__(self, memo: object) -> ConstraintWrench:
+        """Returns itself, so that it crosses into copies of a Context."""
+        return self
+
+
+class ConstraintToolStep(Diagram):
+    """A free rigid body that is drawn to the handle and kept apart from objects.
+
+    It stands for `ContactQuery`, `ContactClustering`, `PenaltyForce`,
+    `VirtualCoupling` and `HapticTool` together, by the constraint law. Of each pair of
+    convex pieces that may come near in the tick there is a row: what the pair's
+    distance will be, to first order in the tool's motion, must not be less than the
+    skin. The motion is the one that minimizes the energy of inertia, coupling and
+    applied wrenches under all rows (core/constraint/constraint_step.h). A fast tick is
+    divided until no motion is longer than what the rows see, so that the tool passes
+    through nothing, however thin or soft. What begins in overlap is led out slowly.
+
+    .. pydrake_system::
+
+        name: ConstraintToolStep
+        input_ports:
+        - X_WH
+        - V_WH
+        - X_WO_<name of each object that moves>
+        - V_WO_<name of each object that moves>
+        - <name of each wrench>
+        output_ports:
+        - X_WT
+        - V_WT
+        - F_Ho_W_commanded
+        - contacts
+        - contact_wrench
+        - F_To_W
+        - F_O_W (with objects that move)
+        - coupling
+        - wrench_model
+
+    Poses are [qw qx qy qz x y z] in the world, m; `V_WH`, `V_WT` and `V_WO_<name>` are
+    spatial velocities [ω; v] of the frame's origin, rad/s and m/s. Each other input is
+    a wrench model (78) as `PenaltyForce` documents it, of which the wrench alone
+    counts, as for `ToolGravity`'s; one that is not connected counts as zero.
+
+    * `X_WT` (7) and `V_WT` (6) are the tool's, as of `HapticTool`.
+    * `F_Ho_W_commanded` (6) is the wrench [τ; f] on the handle at its origin in the
+      world, N·m and N, as of `VirtualCoupling`.
+    * `contacts` is a `drake_haptics.ContactSet` of the rows that push in the tick that
+      begins: a pair of pieces has several where it is flush.
+    * `contact_wrench` is their `ConstraintWrench`.
+    * `F_To_W` (6) is their wrench [τ; f] on the tool at its origin, mean of the tick.
+    * `F_O_W` (6 for each object that moves) are the wrenches on those objects.
+    * `wrench_model` (78) is [F; K; B] of the contacts: what they push with as the tool
+      moves by δ in the tick is F - K δ; B is zero. K is that of the rows that push.
+    * `coupling` (78) is that of `VirtualCoupling`.
+
+    The state is one discrete group (13), [X_WT; V_WT], updated every period from 0 s
+    on. What the search knows from the last tick is the memory of a Context, and never
+    changes an answer by more than round-off.
+
+    The gains of the coupling are an abstract parameter of the Context; see
+    `set_gains`. There are no derivatives.
+    """
+
+    def __init__(
+        self,
+        tool: ConvexPieces,
+        objects: Sequence[ContactObject],
+        skin_m: Sequence[float],
+        dynamics: RigidToolDynamics,
+        gains: CouplingGains,
+        X_HT: RigidTransform,
+        X_WT: RigidTransform,
+        period_s: float,
+        wrench_names: Sequence[str] = (),
+    ):
+        """Constructs the system.
+
+        Args:
+            tool: Convex pieces of the tool, in its frame.
+            objects: What it can meet.
+            skin_m: δ, the distance that it keeps from each object, m.
+            dynamics: Mass and inertia.
+            gains: Of the spring and the damper, in a Context that says no other.
+            X_HT: Pose of the tool in the handle at which the spring rests.
+            X_WT: Default pose; the tool starts at rest.
+            period_s: The tick, s.
+            wrench_names: A name for each input of another wrench.
+
+        Raises:
+            ValueError: The period or a skin is not positive, there is not one for each
+                object, there is no object, or a name is used twice.
+        """
+        super().__init__()
+        if not period_s > 0.0:
+            raise ValueError(f"period_s must be positive, is {period_s}")
+        if not objects:
+            raise ValueError("objects must name something that the tool can meet")
+        if len({item.name for item in objects}) < len(objects):
+            raise ValueError("two objects have the same name")
+        self._dynamics = dynamics
+        self._period_s = period_s
+        self._X_HT = X_HT
+        builder = DiagramBuilder()
+        self._step = builder.AddNamedSystem(
+            "step",
+            _ConstraintStep(
+                tool, objects, skin_m, dynamics, gains, X_HT, X_WT, period_s,
+                wrench_names,
+            ),
+        )  # fmt: skip
+        step = self._step
+        for port in map(step.get_input_port, range(step.num_input_ports())):
+            builder.ExportInput(port, port.get_name())
+        export_parts(builder, step.GetOutputPort("state"), {"X_WT": 7, "V_WT": 6})
+        for port in map(step.get_output_port, range(step.num_output_ports())):
+            if port.get_name() != "state":
+                builder.ExportOutput(port, port.get_name())
+        builder.BuildInto(self)
+
+    @property
+    def dynamics(self) -> RigidToolDynamics:
+        """Mass and inertia."""
+        return self._dynamics
+
+    @property
+    def period_s(self) -> float:
+        """The tick, s."""
+        return self._period_s
+
+    @property
+    def X_HT(self) -> RigidTransform:
+        """Pose of the tool in the handle at which the spring rests."""
+        return self._X_HT
+
+    def get_gains(self, context: Context) -> CouplingGains:
+        """Returns the gains of the spring and the damper.
+
+        Args:
+            context: Of this system.
+        """
+        own = self.GetSubsystemContext(self._step, context)
+        gains: CouplingGains = own.get_abstract_parameter(0).get_value()
+        return gains
+
+    def set_gains(self, context: Context, gains: CouplingGains) -> None:
+        """Changes the gains, from now on.
+
+        Args:
+            context: Of this system.
+            gains: Of the spring and the damper.
+
+        Raises:
+            TypeError: They are no `CouplingGains`.
+        """
+        if not isinstance(gains, CouplingGains):
+            raise TypeError(f"gains must be CouplingGains, is {type(gains).__name__}")
+        if gains != self.get_gains(context):
+            own = self.GetMutableSubsystemContext(self._step, context)
+            own.get_mutable_abstract_parameter(0).set_value(gains)
+
+
+class _ConstraintStep(LeafSystem):
+    """The state of a `ConstraintToolStep`, and all of its outputs from one step."""
+
+    no_derivatives = (
+        "advances the tool under constraints (contact.law: constraint), which has no"
+        " derivatives here: take contact.law: penalty for a linearization"
+    )
+
+    def __init__(
+        self,
+        tool: ConvexPieces,
+        objects: Sequence[ContactObject],
+        skin_m: Sequence[float],
+        dynamics: RigidToolDynamics,
+        gains: CouplingGains,
+        X_HT: RigidTransform,
+        X_WT: RigidTransform,
+        period_s: float,
+        wrench_names: Sequence[str],
+    ):
+        super().__init__()
+        self._q_HT = pose_to_vector(X_HT)
+        self._tool = tool
+        self._objects = tuple(objects)
+        self._skin_m = np.array(skin_m, dtype=float)
+        self._dynamics = dynamics
+        self._period_s = period_s
+        # Wrong arguments are refused here, and not at the first tick.
+        self._make_stepper(gains)
+        self._gains = self.DeclareAbstractParameter(Value[object](gains))
+        self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
+        self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
+        self._motions = {
+            i: (
+                self.DeclareVectorInputPort(f"X_WO_{item.name}", 7),
+                self.DeclareVectorInputPort(f"V_WO_{item.name}", 6),
+            )
+            for i, item in enumerate(objects)
+            if item.X_WO is None
+        }
+        self._wrenches = [
+            self.DeclareVectorInputPort(name, 78) for name in wrench_names
+        ]
+        state = self.DeclareDiscreteState(
+            np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
+        )
+        # The memory of a Context. It begins again where the gains change.
+        self._stepper = self.DeclareCacheEntry(
+            description="stepper",
+            value_producer=ValueProducer(
+                allocate=lambda: Value[object](_NOTHING), calc=self._prepare_stepper
+            ),
+            prerequisites_of_calc={self.pa_ticket()},
+        )
+        from_all = {self.all_input_ports_ticket(), self.xd_ticket(), self.pa_ticket()}
+        # Outputs and update of a tick share one answer of the core.
+        self._result = self.DeclareCacheEntry(
+            description="result",
+            value_producer=ValueProducer(
+                allocate=lambda: Value[object](_NOTHING), calc=self._calc_result
+            ),
+            prerequisites_of_calc=from_all,
+        )
+        from_result = {self._result.ticket()}
+        self.DeclareStateOutputPort("state", state)
+        self.DeclareVectorOutputPort(
+            "F_Ho_W_commanded", 6, self._calc_F_Ho_W_commanded, from_result
+        )
+        self.DeclareAbstractOutputPort(
+            "contacts", Value[object], self._calc_contacts, from_result
+        )
+        self._contact_wrench = self.DeclareAbstractOutputPort(
+            "contact_wrench", Value[object], self._calc_contact_wrench, from_result
+        )
+        self.DeclareVectorOutputPort("F_To_W", 6, self._calc_F_To_W, from_result)
+        if self._motions:
+            self.DeclareVectorOutputPort(
+                "F_O_W", 6 * len(self._motions), self._calc_F_O_W, from_result
+            )
+        coupling = self.DeclareVectorOutputPort(
+            "coupling",
+            78,
+            self._calc_coupling,
+            {
+                self._X_WH.ticket(),
+                self._V_WH.ticket(),
+                self.xd_ticket(),
+                self.pa_ticket(),
+            },
+        )
+        self._eval_coupling = coupling.Eval
+        self._M_T = _find_inertia(dynamics)
+        self.DeclareVectorOutputPort(
+            "wrench_model",
+            78,
+            self._calc_wrench_model,
+            from_all,
+        )
+        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+
+    def _make_stepper(self, gains: CouplingGains) -> ConstraintStepper:
+        stepper = ConstraintStepper(
+            self._tool,
+            [item.decomposition for item in self._objects],
+            self._skin_m,
+            self._dynamics,
+            gains,
+            self._q_HT,
+            self._period_s,
+        )
+        for i, item in enumerate(self._objects):
+            if item.X_WO is not None:
+                stepper.set_object_pose(i, pose_to_vector(item.X_WO), np.zeros(6))
+        return stepper
+
+    def _prepare_stepper(self, context: Context, value: AbstractValue) -> None:
+        value.set_value(
+            self._make_stepper(context.get_abstract_parameter(self._gains).get_value())
+        )
+
+    def _calc_result(self, context: Context, value: AbstractValue) -> None:
+        stepper: ConstraintStepper = self._stepper.Eval(context)
+        for i, (X_WO, V_WO) in self._motions.items():
+            stepper.set_object_pose(i, X_WO.Eval(context), V_WO.Eval(context))
+        state = context.get_discrete_state_vector().value()
+        F_To_W = np.zeros(6)
+        for port in self._wrenches:
+            if port.HasValue(context):
+                F_To_W += port.Eval(context)[:6]
+        value.set_value(
+            stepper.step(
+                state[:7],
+                state[7:],
+                self._X_WH.Eval(context),
+                self._V_WH.Eval(context),
+                F_To_W,
+            )
+        )
+
+    def _eval_result(self, context: Context) -> ConstraintStepResult:
+        return self._result.Eval(context)
+
+    def _update(self, context: Context, next_state: DiscreteValues) -> None:
+        result = self._eval_result(context)
+        next_state.set_value(np.concatenate([result.q_WT, result.V_WT]))
+
+    def _calc_F_Ho_W_commanded(self, context: Context, output: BasicVector) -> None:
+        output.set_value(self._eval_result(context).F_Ho_W_commanded)
+
+    def _calc_contacts(self, context: Context, output: AbstractValue) -> None:
+        output.set_value(self._eval_result(context).contacts)
+
+    def _calc_contact_wrench(self, context: Context, output: AbstractValue) -> None:
+        result = self._eval_result(context)
+        contacts, lambda_N = result.contacts, result.lambda_N
+        f_W = lambda_N[:, None] * contacts.nhat_BA_W
+        p_WTo = context.get_discrete_state_vector().value()[4:7]
+        tau_W = np.cross(contacts.p_WCa - p_WTo, f_W)
+        output.set_value(
+            ConstraintWrench(
+                contacts,
+                lambda_N,
+                np.concatenate([tau_W.sum(axis=0), f_W.sum(axis=0)]),
+                result.F_Oo_W,
+            )
+        )
+
+    def _calc_F_To_W(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._contact_wrench.Eval(context).F_To_W)
+
+    def _calc_F_O_W(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(
+            self._eval_result(context).F_Oo_W[list(self._motions)].ravel()
+        )
+
+    def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
+        result = self._eval_result(context)
+        state = context.get_discrete_state_vector().value()
+        # What is left of the step's slope is that of the rows.
+        K = result.hessian - self._calc_free_hessian(context, state)
+        K = 0.5 * (K + K.T) if len(result.contacts) else np.zeros((6, 6))
+        F = self._contact_wrench.Eval(context).F_To_W + K @ (
+            self._period_s * result.V_WT
+        )
+        output.SetFromVector(np.concatenate([F, K.ravel(), np.zeros(36)]))
+
+    def _calc_free_hessian(self, context: Context, state: np.ndarray) -> np.ndarray:
+        """Returns (6, 6) M/h² + B/h + K of the tool on its coupling."""
+        R_WT = RotationMatrix(Quaternion(state[:4])).matrix()
+        both = np.kron(np.eye(2), R_WT)
+        M = both @ self._M_T @ both.T
+        K, B = self._eval_coupling(context)[6:].reshape(2, 6, 6)
+        h = self._period_s
+        return M / h**2 + B / h + K
+
+    def _calc_coupling(self, context: Context, output: BasicVector) -> None:
+        state = context.get_discrete_state_vector().value()
+        wrenches = coupling_wrench(
+            self._X_WH.Eval(context),
+            self._V_WH.Eval(context),
+            self._q_HT,
+            state[:7],
+            state[7:],
+            context.get_abstract_parameter(self._gains).get_value(),
+        )
+        output.SetFromVector(wrenches[:78])
+
+
+def _find_inertia(dynamics: RigidToolDynamics) -> np.ndarray:
+    """Returns the spatial inertia (6, 6) of a tool about its origin, in its frame.
+
+    From rest, without stiffness and damping, a step of a second gives it the velocity
+    M⁻¹ F.
+    """
+    at_rest = np.array([1.0, *np.zeros(12)])
+    models = np.hstack([np.eye(6), np.zeros((6, 72))])
+    inverse = [dynamics.step(at_rest, model, 1.0)[7:] for model in models]
+    return np.linalg.inv(np.array(inverse).T)
