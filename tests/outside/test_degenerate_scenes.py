@@ -107,7 +107,7 @@ def test_shapes_do_not_overlap(law: str, scene: str) -> None:
 def test_contact_is_felt_and_lets_go(law: str, scene: str) -> None:
     shown = run_once(law, scene)
     felt_N = np.linalg.norm(shown.F_Ho_W[:, 3:], axis=1)
-    assert felt_N.max() > 3.0
+    assert felt_N.max() > 1.0
     assert not shown.F_To_W[-1].any()
     away_m = np.linalg.norm(shown.X_WT[-1, 4:] - shown.X_WH[-1, 4:])
     turned = np.linalg.norm(shown.X_WT[-1, 1:4] - shown.X_WH[-1, 1:4])
@@ -141,7 +141,7 @@ def test_a_slide_is_not_held_back(law: str, scene: str) -> None:
 def test_contact_makes_no_energy(law: str, scene: str) -> None:
     """It begins with none, so at no time may it have given any."""
     work_J = run_once(law, scene).work_J
-    assert work_J.min() < -1e-4
+    assert work_J.min() < -2e-5
     assert work_J.max() < LAWS[law].made_J.get(scene, ROUNDING_J)
 
 
