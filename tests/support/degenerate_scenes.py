@@ -241,9 +241,14 @@ class Run:
 
 def run_scene(case: DegenerateScene, contact: ContactParameters, folder: Path) -> Run:
     """Runs a scene through the package's own loop, the handle as a device."""
-    scene = make_scene(case, contact, folder)
-    scene.device.base = Pose()
     handle = Handle(case.way_W)
+    duration_s = len(handle.p_WH) * PERIOD_S
+    return record(make_scene(case, contact, folder), handle, duration_s)
+
+
+def record(scene: Scene, handle: DeviceBackend, duration_s: float) -> Run:
+    """Runs a scene whose handle is a device that knows where it is in the world."""
+    scene.device.base = Pose()
     haptic = BuildHapticDiagram(scene, device=handle)
     names = "X_WT", "X_WH", "F_To_W", "F_Ho_W_commanded"
     ports = [haptic.diagram.GetOutputPort(name) for name in names]
@@ -253,7 +258,7 @@ def run_scene(case: DegenerateScene, contact: ContactParameters, folder: Path) -
         for row, port in zip(rows, ports, strict=True):
             row.append(port.Eval(context).copy())
 
-    run(haptic, len(handle.p_WH) * PERIOD_S, on_tick=look)
+    run(haptic, duration_s, on_tick=look)
     return Run(*map(np.array, rows))
 
 
