@@ -48,7 +48,7 @@ LAWS = {
         ),
         lambda contact: contact.tolerance_m,
         1.1,
-        3e-5,
+        3.2e-5,
     ),
     "constraint": Law(
         ContactParameters(law="constraint", skin_m=2e-5),
