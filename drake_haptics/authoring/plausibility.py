@@ -90,17 +90,18 @@ def _question_size(
 
 
 def _question_clearance(haptic: HapticDiagram) -> list[str]:
-    """Asks about a tolerance that is wider than the room that objects leave the tool.
+    """Asks about a tolerance or skin wider than the room that objects leave the tool.
 
     Its way is that of the scene's hand, with a device of your own as well.
     """
     scene = haptic.scene
-    tolerance_m = scene.contact.tolerance_m
+    key = "skin_m" if scene.contact.law == "constraint" else "tolerance_m"
+    kept_m: float = getattr(scene.contact, key)
     objects = [
         (part.core, item.pose.to_rigid_transform())
         for item, part in zip(scene.environment, haptic.environment, strict=True)
     ]
-    found = find_clearance(haptic.tool.core, objects, _sample_path(haptic), tolerance_m)
+    found = find_clearance(haptic.tool.core, objects, _sample_path(haptic), kept_m)
     if found is None:
         return []
     names = " and ".join(f"'{scene.environment[i].name}'" for i in found.objects)
@@ -108,10 +109,10 @@ def _question_clearance(haptic: HapticDiagram) -> list[str]:
     digit_m = 10.0 ** (math.floor(math.log10(found.distance_m)) - 1)
     fits_m = digit_m * math.floor(found.distance_m / digit_m)
     return [
-        f"contact.tolerance_m: is {length(tolerance_m)}, but on the hand's path {names}"
+        f"contact.{key}: is {length(kept_m)}, but on the hand's path {names}"
         f" {'leaves' if len(found.objects) == 1 else 'leave'} the tool"
         f" {length(found.distance_m)} on each side: it is pushed from all sides at once"
-        f" and may not go in; contact.tolerance_m: {fits_m:.2g} fits"
+        f" and may not go in; contact.{key}: {fits_m:.2g} fits"
     ]
 
 

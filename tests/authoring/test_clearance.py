@@ -182,14 +182,21 @@ def test_the_shipped_peg_is_told_in_a_smaller_torus() -> None:
     )
 
 
-def test_a_scene_is_told_the_tolerance_that_fits(tmp_path: Path) -> None:
-    scene = make_scene(tmp_path, 2e-3)
+@pytest.mark.parametrize(
+    ("law", "name"), [("penalty", "tolerance_m"), ("constraint", "skin_m")]
+)
+def test_a_scene_is_told_the_number_that_fits(
+    tmp_path: Path, law: str, name: str
+) -> None:
+    scene = make_scene(tmp_path, 1e-4 if law == "constraint" else 2e-3)
+    scene.contact.law = law
+    scene.contact.skin_m = 1e-4 if law == "penalty" else 2e-3
     asked = check_plausibility(BuildHapticDiagram(scene))
     (question,) = [q for q in asked if "on each side" in q]
-    assert question.startswith("contact.tolerance_m: is 2 mm")
+    assert question.startswith(f"contact.{name}: is 2 mm")
     assert "'plate' leaves the tool 400 µm on each side" in question
     key, value, _ = question.rsplit(maxsplit=2)
-    assert key.endswith("contact.tolerance_m:")
+    assert key.endswith(f"contact.{name}:")
     assert 0.97 * PLAY_M < float(value) <= PLAY_M
-    scene.contact.tolerance_m = float(value)
+    setattr(scene.contact, name, float(value))
     assert check_plausibility(BuildHapticDiagram(scene)) == []

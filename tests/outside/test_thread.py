@@ -50,6 +50,12 @@ LAWS = {
         1.1,
         3.2e-5,
     ),
+    "constraint": Law(
+        ContactParameters(law="constraint", skin_m=2e-5),
+        lambda contact: contact.skin_m,
+        1.25,
+        1e-9,
+    ),
 }
 laws = pytest.mark.parametrize("law", LAWS)
 
