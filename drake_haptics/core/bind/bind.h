@@ -32,7 +32,6 @@ void BindTracker(nanobind::module_& m);
 void BindClustering(nanobind::module_& m);
 void BindPenaltyForce(nanobind::module_& m);
 void BindTool(nanobind::module_& m);
-void BindJacobian(nanobind::module_& m);
 void BindAutoDiffContact(nanobind::module_& m);
 void BindAutoDiffForce(nanobind::module_& m);
 void BindShading(nanobind::module_& m);
