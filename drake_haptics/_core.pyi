@@ -796,7 +796,7 @@ class SceneTracker:
 
 class ContactExtrapolation:
     """
-    Carries contacts along with the bodies: features stay, witness points stay on their bodies, and the normal on the one whose facet it is of (contact_extrapolator.h). Immutable.
+    Carries contacts along with the bodies while features stay (contact_extrapolation.h). Immutable.
     """
 
     def __init__(self, tool: ConvexPieces, objects: Sequence[ConvexPieces], X_WO: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')] | None]) -> None:
@@ -1087,30 +1087,16 @@ class CouplingGains:
     def __repr__(self) -> str: ...
 
 @overload
-def coupling_wrench(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], gains: CouplingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
+def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
     """
-    Wrenches of the virtual coupling between handle H and tool.
+    Wrenches of the virtual coupling between handle H and tool, of one vector as a multiplexer joins it: an array that crosses takes as long as the law.
 
     Args:
-        q_WH, q_HT, q_WT: (7,) poses [qw qx qy qz x y z]: handle, the tool's place in it, tool.
-        V_WH, V_WT: (6,) spatial velocities [rad/s; m/s].
+        joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) in the order of `CouplingGains`; poses [qw qx qy qz x y z], spatial velocities [rad/s; m/s].
+        q_HT: (7,) the tool's place in the handle.
 
     Returns:
         (84,): wrench model on the tool at To (78), then the reaction on the handle at Ho in W (6).
-    """
-
-@overload
-def coupling_wrench(q_WH: AutoDiffVector, V_WH: AutoDiffVector, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WT: AutoDiffVector, V_WT: AutoDiffVector, gains: CouplingGains) -> AutoDiffVector:
-    """The same with derivatives."""
-
-@overload
-def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
-    """
-    `coupling_wrench` of one vector, as a multiplexer joins it: an array that crosses takes as long as the law.
-
-    Args:
-        joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) in the order of `CouplingGains`.
-        q_HT: (7,) the tool's place in the handle.
 
     Raises:
         ValueError: a gain is out of range.
@@ -1163,45 +1149,6 @@ class RigidToolDynamics:
     @overload
     def step(self, state: AutoDiffVector, wrench_model: AutoDiffVector, h: float) -> AutoDiffVector:
         """The same with derivatives."""
-
-class WrenchJacobian:
-    """
-    Derivatives of the contact wrench on the tool at To, [N·m; N], by displacements [rotation vector (rad); translation (m)] and velocities [rad/s; m/s] of the bodies about their origins, all in the world. Immutable.
-    """
-
-    @property
-    def by_X_WT(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
-        """(6, 6)."""
-
-    @property
-    def by_V_WT(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
-        """(6, 6)."""
-
-    @property
-    def by_X_WO(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
-        """(6 m, 6): (6, 6) for each object, one below the other."""
-
-    @property
-    def by_V_WO(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
-        """(6 m, 6): (6, 6) for each object, one below the other."""
-
-def wrench_jacobian(contacts: ContactSet, clusters: ClusterSet, tolerance: float, tool: ConvexPieces, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: Sequence[ConvexPieces], X_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> WrenchJacobian:
-    """
-    Exact derivatives of `penalty_force` through the whole chain from the poses on: contacts, clusters, forces. Features stay as they are, and which contacts are together or push (wrench_jacobian.h).
-
-    Args:
-        contacts: as the query gave them at these poses.
-        clusters: of them, by `cluster_contacts` or `share_stiffness`.
-        tolerance: what the clusters were made with, m.
-        tool, objects: the bodies of the query.
-        X_WT, X_WO: (7,) and (m, 7) poses [qw qx qy qz x y z].
-        V_WT, V_WO: (6,) and (m, 6) spatial velocities [rad/s; m/s].
-        stiffness, damping: (m,) k and k_v of each object, N/m and N·s/m.
-
-    Raises:
-        ValueError: a pose is not one, or rows do not match.
-        IndexError: a contact names an object or a piece that is not given.
-    """
 
 class AutoDiffContactSet:
     """

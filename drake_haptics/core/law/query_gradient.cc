@@ -63,17 +63,16 @@ class MovingPatch {
   // [rotation vector; translation] about its origin.
   Rows5 At(const Vec6& by) {
     const Mat3 turn = RotationExp<double>(by.head<3>()).toRotationMatrix();
-    const MovedBodyOf<double> body_A,
-        body_B{X_AB_, {turn * X_AB_.R, X_AB_.p + by.tail<3>()}};
-    const FeatureContactOf<double> found =
-        EvaluateFeatures<double>({A_, body_A}, {B_, body_B}, contact_);
+    const Pose X_AB{turn * X_AB_.R, X_AB_.p + by.tail<3>()};
+    const FeatureContactOf<double> now = FeaturesAt(X_AB);
+    // Facets are flat within a tolerance: what the query measured is kept.
+    const double h = contact_.distance + (now.distance - distance_);
     const PressurePatch patch = FindPressurePatch(
-        {A_, B_, body_B.X_WB}, found.nhat_BA_W, found.distance,
-        {contact_.support[0], contact_.support[1]}, found.p_WCa,
-        std::clamp(tolerance_ - found.distance, 0.0, layer_), layer_,
-        &workspace_);
+        {A_, B_, X_AB}, now.nhat_BA_W, h,
+        {contact_.support[0], contact_.support[1]}, now.p_WCa,
+        std::clamp(tolerance_ - h, 0.0, layer_), layer_, &workspace_);
     Rows5 rows;
-    rows << patch.center.value_or(found.p_WCa), patch.extent, patch.flushness;
+    rows << patch.center.value_or(now.p_WCa), patch.extent, patch.flushness;
     return rows;
   }
 
@@ -95,12 +94,18 @@ class MovingPatch {
   }
 
  private:
+  FeatureContactOf<double> FeaturesAt(const Pose& X_AB) const {
+    const MovedBodyOf<double> body_A, body_B{X_AB_, X_AB};
+    return EvaluateFeatures<double>({A_, body_A}, {B_, body_B}, contact_);
+  }
+
   const Polytope& A_;
   const Polytope& B_;
   const Pose& X_AB_;
   const Contact& contact_;
   const double tolerance_;
   const double layer_ = PressureLayer(tolerance_);
+  const double distance_ = FeaturesAt(X_AB_).distance;
   PatchWorkspace workspace_;
 };
 
