@@ -796,7 +796,7 @@ class SceneTracker:
 
 class ContactExtrapolation:
     """
-    Carries contacts along with the bodies: features stay, witness points stay on their bodies, and the normal on the one whose facet it is of (contact_extrapolator.h). Immutable.
+    Carries contacts along with the bodies while features stay (contact_extrapolation.h). Immutable.
     """
 
     def __init__(self, tool: ConvexPieces, objects: Sequence[ConvexPieces], X_WO: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')] | None]) -> None:
@@ -1087,30 +1087,16 @@ class CouplingGains:
     def __repr__(self) -> str: ...
 
 @overload
-def coupling_wrench(q_WH: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WH: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], gains: CouplingGains) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
+def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
     """
-    Wrenches of the virtual coupling between handle H and tool.
+    Wrenches of the virtual coupling between handle H and tool, of one vector as a multiplexer joins it: an array that crosses takes as long as the law.
 
     Args:
-        q_WH, q_HT, q_WT: (7,) poses [qw qx qy qz x y z]: handle, the tool's place in it, tool.
-        V_WH, V_WT: (6,) spatial velocities [rad/s; m/s].
+        joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) in the order of `CouplingGains`; poses [qw qx qy qz x y z], spatial velocities [rad/s; m/s].
+        q_HT: (7,) the tool's place in the handle.
 
     Returns:
         (84,): wrench model on the tool at To (78), then the reaction on the handle at Ho in W (6).
-    """
-
-@overload
-def coupling_wrench(q_WH: AutoDiffVector, V_WH: AutoDiffVector, q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], q_WT: AutoDiffVector, V_WT: AutoDiffVector, gains: CouplingGains) -> AutoDiffVector:
-    """The same with derivatives."""
-
-@overload
-def joined_coupling_wrench(joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')]) -> Annotated[NDArray[numpy.float64], dict(shape=(84), order='C')]:
-    """
-    `coupling_wrench` of one vector, as a multiplexer joins it: an array that crosses takes as long as the law.
-
-    Args:
-        joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) in the order of `CouplingGains`.
-        q_HT: (7,) the tool's place in the handle.
 
     Raises:
         ValueError: a gain is out of range.

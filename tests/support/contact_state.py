@@ -32,6 +32,20 @@ IDENTITY = np.array([1.0, 0, 0, 0, 0, 0, 0])
 
 
 @dataclass(frozen=True, eq=False)
+class WrenchJacobian:
+    """Derivatives of the contact wrench on the tool at To, [N·m; N].
+
+    Attributes:
+        by_X: (1 + m, 6, 6) by displacements [rotation vector (rad); translation (m)]
+            of the tool and of each object about its origin, in the world.
+        by_V: (1 + m, 6, 6) by their spatial velocities [rad/s; m/s].
+    """
+
+    by_X: np.ndarray
+    by_V: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
 class State:
     """Where all is and how it moves: a tool, and objects that may overlap.
 
@@ -122,6 +136,19 @@ class State:
             K[:m],
             KV[:m],
         )
+
+    def jacobian(self) -> WrenchJacobian:
+        """The derivatives of the wrench on the tool, by turns and not quaternions."""
+        by_x = self.differentiate_wrench().F_To_W.gradient
+        by_X, by_V = [], []
+        for body, q in enumerate(self.q):
+            w, (x, y, z) = q[0], q[1:4]
+            # A turn by a rotation vector changes the quaternion by half of it.
+            by_turn = np.array([[-x, -y, -z], [w, z, -y], [-z, w, x], [y, -x, w]]) / 2
+            columns = by_x[:, 13 * body : 13 * body + 13]
+            by_X.append(np.hstack([columns[:, :4] @ by_turn, columns[:, 4:7]]))
+            by_V.append(columns[:, 7:])
+        return WrenchJacobian(np.array(by_X), np.array(by_V))
 
     def features(self) -> list[object]:
         """All that must stay for the derivatives to exist, as far as it is told."""

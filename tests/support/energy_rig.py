@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from coupling_wrench import coupling_wrench
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
@@ -61,5 +62,5 @@ def pose(rotation, p):
 
 
 def coupling_model(q_WH, V_WH, q_HT, state, gains):
-    wrench = _core.coupling_wrench(q_WH, V_WH, q_HT, state[:7], state[7:], gains)
+    wrench = coupling_wrench(q_WH, V_WH, q_HT, state[:7], state[7:], gains)
     return wrench[:78], wrench[78:]

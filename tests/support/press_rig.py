@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 
 import numpy as np
+from coupling_wrench import coupling_wrench
 from press_tools import PressTool
 from scipy.spatial.transform import Rotation
 
@@ -180,9 +181,9 @@ def run_press(
             np.array([gains.stiffness_N_per_m]),
             np.array([gains.damping_Ns_per_m]),
         ).wrench_model
-        coupling = _core.coupling_wrench(
-            q_WH, V_WH, _REST, state[:7], state[7:], COUPLING
-        )[:78]
+        coupling = coupling_wrench(q_WH, V_WH, _REST, state[:7], state[7:], COUPLING)[
+            :78
+        ]
         yield Tick(phase, q_WH, state, contacts, clusters, contact[:6], coupling[:6])
         state = tool.dynamics.step(state, contact + coupling, PERIOD_S)
         try:

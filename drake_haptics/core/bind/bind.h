@@ -33,7 +33,6 @@ void BindClustering(nanobind::module_& m);
 void BindPenaltyForce(nanobind::module_& m);
 void BindConstraintStep(nanobind::module_& m);
 void BindTool(nanobind::module_& m);
-void BindJacobian(nanobind::module_& m);
 void BindAutoDiffContact(nanobind::module_& m);
 void BindAutoDiffForce(nanobind::module_& m);
 void BindShading(nanobind::module_& m);

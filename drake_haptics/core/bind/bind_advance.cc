@@ -68,9 +68,8 @@ void BindAdvance(nb::module_& m) {
   using Shape = std::shared_ptr<Decomposition>;
   nb::class_<ContactExtrapolation>(
       m, "ContactExtrapolation",
-      "Carries contacts along with the bodies: features stay, witness points "
-      "stay on their bodies, and the normal on the one whose facet it is of "
-      "(contact_extrapolator.h). Immutable.")
+      "Carries contacts along with the bodies while features stay "
+      "(contact_extrapolation.h). Immutable.")
       .def(
           "__init__",
           [](ContactExtrapolation* self, const Shape& tool,

@@ -34,7 +34,6 @@ NB_MODULE(_core, m) {
   drake_haptics::BindPenaltyForce(m);
   drake_haptics::BindTool(m);
   drake_haptics::BindConstraintStep(m);
-  drake_haptics::BindJacobian(m);
   drake_haptics::BindAutoDiffContact(m);
   drake_haptics::BindAutoDiffForce(m);
   drake_haptics::BindShading(m);

@@ -83,12 +83,17 @@ void BindJoinedCoupling(nb::module_& m) {
         return CoupleJoined<double>(joined, q_HT, GainsOf(joined));
       },
       nb::arg("joined"), nb::arg("q_HT"),
-      "`coupling_wrench` of one vector, as a multiplexer joins it: an array "
-      "that crosses takes as long as the law.\n\n"
+      "Wrenches of the virtual coupling between handle H and tool, of one "
+      "vector as a multiplexer joins it: an array that crosses takes as long "
+      "as the law.\n\n"
       "Args:\n"
       "    joined: (32,) [q_WH; V_WH; q_WT; V_WT; gains], the gains (6) "
-      "in the order of `CouplingGains`.\n"
+      "in the order of `CouplingGains`; poses [qw qx qy qz x y z], spatial "
+      "velocities [rad/s; m/s].\n"
       "    q_HT: (7,) the tool's place in the handle.\n\n"
+      "Returns:\n"
+      "    (84,): wrench model on the tool at To (78), then the reaction on "
+      "the handle at Ho in W (6).\n\n"
       "Raises:\n    ValueError: a gain is out of range.");
   m.def(
       "joined_coupling_wrench",
@@ -164,37 +169,6 @@ void BindCoupling(nb::module_& m) {
         text << ")";
         return text.str();
       });
-  m.def(
-      "coupling_wrench",
-      [](const PoseVector& q_WH, const Vec6& V_WH, const PoseVector& q_HT,
-         const PoseVector& q_WT, const Vec6& V_WT, const CouplingGains& gains) {
-        return ToVector(ComputeCoupling(q_WH, V_WH, q_HT, q_WT, V_WT, gains));
-      },
-      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WT"),
-      nb::arg("V_WT"), nb::arg("gains"),
-      "Wrenches of the virtual coupling between handle H and tool.\n\n"
-      "Args:\n"
-      "    q_WH, q_HT, q_WT: (7,) poses [qw qx qy qz x y z]: handle, the "
-      "tool's place in it, tool.\n"
-      "    V_WH, V_WT: (6,) spatial velocities [rad/s; m/s].\n\n"
-      "Returns:\n"
-      "    (84,): wrench model on the tool at To (78), then the reaction on "
-      "the handle at Ho in W (6).");
-  m.def(
-      "coupling_wrench",
-      [](const AutoDiffVector& q_WH, const AutoDiffVector& V_WH,
-         const PoseVector& q_HT, const AutoDiffVector& q_WT,
-         const AutoDiffVector& V_WT, const CouplingGains& gains) {
-        const Eigen::Index num_derivatives =
-            CommonNumDerivatives(q_WH, V_WH, q_WT, V_WT);
-        return ToAutoDiffVector(
-            ToVector(ComputeCoupling(
-                ToScalars<7>(q_WH, "q_WH"), ToScalars<6>(V_WH, "V_WH"), q_HT,
-                ToScalars<7>(q_WT, "q_WT"), ToScalars<6>(V_WT, "V_WT"), gains)),
-            num_derivatives);
-      },
-      nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("q_HT"), nb::arg("q_WT"),
-      nb::arg("V_WT"), nb::arg("gains"), "The same with derivatives.");
 }
 
 void BindRigidTool(nb::module_& m) {

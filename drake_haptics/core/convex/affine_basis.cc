@@ -1,6 +1,7 @@
 #include "convex/affine_basis.h"
 
 #include <Eigen/Geometry>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -27,6 +28,7 @@ std::pair<int, double> Farthest(std::span<const Vec3> points,
 }  // namespace
 
 AffineBasis FindAffineBasis(std::span<const Vec3> points, double tolerance) {
+  assert(!points.empty());
   AffineBasis result;
   Vec3 low = points[0], high = points[0];
   for (const Vec3& p : points) {

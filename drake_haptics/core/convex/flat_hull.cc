@@ -1,6 +1,7 @@
 #include "convex/flat_hull.h"
 
 #include <Eigen/Geometry>
+#include <cassert>
 
 #include "convex/convex_polygon.h"
 
@@ -23,6 +24,7 @@ bool FlatHull::IsFilledBy(double part_area, double tolerance) const {
 }
 
 FlatHull FindFlatHull(std::span<const Vec3> points, const Vec3& normal) {
+  assert(!points.empty());
   const Vec3 along = normal.unitOrthogonal();
   const Vec3 across = normal.cross(along);
   std::vector<Eigen::Vector2d> projected;

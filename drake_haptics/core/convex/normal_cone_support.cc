@@ -1,6 +1,7 @@
 #include "convex/normal_cone_support.h"
 
 #include <algorithm>
+#include <cassert>
 #include <span>
 
 namespace drake_haptics {
@@ -140,6 +141,7 @@ NormalConeSupport ClassifySupport(const Polytope& A, Feature feature_A,
 
 Feature FeatureOfVertices(const Polytope& polytope, const int* vertices,
                           int count, const Vec3& n) {
+  assert(count >= 1 && count <= 4);
   int distinct[4] = {};
   int size = 0;
   for (int i = 0; i < count; ++i) {

@@ -27,14 +27,14 @@ inline constexpr double kSurfaceSlack = 1e-3;
 /// goes on, it is not.
 /// @param slack sine of the angle by which the surfaces may rise above the
 ///     plane and still support the contact.
-NormalConeSupport ClassifySupport(const Polytope& A, Feature feature_A,
-                                  const Vec3& n_A, const Polytope& B,
-                                  Feature feature_B, const Vec3& n_B,
-                                  double slack = kSurfaceSlack);
+[[nodiscard]] NormalConeSupport ClassifySupport(
+    const Polytope& A, Feature feature_A, const Vec3& n_A, const Polytope& B,
+    Feature feature_B, const Vec3& n_B, double slack = kSurfaceSlack);
 
 /// The smallest feature that holds the given vertices (one to four, repeats
 /// allowed); of several facets the one that faces the direction n most.
-Feature FeatureOfVertices(const Polytope& polytope, const int* vertices,
-                          int count, const Vec3& n);
+[[nodiscard]] Feature FeatureOfVertices(const Polytope& polytope,
+                                        const int* vertices, int count,
+                                        const Vec3& n);
 
 }  // namespace drake_haptics

@@ -16,6 +16,11 @@
 namespace drake_haptics {
 namespace {
 
+// What walks and supports run through: a cache line an entry, two an edge.
+static_assert(sizeof(Polytope::OneRingEntry) == 64);
+static_assert(sizeof(Polytope::Edge) == 128);
+static_assert(sizeof(Polytope::Facet) == 48);
+
 // Turns ragged lists given as (owner, item) pairs in order of `owners` into CSR
 // arrays: counts first, then a running sum.
 std::vector<int> StartsFromOwners(std::span<const int> owners, int num_owners) {

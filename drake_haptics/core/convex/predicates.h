@@ -9,12 +9,14 @@ namespace drake_haptics {
 /// zero when the four points are coplanar. A floating-point filter answers the
 /// clear cases, exact arithmetic the others. Coordinates must be such that no
 /// product of three underflows (see NormalizeForPredicates).
-double Orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+[[nodiscard]] double Orient3d(const Vec3& a, const Vec3& b, const Vec3& c,
+                              const Vec3& d);
 
 /// The determinant (b - a) × (c - a) in the plane, with the right sign:
 /// positive when a, b, c turn counter-clockwise.
-double Orient2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-                const Eigen::Vector2d& c);
+[[nodiscard]] double Orient2d(const Eigen::Vector2d& a,
+                              const Eigen::Vector2d& b,
+                              const Eigen::Vector2d& c);
 
 /// (b - a) × (c - a), each component correct to round-off however thin the
 /// triangle is.

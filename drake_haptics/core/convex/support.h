@@ -11,7 +11,8 @@ namespace drake_haptics {
 /// The vertex of `polytope` that is farthest along `direction` (any length,
 /// in the polytope's frame). Climbs from vertex `start` from fan to fan, so
 /// that on coherent motion it costs one fan whatever the size.
-int SupportVertex(const Polytope& polytope, const Vec3& direction, int start);
+[[nodiscard]] int SupportVertex(const Polytope& polytope, const Vec3& direction,
+                                int start);
 
 /// How far an edge that a facet hides at vertex v may rise from it, for all
 /// that the facet is flat within its tolerance, m: out of its plane, and where
@@ -29,8 +30,8 @@ inline double Unevenness(const Polytope& P, int v,
 /// Whether no neighbor of vertex v is farther than v along the unit direction,
 /// in the polytope's frame, by more than the slack (m). One across a facet may
 /// be farther by what the facet is not flat.
-inline bool IsFarthest(const Polytope& P, int v, const Vec3& direction,
-                       double slack) {
+[[nodiscard]] inline bool IsFarthest(const Polytope& P, int v,
+                                     const Vec3& direction, double slack) {
   for (const auto& ring_entry : P.fan_of(v)) {
     if (direction.dot(ring_entry.along) > slack) return false;
   }

@@ -4,6 +4,7 @@
 
 #include "base/positive_semidefinite.h"
 #include "base/require.h"
+#include "base/wrench_limit.h"
 
 namespace drake_haptics {
 namespace {
@@ -14,17 +15,6 @@ constexpr double kLargestRise = 2e-3;
 // least that the device presets recommend, which any device can show.
 constexpr double kTurnBrake = 4e-3;
 constexpr double kBrake = 4;
-
-// Shortens the vector to `largest`. Divided first: the norm of huge values is
-// infinite, their ratios are not.
-Vec3 Clamp(const Vec3& vector, double largest) {
-  const double size = vector.cwiseAbs().maxCoeff();
-  if (size == 0) return vector;
-  const Vec3 even = vector / size;
-  const double norm = even.norm();
-  if (norm <= largest / size) return vector;
-  return largest * (even / norm);
-}
 
 Vec6 Brake(const Vec6& V) {
   Vec6 F;
@@ -84,9 +74,7 @@ Vec6 ServoLaw::Step(double now, const PoseVector& X, const Vec6& V) {
 }
 
 Vec6 ServoLaw::Limit(const Vec6& F) const {
-  Vec6 limited;
-  limited << Clamp(F.head<3>(), max_torque_), Clamp(F.tail<3>(), max_force_);
-  return limited;
+  return LimitWrench(F, max_torque_, max_force_).F;
 }
 
 Vec6 ServoLaw::Extrapolate(const PoseVector& X, const Vec6& V) const {

@@ -100,15 +100,6 @@ T SpeedAlong(const Vec3Of<T>& n, const Vec3Of<T>& p_WC,
                frame.V_WF.template head<3>().cross(r));
 }
 
-// [r × n; n] of a point of a moving frame.
-template <typename T>
-Vec6Of<T> Lever(const Vec3Of<T>& n, const Vec3Of<T>& p_WC,
-                const MovingFrameOf<T>& frame) {
-  Vec6Of<T> G;
-  G << Vec3Of<T>(p_WC - frame.p_WF).cross(n), n;
-  return G;
-}
-
 }  // namespace
 
 void RequirePossible(const BrakingGains& gains) {
@@ -154,12 +145,11 @@ BrakingWrenchOf<T> ComputeBraking(const std::vector<ContactOf<T>>& contacts,
     if (approach.engaged == 0) continue;
     const T damping = T(gains.damping * sqrt(W)) * shares(n, W);
     const T force = -damping * approach.speed;
-    const Vec6Of<T> G = Lever<T>(n, contact.p_WC, tool);
+    const Vec6Of<T> G = tool.Lever(contact.p_WC, n);
     wrench.tool.F += force * G;
     wrench.tool.B.noalias() +=
         T(approach.engaged * damping) * G * G.transpose();
-    wrench.F_objects_W[contact.object] -=
-        force * Lever<T>(n, contact.p_WC, object);
+    wrench.F_objects_W[contact.object] -= force * object.Lever(contact.p_WC, n);
   }
   return wrench;
 }

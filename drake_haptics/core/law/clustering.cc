@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include "base/require.h"
+#include "base/union_find.h"
 
 namespace drake_haptics {
 namespace {
@@ -33,19 +33,13 @@ Leaf LeafOf(const ContactOf<T>& contact, double delta) {
   return leaf;
 }
 
-int Root(std::vector<int>* parent, int i) {
-  while ((*parent)[i] != i) i = (*parent)[i] = (*parent)[(*parent)[i]];
-  return i;
-}
-
 // Joins the contacts of each leaf and of each pair of adjacent leaves. The
 // root of a group is its first contact.
-std::vector<int> Join(const std::vector<Placed>& placed, std::size_t count) {
-  std::vector<int> parent(count);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto join = [&parent](int i, int j) {
-    const int p = Root(&parent, i), q = Root(&parent, j);
-    parent[std::max(p, q)] = std::min(p, q);
+UnionFind Join(const std::vector<Placed>& placed, std::size_t count) {
+  UnionFind groups(static_cast<int>(count));
+  const auto join = [&groups](int i, int j) {
+    const int p = groups.Root(i), q = groups.Root(j);
+    groups.Join(std::max(p, q), std::min(p, q));
   };
   const auto by_leaf = [](const Placed& p, const Leaf& leaf) {
     return p.leaf < leaf;
@@ -67,7 +61,7 @@ std::vector<int> Join(const std::vector<Placed>& placed, std::size_t count) {
       }
     }
   }
-  return parent;
+  return groups;
 }
 
 // Running sums of a cluster.
@@ -114,11 +108,11 @@ void ClusterContacts(const std::vector<ContactOf<T>>& contacts, double delta,
   std::sort(placed.begin(), placed.end(), [](const Placed& p, const Placed& q) {
     return p.leaf != q.leaf ? p.leaf < q.leaf : p.contact < q.contact;
   });
-  std::vector<int> parent = Join(placed, contacts.size());
+  UnionFind groups = Join(placed, contacts.size());
   std::int32_t count = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!(contacts[i].distance < tolerance)) continue;
-    const int root = Root(&parent, static_cast<int>(i));
+    const int root = groups.Root(static_cast<int>(i));
     out->label[i] = root == static_cast<int>(i) ? count++ : out->label[root];
   }
   RepresentClusters(contacts, tolerance, out);

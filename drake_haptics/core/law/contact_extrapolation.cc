@@ -1,100 +1,31 @@
 #include "law/contact_extrapolation.h"
 
-#include <cmath>
 #include <stdexcept>
-
-#include "law/contact_gradient.h"
 
 namespace drake_haptics {
 namespace {
 
-// A piece of a body that has moved. What is fixed to it moves along.
+// A point that is fixed to a body.
 template <typename T>
-struct MovedPiece {
-  Vec3Of<T> Carry(const Vec3Of<T>& p_W) const {
-    return body.X_WB.p + turn * (p_W - body.X_WB_found.p);
-  }
-  Vec3Of<T> Vertex(int i) const {
-    return body.X_WB * Vec3Of<T>(shape.vertices.at(i).template cast<T>());
-  }
-  Vec3Of<T> Along(const Polytope::Edge& edge) const {
-    const Vec3 along = shape.vertices[edge.v1] - shape.vertices[edge.v0];
-    return body.X_WB.R * along.template cast<T>();
-  }
-
-  const MovedBodyOf<T>& body;
-  const Mat3Of<T> turn;
-  const Polytope& shape;
-};
-
-template <typename T>
-Mat3Of<T> TurnOf(const MovedBodyOf<T>& body) {
-  return body.X_WB.R * body.X_WB_found.R.transpose();
+Vec3Of<T> Carry(const MovedBodyOf<T>& body, const Vec3Of<T>& p_W) {
+  return body.X_WB.p + body.Turn() * (p_W - body.X_WB_found.p);
 }
 
 template <typename T>
-class Advancing {
- public:
-  Advancing(const MovedPiece<T>& A, const MovedPiece<T>& B,
-            ContactOf<T>* contact)
-      : A_(A), B_(B), contact_(*contact) {}
-
-  void Run() {
-    contact_.p_WCa = A_.Carry(contact_.p_WCa);
-    contact_.p_WCb = B_.Carry(contact_.p_WCb);
-    contact_.p_WC = (contact_.p_WCa + contact_.p_WCb) / 2;
-    if (kind_A() == FeatureKind::kEdge && kind_B() == FeatureKind::kEdge &&
-        CrossEdges()) {
-      return;
-    }
-    const Mat3Of<T>& turn = IsNormalOfA() ? A_.turn : B_.turn;
-    contact_.nhat_BA_W = Vec3Of<T>(turn * contact_.nhat_BA_W);
-    contact_.distance = contact_.nhat_BA_W.dot(A_.Vertex(contact_.support[0]) -
-                                               B_.Vertex(contact_.support[1]));
+void Advance(const MovedPieceOf<T>& A, const MovedPieceOf<T>& B,
+             ContactOf<T>* contact) {
+  const FeatureContactOf<T> now = EvaluateFeatures(A, B, *contact);
+  if (contact->flushness > 0.0) {  // centers of pressure
+    contact->p_WCa = Carry(A.body, contact->p_WCa);
+    contact->p_WCb = Carry(B.body, contact->p_WCb);
+  } else {
+    contact->p_WCa = now.p_WCa;
+    contact->p_WCb = now.p_WCa - now.distance * now.nhat_BA_W;
   }
-
- private:
-  FeatureKind kind_A() const {
-    return static_cast<FeatureKind>(contact_.feature_A[0]);
-  }
-  FeatureKind kind_B() const {
-    return static_cast<FeatureKind>(contact_.feature_B[0]);
-  }
-
-  // Whether the normal belongs to A rather than to B.
-  bool IsNormalOfA() const {
-    return kind_B() != FeatureKind::kFacet &&
-           (kind_A() == FeatureKind::kFacet ||
-            (kind_A() == FeatureKind::kEdge &&
-             kind_B() == FeatureKind::kVertex));
-  }
-
-  // The normal and the distance of two edges; false where they are parallel.
-  bool CrossEdges() {
-    const Polytope::Edge& a = A_.shape.edges.at(contact_.feature_A[1]);
-    const Polytope::Edge& b = B_.shape.edges.at(contact_.feature_B[1]);
-    const Vec3Of<T> u = A_.Along(a), v = B_.Along(b);
-    const Vec3Of<T> cross = u.cross(v);
-    const T square = cross.squaredNorm();
-    if (!(ValueOf(square) > kParallelEdges * kParallelEdges *
-                                ValueOf(u.squaredNorm()) *
-                                ValueOf(v.squaredNorm()))) {
-      return false;
-    }
-    const Vec3Of<T> last = B_.turn * contact_.nhat_BA_W;
-    using std::sqrt;
-    const T length =
-        ValueOf(cross.dot(last)) < 0 ? T(-sqrt(square)) : T(sqrt(square));
-    contact_.nhat_BA_W = Vec3Of<T>(cross / length);
-    contact_.distance =
-        contact_.nhat_BA_W.dot(A_.Vertex(a.v0) - B_.Vertex(b.v0));
-    return true;
-  }
-
-  const MovedPiece<T>& A_;
-  const MovedPiece<T>& B_;
-  ContactOf<T>& contact_;
-};
+  contact->p_WC = (contact->p_WCa + contact->p_WCb) / 2.0;
+  contact->nhat_BA_W = now.nhat_BA_W;
+  contact->distance = now.distance;
+}
 
 }  // namespace
 
@@ -122,7 +53,6 @@ void ContactExtrapolation::Advance(const MovedBodyOf<T>& tool,
   if (static_cast<int>(moving.size()) != num_moving_) {
     throw std::invalid_argument("there must be a pose for each moving object");
   }
-  const Mat3Of<T> turn_A = TurnOf(tool);
   for (ContactOf<T>& contact : contacts->contacts) {
     RequireFeatures(contact);
     const Decomposition& object = *objects_.at(contact.object);
@@ -133,11 +63,8 @@ void ContactExtrapolation::Advance(const MovedBodyOf<T>& tool,
       at_rest.X_WB_found = at_rest.X_WB;
     }
     const MovedBodyOf<T>& B = rest ? at_rest : moving[place_[contact.object]];
-    const Mat3Of<T> turn_B =
-        rest ? Mat3Of<T>(Mat3Of<T>::Identity()) : TurnOf(B);
-    Advancing<T>({tool, turn_A, tool_->pieces.at(contact.piece_A)},
-                 {B, turn_B, object.pieces.at(contact.piece_B)}, &contact)
-        .Run();
+    drake_haptics::Advance<T>({tool_->pieces.at(contact.piece_A), tool},
+                              {object.pieces.at(contact.piece_B), B}, &contact);
   }
 }
 

@@ -6,30 +6,21 @@
 #include <vector>
 
 #include "base/types.h"
+#include "law/frozen_features.h"
 #include "mesh/decomposition.h"
 #include "pair/contact.h"
 
 namespace drake_haptics {
 
-/// A body that has moved since contacts were found.
-template <typename T>
-struct MovedBodyOf {
-  PoseOf<T> X_WB_found;  ///< when they were found
-  PoseOf<T> X_WB;        ///< now
-};
-
 /// Carries contacts along with the bodies, for ticks at which none are looked
-/// for. No contact comes or goes, and its features stay; so does each witness
-/// point on its body. The normal turns with the body whose facet it belongs to;
-/// of two edges it is their cross product; of an edge and a vertex it turns
-/// with the edge's body, and of two vertices and of parallel edges with the
-/// object. The distance is the gap along it between the vertices that supported
-/// the pair.
+/// for. No contact comes or goes, and its features stay: distance, normal and
+/// witness points are theirs (frozen_features.h), but centers of pressure stay
+/// each on its body.
 ///
 /// A vertex over a facet and two edges are carried exactly, while these are the
-/// features of the contact. Else the distance is wrong by what is of second
-/// order in the motion, for it changes to first order only as the closest
-/// points part along the normal (contact_gradient.h).
+/// features of the contact, and a vertex near a vertex or an edge to first
+/// order in the motion. Where other features are nearer by then, the distance
+/// is wrong by what is of second order in the motion.
 class ContactExtrapolation {
  public:
   /// @param X_WO for each object its pose, if it never moves.

@@ -61,8 +61,7 @@ Side<T> FindSide(const SurfaceShading& shading, const PoseOf<T>& X_WS,
   const Mat3Of<T> R_SC = X_WS.R.transpose() * R_WC;
   const Vec3Of<T> p_SC = X_WS.R.transpose() * (p_WC - X_WS.p);
   const Vec3Of<T> n_S = outward * R_SC.col(2);
-  const SheetNormalOf<T> sheet = shading.Find(
-      piece, {static_cast<FeatureKind>(feature[0]), feature[1]}, p_SC, n_S);
+  const SheetNormalOf<T> sheet = shading.Find(piece, feature, p_SC, n_S);
   const Eigen::Matrix<T, 3, 2> tangents = R_SC.template leftCols<2>();
   const Mat2Of<T> curvature = tangents.transpose() * sheet.curvature * tangents;
   return {outward * (R_SC.transpose() * sheet.turn), curvature,

@@ -18,15 +18,6 @@ void RequireGain(double value, const char* name) {
   }
 }
 
-// The direction along which a unit force n at p acts on a frame, as a wrench.
-template <typename T>
-Vec6Of<T> Wrench(const Vec3Of<T>& p_WC, const Vec3Of<T>& n,
-                 const MovingFrameOf<T>& frame) {
-  Vec6Of<T> wrench;
-  wrench << (p_WC - frame.p_WF).cross(n), n;
-  return wrench;
-}
-
 template <typename T>
 using Wrenches = Eigen::Matrix<T, 6, Eigen::Dynamic>;
 
@@ -128,8 +119,8 @@ PenaltyWrenchOf<T> ComputePenaltyWrench(
     const MovingFrameOf<T>& object = objects.at(cluster.object);
     const ContactMaterial& material = materials[cluster.object];
     RequireMaterial(material);
-    const Vec6Of<T> G = Wrench(cluster.p_WC, cluster.nhat_BA_W, tool);
-    const Vec6Of<T> G_object = Wrench(cluster.p_WC, cluster.nhat_BA_W, object);
+    const Vec6Of<T> G = tool.Lever(cluster.p_WC, cluster.nhat_BA_W);
+    const Vec6Of<T> G_object = object.Lever(cluster.p_WC, cluster.nhat_BA_W);
     // Eq. 8, as power of a unit force: n·v at the contact, of either body.
     const T speed = G.dot(tool.V_WF) - G_object.dot(object.V_WF);
     const T damping = material.damping * cluster.damping_share;

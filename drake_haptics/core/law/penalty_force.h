@@ -23,6 +23,13 @@ template <typename T>
 struct MovingFrameOf {
   Vec3Of<T> p_WF = Vec3Of<T>::Zero();
   Vec6Of<T> V_WF = Vec6Of<T>::Zero();
+
+  /// A unit force along n at a point C, as a wrench [r × n; n] on the frame.
+  Vec6Of<T> Lever(const Vec3Of<T>& p_WC, const Vec3Of<T>& n) const {
+    Vec6Of<T> wrench;
+    wrench << (p_WC - p_WF).cross(n), n;
+    return wrench;
+  }
 };
 using MovingFrame = MovingFrameOf<double>;
 

@@ -1,77 +1,40 @@
 #include "law/query_gradient.h"
 
-#include <array>
-#include <stdexcept>
+#include <algorithm>
+#include <cstdlib>
 
-#include "law/contact_gradient.h"
+#include "base/rotation.h"
+#include "law/frozen_features.h"
+#include "pair/contact_patch.h"
 
 namespace drake_haptics {
 namespace {
 
-using Displacement = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-using Mat3X = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+// Step of the differences, as a share of the layer.
+constexpr double kStepShare = 1e-4;
+// Of fourth order: weights of one step and of two.
+constexpr double kNear = 2.0 / 3, kFar = -1.0 / 12;
 
-// Motion of a point of a displaced body, `r` from the body's origin.
-Mat3X MotionAt(const Vec3& r, const Displacement& displacement) {
-  return displacement.bottomRows<3>() - Cross(r) * displacement.topRows<3>();
+using Rows5 = Eigen::Matrix<double, 5, 1>;
+using Rows5X6 = Eigen::Matrix<double, 5, 6>;
+
+Pose ValuesOf(const PoseOf<AutoDiff>& X) {
+  return {drake_haptics::ValuesOf(X.R), drake_haptics::ValuesOf(X.p)};
 }
 
-AutoDiff ToAutoDiff(double value, const Eigen::RowVectorXd& gradient) {
-  return {value, gradient.transpose()};
+PoseOf<AutoDiff> Constant(const Pose& X) {
+  return {X.R.cast<AutoDiff>(), X.p.cast<AutoDiff>()};
 }
 
-Vec3Of<AutoDiff> ToAutoDiff(const Vec3& value, const Mat3X& gradient) {
-  Vec3Of<AutoDiff> vector;
-  for (int i = 0; i < 3; ++i) vector[i] = ToAutoDiff(value[i], gradient.row(i));
-  return vector;
-}
-
-void RequireFeature(const Polytope& piece,
-                    const std::array<std::int32_t, 2>& kind_and_index,
-                    std::int32_t support) {
-  const auto [kind, index] = kind_and_index;
-  const std::size_t count = kind == 0   ? piece.vertices.size()
-                            : kind == 1 ? piece.edges.size()
-                                        : piece.facets.size();
-  if (index < 0 || static_cast<std::size_t>(index) >= count || support < 0 ||
-      support >= piece.num_vertices()) {
-    throw std::out_of_range("a contact names a feature that its piece lacks");
-  }
-}
-
-ContactOf<AutoDiff> Differentiate(const Contact& contact, double tolerance,
-                                  const DisplacedShape& tool,
-                                  const DisplacedShape& object) {
-  RequireFeatures(contact);
-  const Polytope& A = tool.shape->pieces.at(contact.piece_A);
-  const Polytope& B = object.shape->pieces.at(contact.piece_B);
-  RequireFeature(A, contact.feature_A, contact.support[0]);
-  RequireFeature(B, contact.feature_B, contact.support[1]);
-  const ContactGradient gradient =
-      FindContactGradient({A, B, tool.X_WB, object.X_WB}, contact, tolerance);
-
-  // Of the tool against the object, about To.
-  Displacement relative = tool.displacement - object.displacement;
-  relative.bottomRows<3>() =
-      tool.displacement.bottomRows<3>() -
-      MotionAt(tool.X_WB.p - object.X_WB.p, object.displacement);
-  const Vec3& n = contact.nhat_BA_W;
-  const double d = contact.distance;
-  const Eigen::RowVectorXd by_distance = gradient.distance * relative;
-  const Mat3X by_n = gradient.nhat_BA_W * relative -
-                     Cross(n) * object.displacement.topRows<3>();
-  const Mat3X by_p =
-      gradient.p_WC * relative +
-      MotionAt(contact.p_WC - object.X_WB.p, object.displacement);
-  const Mat3X half_gap = (d * by_n + n * by_distance) / 2;
+ContactOf<AutoDiff> Constant(const Contact& contact) {
   return {
-      .distance = ToAutoDiff(d, by_distance),
-      .nhat_BA_W = ToAutoDiff(n, by_n),
-      .p_WCa = ToAutoDiff(contact.p_WCa, by_p + half_gap),
-      .p_WCb = ToAutoDiff(contact.p_WCb, by_p - half_gap),
-      .p_WC = ToAutoDiff(contact.p_WC, by_p),
-      .extent = ToAutoDiff(contact.extent, gradient.extent * relative),
-      .flushness = ToAutoDiff(contact.flushness, gradient.flushness * relative),
+      .distance = contact.distance,
+      .nhat_BA_W = contact.nhat_BA_W.cast<AutoDiff>(),
+      .p_WCa = contact.p_WCa.cast<AutoDiff>(),
+      .p_WCb = contact.p_WCb.cast<AutoDiff>(),
+      .p_WC = contact.p_WC.cast<AutoDiff>(),
+      .extent = contact.extent,
+      .flushness = contact.flushness,
       .support = contact.support,
       .object = contact.object,
       .piece_A = contact.piece_A,
@@ -82,23 +45,132 @@ ContactOf<AutoDiff> Differentiate(const Contact& contact, double tolerance,
   };
 }
 
+void SetGradient(const Vec3Of<AutoDiff>& from, Vec3Of<AutoDiff>* to) {
+  for (int i = 0; i < 3; ++i) {
+    (*to)[i].derivatives() = from[i].derivatives();
+  }
+}
+
+// The pressure patch of a contact, which depends on where B is in A's frame.
+class MovingPatch {
+ public:
+  // @param contact in A's frame.
+  MovingPatch(const Polytope& A, const Polytope& B, const Pose& X_AB,
+              const Contact& contact, double tolerance)
+      : A_(A), B_(B), X_AB_(X_AB), contact_(contact), tolerance_(tolerance) {}
+
+  // Center of pressure (3, m), extent and flushness, with B displaced by
+  // [rotation vector; translation] about its origin.
+  Rows5 At(const Vec6& by) {
+    const Mat3 turn = RotationExp<double>(by.head<3>()).toRotationMatrix();
+    const Pose X_AB{turn * X_AB_.R, X_AB_.p + by.tail<3>()};
+    const FeatureContactOf<double> now = FeaturesAt(X_AB);
+    // Facets are flat within a tolerance: what the query measured is kept.
+    const double h = contact_.distance + (now.distance - distance_);
+    const PressurePatch patch = FindPressurePatch(
+        {A_, B_, X_AB}, now.nhat_BA_W, h,
+        {contact_.support[0], contact_.support[1]}, now.p_WCa,
+        std::clamp(tolerance_ - h, 0.0, layer_), layer_, &workspace_);
+    Rows5 rows;
+    rows << patch.center.value_or(now.p_WCa), patch.extent, patch.flushness;
+    return rows;
+  }
+
+  Rows5X6 Slopes() {
+    const double step = kStepShare * layer_;
+    // A turn moves the outline of a piece, however near to Bo it is.
+    const double arm = std::max(
+        {(contact_.p_WCa - X_AB_.p).norm(), A_.radius + B_.radius, layer_});
+    Rows5X6 slopes = Rows5X6::Zero();
+    for (int k = 0; k < 6; ++k) {
+      const double by = k < 3 ? step / arm : step;
+      for (const int times : {-2, -1, 1, 2}) {
+        const double weight =
+            (std::abs(times) == 1 ? kNear : kFar) * (times > 0 ? 1 : -1) / by;
+        slopes.col(k) += weight * At(times * by * Vec6::Unit(k));
+      }
+    }
+    return slopes;
+  }
+
+ private:
+  FeatureContactOf<double> FeaturesAt(const Pose& X_AB) const {
+    const MovedBodyOf<double> body_A, body_B{X_AB_, X_AB};
+    return EvaluateFeatures<double>({A_, body_A}, {B_, body_B}, contact_);
+  }
+
+  const Polytope& A_;
+  const Polytope& B_;
+  const Pose& X_AB_;
+  const Contact& contact_;
+  const double tolerance_;
+  const double layer_ = PressureLayer(tolerance_);
+  const double distance_ = FeaturesAt(X_AB_).distance;
+  PatchWorkspace workspace_;
+};
+
+// Gives the contact the derivatives of its patch.
+// @return the center of pressure.
+Vec3Of<AutoDiff> DifferentiatePatch(const Polytope& A, const Polytope& B,
+                                    const PoseOf<AutoDiff>& X_WA,
+                                    const PoseOf<AutoDiff>& X_WB,
+                                    const Contact& found, double tolerance,
+                                    ContactOf<AutoDiff>* contact) {
+  const Pose X_WA_value = ValuesOf(X_WA);
+  const Pose X_AB = RelativePose(X_WA_value, ValuesOf(X_WB));
+  Contact in_A = found;
+  in_A.nhat_BA_W = X_WA_value.R.transpose() * found.nhat_BA_W;
+  in_A.p_WCa = X_WA_value.R.transpose() * (found.p_WCa - X_WA_value.p);
+  MovingPatch patch(A, B, X_AB, in_A, tolerance);
+  // How B is displaced in A's frame.
+  const Mat3Of<AutoDiff> turn =
+      X_WA.R.transpose() * X_WB.R * X_AB.R.transpose().cast<AutoDiff>().eval();
+  const Vec3Of<AutoDiff> p_AB = X_WA.R.transpose() * (X_WB.p - X_WA.p);
+  const Vec6Of<AutoDiff> by{turn(2, 1), turn(0, 2), turn(1, 0),
+                            p_AB[0],    p_AB[1],    p_AB[2]};
+  const Eigen::Matrix<AutoDiff, 5, 1> moving =
+      patch.Slopes().cast<AutoDiff>() * by;
+  Vec3Of<AutoDiff> center = patch.At(Vec6::Zero()).head<3>().cast<AutoDiff>();
+  SetGradient(moving.head<3>(), &center);
+  contact->extent.derivatives() = moving[3].derivatives();
+  contact->flushness.derivatives() = moving[4].derivatives();
+  return X_WA * center;
+}
+
+ContactOf<AutoDiff> Differentiate(const Contact& found, double tolerance,
+                                  const DisplacedShape& tool,
+                                  const DisplacedShape& object) {
+  RequireFeatures(found);
+  const Polytope& A = tool.shape->pieces.at(found.piece_A);
+  const Polytope& B = object.shape->pieces.at(found.piece_B);
+  const MovedBodyOf<AutoDiff> body_A{Constant(ValuesOf(tool.X_WB)), tool.X_WB};
+  const MovedBodyOf<AutoDiff> body_B{Constant(ValuesOf(object.X_WB)),
+                                     object.X_WB};
+  ContactOf<AutoDiff> contact = Constant(found);
+  const FeatureContactOf<AutoDiff> moving =
+      EvaluateFeatures<AutoDiff>({A, body_A}, {B, body_B}, contact);
+  contact.distance.derivatives() = moving.distance.derivatives();
+  contact.extent.derivatives() = contact.flushness.derivatives() =
+      Eigen::VectorXd::Zero(moving.distance.derivatives().size());
+  SetGradient(moving.nhat_BA_W, &contact.nhat_BA_W);
+  const Vec3Of<AutoDiff> p_WCa =
+      found.flushness > 0 ? DifferentiatePatch(A, B, tool.X_WB, object.X_WB,
+                                               found, tolerance, &contact)
+                          : moving.p_WCa;
+  const Vec3Of<AutoDiff> gap = contact.distance * contact.nhat_BA_W;
+  SetGradient(p_WCa, &contact.p_WCa);
+  SetGradient(p_WCa - gap, &contact.p_WCb);
+  SetGradient(p_WCa - gap / 2.0, &contact.p_WC);
+  return contact;
+}
+
 }  // namespace
 
 DisplacedShape DisplaceShape(const Decomposition* shape,
                              const AutoDiffVector& q_WB, const char* what) {
-  if (q_WB.size() != 7) {
-    throw std::invalid_argument(std::string(what) + " must have 7 entries");
-  }
-  const PoseVector q = q_WB.value;
-  DisplacedShape displaced{shape, PoseFromVector(q, what),
-                           Displacement(6, q_WB.num_derivatives())};
-  const Vec3 v = q.segment<3>(1);
-  const auto dw = q_WB.gradient.row(0);
-  const auto dv = q_WB.gradient.middleRows<3>(1);
-  displaced.displacement.topRows<3>() =
-      2 / q.head<4>().squaredNorm() * (q[0] * dv - v * dw + Cross(v) * dv);
-  displaced.displacement.bottomRows<3>() = q_WB.gradient.bottomRows<3>();
-  return displaced;
+  const PoseVectorOf<AutoDiff> q = ToScalars<7>(q_WB, what);
+  PoseFromVector(q_WB.value, what);  // refuses what is not a pose
+  return {shape, {QuaternionOf(q).toRotationMatrix(), q.tail<3>()}};
 }
 
 ContactSetOf<AutoDiff> DifferentiateContacts(

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "law/facet_triangles.h"
+#include "pair/contact.h"
 
 namespace drake_haptics {
 namespace {
@@ -18,14 +19,6 @@ namespace {
 // contact within this angle, rad: the tilt at which a face gives way to its
 // edges (contact_patch.h).
 constexpr double kFlushAngle = 4 * std::numbers::pi / 180;
-std::vector<std::vector<int>> TrianglesOfPieces(const Decomposition& mesh) {
-  std::vector<std::vector<int>> triangles(mesh.pieces.size());
-  for (int t = 0; t < std::ssize(mesh.piece_of_triangle); ++t) {
-    const int piece = mesh.piece_of_triangle[t];
-    if (piece >= 0) triangles[piece].push_back(t);
-  }
-  return triangles;
-}
 
 // Has no slope at zero.
 template <typename T>
@@ -78,16 +71,6 @@ int FacetAt(const Polytope& piece, Feature feature, const Vec3& n) {
   return nearest.facet();
 }
 
-void RequireFeature(const Polytope& piece, Feature feature) {
-  const std::size_t sizes[] = {piece.vertices.size(), piece.edges.size(),
-                               piece.facets.size()};
-  const int kind = static_cast<int>(feature.kind());
-  if (feature.is_none() || kind > 2 ||
-      static_cast<std::size_t>(feature.index()) >= sizes[kind]) {
-    throw std::out_of_range("a contact names a feature that its piece lacks");
-  }
-}
-
 }  // namespace
 
 SurfaceShading::SurfaceShading(
@@ -102,7 +85,9 @@ SurfaceShading::SurfaceShading(
   flush_angle_ = std::min(kFlushAngle, crease_angle / 2);
   const VertexNormals normals = ComputeVertexNormals(
       decomposition_->vertices, decomposition_->triangles, crease_angle);
-  const auto triangles = TrianglesOfPieces(*decomposition_);
+  const auto triangles =
+      TrianglesOfPieces(decomposition_->piece_of_triangle,
+                        static_cast<int>(decomposition_->pieces.size()));
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     surfaces_.push_back(
         MakeSurface(decomposition_->pieces[i], triangles[i], normals));
@@ -110,12 +95,12 @@ SurfaceShading::SurfaceShading(
 }
 
 template <typename T>
-SheetNormalOf<T> SurfaceShading::Find(int piece, Feature feature,
-                                      const Eigen::Matrix<T, 3, 1>& p,
-                                      const Eigen::Matrix<T, 3, 1>& n) const {
+SheetNormalOf<T> SurfaceShading::Find(
+    int piece, const std::array<std::int32_t, 2>& kind_and_index,
+    const Eigen::Matrix<T, 3, 1>& p, const Eigen::Matrix<T, 3, 1>& n) const {
   const PieceSurface& surface = surfaces_.at(piece);
   const Polytope& polytope = decomposition_->pieces[piece];
-  RequireFeature(polytope, feature);
+  const Feature feature = RequireFeature(polytope, kind_and_index);
   const int facet = FacetAt(polytope, feature, ValuesOf(n));
   const bool is_face = feature.kind() == FeatureKind::kFacet;
   if (facet < 0) {
@@ -143,10 +128,11 @@ SheetNormalOf<T> SurfaceShading::Find(int piece, Feature feature,
           sharpness};
 }
 
-template SheetNormalOf<double> SurfaceShading::Find(int, Feature, const Vec3&,
-                                                    const Vec3&) const;
+template SheetNormalOf<double> SurfaceShading::Find(
+    int, const std::array<std::int32_t, 2>&, const Vec3&, const Vec3&) const;
 template SheetNormalOf<AutoDiff> SurfaceShading::Find(
-    int, Feature, const Vec3Of<AutoDiff>&, const Vec3Of<AutoDiff>&) const;
+    int, const std::array<std::int32_t, 2>&, const Vec3Of<AutoDiff>&,
+    const Vec3Of<AutoDiff>&) const;
 
 SurfaceShading::PieceSurface SurfaceShading::MakeSurface(
     const Polytope& piece, std::span<const int> triangles,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -34,12 +36,14 @@ class SurfaceShading {
   SurfaceShading(std::shared_ptr<const Decomposition> decomposition,
                  double crease_angle);
 
+  /// @param kind_and_index the feature, as a contact names it.
   /// @param p witness point on the piece, m; where it is not on a triangle of
   ///        the feature, the nearest point of one counts.
   /// @param n unit normal of the contact, out of this body.
   /// @throws std::out_of_range if there is no such piece or feature.
   template <typename T>
-  SheetNormalOf<T> Find(int piece, Feature feature,
+  SheetNormalOf<T> Find(int piece,
+                        const std::array<std::int32_t, 2>& kind_and_index,
                         const Eigen::Matrix<T, 3, 1>& p,
                         const Eigen::Matrix<T, 3, 1>& n) const;
 

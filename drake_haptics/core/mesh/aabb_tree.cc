@@ -14,6 +14,15 @@ AabbTree::AabbTree(std::vector<Box> item_boxes)
   Build(0, 0, static_cast<int>(order_.size()));
 }
 
+std::vector<AabbTree::Box> TriangleBoxes(std::span<const Vec3> vertices,
+                                         std::span<const Triangle> triangles) {
+  std::vector<AabbTree::Box> boxes(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (const int v : triangles[t]) boxes[t].extend(vertices[v]);
+  }
+  return boxes;
+}
+
 // Splits at the median of the longest axis: depth is logarithmic for any input.
 void AabbTree::Build(int node, int begin, int end) {
   constexpr int kLeafSize = 4;

@@ -2,8 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include "mesh/decomposition.h"
 
 namespace drake_haptics {
 
@@ -82,5 +85,9 @@ class AabbTree {
   std::vector<int> order_;
   std::vector<Node> nodes_;
 };
+
+/// The boxes of triangles, in their order.
+std::vector<AabbTree::Box> TriangleBoxes(std::span<const Vec3> vertices,
+                                         std::span<const Triangle> triangles);
 
 }  // namespace drake_haptics

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "convex/polygon_clip.h"
+
 namespace drake_haptics {
 
 double PolygonArea(std::span<const Vec3> polygon) {
@@ -15,20 +17,12 @@ double PolygonArea(std::span<const Vec3> polygon) {
 
 std::vector<Vec3> ClipPolygon(std::vector<Vec3> polygon,
                               std::span<const Plane> planes, double inset) {
-  std::vector<Vec3> kept;
+  std::vector<Vec3> buffer;
   for (const Plane& plane : planes) {
-    kept.clear();
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-      const Vec3& a = polygon[k];
-      const Vec3& b = polygon[(k + 1) % polygon.size()];
-      const double height_a = plane.Height(a) + inset;
-      const double height_b = plane.Height(b) + inset;
-      if (height_a <= 0) kept.push_back(a);
-      if ((height_a < 0 && height_b > 0) || (height_a > 0 && height_b < 0)) {
-        kept.push_back(a + (b - a) * (height_a / (height_a - height_b)));
-      }
-    }
-    polygon.swap(kept);
+    const auto depth = [&](const Vec3& p) {
+      return -(plane.Height(p) + inset);
+    };
+    ClipPolygon(depth, &polygon, &buffer);
     if (polygon.empty()) break;
   }
   return polygon;

@@ -16,7 +16,7 @@ std::vector<Vec3> ClipPolygon(std::vector<Vec3> polygon,
 
 /// Whether a triangle meets the interior of a convex body that is more than
 /// `inset` below all of its planes.
-bool MeetsInterior(const std::array<Vec3, 3>& triangle,
-                   std::span<const Plane> planes, double inset);
+[[nodiscard]] bool MeetsInterior(const std::array<Vec3, 3>& triangle,
+                                 std::span<const Plane> planes, double inset);
 
 }  // namespace drake_haptics

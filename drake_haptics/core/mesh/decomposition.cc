@@ -33,20 +33,21 @@
 namespace drake_haptics {
 namespace {
 
-std::vector<std::vector<int>> TrianglesOfPieces(
+// @throws std::invalid_argument unless each triangle has a piece, and each
+// piece a triangle.
+std::vector<std::vector<int>> RequirePieces(
     std::span<const int> piece_of_triangle) {
   const int last =
       *std::max_element(piece_of_triangle.begin(), piece_of_triangle.end());
   if (last >= static_cast<int>(piece_of_triangle.size())) {
     throw std::invalid_argument("piece numbers must not skip");
   }
-  std::vector<std::vector<int>> members(last + 1);
-  for (std::size_t t = 0; t < piece_of_triangle.size(); ++t) {
-    if (piece_of_triangle[t] < 0) {
-      throw std::invalid_argument("each triangle must have a piece");
-    }
-    members[piece_of_triangle[t]].push_back(static_cast<int>(t));
+  if (*std::min_element(piece_of_triangle.begin(), piece_of_triangle.end()) <
+      0) {
+    throw std::invalid_argument("each triangle must have a piece");
   }
+  std::vector<std::vector<int>> members =
+      TrianglesOfPieces(piece_of_triangle, last + 1);
   for (const std::vector<int>& triangles : members) {
     if (triangles.empty()) {
       throw std::invalid_argument("piece numbers must not skip");
@@ -75,6 +76,16 @@ void SeparateLost(std::span<const int> lost, std::size_t index,
 }
 
 }  // namespace
+
+std::vector<std::vector<int>> TrianglesOfPieces(
+    std::span<const int> piece_of_triangle, int num_pieces) {
+  std::vector<std::vector<int>> triangles(num_pieces);
+  for (int t = 0; t < std::ssize(piece_of_triangle); ++t) {
+    const int piece = piece_of_triangle[t];
+    if (piece >= 0) triangles[piece].push_back(t);
+  }
+  return triangles;
+}
 
 void CheckMesh(std::span<const Vec3> vertices,
                std::span<const Triangle> triangles) {
@@ -123,7 +134,7 @@ Decomposition AssembleSurfacePieces(std::span<const Vec3> vertices,
                                   piece_of_triangle.end());
   const MeshTopology topology(result.vertices, result.triangles);
   const double tolerance = SurfaceTolerance(result.vertices, result.triangles);
-  std::vector<std::vector<int>> patches = TrianglesOfPieces(piece_of_triangle);
+  std::vector<std::vector<int>> patches = RequirePieces(piece_of_triangle);
   // The list grows while it is worked on.
   for (std::size_t i = 0; i < patches.size(); ++i) {
     SurfacePiece piece = MakeSurfacePiece(topology, patches[i], tolerance);

@@ -21,6 +21,10 @@ struct Decomposition {
   std::vector<int> piece_of_triangle;
 };
 
+/// The triangles of each of so many pieces; those of no piece are left out.
+std::vector<std::vector<int>> TrianglesOfPieces(
+    std::span<const int> piece_of_triangle, int num_pieces);
+
 /// Called now and then with the share done in [0, 1]; false stops the work.
 using Progress = std::function<bool(double)>;
 

@@ -7,16 +7,11 @@
 namespace drake_haptics {
 namespace {
 
-std::vector<AabbTree::Box> MemberBoxes(std::span<const Vec3> vertices,
-                                       std::span<const Triangle> triangles,
-                                       std::span<const int> members) {
-  std::vector<AabbTree::Box> boxes;
-  boxes.reserve(members.size());
-  for (const int t : members) {
-    AabbTree::Box& box = boxes.emplace_back();
-    for (const int v : triangles[t]) box.extend(vertices[v]);
-  }
-  return boxes;
+std::vector<Triangle> Members(std::span<const Triangle> triangles,
+                              std::span<const int> members) {
+  std::vector<Triangle> chosen;
+  for (const int t : members) chosen.push_back(triangles[t]);
+  return chosen;
 }
 
 // The prism about a polygon: its sides, and the slab of +- tolerance.
@@ -42,7 +37,7 @@ MeshCoverage::MeshCoverage(std::span<const Vec3> vertices,
     : vertices_(vertices),
       triangles_(triangles),
       members_(members),
-      tree_(MemberBoxes(vertices, triangles, members)) {}
+      tree_(TriangleBoxes(vertices, Members(triangles, members))) {}
 
 double MeshCoverage::CoveredArea(std::span<const Vec3> polygon,
                                  const Vec3& normal, double tolerance) const {

@@ -7,16 +7,6 @@
 namespace drake_haptics {
 namespace {
 
-std::vector<AabbTree::Box> TriangleBoxes(const SurfaceMesh& mesh) {
-  std::vector<AabbTree::Box> boxes;
-  boxes.reserve(mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles) {
-    AabbTree::Box& box = boxes.emplace_back();
-    for (const int v : t) box.extend(mesh.vertices[v]);
-  }
-  return boxes;
-}
-
 std::vector<std::uint8_t> FindCavities(const SurfaceMesh& mesh) {
   std::vector<double> volume(mesh.num_components, 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -35,7 +25,9 @@ std::vector<std::uint8_t> FindCavities(const SurfaceMesh& mesh) {
 }  // namespace
 
 SolidContainment::SolidContainment(const SurfaceMesh& mesh)
-    : mesh_(mesh), tree_(TriangleBoxes(mesh)), is_cavity_(FindCavities(mesh)) {}
+    : mesh_(mesh),
+      tree_(TriangleBoxes(mesh.vertices, mesh.triangles)),
+      is_cavity_(FindCavities(mesh)) {}
 
 bool SolidContainment::MeetInterior(std::span<const Plane> planes,
                                     const AabbTree::Box& box, int component,

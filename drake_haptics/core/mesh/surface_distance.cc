@@ -15,15 +15,6 @@ constexpr double kExcess = 1.05;
 // only once their parts are as small.
 constexpr double kNegligibleShare = 1e-4;
 
-std::vector<AabbTree::Box> TriangleBoxes(std::span<const Vec3> vertices,
-                                         std::span<const Triangle> triangles) {
-  std::vector<AabbTree::Box> boxes(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (const int v : triangles[t]) boxes[t].extend(vertices[v]);
-  }
-  return boxes;
-}
-
 double AngleAt(const Vec3& corner, const Vec3& a, const Vec3& b) {
   const Vec3 u = a - corner, v = b - corner;
   return std::atan2(u.cross(v).norm(), u.dot(v));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/union_find.h"
 #include "convex/flat_hull.h"
 #include "convex/predicates.h"
 #include "mesh/mesh_edges.h"
@@ -46,20 +47,14 @@ void AddPlanes(SurfaceMesh* mesh) {
   }
 }
 
-int Root(std::vector<int>* parent, int i) {
-  while ((*parent)[i] != i) i = (*parent)[i] = (*parent)[(*parent)[i]];
-  return i;
-}
-
 void AddNeighborsAndComponents(SurfaceMesh* mesh) {
   const int n = static_cast<int>(mesh->triangles.size());
   mesh->neighbors.assign(n, {-1, -1, -1});
-  std::vector<int> parent(n);
-  std::iota(parent.begin(), parent.end(), 0);
+  UnionFind components(n);
   const std::vector<TriangleSide> sides = SortedSides(mesh->triangles);
   ForEachMeshEdge(sides, [&](std::span<const TriangleSide> edge) {
     for (const TriangleSide& side : edge) {
-      parent[Root(&parent, side.triangle)] = Root(&parent, edge[0].triangle);
+      components.Join(side.triangle, edge[0].triangle);
     }
     if (edge.size() == 2 && edge[0].forward != edge[1].forward) {
       mesh->neighbors[edge[0].triangle][edge[0].edge] = edge[1].triangle;
@@ -68,7 +63,7 @@ void AddNeighborsAndComponents(SurfaceMesh* mesh) {
   });
   std::vector<int> number(n, -1);
   for (int t = 0; t < n; ++t) {
-    int& component = number[Root(&parent, t)];
+    int& component = number[components.Root(t)];
     if (component < 0) component = mesh->num_components++;
     mesh->component.push_back(component);
   }

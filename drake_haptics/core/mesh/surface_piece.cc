@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 
 #include "convex/hull_shape.h"
 #include "mesh/convex_clip.h"
@@ -120,6 +121,7 @@ std::vector<int> FindLost(const MeshTopology& mesh, std::span<const int> patch,
 
 SurfacePiece MakeSurfacePiece(const MeshTopology& mesh,
                               std::span<const int> patch, double tolerance) {
+  assert(!patch.empty() && std::is_sorted(patch.begin(), patch.end()));
   std::vector<int> corners;
   for (const int t : patch) {
     const Triangle& triangle = mesh.triangles[t];

@@ -5,6 +5,9 @@
 namespace drake_haptics {
 namespace {
 
+// A tick copies them from query to law.
+static_assert(sizeof(Contact) == 160);
+
 std::array<std::int32_t, 2> KindAndIndex(const Feature& feature) {
   return {static_cast<std::int32_t>(feature.kind()), feature.index()};
 }
@@ -21,6 +24,18 @@ void RequireFeatures(const ContactOf<T>& contact) {
 
 template void RequireFeatures(const Contact&);
 template void RequireFeatures(const ContactOf<AutoDiff>&);
+
+Feature RequireFeature(const Polytope& piece,
+                       const std::array<std::int32_t, 2>& kind_and_index) {
+  const auto [kind, index] = kind_and_index;
+  const std::size_t counts[] = {piece.vertices.size(), piece.edges.size(),
+                                piece.facets.size()};
+  if (kind < 0 || kind > 2 || index < 0 ||
+      static_cast<std::size_t>(index) >= counts[kind]) {
+    throw std::out_of_range("a contact names a feature that its piece lacks");
+  }
+  return {static_cast<FeatureKind>(kind), index};
+}
 
 Contact InWorld(const PairContact& pair, const Pose& X_WA) {
   Contact contact;

@@ -6,6 +6,7 @@
 
 #include "base/autodiff.h"
 #include "base/types.h"
+#include "convex/polytope.h"
 #include "pair/pair_contact.h"
 
 namespace drake_haptics {
@@ -39,6 +40,11 @@ using Contact = ContactOf<double>;
 /// @throws std::invalid_argument.
 template <typename T>
 void RequireFeatures(const ContactOf<T>& contact);
+
+/// The feature of a piece that a contact names by kind and index.
+/// @throws std::out_of_range if the piece lacks it.
+Feature RequireFeature(const Polytope& piece,
+                       const std::array<std::int32_t, 2>& kind_and_index);
 
 /// The contact of a pair as seen in the world, object and pieces left at zero.
 Contact InWorld(const PairContact& pair, const Pose& X_WA);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <optional>
 
 #include "convex/flush_features.h"
@@ -222,6 +223,8 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
                                 const MinkowskiVertex& vertex_pair,
                                 const Vec3& witness, double spread,
                                 double layer, PatchWorkspace* workspace) {
+  assert(std::abs(n.squaredNorm() - 1) < 1e-6);
+  assert(spread <= layer);
   const double point = layer * layer;
   const Vec3 n_B = pair.X_AB.R.transpose() * n;
   if (!(spread > 0)) return {std::nullopt, false, 0, point};

@@ -20,8 +20,9 @@ inline double PressureLayer(double tolerance) {
 /// Whether edges of both bodies at the vertex pair lie in the contact's plane
 /// to within `layer` (m), and more than one of either: a quick test that rules
 /// out most contacts at a point.
-bool MayHaveExtent(const PosedPair& pair, const Vec3& n,
-                   const MinkowskiVertex& vertex_pair, double layer);
+[[nodiscard]] bool MayHaveExtent(const PosedPair& pair, const Vec3& n,
+                                 const MinkowskiVertex& vertex_pair,
+                                 double layer);
 
 /// Where a contact acts and over what it is spread.
 struct PressurePatch {
@@ -56,9 +57,9 @@ struct PressurePatch {
 /// @param spread thickness of the layer at this contact, m.
 /// @param layer thickness of the layer of any contact that is not just about to
 ///     begin, m.
-PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
-                                const MinkowskiVertex& vertex_pair,
-                                const Vec3& witness, double spread,
-                                double layer, PatchWorkspace* workspace);
+[[nodiscard]] PressurePatch FindPressurePatch(
+    const PosedPair& pair, const Vec3& n, double h,
+    const MinkowskiVertex& vertex_pair, const Vec3& witness, double spread,
+    double layer, PatchWorkspace* workspace);
 
 }  // namespace drake_haptics

@@ -12,6 +12,9 @@
 namespace drake_haptics {
 namespace {
 
+// A scene keeps one for each pair of pieces that are near each other.
+static_assert(sizeof(PairState) == 80);
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Thickness of the layer in which features count as flush, as a share of the
 // size: witness points stay on the bodies to that share.

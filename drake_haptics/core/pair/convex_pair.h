@@ -17,8 +17,9 @@ namespace drake_haptics {
 ///
 /// Where faces or a face and an edge lie flush, to a billionth of the size,
 /// the witness points are at the center of their overlap (contact_patch.h).
-PairContact QueryConvexPair(const PosedPair& pair, PairState* state,
-                            PairWorkspace* workspace,
-                            GlobalDepthState* global = nullptr);
+[[nodiscard]] PairContact QueryConvexPair(const PosedPair& pair,
+                                          PairState* state,
+                                          PairWorkspace* workspace,
+                                          GlobalDepthState* global = nullptr);
 
 }  // namespace drake_haptics

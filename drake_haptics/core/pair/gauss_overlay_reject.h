@@ -16,7 +16,8 @@ namespace drake_haptics {
 /// them, until none is left or one turns out to lie in B's region too. That
 /// takes one or two clips where the whole overlay takes all pairs of edges.
 /// @param w the vertex pair's vertex of A ⊖ B, in A's frame, m.
-bool OverlayMayExceed(const PosedPair& pair, const MinkowskiVertex& vertex_pair,
-                      const Vec3& w, double floor);
+[[nodiscard]] bool OverlayMayExceed(const PosedPair& pair,
+                                    const MinkowskiVertex& vertex_pair,
+                                    const Vec3& w, double floor);
 
 }  // namespace drake_haptics

@@ -70,7 +70,8 @@ struct GlobalDepthState {
 /// A facet within a billionth of the size of the shallowest one stays the
 /// answer while it is one, so that ties do not chatter; h is the true one.
 /// @param local a local minimum, an upper bound of the depth (WalkDepth).
-GlobalDepth FindGlobalDepth(const PosedPair& pair, const Depth& local,
-                            GlobalDepthState* state);
+[[nodiscard]] GlobalDepth FindGlobalDepth(const PosedPair& pair,
+                                          const Depth& local,
+                                          GlobalDepthState* state);
 
 }  // namespace drake_haptics

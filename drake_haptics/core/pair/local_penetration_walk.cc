@@ -1,6 +1,7 @@
 #include "pair/local_penetration_walk.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 #include "pair/gauss_overlay.h"
@@ -150,6 +151,8 @@ class Walk {
 Depth WalkDepth(const PosedPair& pair, const MinkowskiVertex& start,
                 SurfaceRule rule, const DepthCandidate* known,
                 const WalkBounds& bounds, DepthWorkspace* workspace) {
+  assert(start.a >= 0 && start.a < pair.A.num_vertices());
+  assert(start.b >= 0 && start.b < pair.B.num_vertices());
   return Walk(pair, rule, bounds, workspace).Run(start, known);
 }
 

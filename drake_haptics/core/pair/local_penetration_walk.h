@@ -79,8 +79,10 @@ struct DepthWorkspace {
 ///     spares the look at all that is deeper.
 /// A facet's gap never exceeds that of the shallowest one, so where a bound
 /// ends the walk, the best facet seen still bounds the depth from above.
-Depth WalkDepth(const PosedPair& pair, const MinkowskiVertex& start,
-                SurfaceRule rule, const DepthCandidate* known,
-                const WalkBounds& bounds, DepthWorkspace* workspace);
+[[nodiscard]] Depth WalkDepth(const PosedPair& pair,
+                              const MinkowskiVertex& start, SurfaceRule rule,
+                              const DepthCandidate* known,
+                              const WalkBounds& bounds,
+                              DepthWorkspace* workspace);
 
 }  // namespace drake_haptics

@@ -15,7 +15,8 @@ inline constexpr double kFlushSlack = 1e-9;
 /// The widest feature of P that faces the direction `outward` (unit, in P's
 /// frame) and holds `feature`: where a face or an edge lies flush in the
 /// supporting plane, that face or edge, else the feature itself.
-Feature WidestSupport(const Polytope& P, Feature feature, const Vec3& outward);
+[[nodiscard]] Feature WidestSupport(const Polytope& P, Feature feature,
+                                    const Vec3& outward);
 
 /// Lists the vertex pairs of the facet of A ⊖ B with normal n: its vertices.
 /// Where both bodies lie flush the facet is the difference of two polygons, and

@@ -11,7 +11,8 @@ namespace drake_haptics {
 /// wanted, the larger of their support gaps being the answer: closer than a
 /// billionth of the size, or than a millionth where round-off leaves the
 /// distance unproven.
-bool AreBothWanted(const PosedPair& pair, const Separation& separation);
+[[nodiscard]] bool AreBothWanted(const PosedPair& pair,
+                                 const Separation& separation);
 
 /// The contact at the closest points of a pair that is apart.
 PairContact ContactApart(const PosedPair& pair, const Separation& separation);

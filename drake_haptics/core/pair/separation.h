@@ -34,7 +34,8 @@ struct Separation {
 
 /// Whether four vertices of A ⊖ B still hold the origin between them, strictly
 /// and beyond round-off: then the pair overlaps. False for fewer vertices.
-bool HoldsOrigin(const PosedPair& pair, const SimplexVertexPairs& simplex);
+[[nodiscard]] bool HoldsOrigin(const PosedPair& pair,
+                               const SimplexVertexPairs& simplex);
 
 /// Computes the distance of the pair by the method of Gilbert, Johnson and
 /// Keerthi (1988) on supports that climb from the last answer. Starts from the
@@ -43,8 +44,8 @@ bool HoldsOrigin(const PosedPair& pair, const SimplexVertexPairs& simplex);
 /// of rounds with the best answer so far. A warm search that ends unproven is
 /// made again from nothing.
 /// @param limit distance (m) beyond which the exact answer is not wanted.
-Separation ComputeSeparation(const PosedPair& pair,
-                             const SimplexVertexPairs& start, double limit,
-                             int max_rounds = kMaxSeparationRounds);
+[[nodiscard]] Separation ComputeSeparation(
+    const PosedPair& pair, const SimplexVertexPairs& start, double limit,
+    int max_rounds = kMaxSeparationRounds);
 
 }  // namespace drake_haptics

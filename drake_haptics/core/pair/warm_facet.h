@@ -30,7 +30,8 @@ struct Revisit {
 /// (gauss_turn.h).
 /// @param n_last the facet's last normal, in A's frame; decides the side on
 ///     which two edges pass each other.
-Revisit RevisitFacet(const PosedPair& pair, SurfaceRule rule, Feature feature_A,
-                     Feature feature_B, const Vec3& n_last);
+[[nodiscard]] Revisit RevisitFacet(const PosedPair& pair, SurfaceRule rule,
+                                   Feature feature_A, Feature feature_B,
+                                   const Vec3& n_last);
 
 }  // namespace drake_haptics

@@ -59,14 +59,13 @@ double OutsideSegment(const Segment& s, const Vec3& point) {
 template <typename Allowed>
 double OutsideFacet(const Polytope& polytope, int facet, const Vec3& point,
                     const Allowed& allowed) {
-  const auto loop = polytope.loop_of(facet);
-  const Vec3& normal = polytope.facets[facet].normal;
+  const int start = polytope.facet_loop_start[facet];
+  const int end = polytope.facet_loop_start[facet + 1];
   double outside = 0;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec3& p = polytope.vertices[loop[k]];
-    const Vec3& q = polytope.vertices[loop[(k + 1) % loop.size()]];
-    const Vec3 outward = (q - p).cross(normal).normalized();
-    const double beyond = outward.dot(point - p);
+  for (int k = start; k < end; ++k) {
+    const Vec3& corner = polytope.vertices[polytope.facet_loop[k]];
+    const Vec3& outward = polytope.facet_loop_side[k];
+    const double beyond = outward.dot(point - corner);
     if (beyond > outside)
       outside = std::max(outside, beyond - allowed(outward));
   }

@@ -26,17 +26,16 @@ Vec3 OnCrossedEdges(const PosedPair& pair, Feature edge_A, Feature edge_B,
 
 /// How far (m) the witness lies outside its features, measured along the
 /// contact's plane; zero where the contact is within both.
-double LateralOffset(const PosedPair& pair, Feature feature_A,
-                     Feature feature_B, const Witness& witness);
+[[nodiscard]] double LateralOffset(const PosedPair& pair, Feature feature_A,
+                                   Feature feature_B, const Witness& witness);
 
 /// The same with A out of the walls that stand upright on the contact's plane,
 /// or lean over it.
 /// @param n of the contact, unit, in A's frame.
 /// @param translation_vectors translations of A out of one wall each, in its
 /// frame, m.
-double LateralOffsetOutOfWalls(const PosedPair& pair, Feature feature_A,
-                               Feature feature_B, const Vec3& n,
-                               const Witness& witness,
-                               std::span<const Vec3> translation_vectors);
+[[nodiscard]] double LateralOffsetOutOfWalls(
+    const PosedPair& pair, Feature feature_A, Feature feature_B, const Vec3& n,
+    const Witness& witness, std::span<const Vec3> translation_vectors);
 
 }  // namespace drake_haptics

@@ -172,6 +172,21 @@ def test_what_does_not_belong_together_is_refused(pairs) -> None:
         )
     with pytest.raises(IndexError):
         _core.differentiate_contacts(contacts, T, tool, q, [], [])
+    # A box has one piece, a cup many.
+    cup = next(
+        s
+        for s in random_states(*pairs["spoon in cup"], "shared", 20)
+        if s.contacts().piece_B.max() > 0
+    )
+    with pytest.raises(IndexError):
+        _core.differentiate_contacts(
+            cup.contacts(),
+            T,
+            cup.bodies[0],
+            q,
+            [ground, ground],
+            [constant(q_WO, 7) for q_WO in cup.q[1:]],
+        )
     # A peg has more edges than a box, on the one piece that both are.
     peg = next(
         s

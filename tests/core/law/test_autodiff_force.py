@@ -87,36 +87,6 @@ def test_every_variable_reaches_the_wrench(pairs) -> None:
     assert np.flatnonzero(~reached).tolist() == [13, 26]
 
 
-def test_the_jacobian_is_read_from_it(pairs) -> None:
-    """A turn by a rotation vector changes the quaternion by half of it."""
-    state = random_states(*pairs["peg in torus"], "shared", 1)[0]
-    by_x = state.differentiate_wrench().F_To_W.gradient
-    contacts = state.contacts()
-    found = _core.wrench_jacobian(
-        contacts,
-        state.cluster(contacts),
-        2e-3,
-        state.bodies[0],
-        state.q[0],
-        state.V[0],
-        list(state.bodies[1:]),
-        state.q[1:],
-        state.V[1:],
-        K,
-        KV,
-    )
-    for body, q in enumerate(state.q):
-        w, (x, y, z) = q[0], q[1:4]
-        by_turn = np.array([[-x, -y, -z], [w, z, -y], [-z, w, x], [y, -x, w]]) / 2
-        columns = by_x[:, 13 * body : 13 * body + 13]
-        by_X = np.hstack([columns[:, :4] @ by_turn, columns[:, 4:7]])
-        rows = slice(6 * body - 6, 6 * body)
-        expected_X = found.by_X_WO[rows] if body else found.by_X_WT
-        expected_V = found.by_V_WO[rows] if body else found.by_V_WT
-        np.testing.assert_allclose(by_X, expected_X, atol=1e-9)
-        np.testing.assert_allclose(columns[:, 7:], expected_V, atol=1e-9)
-
-
 def test_arguments_of_other_sizes_are_refused(pairs) -> None:
     state = random_states(*pairs["box on box"], "shared", 1)[0]
     clusters = state.cluster(state.differentiate_contacts())

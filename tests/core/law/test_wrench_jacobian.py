@@ -25,24 +25,6 @@ def wrench(state: State) -> np.ndarray:
     return state.wrench().F_To_W
 
 
-def jacobian(state: State) -> _core.WrenchJacobian:
-    contacts = state.contacts()
-    tool, *objects = state.bodies
-    return _core.wrench_jacobian(
-        contacts,
-        state.cluster(contacts),
-        T,
-        tool,
-        state.q[0],
-        state.V[0],
-        objects,
-        state.q[1:],
-        state.V[1:],
-        K,
-        KV,
-    )
-
-
 def differences(
     state: State, move: Callable[[np.ndarray], State], step: float
 ) -> np.ndarray | None:
@@ -85,7 +67,7 @@ def test_by_the_pose_of_the_tool(pairs, name: str, method: str) -> None:
     for state in random_states(*pairs[name], method, 40):
         move = differences(state, lambda by, s=state: s.displaced(0, by), STEP)
         if move is not None:
-            errors.append(error(jacobian(state).by_X_WT, move))
+            errors.append(error(state.jacobian().by_X[0], move))
     assert len(errors) >= 35
     errors.sort()
     assert np.median(errors) < 1e-8
@@ -105,7 +87,7 @@ def test_by_the_pose_of_an_object(pairs, method: str, body: int) -> None:
             move = differences(state, lambda by, s=state: s.displaced(body, by), STEP)
             if move is None or not np.abs(move).max() > 0:
                 continue
-            found = jacobian(state).by_X_WO[6 * (body - 1) : 6 * body]
+            found = state.jacobian().by_X[body]
             assert error(found, move) < 2e-6
             checked += 1
     assert checked >= 15
@@ -115,11 +97,10 @@ def test_by_the_pose_of_an_object(pairs, method: str, body: int) -> None:
 def test_by_the_velocities(pairs, method: str) -> None:
     """The force is linear in them where no contact turns from approach to departure."""
     for state in random_states(*pairs["peg in torus"], method, 15):
-        found = jacobian(state)
+        found = state.jacobian()
         for body in range(3):
             move = differences(state, lambda by, s=state, b=body: s.faster(b, by), 1e-6)
-            by_V = found.by_V_WO[6 * body - 6 : 6 * body] if body else found.by_V_WT
-            np.testing.assert_allclose(by_V, move, atol=1e-6)
+            np.testing.assert_allclose(found.by_V[body], move, atol=1e-6)
         # The wrench model's B is minus that by the tool's velocity.
         contacts = state.contacts()
         model = _core.penalty_force(
@@ -131,7 +112,7 @@ def test_by_the_velocities(pairs, method: str) -> None:
             K,
             KV,
         ).wrench_model
-        np.testing.assert_allclose(found.by_V_WT, -model[42:].reshape(6, 6), atol=1e-12)
+        np.testing.assert_allclose(found.by_V[0], -model[42:].reshape(6, 6), atol=1e-12)
 
 
 def test_one_vertex_on_a_face_is_the_frozen_model_and_what_turns() -> None:
@@ -144,32 +125,19 @@ def test_one_vertex_on_a_face_is_the_frozen_model_and_what_turns() -> None:
     q = np.array([[w, x, y, z, 0, 0, 1e-3 - arm[2]], [1, 0, 0, 0, 0, 0, 0]])
     tracker = _core.SceneTracker(tool, [ground], T)
     state = State((tool, ground), tracker, "shared", q, np.zeros((2, 6)))
-    contacts = state.contacts()
-    found = _core.wrench_jacobian(
-        contacts,
-        state.cluster(contacts),
-        T,
-        tool,
-        q[0],
-        np.zeros(6),
-        [ground],
-        q[1:],
-        np.zeros((1, 6)),
-        K[:1],
-        KV[:1],
-    )
+    found = state.jacobian()
     up = np.array([0, 0, 1.0])
     G = np.concatenate([np.cross(arm, up), up])
     expected = -K[0] * np.outer(G, G)
     # The vertex turns with the tool: d(r × n) = (δ × r) × n, a force 1 mm thick.
     for i, e in enumerate(np.eye(3)):
         expected[:3, i] += K[0] * 1e-3 * np.cross(np.cross(e, arm), up)
-    np.testing.assert_allclose(found.by_X_WT, expected, atol=1e-9)
+    np.testing.assert_allclose(found.by_X[0], expected, atol=1e-9)
     # Moved together nothing changes but the direction of what is seen.
     shift = np.eye(6)
     p = q[0, 4:]
     shift[3:, :3] = -np.array([[0, -p[2], p[1]], [p[2], 0, -p[0]], [-p[1], p[0], 0]])
-    together = found.by_X_WT + found.by_X_WO @ np.linalg.inv(shift)
+    together = found.by_X[0] + found.by_X[1] @ np.linalg.inv(shift)
     np.testing.assert_allclose(together[:, 3:], 0, atol=1e-9)
 
 
@@ -178,116 +146,20 @@ def test_a_face_exactly_flush_has_a_finite_answer() -> None:
     for height in (-1e-3, 1e-3):
         q = np.array([[1, 0, 0, 0, 0, 0, 0.01 + height], [1, 0, 0, 0, 0, 0, 0]])
         tracker = _core.SceneTracker(tool, [ground], T)
-        contacts = tracker.query(q[0])
-        clusters = _core.share_stiffness(contacts, T)
-        found = _core.wrench_jacobian(
-            contacts,
-            clusters,
-            T,
-            tool,
-            q[0],
-            np.zeros(6),
-            [ground],
-            q[1:],
-            np.zeros((1, 6)),
-            K[:1],
-            KV[:1],
-        )
-        assert np.isfinite(found.by_X_WT).all()
+        found = State((tool, ground), tracker, "shared", q, np.zeros((2, 6))).jacobian()
+        assert np.isfinite(found.by_X[0]).all()
         np.testing.assert_allclose(
-            found.by_X_WT[3:, 3:], np.diag([0, 0, -K[0]]), atol=1e-6
+            found.by_X[0][3:, 3:], np.diag([0, 0, -K[0]]), atol=1e-6
         )
         # The layer resists rocking, to either side.
-        assert found.by_X_WT[0, 0] < 0
-        assert found.by_X_WT[1, 1] < 0
+        assert found.by_X[0][0, 0] < 0
+        assert found.by_X[0][1, 1] < 0
 
 
 def test_nothing_near_changes_nothing(pairs) -> None:
     tool, solid = pairs["box on box"]
     q = np.array([[1.0, 0, 0, 0, 0, 0, 1], [1, 0, 0, 0, 0, 0, 0]])
-    contacts = _core.SceneTracker(tool, [solid], T).query(q[0])
-    for clusters in (
-        _core.share_stiffness(contacts, T),
-        _core.cluster_contacts(contacts, T, T),
-    ):
-        found = _core.wrench_jacobian(
-            contacts,
-            clusters,
-            T,
-            tool,
-            q[0],
-            np.zeros(6),
-            [solid],
-            q[1:],
-            np.zeros((1, 6)),
-            K[:1],
-            KV[:1],
-        )
-        assert not found.by_X_WT.any()
-        assert not found.by_X_WO.any()
-
-
-def test_what_does_not_belong_together_is_refused(pairs) -> None:
-    state = random_states(*pairs["box on box"], "shared", 1)[0]
-    contacts = state.contacts()
-    tool, *objects = state.bodies
-    rest = (tool, state.q[0], state.V[0], objects, state.q[1:], state.V[1:], K, KV)
-    nothing = _core.SceneTracker(tool, objects, T).query([1, 0, 0, 0, 0, 0, 1])
-    if len(contacts) == len(nothing):
-        pytest.skip("no contacts")
-    with pytest.raises(ValueError, match="clusters must be those of the contacts"):
-        _core.wrench_jacobian(contacts, state.cluster(nothing), T, *rest)
-    clusters = state.cluster(contacts)
-    with pytest.raises(ValueError, match="one row"):
-        _core.wrench_jacobian(contacts, clusters, T, *rest[:-1], KV[:1])
-    with pytest.raises(ValueError, match="X_WO"):
-        _core.wrench_jacobian(
-            contacts, clusters, T, *rest[:4], np.nan * state.q[1:], *rest[5:]
-        )
-
-
-def test_other_bodies_than_the_query_had_are_refused(pairs) -> None:
-    """Pieces, and features of pieces, that are not there."""
-    state = next(
-        s
-        for s in random_states(*pairs["spoon in cup"], "shared", 20)
-        if s.contacts().piece_B.max() > 0
-    )
-    contacts = state.contacts()
-    small = box([0.01, 0.01, 0.01])
-    rest = (state.q[1:], state.V[1:], K, KV)
-    for tool, solid in ((state.bodies[0], small), (small, state.bodies[1])):
-        if tool is small and contacts.piece_A.max() == 0:
-            continue
-        with pytest.raises(IndexError):
-            _core.wrench_jacobian(
-                contacts,
-                state.cluster(contacts),
-                T,
-                tool,
-                state.q[0],
-                state.V[0],
-                [solid, solid],
-                *rest,
-            )
-    # A peg has more edges than a box, on the one piece that both are.
-    peg = next(
-        s
-        for s in random_states(*pairs["peg in torus"], "shared", 40)
-        if s.contacts().feature_A[:, 1].max() > 11
-    )
-    contacts = peg.contacts()
-    with pytest.raises(IndexError, match="feature"):
-        _core.wrench_jacobian(
-            contacts,
-            peg.cluster(contacts),
-            T,
-            small,
-            peg.q[0],
-            peg.V[0],
-            list(peg.bodies[1:]),
-            peg.q[1:],
-            peg.V[1:],
-            K,
-            KV,
-        )
+    tracker = _core.SceneTracker(tool, [solid], T)
+    for method in METHODS:
+        found = State((tool, solid), tracker, method, q, np.zeros((2, 6))).jacobian()
+        assert not found.by_X.any()

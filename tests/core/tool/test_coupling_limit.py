@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from coupling_wrench import coupling_wrench
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
@@ -27,9 +28,7 @@ def pull(
     gains: _core.CouplingGains = GAINS,
 ) -> np.ndarray:
     """All (84,) of a handle at rest in the world and a tool that far from it."""
-    return _core.coupling_wrench(
-        REST, STILL, REST, pose(-twist, -stretch), -speed, gains
-    )
+    return coupling_wrench(REST, STILL, REST, pose(-twist, -stretch), -speed, gains)
 
 
 def directions(seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -122,7 +121,7 @@ def test_no_motion_of_the_handle_makes_it_press_harder(seed):
             pose(rng.normal(size=3), size * rng.normal(size=3)) for _ in range(3)
         )
         V_WH, V_WT = 10 * size * rng.normal(size=(2, 6))
-        out = _core.coupling_wrench(q_WH, V_WH, q_HT, q_WT, V_WT, GAINS)
+        out = coupling_wrench(q_WH, V_WH, q_HT, q_WT, V_WT, GAINS)
         assert np.linalg.norm(out[:3]) <= MAX_TORQUE_NM * (1 + 1e-14)
         assert np.linalg.norm(out[3:6]) <= MAX_FORCE_N * (1 + 1e-14)
 

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from coupling_wrench import coupling_wrench
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.tree import JacobianWrtVariable
 
-from drake_haptics._core import ArmDynamics, CouplingGains, PosePath, coupling_wrench
+from drake_haptics._core import ArmDynamics, CouplingGains, PosePath
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.systems.arm.simulated_arm import make_arm_plant

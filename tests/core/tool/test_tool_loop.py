@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coupling_wrench import coupling_wrench
 
 from drake_haptics import _core
 from drake_haptics.evaluation.shapes import SHAPES
@@ -68,7 +69,7 @@ def test_it_is_its_parts_one_after_the_other() -> None:
             np.array([_STIFFNESS]),
             np.array([_DAMPING]),
         )
-        coupling = _core.coupling_wrench(
+        coupling = coupling_wrench(
             handle[:7], handle[7:], _X_HT, state[:7], state[7:], given["gains"]
         )
         model = force.wrench_model + coupling[:78]

@@ -75,14 +75,74 @@ def test_a_tip_over_a_plane_that_moves_is_carried_exactly() -> None:
         assert len(carried) == len(expected) == 1
         np.testing.assert_allclose(carried.distance, expected.distance, atol=1e-12)
         np.testing.assert_allclose(carried.nhat_BA_W, expected.nhat_BA_W, atol=1e-12)
-        np.testing.assert_allclose(
-            carried.p_WC, (carried.p_WCa + carried.p_WCb) / 2, atol=1e-15
+        for name in ("p_WCa", "p_WCb", "p_WC"):
+            np.testing.assert_allclose(
+                getattr(carried, name), getattr(expected, name), atol=1e-12
+            )
+
+
+CORNER_M = 0.01 * np.sqrt(3)  # of a cube of 20 mm, from its center
+GAP_M = 1e-3
+FAR = np.array([1.0, 2.0, 3.0])
+
+
+def corner_pose(up: float, height_m: float) -> np.ndarray:
+    """A cube of 20 mm with one corner on the z axis, the others above or below it."""
+    R, _ = Rotation.align_vectors([[0, 0, up]], [np.ones(3) / np.sqrt(3)])
+    return turned([0, 0, height_m - up * CORNER_M], R.as_rotvec())
+
+
+EDGE_POSE = turned(
+    [0, 0, -0.01 * np.sqrt(2)], [np.pi / 4, 0, 0]
+)  # its edge is y = z = 0
+
+
+@pytest.mark.parametrize("is_swapped", [False, True])
+@pytest.mark.parametrize(
+    "below", [corner_pose(1, 0), EDGE_POSE], ids=["corner", "edge"]
+)
+def test_a_normal_between_closest_points_turns_as_the_query_says(
+    below: np.ndarray, is_swapped: bool
+) -> None:
+    """Of a corner near a corner or an edge: exactly sideways, else to first order."""
+    cube = box((0.02, 0.02, 0.02))
+    order = slice(None, None, -1) if is_swapped else slice(None)
+
+    def at(shift: object) -> np.ndarray:
+        above = corner_pose(-1, GAP_M)
+        above[4:] += shift
+        # All of it turned and far away.
+        R = Rotation.from_rotvec([0.3, -0.2, 0.1])
+        poses = []
+        for q in (above, below):
+            R_WB = R * Rotation.from_quat(np.roll(q[:4], -1))
+            poses.append(turned(FAR + R.apply(q[4:]), R_WB.as_rotvec()))
+        return np.concatenate(poses[order])
+
+    carrier = ContactExtrapolation(cube, [cube], [None])
+    contacts = query(cube, [cube], at([0, 0, 0]))
+    assert len(contacts) == 1
+    kinds = {contacts.feature_A[0, 0], contacts.feature_B[0, 0]}
+    assert kinds == ({0} if below is not EDGE_POSE else {0, 1})
+
+    def errors(shift: object) -> np.ndarray:
+        carried = carrier.advance(contacts, at([0, 0, 0]), at(shift))
+        true = query(cube, [cube], at(shift))
+        return np.array(
+            [
+                np.abs(getattr(carried, name) - getattr(true, name)).max()
+                for name in ("distance", "nhat_BA_W", "p_WC")
+            ]
         )
-        # The tip is where it is; its foot stays behind on the plane.
-        side = "p_WCa" if order == slice(None) else "p_WCb"
-        np.testing.assert_allclose(
-            getattr(carried, side), getattr(expected, side), atol=1e-12
-        )
+
+    assert errors([0.01 * GAP_M, 0.1 * GAP_M, 0])[1] < 1e-10
+    steps = [errors([0.2 * s, s, -s]) for s in (0.01 * GAP_M, 0.02 * GAP_M)]
+    assert steps[1][1] == pytest.approx(4 * steps[0][1], rel=0.1)
+    assert (steps[1] < [1e-8, 1e-3, 1e-6]).all()
+    # Past each other the normal stays: the one is pushed back out of the other.
+    through = carrier.advance(contacts, at([0, 0, 0]), at([0, 0, -2 * GAP_M]))
+    np.testing.assert_allclose(through.nhat_BA_W, contacts.nhat_BA_W, atol=1e-9)
+    np.testing.assert_allclose(through.distance, -GAP_M, atol=1e-9)
 
 
 def test_a_ball_that_rolls_is_wrong_by_the_square_of_its_motion() -> None:
@@ -134,6 +194,9 @@ def test_the_rate_of_the_distance_is_that_of_the_query() -> None:
         carried = carrier.advance(still, constant(found, 14), now)
         np.testing.assert_allclose(
             carried.distance.gradient, true.distance.gradient, atol=1e-9
+        )
+        np.testing.assert_allclose(
+            carried.nhat_BA_W.gradient, true.nhat_BA_W.gradient, atol=1e-6
         )
         # And those of all else that is carried are those of doubles.
         step = 1e-6

@@ -24,7 +24,7 @@ from pydrake.systems.primitives import ConstantVectorSource
 from twin_check import check_twin
 
 from drake_haptics import systems
-from drake_haptics._core import AutoDiffVector, CouplingGains, coupling_wrench
+from drake_haptics._core import AutoDiffVector, RigidToolDynamics
 from drake_haptics.systems.framework.differentiable_system import DifferentiableSystem
 
 PERIOD, OFFSET = 0.01, 0.002
@@ -386,16 +386,11 @@ def test_the_core_refuses_arguments_by_different_variables():
     def vector(size, num_derivatives):
         return AutoDiffVector(np.ones(size), np.zeros((size, num_derivatives)))
 
-    pose = np.array([1.0, 0, 0, 0, 0, 0, 0])
-    gains = CouplingGains(1.0, 1.0, 1.0, 1.0)
+    dynamics = RigidToolDynamics(0.1, np.zeros(3), 1e-4 * np.eye(3))
     with pytest.raises(ValueError, match="by the same variables"):
-        coupling_wrench(
-            vector(7, 3), vector(6, 3), pose, vector(7, 3), vector(6, 2), gains
-        )
-    with pytest.raises(ValueError, match="V_WT must have 6 entries, has 5"):
-        coupling_wrench(
-            vector(7, 3), vector(6, 3), pose, vector(7, 3), vector(5, 3), gains
-        )
+        dynamics.step(vector(13, 3), vector(78, 2), 1e-3)
+    with pytest.raises(ValueError, match="wrench_model must have 78 entries, has 5"):
+        dynamics.step(vector(13, 3), vector(5, 3), 1e-3)
     with pytest.raises(ValueError, match="a row for each of the 2 values"):
         AutoDiffVector(np.ones(2), np.ones((3, 1)))
 
