@@ -9,7 +9,7 @@ CORE := $(wildcard drake_haptics/core/*/* drake_haptics/include/*/*) drake_hapti
 # All C and C++ but the programs that time other libraries.
 FORMATTED = $(shell find drake_haptics/core drake_haptics/include examples tests -name '*.c' -o -name '*.cc' -o -name '*.h')
 
-.PHONY: demo tutorials test test-newest lint unit docs format build core-tests fuzz clean
+.PHONY: demo tutorials test test-newest lint unit docs format build wheel core-tests fuzz clean
 .DEFAULT_GOAL := demo
 
 demo: $(STAMP)
@@ -69,6 +69,13 @@ build:
 	  --config-settings=cmake.define.CMAKE_UNITY_BUILD=OFF -e .
 	$(BIN)/python -m nanobind.stubgen -q -m drake_haptics._core -o drake_haptics/_core.pyi
 	@touch $(STAMP) $(STAMP)-test
+
+# The wheel of PYTHON, and where there is a newer Python that of the stable ABI, in dist/:
+# repaired, and tried where there is no compiler. Each compiles the core, some minutes.
+wheel:
+	.ci/wheel $(PYTHON)
+	@newest=$$(.ci/newest-python $(PYTHON)) || exit 1; \
+	if [ -n "$$newest" ]; then .ci/wheel "$$newest"; fi
 
 # The core's own tests in C++, under sanitizers and without Python: all of them, or one as
 # of CORE_TEST=tracker/supported_facets_test. Only what was edited is compiled again, into the

@@ -38,7 +38,9 @@ def rest_on_an_arm(folder: Path, angular_damping: float) -> dict[str, np.ndarray
 
     Returns:
         `spin`, about the shaft, rad/s; `yaw`, rad; `kinetic` energy, J; `support`,
-        the vertical force of contact, N; `slides`, whether any contact does.
+        the vertical force of contact, N; `slides`, whether any contact does; `across`,
+        the part of the angular velocity across the line through its two contacts,
+        rad/s, or NaN where there are not two.
     """
     scene = PlantScene()
     plant = scene.plant
@@ -103,9 +105,14 @@ def rest_on_an_arm(folder: Path, angular_damping: float) -> dict[str, np.ndarray
             slides = any(scene.read(rendering, "friction_force").sliding)
             support = scene.read(rendering, "F_To_W")[5]
             yaw = R_WT.ToRollPitchYaw().yaw_angle()
-            row.append([V_T[2], yaw, 0.5 * V_T @ M_T @ V_T, support, slides])
+            p_WC = scene.read(rendering, "contacts").p_WCa
+            across = np.nan
+            if len(p_WC) == 2:
+                line = (p_WC[1] - p_WC[0]) / np.linalg.norm(p_WC[1] - p_WC[0])
+                across = np.linalg.norm(V_WT[:3] - line * (V_WT[:3] @ line))
+            row.append([V_T[2], yaw, 0.5 * V_T @ M_T @ V_T, support, slides, across])
         rows.append(row)
-    names = ("spin", "yaw", "kinetic", "support", "slides")
+    names = ("spin", "yaw", "kinetic", "support", "slides", "across")
     return dict(zip(names, np.array(rows).T, strict=True))
 
 
@@ -126,6 +133,11 @@ def test_two_spatulas_stand_in_their_holders(tmp_path, angular_damping):
     assert np.ptp(last, axis=1).max() < np.radians(5.0)
     for kinetic in found["kinetic"]:
         assert kinetic[375:].max() <= max(1.2 * kinetic[250:375].max(), STILL_J)
+    for spin, across in zip(found["spin"], found["across"], strict=True):
+        if np.abs(spin[375:]).max() > 0.1:
+            # It rocks: always on two contacts, about the line through them.
+            assert np.isfinite(across[375:]).mean() > 0.95
+            assert np.nanmax(across[375:]) < 0.2 * np.abs(spin[375:]).max()
     if angular_damping:
         assert np.abs(found["spin"][:, 375:]).max() < 1e-2
         assert found["kinetic"][:, 375:].max() < STILL_J
