@@ -106,16 +106,27 @@ $(VENV)/bin/python:
 	  echo "Or name one: CXX=clang++ make demo"; exit 1; fi
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); exit 1; }
 
+# The pip of CPython 3.10.0 to 3.10.2 installs no clone for editing, and does not say why.
+define check_pip
+@$(BIN)/python -c 'import pip, sys; sys.exit([*map(int, pip.__version__.split(".")[:2])] < [21, 3])' || { \
+  echo "drake_haptics needs pip 21.3 or newer; run: $(BIN)/python -m pip install --upgrade pip"; \
+  exit 1; }
+endef
+
 # Without --no-compile, pip compiles eleven thousand files of Python one after the other,
 # of which most are never imported; what is imported is compiled then. It tells what it
 # does: minutes of silence look like a stop.
 $(STAMP): pyproject.toml $(CORE) | $(VENV)/bin/python
-	@echo "Setting up $(VENV): Drake and the C++ core, a few minutes the first time."
+	$(check_pip)
+	@echo "Setting up $(VENV), $$($(BIN)/python --version): the newest Drake for it, 1.51.1 or later," \
+	  "and the C++ core, a few minutes the first time."
 	$(BIN)/pip install --disable-pip-version-check --no-compile -e .
 	@touch $@
 
 $(STAMP)-test: pyproject.toml $(CORE) | $(VENV)/bin/python
-	@echo "Setting up $(VENV): Drake, the C++ core and the test tools, a few minutes the first time."
+	$(check_pip)
+	@echo "Setting up $(VENV), $$($(BIN)/python --version): the newest Drake for it, 1.51.1 or later," \
+	  "the C++ core and the test tools, a few minutes the first time."
 	$(BIN)/pip install --disable-pip-version-check --no-compile -e ".[test]"
 	@touch $@ $(STAMP)
 
