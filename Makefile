@@ -29,12 +29,14 @@ unit: $(STAMP)-test
 	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder $(TESTS)
 
 # What depends on Python and Drake themselves (calls of the core, loop, AutoDiff, device,
-# command line), on the newest CPython of this machine that Drake has a wheel for.
-NEWEST_TESTS := $(wildcard tests/core/*/test_*.py tests/loop/test_*.py) \
+# LCM, command line, newer parts of Drake), on the newest CPython of this machine that Drake has a wheel for.
+NEWEST_TESTS := $(wildcard tests/core/*/test_*.py tests/loop/test_*.py tests/device/lcm/test_*.py) \
   $(foreach part,device lcm tool,$(wildcard tests/systems/$(part)/test_*.py)) \
   tests/systems/contact/test_contact_query.py tests/device/test_udp_device.py \
-  $(foreach part,gradients haptic_rendering,tests/rendering/test_$(part).py) \
-  $(foreach part,cli_run cli_help closed_loop_two_processes,tests/acceptance/test_$(part).py)
+  $(foreach part,gradients haptic_rendering continuous_steps hydroelastic mouse_spring nested \
+    two_tools_on_an_arm,tests/rendering/test_$(part).py) \
+  $(foreach part,cli_run cli_help closed_loop_two_processes lcm_docs model_visualizer, \
+    tests/acceptance/test_$(part).py)
 test-newest:
 	@newest=$$(.ci/newest-python $(PYTHON)) || exit 1; \
 	if [ -z "$$newest" ]; then echo "Skipped: the tests on a newer Python."; exit 0; fi; \
