@@ -116,6 +116,7 @@ def rest_on_an_arm(folder: Path, angular_damping: float) -> dict[str, np.ndarray
     return dict(zip(names, np.array(rows).T, strict=True))
 
 
+@pytest.mark.filterwarnings("ignore:Drake's own contact")
 @pytest.mark.parametrize("angular_damping", [0.0, 1e-4])
 def test_two_spatulas_stand_in_their_holders(tmp_path, angular_damping):
     """One may rock about the line through its two contacts; neither turns for ever.
