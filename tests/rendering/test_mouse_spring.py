@@ -15,7 +15,7 @@ from drake_haptics.scene.schema import ContactParameters
 
 pytestmark = pytest.mark.skipif(
     not hasattr(VisualizationConfig(), "mouse_interaction_stiffness"),
-    reason="this Drake's Meshcat has no mouse spring: it came with Drake 1.57",
+    reason="this Drake's Meshcat has no mouse spring: it came after Drake 1.56",
 )
 
 MASS, SIDE_M, PULL_M = 0.1, 0.04, 0.01
