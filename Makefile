@@ -9,7 +9,7 @@ CORE := $(wildcard drake_haptics/core/*/* drake_haptics/include/*/*) drake_hapti
 # All C and C++ but the programs that time other libraries.
 FORMATTED = $(shell find drake_haptics/core drake_haptics/include examples tests -name '*.c' -o -name '*.cc' -o -name '*.h')
 
-.PHONY: demo tutorials test test-newest lint unit docs format build core-tests fuzz clean
+.PHONY: demo tutorials test test-newest lint unit docs format build wheel core-tests fuzz clean
 .DEFAULT_GOAL := demo
 
 demo: $(STAMP)
@@ -29,12 +29,14 @@ unit: $(STAMP)-test
 	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder $(TESTS)
 
 # What depends on Python and Drake themselves (calls of the core, loop, AutoDiff, device,
-# command line), on the newest CPython of this machine that Drake has a wheel for.
-NEWEST_TESTS := $(wildcard tests/core/*/test_*.py tests/loop/test_*.py) \
+# LCM, command line, newer parts of Drake), on the newest CPython of this machine that Drake has a wheel for.
+NEWEST_TESTS := $(wildcard tests/core/*/test_*.py tests/loop/test_*.py tests/device/lcm/test_*.py) \
   $(foreach part,device lcm tool,$(wildcard tests/systems/$(part)/test_*.py)) \
   tests/systems/contact/test_contact_query.py tests/device/test_udp_device.py \
-  $(foreach part,gradients haptic_rendering,tests/rendering/test_$(part).py) \
-  $(foreach part,cli_run cli_help closed_loop_two_processes,tests/acceptance/test_$(part).py)
+  $(foreach part,gradients haptic_rendering continuous_steps hydroelastic mouse_spring nested \
+    two_tools_on_an_arm,tests/rendering/test_$(part).py) \
+  $(foreach part,cli_run cli_help closed_loop_two_processes lcm_docs model_visualizer, \
+    tests/acceptance/test_$(part).py)
 test-newest:
 	@newest=$$(.ci/newest-python $(PYTHON)) || exit 1; \
 	if [ -z "$$newest" ]; then echo "Skipped: the tests on a newer Python."; exit 0; fi; \
@@ -70,6 +72,13 @@ build:
 	$(BIN)/python -m nanobind.stubgen -q -m drake_haptics._core -o drake_haptics/_core.pyi
 	@touch $(STAMP) $(STAMP)-test
 
+# The wheel of PYTHON, and where there is a newer Python that of the stable ABI, in dist/:
+# repaired, and tried where there is no compiler. Each compiles the core, some minutes.
+wheel:
+	.ci/wheel $(PYTHON)
+	@newest=$$(.ci/newest-python $(PYTHON)) || exit 1; \
+	if [ -n "$$newest" ]; then .ci/wheel "$$newest"; fi
+
 # The core's own tests in C++, under sanitizers and without Python: all of them, or one as
 # of CORE_TEST=tracker/supported_facets_test. Only what was edited is compiled again, into the
 # folder of tests/core/test_cpp.py, by whose settings it is configured.
@@ -99,16 +108,27 @@ $(VENV)/bin/python:
 	  echo "Or name one: CXX=clang++ make demo"; exit 1; fi
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); exit 1; }
 
+# The pip of CPython 3.10.0 to 3.10.2 installs no clone for editing, and does not say why.
+define check_pip
+@$(BIN)/python -c 'import pip, sys; sys.exit([*map(int, pip.__version__.split(".")[:2])] < [21, 3])' || { \
+  echo "drake_haptics needs pip 21.3 or newer; run: $(BIN)/python -m pip install --upgrade pip"; \
+  exit 1; }
+endef
+
 # Without --no-compile, pip compiles eleven thousand files of Python one after the other,
 # of which most are never imported; what is imported is compiled then. It tells what it
 # does: minutes of silence look like a stop.
 $(STAMP): pyproject.toml $(CORE) | $(VENV)/bin/python
-	@echo "Setting up $(VENV): Drake and the C++ core, a few minutes the first time."
+	$(check_pip)
+	@echo "Setting up $(VENV), $$($(BIN)/python --version): the newest Drake for it, 1.51.1 or later," \
+	  "and the C++ core, a few minutes the first time."
 	$(BIN)/pip install --disable-pip-version-check --no-compile -e .
 	@touch $@
 
 $(STAMP)-test: pyproject.toml $(CORE) | $(VENV)/bin/python
-	@echo "Setting up $(VENV): Drake, the C++ core and the test tools, a few minutes the first time."
+	$(check_pip)
+	@echo "Setting up $(VENV), $$($(BIN)/python --version): the newest Drake for it, 1.51.1 or later," \
+	  "the C++ core and the test tools, a few minutes the first time."
 	$(BIN)/pip install --disable-pip-version-check --no-compile -e ".[test]"
 	@touch $@ $(STAMP)
 

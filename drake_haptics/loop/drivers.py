@@ -149,7 +149,8 @@ def AddLcmDriver(
     Run the diagram in real time: the time of its context is the gate's clock.
 
     Args:
-        builder: Has the arm, and Drake's `LcmInterfaceSystem` of the same `lcm`.
+        builder: Has the arm, and Drake's `LcmInterfaceSystem` of the same `lcm`;
+            without that, call `lcm.HandleSubscriptions(0)` before each tick.
         arm: A backend as `HapticDevice` documents it; its world is the base frame B.
         lcm: LCM instance to send and listen with.
         period_s: The device's tick, s.

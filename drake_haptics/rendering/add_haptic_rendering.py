@@ -36,7 +36,7 @@ from drake_haptics.scene.schema import (
 from drake_haptics.scene.validation import SceneWarning, check_rendering
 from drake_haptics.systems.device.haptic_device import HapticDevice
 
-# The tick of effects with a memory in a plant without a time step, s.
+# The tick of effects with a memory, and the longest step, without a time step, s.
 _DEFAULT_PERIOD_S = 1e-3
 
 
@@ -95,7 +95,9 @@ def AddHapticRendering(
         device: The handle's, not yet in a builder, as of `make_device_port`.
         X_HT: Pose of the tool in the handle at rest; the identity where not given.
         period_s: The tick of effects with a memory, and the device's, s; where not
-            given, the plant's time step, or 1 ms for a continuous plant.
+            given, the plant's time step, or 1 ms for a continuous plant. The
+            integrator of a continuous plant takes no longer steps, so that no tool
+            slower than `skin_speed_m_per_s` is in a shape before it is near it.
         name: Name of the system in the builder.
         progress: Called while meshes are cut with the name of the body and the share
             done, from 0 to 1.

@@ -45,7 +45,8 @@ class HapticRenderingConfig:
         coupling: Gains between a handle and the tool. Defaults to no handle.
         X_HT: Pose of the tool in the handle at rest.
         period_s: Tick of effects with a memory, and of the device, s. Defaults to the
-            plant's time step, or 1 ms for a continuous plant.
+            plant's time step, or 1 ms for a continuous plant, whose integrator takes no
+            longer steps.
         name: Name of the system in the builder.
     """
 

@@ -97,7 +97,8 @@ class HapticRendering(Diagram):
             coupling: Gains between a handle and the tool; None for no handle.
             device: The handle's, if it is to be inside; not yet in a builder.
             X_HT: Pose of the tool in the handle at rest.
-            period_s: The tick of effects with a memory, s.
+            period_s: The tick of effects with a memory, and the longest step of a
+                continuous plant's integrator, s.
 
         Raises:
             ValueError: A gain or size is out of range, or an effect or the device
@@ -108,7 +109,11 @@ class HapticRendering(Diagram):
         self._tool = tool
         self._objects = tuple(objects)
         self._skin_speed_m_per_s = calc_skin_speed(contact, period_s)
-        wiring = RenderingWiring(tool, objects)
+        wiring = RenderingWiring(
+            tool,
+            objects,
+            None if tool.body.GetParentPlant().time_step() else period_s,
+        )
         wiring.add_contact(contact, effects, materials, period_s)
         if coupling is not None:
             wiring.add_coupling(make_coupling_gains(coupling, device), X_HT, device)
@@ -139,7 +144,7 @@ class HapticRendering(Diagram):
         """Speed at which one step of the plant crosses the contact tolerance, m/s.
 
         With `contact.query_rate_hz`, one step of the query; of a plant without a time
-        step, the tick of effects with a memory.
+        step, `period_s`, which its integrator does not step beyond.
         """
         return self._skin_speed_m_per_s
 

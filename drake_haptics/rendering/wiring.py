@@ -32,12 +32,19 @@ class RenderingWiring:
         outputs: What it will export, by name.
     """
 
-    def __init__(self, tool: RenderedBody, objects: Sequence[RenderedBody]):
+    def __init__(
+        self,
+        tool: RenderedBody,
+        objects: Sequence[RenderedBody],
+        largest_step_s: float | None,
+    ):
         """Begins with the motion of tool and objects.
 
         Args:
             tool: The body that is moved.
             objects: Objects that the tool meets.
+            largest_step_s: Longest step of a continuous plant's integrator, s; None
+                for a discrete plant.
         """
         self.builder = DiagramBuilder()
         self._tool = tool
@@ -52,7 +59,7 @@ class RenderingWiring:
         self._contact_stiffness: Sequence[float] = []
         self._springs: list[tuple[float, float]] = []
         motions = self.builder.AddNamedSystem(
-            "body_motions", BodyMotions(tool.index, self._moving)
+            "body_motions", BodyMotions(tool.index, self._moving, largest_step_s)
         )
         for port in map(motions.get_input_port, range(motions.num_input_ports())):
             self.builder.ExportInput(port, port.get_name())

@@ -43,20 +43,28 @@ class BodyMotions(Diagram):
     * `V_WT` and `V_WO_<name>` (6) are their spatial velocities [ω; v] at the
       frame's origin in the world, rad/s and m/s.
 
-    It has no state, and converts to AutoDiffXd.
+    It has no state, and converts to AutoDiffXd. With a largest step it has a periodic
+    publish event without a handler, at which every step of an integrator ends.
     """
 
-    def __init__(self, tool: BodyIndex, objects: Mapping[str, BodyIndex]):
+    def __init__(
+        self,
+        tool: BodyIndex,
+        objects: Mapping[str, BodyIndex],
+        largest_step_s: float | None = None,
+    ):
         """Constructs the system.
 
         Args:
             tool: The body that is the tool.
             objects: Bodies of the objects that move, by the names of the objects.
+            largest_step_s: Longest step that an integrator may take, s; None for a
+                discrete plant, which has steps of its own.
         """
         super().__init__()
         builder = DiagramBuilder()
         vector = builder.AddNamedSystem(
-            "vector", _BodyMotionsVector([tool, *objects.values()])
+            "vector", _BodyMotionsVector([tool, *objects.values()], largest_step_s)
         )
         for port in map(vector.get_input_port, range(2)):
             builder.ExportInput(port, port.get_name())
@@ -72,9 +80,19 @@ def _BodyMotionsVector_(T: type) -> type:
     class Impl(LeafSystem_[T]):
         """All outputs of a `BodyMotions`, one after another."""
 
-        def _construct(self, bodies: list[BodyIndex], converter: Any = None) -> None:
+        def _construct(
+            self,
+            bodies: list[BodyIndex],
+            largest_step_s: float | None,
+            converter: Any = None,
+        ) -> None:
             LeafSystem_[T].__init__(self, converter=converter)
             self._bodies = [int(body) for body in bodies]
+            self._largest_step_s = largest_step_s
+            if largest_step_s is not None:
+                self.DeclarePeriodicPublishEvent(
+                    largest_step_s, 0.0, lambda context: None
+                )
             self._poses = self.DeclareAbstractInputPort(
                 "body_poses", AbstractValue.Make([RigidTransform_[T]()])
             )
@@ -89,7 +107,9 @@ def _BodyMotionsVector_(T: type) -> type:
             )
 
         def _construct_copy(self, other: Any, converter: Any = None) -> None:
-            Impl._construct(self, other._bodies, converter=converter)
+            Impl._construct(
+                self, other._bodies, other._largest_step_s, converter=converter
+            )
 
         def _calc_motions(self, context: Any, motions: Any) -> None:
             poses = self._poses.Eval(context)

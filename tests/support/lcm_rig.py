@@ -1,9 +1,6 @@
 """Devices behind LCM messages, and a host's loop, as diagrams."""
 
-from importlib.metadata import version
-
 import numpy as np
-import pytest
 from one_axis_device import make_one_axis_device
 from pydrake.math import RigidTransform
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
@@ -33,14 +30,6 @@ START = np.array(
 )
 
 
-# Simulator.AdvanceTo of Drake 1.58 lets other threads of Python run, and its
-# LcmInterfaceSystem calls handlers of Python all the same: the interpreter crashes.
-HANDLERS_MAY_CRASH = pytest.mark.skipif(
-    tuple(map(int, version("drake").split(".")[:2])) >= (1, 58),
-    reason="Drake 1.58 calls handlers of Python without its lock",
-)
-
-
 def make_arm():
     """An arm whose hand rests for half a second, then goes 2 cm down."""
     preset = load_device_preset("phantom_premium_1_5_6dof")
@@ -66,7 +55,7 @@ def make_spring(stiffness_N_per_m=100.0, origin=START):
 
 
 def add_lcm(builder, lcm):
-    """Adds what has the subscriptions handled."""
+    """Adds what has subscriptions of Drake's systems handled; not those of Python."""
     builder.AddSystem(LcmInterfaceSystem(lcm))
 
 

@@ -21,6 +21,7 @@ class MeshcatPage:
     def __init__(self, meshcat: Meshcat):
         self._meshcat = meshcat
         self._before = meshcat.GetNumActiveConnections()
+        self._gamepads = 0
         self._socket = websocket.create_connection(meshcat.ws_url(), timeout=BOUND_S)
         self._wait(lambda: meshcat.GetNumActiveConnections() > self._before)
 
@@ -60,6 +61,16 @@ class MeshcatPage:
         clicks = self._meshcat.GetButtonClicks(name)
         self._send(type="button", name=name)
         self._wait(lambda: self._meshcat.GetButtonClicks(name) > clicks)
+
+    def send_drag(self, path: str, anchor: list[float], target: list[float]) -> None:
+        """Drags an object by a point of it, m, and waits until Meshcat knows.
+
+        Without a path and points the object is let go.
+        """
+        self._send(type="mouse_drag", name=path, drag_anchor=anchor, drag_target=target)
+        # A drag cannot be read back; what comes after it on the same wire can.
+        self._gamepads += 1
+        self.send_gamepad([float(self._gamepads)], [])
 
     def send_camera(self, X_WC: RigidTransform) -> None:
         """Says where the camera is, as three.js counts: y up, z to the viewer."""

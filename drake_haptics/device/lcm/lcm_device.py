@@ -163,7 +163,8 @@ class LcmDevice(DeviceBackend):
         """Subscribes.
 
         Args:
-            lcm: Where to; nobody else handles its subscriptions.
+            lcm: Where to; no `LcmInterfaceSystem` handles its subscriptions, as a
+                simulator of Drake 1.58 cannot call handlers of Python.
             status_channel: Where the device sends.
             command_channel: Where it listens.
             ttl_s: How long a wrench holds without a newer one, s; the device may
