@@ -12,6 +12,7 @@ from drake_haptics import _core
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.contact import (
     add_contact_systems,
+    can_chain,
     connect_by_name,
     find_contact_gains,
 )
@@ -112,6 +113,7 @@ def AddHapticLoop(
         materials = [Material()] * len(objects)
     gains = make_coupling_gains(coupling, device)
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
+    is_chained = load_shedding is None and can_chain(objects, contact, effects)
     if load_shedding is not None:
         builder.AddNamedSystem("load_shedding", load_shedding)
     base = BaseSystems(
@@ -122,7 +124,13 @@ def AddHapticLoop(
         ),
         haptic_tool=builder.AddNamedSystem(
             "haptic_tool",
-            HapticTool(tool_dynamics, period_s, ["coupling", "contact", *forces], X_WT),
+            HapticTool(
+                tool_dynamics,
+                period_s,
+                ["coupling", "contact", *forces],
+                X_WT,
+                chained_at=X_HT if is_chained else None,
+            ),
         ),
         **vars(
             add_contact_systems(
@@ -134,6 +142,7 @@ def AddHapticLoop(
                 materials,
                 period_s,
                 enable_load_shedding=load_shedding is not None,
+                enable_chain=is_chained,
             )
         ),
     )
@@ -165,8 +174,17 @@ def AddHapticLoop(
     }
     for name, source in sources.items():
         builder.Connect(source, base.haptic_tool.GetInputPort(name))
+    chain: dict[str, OutputPort] = {}
+    if is_chained:
+        chain = {
+            "contact_chain": base.contact_query.GetOutputPort("contact_chain"),
+            "motions_and_gains": base.virtual_coupling.GetOutputPort(
+                "motions_and_gains"
+            ),
+        }
+        connect_by_name(builder, base.haptic_tool, chain)
     if device.wants_slopes:
-        _add_handle_model(builder, base, sources)
+        _add_handle_model(builder, base, sources, chain)
     loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
     builder.Connect(loop.contacts, loop.contact_clustering.GetInputPort("contacts"))
     builder.Connect(loop.commanded_wrench, device.GetInputPort("F_Ho_W_commanded"))
@@ -208,12 +226,20 @@ def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
 
 
 def _add_handle_model(
-    builder: DiagramBuilder, base: BaseSystems, sources: Mapping[str, OutputPort]
+    builder: DiagramBuilder,
+    base: BaseSystems,
+    sources: Mapping[str, OutputPort],
+    chain: Mapping[str, OutputPort],
 ) -> None:
     """Tells the device how its wrench goes on between two ticks."""
     model = builder.AddNamedSystem(
-        "handle_model", HandleModel([name for name in sources if name != "coupling"])
+        "handle_model",
+        HandleModel(
+            [name for name in sources if name != "coupling"],
+            chained_at=base.virtual_coupling.X_HT if chain else None,
+        ),
     )
+    connect_by_name(builder, model, chain)
     for output, input in [
         (
             base.device.GetOutputPort("X_WH"),

@@ -1,0 +1,152 @@
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/vector.h>
+
+#include <optional>
+#include <vector>
+
+#include "bind/bind.h"
+#include "bind/bind_contact.h"
+#include "bind/bind_eigen.h"
+#include "bind/bind_joined_coupling.h"
+#include "bind/bind_objects.h"
+#include "bind/bind_tracker.h"
+#include "tool/contact_chain.h"
+#include "tool/handle_model.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+using StateVector = Eigen::Matrix<double, 13, 1>;
+using Models = std::vector<WrenchModelVector>;
+
+// A tracker that answers with forces. What is asked of it goes on from what
+// was asked last.
+class TrackedChain : public SceneTracker {
+ public:
+  explicit TrackedChain(const SceneTracker& tracker) : SceneTracker(tracker) {}
+  TrackedChain(const TrackedChain& other)
+      : SceneTracker(other), chain_(other.CopyChain()) {}
+
+  void SetLaw(double tolerance, std::optional<double> delta,
+              const ObjectFrames& objects, const ContactMaterials& materials) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    chain_.SetLaw({tolerance, delta, objects.frames, materials.materials});
+  }
+
+  ContactSet Query(const PoseVector& q_WT, std::optional<double> tolerance) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    Refresh();
+    return chain_.FindContacts(q_WT, tolerance.value_or(tracker_.tolerance()),
+                               &tracker_);
+  }
+
+  StateVector StepTool(const JoinedVector<double>& joined,
+                       const PoseVector& q_HT, const ToolInertia& inertia,
+                       double h, const Models& others) {
+    // The order of `RigidToolDynamics.step` of [coupling, contact, others].
+    WrenchModel sum;
+    sum += ComputeJoinedCoupling(joined, q_HT).tool;
+    const ToolState state = StateOf(joined);
+    sum += FindWrench(state);
+    for (const WrenchModelVector& other : others) sum += ToWrenchModel(other);
+    const ToolState next = drake_haptics::StepTool(inertia, state, sum, h);
+    StateVector out;
+    out << next.q_WT, next.V_WT;
+    return out;
+  }
+
+  Eigen::Matrix<double, 72, 1> FindHandleSlopes(
+      const JoinedVector<double>& joined, const PoseVector& q_HT,
+      const Models& others) {
+    const ToolState state = StateOf(joined);
+    WrenchModel contact;
+    contact += FindWrench(state);
+    for (const WrenchModelVector& other : others) {
+      contact += ToWrenchModel(other);
+    }
+    const HandleSlopes slopes =
+        ComputeHandleSlopes(state.q_WT.tail<3>() - joined.segment<3>(4),
+                            ComputeJoinedCoupling(joined, q_HT).tool, contact);
+    Eigen::Matrix<double, 72, 1> out;
+    using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+    Eigen::Map<Rows>(out.data()) = slopes.K;
+    Eigen::Map<Rows>(out.data() + 36) = slopes.B;
+    return out;
+  }
+
+ private:
+  static ToolState StateOf(const JoinedVector<double>& joined) {
+    return {joined.segment<7>(13), joined.segment<6>(20)};
+  }
+
+  ContactChain CopyChain() const {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    return chain_;
+  }
+
+  WrenchModel FindWrench(const ToolState& state) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    Refresh();
+    return chain_.FindWrench(state, &tracker_);
+  }
+
+  // Forgets the last answer after the tracker was changed or asked otherwise.
+  void Refresh() {
+    if (changes_ != seen_changes_) chain_.Forget();
+    seen_changes_ = changes_;
+  }
+
+  ContactChain chain_;
+  long seen_changes_ = 0;
+};
+
+}  // namespace
+
+void BindContactChain(nb::module_& m) {
+  nb::class_<TrackedChain, SceneTracker>(
+      m, "ContactChain",
+      "A `SceneTracker` that goes on from the contacts to what they do to a "
+      "tool that a coupling holds: query, clusters, penalty force, coupling "
+      "and "
+      "the tool's step in one call. What was asked last is kept, so that a "
+      "query of the same pose finds nothing again.")
+      .def(nb::init<const SceneTracker&>(), nb::arg("tracker"),
+           "Goes on from what a tracker knows; it stays as it is.")
+      .def("set_law", &TrackedChain::SetLaw, nb::arg("tolerance"),
+           nb::arg("delta").none(), nb::arg("objects"), nb::arg("materials"),
+           "Says how contacts push.\n\n"
+           "Args:\n"
+           "    tolerance: contacts below it push, m.\n"
+           "    delta: cell of the octree, m; None lets contacts share "
+           "stiffness.\n"
+           "    objects: where they rest.\n"
+           "    materials: one for each of them.")
+      .def("query", &TrackedChain::Query, nb::arg("X_WT"),
+           nb::arg("tolerance") = nb::none(),
+           "As `SceneTracker.query` of a pose (7,); what was asked last is not "
+           "looked for again.")
+      .def("step_tool", &TrackedChain::StepTool, nb::arg("joined"),
+           nb::arg("q_HT"), nb::arg("dynamics"), nb::arg("h"),
+           nb::arg("others"),
+           "The tool's next state (13,): `RigidToolDynamics.step` under the "
+           "coupling, the contacts and other wrench models, in this order.\n\n"
+           "Args:\n"
+           "    joined, q_HT: as of `joined_coupling_wrench`.\n"
+           "    dynamics: of the tool.\n"
+           "    h: the step, s.\n"
+           "    others: (78,) wrench models.\n\n"
+           "Raises:\n    ValueError: a pose is not finite, or a gain is out of "
+           "range.")
+      .def("handle_slopes", &TrackedChain::FindHandleSlopes, nb::arg("joined"),
+           nb::arg("q_HT"), nb::arg("others"),
+           "`handle_slopes` (72,) of the coupling, and the contacts with other "
+           "wrench models, of the arguments of `step_tool`.")
+      .def("__deepcopy__", [](const TrackedChain& self,
+                              nb::handle) { return TrackedChain(self); })
+      .def("__copy__",
+           [](const TrackedChain& self) { return TrackedChain(self); });
+}
+
+}  // namespace drake_haptics
