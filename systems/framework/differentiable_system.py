@@ -30,6 +30,12 @@ from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics._core import AutoDiffVector
 
+# A Python system without witness functions names this `DoGetWitnessFunctions`. After
+# each unrestricted update Drake looks in every Python system for that override, and not
+# to find the name takes as long as a port does. What the name holds is never called: it
+# only is not of Python.
+NO_WITNESS_FUNCTIONS = LeafSystem.get_name
+
 
 class AutoDiffPoint:
     """Where a system is to be differentiated: its inputs, state and time.
@@ -155,6 +161,7 @@ class DifferentiableSystem(_Convertible):
     """
 
     undifferentiated: frozenset[str] = frozenset()
+    DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> Any:
         """Returns an output with its derivatives.

@@ -15,6 +15,7 @@ from pydrake.systems.framework import (
 
 from drake_haptics._core import handle_slopes
 from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.framework.differentiable_system import NO_WITNESS_FUNCTIONS
 
 
 class HandleModel(LeafSystem):
@@ -47,6 +48,8 @@ class HandleModel(LeafSystem):
       handle at its origin in the world: it changes by -K δ - B ΔV where the handle
       moves by δ = [rotation vector; translation] and its velocity by ΔV.
     """
+
+    DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
 
     def __init__(
         self,

@@ -1,6 +1,7 @@
 #include "tool/contact_chain.h"
 
 #include <cstring>
+#include <stdexcept>
 #include <utility>
 
 #include "law/shared_stiffness.h"
@@ -38,17 +39,20 @@ const ContactSet& ContactChain::FindContacts(const PoseVector& q_WT,
 
 const WrenchModel& ContactChain::FindWrench(const ToolState& tool,
                                             ContactTracker* tracker) {
+  if (!law_.has_value()) {
+    throw std::logic_error("contacts push by a law, which was not set");
+  }
   const ContactSet& found =
       FindContacts(tool.q_WT, tracker->tolerance(), tracker);
   if (has_wrench_ && IsSame(tool.V_WT, V_WT_)) return wrench_;
   has_wrench_ = false;
-  if (law_.delta.has_value()) {
-    ClusterContacts(found.contacts, *law_.delta, law_.tolerance, &clusters_);
+  if (law_->delta.has_value()) {
+    ClusterContacts(found.contacts, *law_->delta, law_->tolerance, &clusters_);
   } else {
-    ShareStiffness(found.contacts, law_.tolerance, &clusters_);
+    ShareStiffness(found.contacts, law_->tolerance, &clusters_);
   }
   wrench_ = ComputePenaltyWrench(clusters_, {tool.q_WT.tail<3>(), tool.V_WT},
-                                 law_.objects, law_.materials)
+                                 law_->objects, law_->materials)
                 .tool;
   V_WT_ = tool.V_WT;
   has_wrench_ = true;

@@ -38,11 +38,11 @@ class ContactChain {
   const ContactSet& contacts() const { return contacts_; }
 
   /// The wrench of the contacts on the tool at To.
-  /// @throws also as ComputePenaltyWrench.
+  /// @throws also as ComputePenaltyWrench; std::logic_error without a law.
   const WrenchModel& FindWrench(const ToolState& tool, ContactTracker* tracker);
 
  private:
-  ContactLaw law_;
+  std::optional<ContactLaw> law_;
   bool has_contacts_ = false;  // those of q_WT_ and tolerance_
   PoseVector q_WT_;
   double tolerance_ = 0;
