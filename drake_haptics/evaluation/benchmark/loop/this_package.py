@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Iterator
 
 import numpy as np
+from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder, EventStatus
 from pydrake.systems.primitives import Demultiplexer, PassThrough, TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
@@ -57,11 +58,6 @@ class ThisLoop:
     def _rewind(self) -> None:
         """Begins the motion again, where the simulator's time does not say where."""
 
-    @property
-    def haptic(self) -> HapticDiagram:
-        """What is run."""
-        return self._haptic
-
     def observe(self) -> LoopCourse:
         """See `Loop.observe`."""
         self._rewind()
@@ -69,14 +65,15 @@ class ThisLoop:
 
     def time(self) -> np.ndarray:
         """See `Loop.time`."""
-        self._rewind()
         motion = self._problem.motion
         return time_ticks(
-            make_simulator(self._haptic),
-            len(motion),
-            motion.period_s,
-            paced=self._paced,
+            self.make_simulator(), len(motion), motion.period_s, paced=self._paced
         )
+
+    def make_simulator(self) -> Simulator:
+        """Returns a simulator at the beginning of the motion."""
+        self._rewind()
+        return make_simulator(self._haptic)
 
 
 class BackendLoop(ThisLoop):
