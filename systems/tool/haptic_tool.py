@@ -87,9 +87,7 @@ class HapticTool(Diagram):
         builder = DiagramBuilder()
         step = builder.AddNamedSystem(
             "step",
-            _ImplicitStep(dynamics, period_s, wrench_names, X_WT)
-            if chained_at is None
-            else _ChainedStep(dynamics, period_s, wrench_names, X_WT, chained_at),
+            _ImplicitStep(dynamics, period_s, wrench_names, X_WT, chained_at),
         )
         for port in map(step.get_input_port, range(step.num_input_ports())):
             builder.ExportInput(port, port.get_name())
@@ -113,12 +111,15 @@ _STATE_NAMES = "qw qx qy qz x y z wx wy wz vx vy vz".split()
 class _ImplicitStep(DifferentiableSystem):
     """The state of a `HapticTool`, and its update."""
 
+    undifferentiated = frozenset({"contact_chain", "motions_and_gains"})
+
     def __init__(
         self,
         dynamics: RigidToolDynamics,
         period_s: float,
         wrench_names: Sequence[str],
         X_WT: RigidTransform,
+        chained_at: RigidTransform | None,
     ):
         super().__init__()
         self._dynamics = dynamics
@@ -126,12 +127,24 @@ class _ImplicitStep(DifferentiableSystem):
         self._wrenches = [
             self.DeclareVectorInputPort(name, 78) for name in wrench_names
         ]
-        self._eval_wrenches = [port.Eval for port in self._wrenches]
+        # Coupling and contacts come of the chain, if there is one.
+        self._read = self._wrenches if chained_at is None else self._wrenches[2:]
+        self._eval_read = [port.Eval for port in self._read]
         state = self.DeclareDiscreteState(
             np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
         )
         self._eval_state = self.DeclareStateOutputPort("state", state).Eval
-        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+        update = self._update
+        if chained_at is not None:
+            self._q_HT = pose_to_vector(chained_at)
+            self._eval_chain = self.DeclareAbstractInputPort(
+                "contact_chain", Value[object]()
+            ).Eval
+            self._eval_joined = self.DeclareVectorInputPort(
+                "motions_and_gains", 32
+            ).Eval
+            update = self._update_chained
+        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, update)
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         next_state.set_value(
@@ -140,15 +153,24 @@ class _ImplicitStep(DifferentiableSystem):
             )
         )
 
+    def _update_chained(self, context: Context, next_state: DiscreteValues) -> None:
+        next_state.set_value(
+            self._eval_chain(context).step_tool(
+                self._eval_joined(context),
+                self._q_HT,
+                self._dynamics,
+                self._period_s,
+                self._read_wrenches(context),
+            )
+        )
+
     def _read_wrenches(self, context: Context) -> list[np.ndarray]:
-        """Returns the wrench models that are connected."""
+        """Returns the wrench models that are read and connected."""
         try:
-            return [eval_wrench(context) for eval_wrench in self._eval_wrenches]
+            return [eval_wrench(context) for eval_wrench in self._eval_read]
         except RuntimeError:
             # To ask first would take as long as to read, at every tick.
-            return [
-                port.Eval(context) for port in self._wrenches if port.HasValue(context)
-            ]
+            return [port.Eval(context) for port in self._read if port.HasValue(context)]
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the state."""
@@ -171,36 +193,3 @@ class _ImplicitStep(DifferentiableSystem):
     def list_state_names(self) -> list[str]:
         """Returns a name for each number of the state."""
         return list(_STATE_NAMES)
-
-
-class _ChainedStep(_ImplicitStep):
-    """The same, with coupling and contacts in one call of the core."""
-
-    undifferentiated = frozenset({"contact_chain", "motions_and_gains"})
-
-    def __init__(
-        self,
-        dynamics: RigidToolDynamics,
-        period_s: float,
-        wrench_names: Sequence[str],
-        X_WT: RigidTransform,
-        X_HT: RigidTransform,
-    ):
-        super().__init__(dynamics, period_s, wrench_names, X_WT)
-        self._q_HT = pose_to_vector(X_HT)
-        self._eval_chain = self.DeclareAbstractInputPort(
-            "contact_chain", Value[object]()
-        ).Eval
-        self._eval_joined = self.DeclareVectorInputPort("motions_and_gains", 32).Eval
-        self._eval_wrenches = self._eval_wrenches[2:]
-
-    def _update(self, context: Context, next_state: DiscreteValues) -> None:
-        next_state.set_value(
-            self._eval_chain(context).step_tool(
-                self._eval_joined(context),
-                self._q_HT,
-                self._dynamics,
-                self._period_s,
-                self._read_wrenches(context),
-            )
-        )

@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fake_device import ScriptedDevice, make_reading
+from pydrake.common.value import Value
+from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
@@ -29,6 +31,7 @@ from drake_haptics.scene.schema import (
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.run import make_simulator
 from drake_haptics.systems.contact.contact_clustering import ClusteringRule
+from drake_haptics.systems.tool.haptic_tool import HapticTool
 
 _TICK = 1e-3
 # Each is in contact by then.
@@ -238,6 +241,35 @@ def test_other_wrenches_count_beside_the_chain(monkeypatch: pytest.MonkeyPatch) 
     assert_same(heavy, run(separate, 0.75))
     weightless = run(cup(monkeypatch)[0], 0.75)
     assert np.abs(heavy[-1] - weightless[-1]).max() > 1e-6
+
+
+def test_a_wrench_that_is_not_connected_counts_as_zero_beside_the_chain(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    chained, _ = cup(monkeypatch)
+    simulator = make_simulator(chained)
+    simulator.AdvanceTo(0.7 + 0.5 * _TICK)
+    root, loop = simulator.get_context(), chained.loop
+    own = loop.haptic_tool.GetMyContextFromRoot(root)
+    expected = loop.haptic_tool.EvalUniquePeriodicDiscreteUpdate(own).value()
+    names = ["coupling", "contact", "other"]
+    tool = HapticTool(
+        loop.haptic_tool.dynamics,
+        _TICK,
+        names,
+        RigidTransform(),
+        chained_at=loop.virtual_coupling.X_HT,
+    )
+    context = tool.CreateDefaultContext()
+    tool.get_input_port(0).FixValue(context, np.full(78, 1e3))
+    tool.get_input_port(1).FixValue(context, np.full(78, 1e3))
+    for name in ("contact_chain", "motions_and_gains"):
+        value = loop.haptic_tool.GetInputPort(name).Eval(own)
+        if name == "contact_chain":
+            value = Value[object](value)
+        tool.GetInputPort(name).FixValue(context, value)
+    found = tool.EvalUniquePeriodicDiscreteUpdate(context).value()
+    np.testing.assert_array_equal(found, expected)
 
 
 @pytest.mark.parametrize(
