@@ -2306,6 +2306,11 @@ class ContactChain(SceneTracker):
             ValueError: a pose is not finite, or a gain is out of range.
         """
 
+    def summarize(self, state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]) -> tuple[int, int, float, float]:
+        """
+        Numbers of contacts and of clusters, the least distance (m, infinite without contacts) and what the query took (s), of the tool in a state (13,).
+        """
+
     def handle_slopes(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], others: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]]) -> Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]:
         """
         `handle_slopes` (72,) of the coupling, and the contacts with other wrench models, of the arguments of `step_tool`.

@@ -30,6 +30,7 @@ from drake_haptics.scene.schema import (
 )
 from drake_haptics.scene.validation import SceneWarning
 from drake_haptics.simulation.run import make_simulator
+from drake_haptics.simulation.run import run as run_scene
 from drake_haptics.systems.contact.contact_clustering import ClusteringRule
 from drake_haptics.systems.tool.haptic_tool import HapticTool
 
@@ -135,6 +136,16 @@ def test_what_is_between_is_the_same_and_reading_it_changes_nothing(pair) -> Non
         return read_state(haptic, root)
 
     assert_same(run(chained, contact_s + 0.1, read_both), run(chained, contact_s + 0.1))
+
+
+def test_a_run_counts_the_same_contacts_and_clusters(pair) -> None:
+    chained, separate, contact_s = pair
+    one, other = (
+        run_scene(haptic, contact_s + 0.1).to_dict() for haptic in (chained, separate)
+    )
+    for counted in ("contacts", "clusters", "max_penetration_m", "max_force_N"):
+        assert one[counted] == other[counted]
+    assert one["clusters"]["max"] > 0
 
 
 def test_a_query_that_a_step_has_made_is_not_made_again(

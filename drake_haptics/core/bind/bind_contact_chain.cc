@@ -1,7 +1,11 @@
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <limits>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "bind/bind.h"
@@ -55,6 +59,21 @@ class TrackedChain : public SceneTracker {
     StateVector out;
     out << next.q_WT, next.V_WT;
     return out;
+  }
+
+  // Contacts, clusters, the least distance and what the query took.
+  std::tuple<std::size_t, int, double, double> Summarize(
+      const StateVector& state) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    Refresh();
+    chain_.FindWrench({state.head<7>(), state.tail<6>()}, &tracker_);
+    const ContactSet& found = chain_.contacts();
+    double least = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : found.contacts) {
+      least = std::min(least, contact.distance);
+    }
+    return {found.contacts.size(), chain_.num_clusters(), least,
+            found.query_seconds};
   }
 
   Eigen::Matrix<double, 72, 1> FindHandleSlopes(
@@ -139,6 +158,11 @@ void BindContactChain(nb::module_& m) {
            "    others: (78,) wrench models.\n\n"
            "Raises:\n    ValueError: a pose is not finite, or a gain is out of "
            "range.")
+      .def(
+          "summarize", &TrackedChain::Summarize, nb::arg("state"),
+          "Numbers of contacts and of clusters, the least distance (m, "
+          "infinite without contacts) and what the query took (s), of the tool "
+          "in a state (13,).")
       .def("handle_slopes", &TrackedChain::FindHandleSlopes, nb::arg("joined"),
            nb::arg("q_HT"), nb::arg("others"),
            "`handle_slopes` (72,) of the coupling, and the contacts with other "

@@ -37,6 +37,11 @@ class ContactChain {
   /// Those that were asked for last.
   const ContactSet& contacts() const { return contacts_; }
 
+  /// How many clusters these make at the wrench that was asked for last.
+  int num_clusters() const {
+    return static_cast<int>(clusters_.clusters.size());
+  }
+
   /// The wrench of the contacts on the tool at To.
   /// @throws also as ComputePenaltyWrench; std::logic_error without a law.
   const WrenchModel& FindWrench(const ToolState& tool, ContactTracker* tracker);
