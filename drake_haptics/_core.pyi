@@ -2287,9 +2287,9 @@ class ContactChain(SceneTracker):
             materials: one for each of them.
         """
 
-    def query(self, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], tolerance: float | None = None) -> ContactSet:
+    def query(self, X_WT: drake_haptics.common.pose_like.PoseLike, tolerance: float | None = None) -> ContactSet:
         """
-        As `SceneTracker.query` of a pose (7,); what was asked last is not looked for again.
+        As `SceneTracker.query`; what was asked last is not looked for again where the pose is a vector (7,).
         """
 
     def step_tool(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], dynamics: RigidToolDynamics, h: float, others: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]]) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:

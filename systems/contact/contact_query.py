@@ -311,8 +311,10 @@ class ContactQuery(DifferentiableSystem):
             hint = context.get_abstract_parameter(self._hint).get_value()
             tracker = self._make_tracker(hint, tolerance_m)
             value.set_value(tracker)
+        if self._law is None or not isinstance(tracker, ContactChain):
+            return
         # A query by itself, for its contacts alone, needs no law.
-        if self._law and all(port.HasValue(context) for port in self._law):
+        if all(port.HasValue(context) for port in self._law):
             rule, gains = (port.Eval(context) for port in self._law)
             tracker.set_law(
                 rule.tolerance_m, rule.delta_m, self._at_rest, gains.materials

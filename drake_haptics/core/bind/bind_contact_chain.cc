@@ -13,6 +13,7 @@
 #include "bind/bind_eigen.h"
 #include "bind/bind_joined_coupling.h"
 #include "bind/bind_objects.h"
+#include "bind/bind_real_array.h"
 #include "bind/bind_tracker.h"
 #include "tool/contact_chain.h"
 #include "tool/handle_model.h"
@@ -39,7 +40,16 @@ class TrackedChain : public SceneTracker {
     chain_.SetLaw({tolerance, delta, objects.frames, materials.materials});
   }
 
-  ContactSet Query(const PoseVector& q_WT, std::optional<double> tolerance) {
+  // A pose that is no vector is asked for as of any tracker.
+  ContactSet Query(nb::handle X_WT, nb::handle tolerance_value) {
+    PoseVector q_WT;
+    if (!nb::try_cast(X_WT, q_WT)) {
+      return SceneTracker::Query(X_WT, tolerance_value);
+    }
+    std::optional<double> tolerance;
+    if (!tolerance_value.is_none()) {
+      tolerance = ToReal(tolerance_value, "tolerance");
+    }
     const Turn turn(&mutex_, Turn::Gil::kHold);
     Refresh();
     return chain_.FindContacts(q_WT, tolerance.value_or(tracker_.tolerance()),
@@ -142,10 +152,13 @@ void BindContactChain(nb::module_& m) {
            "stiffness.\n"
            "    objects: where they rest.\n"
            "    materials: one for each of them.")
-      .def("query", &TrackedChain::Query, nb::arg("X_WT"),
+      .def("query", &TrackedChain::Query, nb::arg("X_WT").none(),
            nb::arg("tolerance") = nb::none(),
-           "As `SceneTracker.query` of a pose (7,); what was asked last is not "
-           "looked for again.")
+           nb::sig("def query(self, X_WT: "
+                   "drake_haptics.common.pose_like.PoseLike, "
+                   "tolerance: float | None = None) -> ContactSet"),
+           "As `SceneTracker.query`; what was asked last is not looked for "
+           "again where the pose is a vector (7,).")
       .def("step_tool", &TrackedChain::StepTool, nb::arg("joined"),
            nb::arg("q_HT"), nb::arg("dynamics"), nb::arg("h"),
            nb::arg("others"),
