@@ -2400,6 +2400,58 @@ def run_tool_loop(tool: ConvexPieces, objects: Sequence[ConvexPieces], q_WO: Ann
         ValueError: poses or gains are out of range.
     """
 
+class ContactChain(SceneTracker):
+    """
+    A `SceneTracker` that goes on from the contacts to what they do to a tool that a coupling holds: query, clusters, penalty force, coupling and the tool's step in one call. What was asked last is kept, so that a query of the same pose finds nothing again.
+    """
+
+    def __init__(self, tracker: SceneTracker) -> None:
+        """Goes on from what a tracker knows; it stays as it is."""
+
+    def set_law(self, tolerance: float, delta: float | None, objects: ObjectFrames, materials: ContactMaterials) -> None:
+        """
+        Says how contacts push.
+
+        Args:
+            tolerance: contacts below it push, m.
+            delta: cell of the octree, m; None lets contacts share stiffness.
+            objects: where they rest.
+            materials: one for each of them.
+        """
+
+    def query(self, X_WT: drake_haptics.common.pose_like.PoseLike, tolerance: float | None = None) -> ContactSet:
+        """
+        As `SceneTracker.query`; what was asked last is not looked for again where the pose is a vector (7,).
+        """
+
+    def step_tool(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], dynamics: RigidToolDynamics, h: float, others: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]]) -> Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]:
+        """
+        The tool's next state (13,): `RigidToolDynamics.step` under the coupling, the contacts and other wrench models, in this order.
+
+        Args:
+            joined, q_HT: as of `joined_coupling_wrench`.
+            dynamics: of the tool.
+            h: the step, s.
+            others: (78,) wrench models.
+
+        Raises:
+            ValueError: a pose is not finite, or a gain is out of range.
+        """
+
+    def summarize(self, state: Annotated[NDArray[numpy.float64], dict(shape=(13), order='C')]) -> tuple[int, int, float, float]:
+        """
+        Numbers of contacts and of clusters, the least distance (m, infinite without contacts) and what the query took (s), of the tool in a state (13,).
+        """
+
+    def handle_slopes(self, joined: Annotated[NDArray[numpy.float64], dict(shape=(32), order='C')], q_HT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], others: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(78), order='C')]]) -> Annotated[NDArray[numpy.float64], dict(shape=(72), order='C')]:
+        """
+        `handle_slopes` (72,) of the coupling, and the contacts with other wrench models, of the arguments of `step_tool`.
+        """
+
+    def __deepcopy__(self, arg: object, /) -> ContactChain: ...
+
+    def __copy__(self) -> ContactChain: ...
+
 def contact_set(distance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], nhat_BA_W: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], p_WCa: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], p_WCb: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')], object_index: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C')]) -> ContactSet:
     """
     Contacts that another library found, for the laws of this one. They have no extent and no features: what needs to know how a contact moves (derivatives, force shading, ticks without a query) refuses them with a ValueError.

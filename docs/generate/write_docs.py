@@ -39,13 +39,17 @@ def with_figures(page: str, figures: BenchFigures) -> str:
 
 
 def with_tables(page: str, figures: BenchFigures) -> str:
-    """Returns the page with the tables that these figures make in place of those."""
+    """Returns the page with the tables that these figures make in place of those.
+
+    Tables that the page does not have yet come after all others.
+    """
     for table in make_tables(figures):
         section = re.compile(
             rf"### {re.escape(table.title)}\n.*?(?=\n### |\n{re.escape(_END)})", re.S
         )
         page, replaced = section.subn(lambda _, t=table: t.to_markdown(), page)
-        assert replaced == 1, table.title
+        if not replaced:
+            page = page.replace(f"\n{_END}", f"\n{table.to_markdown()}\n{_END}")
     return page
 
 

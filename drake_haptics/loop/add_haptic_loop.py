@@ -12,6 +12,7 @@ from drake_haptics import _core
 from drake_haptics.common.type_checks import require_kinds
 from drake_haptics.loop.contact import (
     add_contact_systems,
+    can_chain,
     connect_by_name,
     find_contact_gains,
     find_skins,
@@ -115,10 +116,11 @@ def AddHapticLoop(
         materials = [Material()] * len(objects)
     gains = make_coupling_gains(coupling, device)
     forces = [name for name in _FORCES if getattr(effects, name) is not None]
+    sheds_load = load_shedding is not None
+    is_chained = not sheds_load and can_chain(objects, contact, effects)
     if load_shedding is not None:
         builder.AddNamedSystem("load_shedding", load_shedding)
     builder.AddNamedSystem("device", device)
-    sheds_load = load_shedding is not None
     if is_constraint(contact):
         check_constraint_law(contact, effects, sheds_load=sheds_load)
         from drake_haptics.systems.tool.constraint_tool_step import ConstraintToolStep
@@ -143,7 +145,14 @@ def AddHapticLoop(
             device,
             builder.AddNamedSystem("virtual_coupling", VirtualCoupling(gains, X_HT)),
             builder.AddNamedSystem(
-                "haptic_tool", HapticTool(tool_dynamics, period_s, names, X_WT)
+                "haptic_tool",
+                HapticTool(
+                    tool_dynamics,
+                    period_s,
+                    names,
+                    X_WT,
+                    chained_at=X_HT if is_chained else None,
+                ),
             ),
             load_shedding,
             add_contact_systems(
@@ -155,6 +164,7 @@ def AddHapticLoop(
                 materials,
                 period_s,
                 enable_load_shedding=sheds_load,
+                enable_chain=is_chained,
             ),
         )
         stiffness = find_contact_gains(contact, materials).stiffness_N_per_m
@@ -182,8 +192,17 @@ def AddHapticLoop(
         },
     }
     connect_by_name(builder, base.haptic_tool, sources)
+    chain: dict[str, OutputPort] = {}
+    if is_chained:
+        chain = {
+            "contact_chain": base.contact_query.GetOutputPort("contact_chain"),
+            "motions_and_gains": base.virtual_coupling.GetOutputPort(
+                "motions_and_gains"
+            ),
+        }
+        connect_by_name(builder, base.haptic_tool, chain)
     if device.wants_slopes:
-        _add_handle_model(builder, base, sources)
+        _add_handle_model(builder, base, sources, chain)
     loop = HapticLoop(**vars(base), effects=systems, wrench_sources=sources)
     if loop.penalty is not None:
         connect_by_name(
@@ -213,12 +232,20 @@ def _connect_base(builder: DiagramBuilder, base: BaseSystems) -> None:
 
 
 def _add_handle_model(
-    builder: DiagramBuilder, base: BaseSystems, sources: Mapping[str, OutputPort]
+    builder: DiagramBuilder,
+    base: BaseSystems,
+    sources: Mapping[str, OutputPort],
+    chain: Mapping[str, OutputPort],
 ) -> None:
     """Tells the device how its wrench goes on between two ticks."""
     model = builder.AddNamedSystem(
-        "handle_model", HandleModel([name for name in sources if name != "coupling"])
+        "handle_model",
+        HandleModel(
+            [name for name in sources if name != "coupling"],
+            chained_at=base.virtual_coupling.X_HT if chain else None,
+        ),
     )
+    connect_by_name(builder, model, chain)
     for output, input in [
         (
             base.device.GetOutputPort("X_WH"),

@@ -10,6 +10,7 @@ import numpy as np
 from pydrake.systems.framework import Context, DiagramBuilder, OutputPort, System
 
 from drake_haptics import _core
+from drake_haptics.scene.contact_law import is_constraint
 from drake_haptics.scene.schema import ContactParameters, Effects, Material
 from drake_haptics.scene.validation import check_query_rate
 from drake_haptics.systems.contact.contact_clustering import (
@@ -74,6 +75,7 @@ def add_contact_systems(
     period_s: float,
     *,
     enable_load_shedding: bool = False,
+    enable_chain: bool = False,
     warns_deep: bool = False,
 ) -> ContactSystems:
     """Adds the systems; their inputs from elsewhere are left to the caller.
@@ -88,6 +90,7 @@ def add_contact_systems(
         period_s: The tick, s.
         enable_load_shedding: Whether query and clustering take the `load_shedding` of a
             `LoadShedding`.
+        enable_chain: Whether the query has the port `contact_chain`; see `can_chain`.
         warns_deep: Whether the clustering warns of a deep contact itself.
 
     Raises:
@@ -111,6 +114,7 @@ def add_contact_systems(
             contact.max_walk_steps,
             # Its answer holds for several ticks; `load_shedding` changes in each.
             enable_load_shedding=enable_load_shedding and contact.query_rate_hz is None,
+            enable_chain=enable_chain,
         ),
     )
     sample = advance = None
@@ -119,7 +123,7 @@ def add_contact_systems(
         sample, advance = _add_advance(
             builder, query, tool, objects, 1.0 / contact.query_rate_hz
         )
-    return ContactSystems(
+    systems = ContactSystems(
         contact_query=query,
         contact_clustering=builder.AddNamedSystem(
             "contact_clustering",
@@ -141,6 +145,30 @@ def add_contact_systems(
         ),
         pose_sampler=sample,
         contact_extrapolator=advance,
+    )
+    if enable_chain:
+        for system, name in [
+            (systems.contact_clustering, "rule"),
+            (systems.penalty_force, "gains"),
+        ]:
+            builder.Connect(system.GetOutputPort(name), query.GetInputPort(name))
+    return systems
+
+
+def can_chain(
+    objects: Sequence[ContactObject], contact: ContactParameters, effects: Effects
+) -> bool:
+    """Returns whether nothing comes between the contacts and the step of the tool.
+
+    Of effects that read the contacts, these are computed for their ports in any case.
+    """
+    return (
+        not is_constraint(contact)
+        and contact.query_rate_hz is None
+        and effects.shading is None
+        and effects.friction is None
+        and effects.braking is None
+        and all(item.X_WO is not None for item in objects)
     )
 
 

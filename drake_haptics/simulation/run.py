@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Callable
 from contextlib import nullcontext
 
+import numpy as np
 from pydrake.systems.analysis import (
     InitializeParams,
     ResetIntegratorFromFlags,
@@ -221,6 +222,21 @@ def _make_measure(
     )
     clusters_port = loop.clusters
     clusters_context = clusters_port.get_system().GetMyContextFromRoot(root)
+    chain_port = None
+    if loop.penalty is not None and loop.contact_query.HasOutputPort("contact_chain"):
+        chain_port = loop.contact_query.GetOutputPort("contact_chain")
+
+    def summarize(tool_state: np.ndarray) -> tuple[int, int, float, float]:
+        """Numbers of contacts and clusters, least distance, time of the query."""
+        if chain_port is not None:
+            return chain_port.Eval(contacts_context).summarize(tool_state)
+        contacts = contacts_port.Eval(contacts_context)
+        return (
+            len(contacts),
+            len(clusters_port.Eval(clusters_context)),
+            contacts.least_distance,
+            contacts.query_seconds,
+        )
 
     def measure(context: Context, tick_s: float) -> None:
         shown = hold_context.get_discrete_state_vector().value().tolist()
@@ -235,15 +251,8 @@ def _make_measure(
                 statistics,
             )
         # What the next tick needs of these is cached, so they cost nothing twice.
-        contacts = contacts_port.Eval(contacts_context)
-        statistics.add(
-            tick_s,
-            contacts.query_seconds,
-            len(contacts),
-            len(clusters_port.Eval(clusters_context)),
-            contacts.least_distance,
-            shown,
-        )
+        contacts, clusters, least_m, query_s = summarize(tool_state)
+        statistics.add(tick_s, query_s, contacts, clusters, least_m, shown)
         if shed_context is not None:
             statistics.add_shed(shed_context.get_discrete_state_vector().value()[0])
         if ledger is not None:

@@ -85,6 +85,7 @@ class ContactClustering(DifferentiableSystem):
         - load_shedding (with load shedding)
         output_ports:
         - clusters
+        - rule
 
     `contacts` is a `drake_haptics.ContactSet`, `clusters` a
     `drake_haptics._core.ClusterSet`; both are immutable and in the world frame.
@@ -95,8 +96,11 @@ class ContactClustering(DifferentiableSystem):
     `drake_haptics._core`: which contacts are together or push stays.
 
     Method, tolerance and δ are an abstract parameter of the Context, of type
-    `ClusteringRule`; see `set_rule`.
+    `ClusteringRule`; see `set_rule`. The output `rule` shows it, and has no value under
+    AutoDiffXd.
     """
+
+    undifferentiated = frozenset({"rule"})
 
     def __init__(
         self,
@@ -142,6 +146,9 @@ class ContactClustering(DifferentiableSystem):
             self._calc_clusters if self._load_shedding is None else self._calc_fewer,
             {self.all_input_ports_ticket(), self.pa_ticket()},
         )
+        self.DeclareAbstractOutputPort(
+            "rule", Value[object], self._show_rule, {self.pa_ticket()}
+        )
 
     def get_rule(self, context: Context) -> ClusteringRule:
         """Returns which contacts push, and which count as one.
@@ -176,6 +183,9 @@ class ContactClustering(DifferentiableSystem):
         if self._load_shedding is None:
             return _cluster(at["contacts"], rule.tolerance_m, rule.delta_m)
         return _cluster_fewer(at["contacts"], rule, at["load_shedding"].value)
+
+    def _show_rule(self, context: Context, rule: AbstractValue) -> None:
+        rule.set_value(self.get_rule(context))
 
     def _calc_clusters(self, context: Context, clusters: AbstractValue) -> None:
         rule = context.get_abstract_parameter(self._rule).get_value()

@@ -22,6 +22,7 @@ from pydrake.systems.framework import (
 from drake_haptics._core import (
     AutoDiffContactSet,
     AutoDiffVector,
+    ContactChain,
     ConvexPieces,
     ObjectFrames,
     SceneTracker,
@@ -68,12 +69,20 @@ class ContactQuery(DifferentiableSystem):
         - X_WT
         - X_WO_<name of each object that moves>
         - load_shedding (with load shedding)
+        - rule (with the chain)
+        - gains (with the chain)
         output_ports:
         - contacts
+        - contact_chain (with the chain)
 
     `X_WT` and `X_WO_<name>` are poses [qw qx qy qz x y z] in the world, m.
     `contacts` is a `drake_haptics.ContactSet`, immutable. `load_shedding` is that of
     `LoadShedding`: contacts are looked for only up to its share of the tolerance.
+
+    `contact_chain` is a `drake_haptics._core.ContactChain`, which goes on to forces by
+    `rule`, that of `ContactClustering`, and `gains`, that of `PenaltyForce`. A
+    `HapticTool` that reads it asks for no port between, and what `contacts` shows then
+    is what the tool's step has found. It has no value under AutoDiffXd.
 
     The tolerance is an abstract parameter of the Context (index 1), a float; see
     `set_tolerance`.
@@ -98,6 +107,7 @@ class ContactQuery(DifferentiableSystem):
         max_walk_steps: int = 1024,
         *,
         enable_load_shedding: bool = False,
+        enable_chain: bool = False,
     ):
         """Constructs the system.
 
@@ -111,10 +121,13 @@ class ContactQuery(DifferentiableSystem):
             max_walk_steps: Bound on the steps of such a walk, at least 1.
             enable_load_shedding: Whether the loop sheds load, and there is a port for
                 that.
+            enable_chain: Whether there is the port `contact_chain`, and what it needs;
+                of objects that rest.
 
         Raises:
             ValueError: The tolerance is negative or not finite, there is no object, a
-                name is used twice, there is no such depth, or no step is allowed.
+                name is used twice, there is no such depth, no step is allowed, or
+                there is a chain, and an object that moves.
         """
         super().__init__()
         _check_tolerance(tolerance_m)
@@ -147,22 +160,45 @@ class ContactQuery(DifferentiableSystem):
         from_tolerance = self.abstract_parameter_ticket(
             AbstractParameterIndex(self._tolerance)
         )
-        # The memory of a Context, which never changes an answer by more than round-off.
-        # That it is told of another tolerance as a cache entry costs a tick nothing.
-        self._tracker = self.DeclareCacheEntry(
-            description="tracker",
-            value_producer=ValueProducer(
-                allocate=lambda: Value[object](_NOTHING), calc=self._prepare_tracker
-            ),
-            prerequisites_of_calc={from_tolerance},
-        )
-        self._eval_tracker = self._tracker.Eval
         self._contacts = self.DeclareAbstractOutputPort(
             "contacts",
             Value[object],
             self._calc_contacts,
             {self.all_input_ports_ticket(), from_tolerance},
         )
+        self._law: tuple[InputPort, InputPort] | None = None
+        # The memory of a Context, which never changes an answer by more than round-off.
+        # That it is told of another tolerance as a cache entry costs a tick nothing.
+        if enable_chain:
+            self._law = self._declare_law()
+            self._eval_tracker = self.DeclareAbstractOutputPort(
+                "contact_chain",
+                lambda: Value[object](_NOTHING),
+                self._prepare_tracker,
+                {from_tolerance, *(port.ticket() for port in self._law)},
+            ).Eval
+        else:
+            self._eval_tracker = self.DeclareCacheEntry(
+                description="tracker",
+                value_producer=ValueProducer(
+                    allocate=lambda: Value[object](_NOTHING),
+                    calc=self._prepare_tracker,
+                ),
+                prerequisites_of_calc={from_tolerance},
+            ).Eval
+
+    def _declare_law(self) -> tuple[InputPort, InputPort]:
+        """Declares the inputs of the chain."""
+        if self._X_WO:
+            raise ValueError("enable_chain: the objects must rest")
+        names = ("rule", "gains")
+        self.undifferentiated = frozenset({*names, "contact_chain"})
+        p_WO = [item.X_WO.translation() for item in self._objects if item.X_WO]
+        self._at_rest = ObjectFrames(np.array(p_WO), np.zeros((len(p_WO), 6)))
+        rule, gains = (
+            self.DeclareAbstractInputPort(name, Value[object]()) for name in names
+        )
+        return rule, gains
 
     def get_tolerance(self, context: Context) -> float:
         """Returns the distance up to which pairs are contacts, m.
@@ -197,7 +233,7 @@ class ContactQuery(DifferentiableSystem):
         """
         self._contacts.Eval(context)
         context.get_mutable_abstract_parameter(self._hint).set_value(
-            copy.deepcopy(self._tracker.Eval(context))
+            copy.deepcopy(self._eval_tracker(context))
         )
 
     def learn(
@@ -213,7 +249,7 @@ class ContactQuery(DifferentiableSystem):
         if self._list_searched() == other._list_searched():
             other._contacts.Eval(other_context)
             context.get_mutable_abstract_parameter(self._hint).set_value(
-                copy.deepcopy(other._tracker.Eval(other_context))
+                copy.deepcopy(other._eval_tracker(other_context))
             )
 
     def _list_searched(self) -> list[object]:
@@ -261,6 +297,8 @@ class ContactQuery(DifferentiableSystem):
         for i, item in enumerate(self._objects):
             if item.X_WO is not None:
                 tracker.set_object_pose(i, item.X_WO)
+        if self._law is not None and not isinstance(tracker, ContactChain):
+            tracker = ContactChain(tracker)
         return tracker
 
     def _prepare_tracker(self, context: Context, value: AbstractValue) -> None:
@@ -271,7 +309,16 @@ class ContactQuery(DifferentiableSystem):
             tracker.tolerance = tolerance_m
         else:
             hint = context.get_abstract_parameter(self._hint).get_value()
-            value.set_value(self._make_tracker(hint, tolerance_m))
+            tracker = self._make_tracker(hint, tolerance_m)
+            value.set_value(tracker)
+        if self._law is None or not isinstance(tracker, ContactChain):
+            return
+        # A query by itself, for its contacts alone, needs no law.
+        if all(port.HasValue(context) for port in self._law):
+            rule, gains = (port.Eval(context) for port in self._law)
+            tracker.set_law(
+                rule.tolerance_m, rule.delta_m, self._at_rest, gains.materials
+            )
 
     def _calc_contacts(self, context: Context, contacts: AbstractValue) -> None:
         tracker: SceneTracker = self._eval_tracker(context)

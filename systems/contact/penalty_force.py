@@ -100,6 +100,7 @@ class PenaltyForce(DifferentiableSystem):
         - F_To_W
         - F_O_W (with objects that move)
         - contact_wrench
+        - gains
 
     Poses are [qw qx qy qz x y z], m. `V_WT` and `V_WO_<name>` are spatial
     velocities [ω; v] of the frame's origin in the world, rad/s and m/s.
@@ -119,8 +120,10 @@ class PenaltyForce(DifferentiableSystem):
     their own there, by which the tool's implicit step changes.
 
     k and k_v are an abstract parameter of the Context, of type `ContactGains`; see
-    `set_gains`.
+    `set_gains`. The output `gains` shows it, and has no value under AutoDiffXd.
     """
+
+    undifferentiated = frozenset({"gains"})
 
     def __init__(
         self,
@@ -166,6 +169,9 @@ class PenaltyForce(DifferentiableSystem):
             Value[object],
             self._calc_contact_wrench,
             from_inputs,
+        )
+        self.DeclareAbstractOutputPort(
+            "gains", Value[object], self._show_gains, {self.pa_ticket()}
         )
         # A plant asks for the wrench on the tool and the reaction of objects that move:
         # these share the answer that `contact_wrench` keeps. A haptic loop asks for
@@ -243,6 +249,9 @@ class PenaltyForce(DifferentiableSystem):
                     f"{name} must have one value for each of the {self._num_objects}"
                     f" objects, has {len(values)}"
                 )
+
+    def _show_gains(self, context: Context, gains: AbstractValue) -> None:
+        gains.set_value(self.get_gains(context))
 
     def _calc_wrench(self, context: Context) -> PenaltyWrench:
         return penalty_force(*self._read(context))

@@ -20,7 +20,10 @@ from drake_haptics._core import FrameChange
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import DeviceBackend, DeviceCommand, DeviceReading
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.differentiable_system import (
+    NO_WITNESS_FUNCTIONS,
+    export_parts,
+)
 
 
 class DeviceIo(Diagram):
@@ -112,6 +115,8 @@ class _Frame:
 class _Exchange(LeafSystem):
     """The state of a `DeviceIo` and its events."""
 
+    DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
+
     def __init__(
         self,
         backend: DeviceBackend,
@@ -145,9 +150,18 @@ class _Exchange(LeafSystem):
         state.get_mutable_abstract_state(int(self._reading)).set_value(reading)
 
     def _write(self, context: Context) -> EventStatus:
-        slopes = self._slopes.Eval(context) if self._slopes.HasValue(context) else None
+        slopes = self._read_slopes(context)
         reading = context.get_abstract_state(int(self._reading)).get_value()
         self._backend.write(
             self._frame.to_base(self._F_Ho_W_rendered.Eval(context), slopes, reading)
         )
         return EventStatus.Succeeded()
+
+    def _read_slopes(self, context: Context) -> np.ndarray | None:
+        try:
+            return self._slopes.Eval(context)
+        except RuntimeError:
+            # To ask first would take as long as to read, at every tick.
+            return (
+                self._slopes.Eval(context) if self._slopes.HasValue(context) else None
+            )

@@ -30,6 +30,12 @@ from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics._core import AutoDiffVector
 
+# A Python system without witness functions names this `DoGetWitnessFunctions`. After
+# each unrestricted update Drake looks in every Python system for that override, and not
+# to find the name takes as long as a port does. What the name holds is never called: it
+# only is not of Python.
+NO_WITNESS_FUNCTIONS = LeafSystem.get_name
+
 
 class AutoDiffPoint:
     """Where a system is to be differentiated: its inputs, state and time.
@@ -147,7 +153,15 @@ class DifferentiableSystem(_Convertible):
 
     What else a system can have, a conversion refuses: another state, numeric
     parameters, discrete state without one periodic update.
+
+    Attributes:
+        undifferentiated: Names of inputs that the twin does not read, and of outputs
+            that have no value there: through them systems of doubles hand over what
+            makes a tick faster, and nothing that is not at other ports too.
     """
+
+    undifferentiated: frozenset[str] = frozenset()
+    DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> Any:
         """Returns an output with its derivatives.
@@ -210,10 +224,23 @@ def _declare_twin(twin: LeafSystem_[AutoDiffXd], system: DifferentiableSystem) -
     for output in map(system.get_output_port, range(system.num_output_ports())):
         inputs = [
             i
-            for i in range(system.num_input_ports())
+            for i in _list_inputs(system)
             if system.HasDirectFeedthrough(i, output.get_index())
         ]
         _declare_output(twin, system, output, inputs)
+
+
+def _refuse(context: Context_[AutoDiffXd], value: AbstractValue) -> None:
+    raise ValueError("the port has no value under AutoDiffXd")
+
+
+def _list_inputs(system: DifferentiableSystem) -> list[int]:
+    """Returns the inputs that a twin reads."""
+    return [
+        i
+        for i in range(system.num_input_ports())
+        if system.get_input_port(i).get_name() not in system.undifferentiated
+    ]
 
 
 def _declare_output(
@@ -224,6 +251,11 @@ def _declare_output(
 ) -> None:
     """Declares an output of a twin that depends directly on some inputs."""
     name = output.get_name()
+    if name in system.undifferentiated:
+        twin.DeclareAbstractOutputPort(
+            name, Value[object], _refuse, {twin.nothing_ticket()}
+        )
+        return
     tickets = {twin.xd_ticket(), twin.time_ticket(), twin.pa_ticket()}
     tickets |= {twin.get_input_port(i).ticket() for i in inputs}
 
@@ -251,7 +283,7 @@ def _update(
     next_state: DiscreteValues_[AutoDiffXd],
 ) -> None:
     """Updates a twin's state."""
-    at = AutoDiffPoint(twin, context, range(twin.num_input_ports()))
+    at = AutoDiffPoint(twin, context, _list_inputs(system))
     answer = _from_core(system.differentiate_update(at))
     start = 0
     for i in range(next_state.num_groups()):

@@ -14,6 +14,8 @@ from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import LeafSystem_
 from pydrake.systems.scalar_conversion import TemplateSystem
 
+from drake_haptics.systems.framework.differentiable_system import NO_WITNESS_FUNCTIONS
+
 
 @TemplateSystem.define("AppliedWrenches_", T_list=(float, AutoDiffXd))
 def AppliedWrenches_(T: type) -> type:
@@ -52,6 +54,8 @@ def AppliedWrenches_(T: type) -> type:
 
         It has no state, and converts to AutoDiffXd.
         """
+
+        DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
 
         def _construct(
             self,

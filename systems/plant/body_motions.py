@@ -18,7 +18,10 @@ from pydrake.systems.framework import (
 )
 from pydrake.systems.scalar_conversion import TemplateSystem
 
-from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.framework.differentiable_system import (
+    NO_WITNESS_FUNCTIONS,
+    export_parts,
+)
 
 
 class BodyMotions(Diagram):
@@ -79,6 +82,8 @@ class BodyMotions(Diagram):
 def _BodyMotionsVector_(T: type) -> type:
     class Impl(LeafSystem_[T]):
         """All outputs of a `BodyMotions`, one after another."""
+
+        DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
 
         def _construct(
             self,

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from pydrake.common.value import Value
+from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
     BasicVector,
     Context,
@@ -12,6 +14,8 @@ from pydrake.systems.framework import (
 )
 
 from drake_haptics._core import handle_slopes
+from drake_haptics.common.pose_vector import pose_to_vector
+from drake_haptics.systems.framework.differentiable_system import NO_WITNESS_FUNCTIONS
 
 
 class HandleModel(LeafSystem):
@@ -29,6 +33,8 @@ class HandleModel(LeafSystem):
         - X_WT
         - coupling
         - <name of each other wrench>
+        - contact_chain (with the chain)
+        - motions_and_gains (with the chain)
         output_ports:
         - handle_slopes
 
@@ -36,16 +42,26 @@ class HandleModel(LeafSystem):
       tool in the world, m.
     * `coupling` and each other wrench (78) are wrench models [F; K; B] on the tool,
       as `PenaltyForce` documents them.
+    * `contact_chain` and `motions_and_gains` are those of `HapticTool`: coupling and
+      contacts, the first of the other wrenches, come of them then.
     * `handle_slopes` (72) is [K; B], each (6, 6) by rows, of the wrench [τ; f] on the
       handle at its origin in the world: it changes by -K δ - B ΔV where the handle
       moves by δ = [rotation vector; translation] and its velocity by ΔV.
     """
 
-    def __init__(self, wrench_names: Sequence[str]):
+    DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
+
+    def __init__(
+        self,
+        wrench_names: Sequence[str],
+        *,
+        chained_at: RigidTransform | None = None,
+    ):
         """Constructs the system.
 
         Args:
             wrench_names: A name for each wrench on the tool besides the coupling's.
+            chained_at: As of `HapticTool`.
         """
         super().__init__()
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
@@ -54,8 +70,18 @@ class HandleModel(LeafSystem):
         self._wrenches = [
             self.DeclareVectorInputPort(name, 78) for name in wrench_names
         ]
+        calc = self._calc
+        if chained_at is not None:
+            self._q_HT = pose_to_vector(chained_at)
+            self._eval_chain = self.DeclareAbstractInputPort(
+                "contact_chain", Value[object]()
+            ).Eval
+            self._eval_joined = self.DeclareVectorInputPort(
+                "motions_and_gains", 32
+            ).Eval
+            calc = self._calc_chained
         self.DeclareVectorOutputPort(
-            "handle_slopes", 72, self._calc, {self.all_input_ports_ticket()}
+            "handle_slopes", 72, calc, {self.all_input_ports_ticket()}
         )
 
     def _calc(self, context: Context, output: BasicVector) -> None:
@@ -66,5 +92,14 @@ class HandleModel(LeafSystem):
                 self._X_WT.Eval(context),
                 self._coupling.Eval(context),
                 others,
+            )
+        )
+
+    def _calc_chained(self, context: Context, output: BasicVector) -> None:
+        output.set_value(
+            self._eval_chain(context).handle_slopes(
+                self._eval_joined(context),
+                self._q_HT,
+                [port.Eval(context) for port in self._wrenches[1:]],
             )
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
     Context,
@@ -34,12 +35,19 @@ class HapticTool(Diagram):
         name: HapticTool
         input_ports:
         - <name of each wrench>
+        - contact_chain (with the chain)
+        - motions_and_gains (with the chain)
         output_ports:
         - X_WT
         - V_WT
 
-    Each input is a wrench model (78) as `PenaltyForce` documents it; one that is
+    Each wrench is a wrench model (78) as `PenaltyForce` documents it; one that is
     not connected counts as zero.
+
+    * `contact_chain` is that of `ContactQuery`, `motions_and_gains` (32) that of
+      `VirtualCoupling`. With them the core computes the first two wrenches, those of
+      the coupling and of the contacts, within the step, to the same bits as the inputs
+      have; these then are there to be seen, and for derivatives.
 
     * `X_WT` (7) is the pose [qw qx qy qz x y z] in the world, m.
     * `V_WT` (6) is the spatial velocity [ω; v] of the tool's origin in the
@@ -55,6 +63,8 @@ class HapticTool(Diagram):
         period_s: float,
         wrench_names: Sequence[str],
         X_WT: RigidTransform,
+        *,
+        chained_at: RigidTransform | None = None,
     ):
         """Constructs the system.
 
@@ -63,6 +73,8 @@ class HapticTool(Diagram):
             period_s: The tick, s.
             wrench_names: A name for each input port.
             X_WT: Default pose; the tool starts at rest.
+            chained_at: X_HT of the coupling, if coupling and contacts are computed
+                within the step; they are the first two wrenches then.
 
         Raises:
             ValueError: The period is not positive.
@@ -74,10 +86,11 @@ class HapticTool(Diagram):
         self._period_s = period_s
         builder = DiagramBuilder()
         step = builder.AddNamedSystem(
-            "step", _ImplicitStep(dynamics, period_s, wrench_names, X_WT)
+            "step",
+            _ImplicitStep(dynamics, period_s, wrench_names, X_WT, chained_at),
         )
-        for name in wrench_names:
-            builder.ExportInput(step.GetInputPort(name), name)
+        for port in map(step.get_input_port, range(step.num_input_ports())):
+            builder.ExportInput(port, port.get_name())
         export_parts(builder, step.get_output_port(), {"X_WT": 7, "V_WT": 6})
         builder.BuildInto(self)
 
@@ -98,12 +111,15 @@ _STATE_NAMES = "qw qx qy qz x y z wx wy wz vx vy vz".split()
 class _ImplicitStep(DifferentiableSystem):
     """The state of a `HapticTool`, and its update."""
 
+    undifferentiated = frozenset({"contact_chain", "motions_and_gains"})
+
     def __init__(
         self,
         dynamics: RigidToolDynamics,
         period_s: float,
         wrench_names: Sequence[str],
         X_WT: RigidTransform,
+        chained_at: RigidTransform | None,
     ):
         super().__init__()
         self._dynamics = dynamics
@@ -111,28 +127,50 @@ class _ImplicitStep(DifferentiableSystem):
         self._wrenches = [
             self.DeclareVectorInputPort(name, 78) for name in wrench_names
         ]
-        self._eval_wrenches = [port.Eval for port in self._wrenches]
+        # Coupling and contacts come of the chain, if there is one.
+        self._read = self._wrenches if chained_at is None else self._wrenches[2:]
+        self._eval_read = [port.Eval for port in self._read]
         state = self.DeclareDiscreteState(
             np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
         )
         self._eval_state = self.DeclareStateOutputPort("state", state).Eval
-        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
+        update = self._update
+        if chained_at is not None:
+            self._q_HT = pose_to_vector(chained_at)
+            self._eval_chain = self.DeclareAbstractInputPort(
+                "contact_chain", Value[object]()
+            ).Eval
+            self._eval_joined = self.DeclareVectorInputPort(
+                "motions_and_gains", 32
+            ).Eval
+            update = self._update_chained
+        self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, update)
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
-        try:
-            wrench_models = [
-                eval_wrench(context) for eval_wrench in self._eval_wrenches
-            ]
-        except RuntimeError:
-            # To ask first would take as long as to read, at every tick.
-            wrench_models = [
-                port.Eval(context) for port in self._wrenches if port.HasValue(context)
-            ]
         next_state.set_value(
             self._dynamics.step(
-                self._eval_state(context), wrench_models, self._period_s
+                self._eval_state(context), self._read_wrenches(context), self._period_s
             )
         )
+
+    def _update_chained(self, context: Context, next_state: DiscreteValues) -> None:
+        next_state.set_value(
+            self._eval_chain(context).step_tool(
+                self._eval_joined(context),
+                self._q_HT,
+                self._dynamics,
+                self._period_s,
+                self._read_wrenches(context),
+            )
+        )
+
+    def _read_wrenches(self, context: Context) -> list[np.ndarray]:
+        """Returns the wrench models that are read and connected."""
+        try:
+            return [eval_wrench(context) for eval_wrench in self._eval_read]
+        except RuntimeError:
+            # To ask first would take as long as to read, at every tick.
+            return [port.Eval(context) for port in self._read if port.HasValue(context)]
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
         """Returns the state."""

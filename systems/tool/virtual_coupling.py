@@ -43,6 +43,7 @@ class VirtualCoupling(Diagram):
         output_ports:
         - wrench_model
         - F_Ho_W_commanded
+        - motions_and_gains
 
     `X_WH` and `X_WT` are poses [qw qx qy qz x y z] of the handle and the tool in
     the world, m; `V_WH` and `V_WT` their spatial velocities [ω; v] at the
@@ -52,6 +53,8 @@ class VirtualCoupling(Diagram):
       documents it.
     * `F_Ho_W_commanded` (6) is the wrench [τ; f] on the handle at its origin in the
       world, N·m and N.
+    * `motions_and_gains` (32) is what both are functions of: the inputs, in this order,
+      and the gains.
 
     The gains are a numeric parameter (6) of the Context, in the order of
     `drake_haptics._core.CouplingGains`; see `set_gains`. Outputs have no derivatives
@@ -85,6 +88,8 @@ class VirtualCoupling(Diagram):
             spring.get_output_port(),
             {"wrench_model": 78, "F_Ho_W_commanded": 6},
         )
+        joint = builder.GetSubsystemByName("joint")
+        builder.ExportOutput(joint.get_output_port(), "motions_and_gains")
         builder.BuildInto(self)
 
     def get_gains(self, context: Context) -> CouplingGains:

@@ -2,10 +2,12 @@
 
 python tests/benchmarks/tick_instructions.py [SCENE ...]
 
-Needs valgrind; half a minute for each scene. Three loops of it, in contact:
+Needs valgrind; a minute for each scene. Five loops of it, in contact:
 
 * recorded: the handle moves as recorded, by systems of Drake's own. What the loop of
   coupling, tool, contact and limits costs.
+* backend: the same with a `DeviceBackend` that is written in Python.
+* plant: `AddHapticRendering` in a discrete plant, with the recorded handle.
 * simulated: with the simulated arm, and the hand that holds it.
 * run: the same by `run`, which notes each tick down.
 
@@ -19,11 +21,17 @@ import subprocess
 import sys
 from contextlib import ExitStack
 
+from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
 from drake_haptics.common.errors import HapticsError
-from drake_haptics.evaluation.benchmark.loop.problem import make_problem
-from drake_haptics.evaluation.benchmark.loop.this_package import ThisLoop
+from drake_haptics.evaluation.benchmark.loop.problem import LoopProblem, make_problem
+from drake_haptics.evaluation.benchmark.loop.this_package import (
+    BackendLoop,
+    SceneLoop,
+    ThisLoop,
+)
+from drake_haptics.evaluation.benchmark.loop.your_plant import PlantLoop
 from drake_haptics.evaluation.measuring.valgrind import (
     count_by_library,
     counted,
@@ -32,11 +40,12 @@ from drake_haptics.evaluation.measuring.valgrind import (
 from drake_haptics.loop.builder import BuildHapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
-from drake_haptics.simulation.run import make_simulator, run
+from drake_haptics.simulation.run import run
 
-LOOPS = ("recorded", "simulated", "run")
+LOOPS = ("recorded", "backend", "plant", "simulated", "run")
 # The shipped hands are in contact then.
 _WARM_UP, _TICKS = 1200, 300
+_TICK_S = 1e-3
 # Names of libraries by a part of their paths; the first that fits.
 _LIBRARIES = {
     "/_core.": "core and its binding",
@@ -62,16 +71,19 @@ def run_counted(scene: str, loop: str) -> None:
     if loop == "run":
         _run_counted(scene)
         return
-    if loop == "recorded":
-        end_s = 1e-3 * (_WARM_UP + _TICKS + 1)
-        haptic = ThisLoop(make_problem(scene, end_s)).haptic
-    else:
-        haptic = BuildHapticDiagram(load_scene(find_scene(scene)))
-    simulator = make_simulator(haptic)
+    problem = make_problem(scene, _TICK_S * (_WARM_UP + _TICKS + 1))
+    simulator = _make_simulator(problem, loop)
     # Between two ticks, so that round-off does not move one.
-    simulator.AdvanceTo((_WARM_UP + 0.5) * haptic.period_s)
+    simulator.AdvanceTo((_WARM_UP + 0.5) * _TICK_S)
     with counted():
-        simulator.AdvanceTo((_WARM_UP + _TICKS + 0.5) * haptic.period_s)
+        simulator.AdvanceTo((_WARM_UP + _TICKS + 0.5) * _TICK_S)
+
+
+def _make_simulator(problem: LoopProblem, loop: str) -> Simulator:
+    if loop == "plant":
+        return PlantLoop(problem).make_simulator()
+    kinds = {"recorded": ThisLoop, "backend": BackendLoop, "simulated": SceneLoop}
+    return kinds[loop](problem).make_simulator()
 
 
 def _run_counted(scene: str) -> None:

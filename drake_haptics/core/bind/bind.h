@@ -47,6 +47,7 @@ void BindPackets(nanobind::module_& m);
 void BindGate(nanobind::module_& m);
 void BindServo(nanobind::module_& m);
 void BindToolLoop(nanobind::module_& m);
+void BindContactChain(nanobind::module_& m);
 void BindForeignContacts(nanobind::module_& m);
 
 }  // namespace drake_haptics

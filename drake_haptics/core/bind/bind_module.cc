@@ -48,5 +48,6 @@ NB_MODULE(_core, m) {
   drake_haptics::BindGate(m);
   drake_haptics::BindServo(m);
   drake_haptics::BindToolLoop(m);
+  drake_haptics::BindContactChain(m);
   drake_haptics::BindForeignContacts(m);
 }

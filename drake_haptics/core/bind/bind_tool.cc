@@ -13,6 +13,7 @@
 #include "bind/bind.h"
 #include "bind/bind_columns.h"
 #include "bind/bind_eigen.h"
+#include "bind/bind_joined_coupling.h"
 #include "tool/rigid_tool.h"
 #include "tool/virtual_coupling.h"
 
@@ -60,16 +61,12 @@ CouplingGains MakeGains(double k, double b, double kr, double br,
   return {k, b, kr, br, max_force, max_torque};
 }
 
-// Poses and velocities of handle and tool, and the gains.
-template <typename T>
-using JoinedVector = Eigen::Matrix<T, 32, 1>;
-
 template <typename T>
 auto CoupleJoined(const JoinedVector<T>& in, const PoseVector& q_HT,
                   const CouplingGains& gains) {
-  return ToVector(ComputeCoupling<T>(
-      in.template head<7>(), in.template segment<6>(7), q_HT,
-      in.template segment<7>(13), in.template segment<6>(20), gains));
+  return ComputeCoupling<T>(in.template head<7>(), in.template segment<6>(7),
+                            q_HT, in.template segment<7>(13),
+                            in.template segment<6>(20), gains);
 }
 
 CouplingGains GainsOf(const JoinedVector<double>& in) {
@@ -80,7 +77,7 @@ void BindJoinedCoupling(nb::module_& m) {
   m.def(
       "joined_coupling_wrench",
       [](const JoinedVector<double>& joined, const PoseVector& q_HT) {
-        return CoupleJoined<double>(joined, q_HT, GainsOf(joined));
+        return ToVector(ComputeJoinedCoupling(joined, q_HT));
       },
       nb::arg("joined"), nb::arg("q_HT"),
       "Wrenches of the virtual coupling between handle H and tool, of one "
@@ -105,7 +102,7 @@ void BindJoinedCoupling(nb::module_& m) {
               "none by them");
         }
         return ToAutoDiffVector(
-            CoupleJoined<AutoDiff>(in, q_HT, GainsOf(joined.value)),
+            ToVector(CoupleJoined<AutoDiff>(in, q_HT, GainsOf(joined.value))),
             joined.num_derivatives());
       },
       nb::arg("joined"), nb::arg("q_HT"),
@@ -247,6 +244,11 @@ void BindLimit(nb::module_& m) {
 }
 
 }  // namespace
+
+CouplingWrench ComputeJoinedCoupling(const JoinedVector<double>& joined,
+                                     const PoseVector& q_HT) {
+  return CoupleJoined<double>(joined, q_HT, GainsOf(joined));
+}
 
 void BindTool(nb::module_& m) {
   BindCoupling(m);

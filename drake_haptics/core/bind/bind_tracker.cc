@@ -1,3 +1,5 @@
+#include "bind/bind_tracker.h"
+
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
@@ -73,75 +75,6 @@ DepthSearch ToDepthSearch(nb::handle depth, nb::handle max_walk_steps) {
   return {is_global, steps};
 }
 
-// The contacts at each pose of a trajectory, one pose after the other.
-struct ContactTrajectory {
-  std::vector<Contact> contacts;
-  std::vector<std::int64_t> start{0};
-  std::vector<double> seconds;
-
-  void Append(const ContactSet& set) {
-    contacts.insert(contacts.end(), set.contacts.begin(), set.contacts.end());
-    start.push_back(static_cast<std::int64_t>(contacts.size()));
-    seconds.push_back(set.query_seconds);
-  }
-
-  ContactSet At(std::size_t k) const {
-    return {{contacts.begin() + start[k], contacts.begin() + start[k + 1]},
-            seconds[k]};
-  }
-};
-
-// A tracker whose users take turns.
-class SharedTracker {
- public:
-  explicit SharedTracker(ContactTracker tracker)
-      : tracker_(std::move(tracker)) {}
-  SharedTracker(const SharedTracker& other) : SharedTracker(other.Copy()) {}
-
-  // For what never changes.
-  const ContactTracker& constants() const { return tracker_; }
-
-  double Tolerance() const {
-    const Turn turn(&mutex_, Turn::Gil::kHold);
-    return tracker_.tolerance();
-  }
-
-  void SetTolerance(nb::handle value) {
-    const double tolerance = ToReal(value, "tolerance");
-    const Turn turn(&mutex_, Turn::Gil::kHold);
-    tracker_.SetTolerance(tolerance);
-  }
-
-  void Reset() {
-    const Turn turn(&mutex_, Turn::Gil::kRelease);
-    tracker_.Reset();
-  }
-
- protected:
-  ContactTracker Copy() const {
-    const Turn turn(&mutex_, Turn::Gil::kRelease);
-    return tracker_;
-  }
-
-  // Calls place(k, &tracker) before the query of pose k.
-  template <typename Place>
-  ContactTrajectory QueryEach(std::size_t size, const PoseSeries& X_WA,
-                              const Place& place) {
-    ContactTrajectory out;
-    ContactSet contacts;
-    const Turn turn(&mutex_, Turn::Gil::kRelease);
-    RunTrajectory(size, [&](std::size_t k) {
-      place(k, &tracker_);
-      tracker_.Query(X_WA[k], &contacts);
-      out.Append(contacts);
-    });
-    return out;
-  }
-
-  mutable std::mutex mutex_;
-  ContactTracker tracker_;
-};
-
 class PairTracker : public SharedTracker {
  public:
   PairTracker(nb::handle A, nb::handle B, nb::handle tolerance,
@@ -172,46 +105,57 @@ class PairTracker : public SharedTracker {
   }
 };
 
-class SceneTracker : public SharedTracker {
- public:
-  SceneTracker(nb::handle tool, nb::handle objects, nb::handle tolerance,
-               nb::handle depth, nb::handle max_walk_steps)
-      : SharedTracker({ToDecomposition(tool, "tool"), ToDecompositions(objects),
-                       ToReal(tolerance, "tolerance"),
-                       ToDepthSearch(depth, max_walk_steps)}) {}
+}  // namespace
 
-  void SetObjectPose(nb::handle place, nb::handle X_WO_value) {
-    const Pose X_WO = ToPose(X_WO_value, "X_WO");
-    // By `__index__`, as lists do: NumPy's integers count.
-    const Py_ssize_t i = PyNumber_AsSsize_t(place.ptr(), PyExc_IndexError);
-    if (i == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
-    const Py_ssize_t size = tracker_.num_objects();
-    if (i < 0 || i >= size) {
-      const auto text =
-          "no object " + std::to_string(i) + " of " + std::to_string(size);
-      throw nb::index_error(text.c_str());
-    }
-    const Turn turn(&mutex_, Turn::Gil::kHold);
-    tracker_.SetObjectPose(static_cast<int>(i), X_WO);
-  }
+void SharedTracker::SetTolerance(nb::handle value) {
+  const double tolerance = ToReal(value, "tolerance");
+  const Turn turn(&mutex_, Turn::Gil::kHold);
+  ++changes_;
+  tracker_.SetTolerance(tolerance);
+}
 
-  ContactSet Query(nb::handle X_WT_value, nb::handle tolerance_value) {
-    const Pose X_WT = ToPose(X_WT_value, "X_WT");
-    std::optional<double> tolerance;
-    if (!tolerance_value.is_none()) {
-      tolerance = ToReal(tolerance_value, "tolerance");
-    }
-    ContactSet contacts;
-    const Turn turn(&mutex_, Turn::Gil::kHold);
-    tracker_.Query(X_WT, tolerance.value_or(tracker_.tolerance()), &contacts);
-    return contacts;
-  }
+SceneTracker::SceneTracker(nb::handle tool, nb::handle objects,
+                           nb::handle tolerance, nb::handle depth,
+                           nb::handle max_walk_steps)
+    : SharedTracker({ToDecomposition(tool, "tool"), ToDecompositions(objects),
+                     ToReal(tolerance, "tolerance"),
+                     ToDepthSearch(depth, max_walk_steps)}) {}
 
-  ContactTrajectory QueryTrajectory(nb::handle X_WT_value) {
-    const PoseSeries X_WT(X_WT_value, "X_WT");
-    return QueryEach(X_WT.size(), X_WT, [](std::size_t, ContactTracker*) {});
+void SceneTracker::SetObjectPose(nb::handle place, nb::handle X_WO_value) {
+  const Pose X_WO = ToPose(X_WO_value, "X_WO");
+  // By `__index__`, as lists do: NumPy's integers count.
+  const Py_ssize_t i = PyNumber_AsSsize_t(place.ptr(), PyExc_IndexError);
+  if (i == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
+  const Py_ssize_t size = tracker_.num_objects();
+  if (i < 0 || i >= size) {
+    const auto text =
+        "no object " + std::to_string(i) + " of " + std::to_string(size);
+    throw nb::index_error(text.c_str());
   }
-};
+  const Turn turn(&mutex_, Turn::Gil::kHold);
+  ++changes_;
+  tracker_.SetObjectPose(static_cast<int>(i), X_WO);
+}
+
+ContactSet SceneTracker::Query(nb::handle X_WT_value,
+                               nb::handle tolerance_value) {
+  const Pose X_WT = ToPose(X_WT_value, "X_WT");
+  std::optional<double> tolerance;
+  if (!tolerance_value.is_none()) {
+    tolerance = ToReal(tolerance_value, "tolerance");
+  }
+  ContactSet contacts;
+  const Turn turn(&mutex_, Turn::Gil::kHold);
+  tracker_.Query(X_WT, tolerance.value_or(tracker_.tolerance()), &contacts);
+  return contacts;
+}
+
+ContactTrajectory SceneTracker::QueryTrajectory(nb::handle X_WT_value) {
+  const PoseSeries X_WT(X_WT_value, "X_WT");
+  return QueryEach(X_WT.size(), X_WT, [](std::size_t, ContactTracker*) {});
+}
+
+namespace {
 
 void BindContactTrajectory(nb::module_& m) {
   nb::class_<ContactTrajectory> trajectory(

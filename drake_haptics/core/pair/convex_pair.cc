@@ -39,6 +39,7 @@ class Query {
 
  private:
   PairContact Answer() {
+    last_simplex_ = state_.simplex;
     if (HoldsOrigin(pair_, state_.simplex)) return AtFacet(FindDepth());
     const Separation separation =
         ComputeSeparation(pair_, state_.simplex, kInfinity);
@@ -111,15 +112,19 @@ class Query {
   }
 
   // On coherent motion the last facet mostly still is the answer, and one
-  // comparison proves it.
+  // comparison proves it. Bodies that were apart enter through the facet that
+  // their closest features span.
   Depth FindLocalDepth() {
-    if (state_.feature_A.is_none()) {
-      return ColdDepth(pair_, SurfaceRule::kWholeBoundary, state_.n,
-                       state_.vertex_pair, kNoPromotion, &workspace_.depth);
+    const bool is_entry = state_.feature_A.is_none();
+    ClosestFeatures features{state_.feature_A, state_.feature_B};
+    if (is_entry) {
+      if (last_simplex_.size != 3) return FindColdDepth();
+      features = FeaturesOfSimplex(pair_, last_simplex_, state_.n);
+      if (!features.SpanFacet()) return FindColdDepth();
     }
     const Revisit last =
-        RevisitFacet(pair_, SurfaceRule::kWholeBoundary, state_.feature_A,
-                     state_.feature_B, state_.n);
+        RevisitFacet(pair_, SurfaceRule::kWholeBoundary, features.feature_A,
+                     features.feature_B, state_.n);
     if (last.status == RevisitStatus::kMinimum) {
       return {DepthStatus::kLocalMinimum, last.facet, last.facet.h,
               last.vertex_pair};
@@ -128,13 +133,17 @@ class Query {
       return WalkDepth(pair_, last.vertex_pair, SurfaceRule::kWholeBoundary,
                        &last.facet, kNoPromotion, &workspace_.depth);
     }
+    if (is_entry) return FindColdDepth();
     MinkowskiVertex vertex_pair = state_.vertex_pair;
     SupportGap(pair_, state_.n, &vertex_pair);
     const Depth depth =
         WalkDepth(pair_, vertex_pair, SurfaceRule::kWholeBoundary, nullptr,
                   kNoPromotion, &workspace_.depth);
     // Round-off can hide every facet from where a walk began.
-    if (depth.status != DepthStatus::kNoFacet) return depth;
+    return depth.status != DepthStatus::kNoFacet ? depth : FindColdDepth();
+  }
+
+  Depth FindColdDepth() {
     return ColdDepth(pair_, SurfaceRule::kWholeBoundary, state_.n,
                      state_.vertex_pair, kNoPromotion, &workspace_.depth);
   }
@@ -156,7 +165,8 @@ class Query {
   const PosedPair& pair_;
   PairState& state_;
   PairWorkspace& workspace_;
-  GlobalDepthState* const global_;  // null where the depth is tracked
+  GlobalDepthState* const global_;   // null where the depth is tracked
+  SimplexVertexPairs last_simplex_;  // of the tick before
 };
 
 }  // namespace

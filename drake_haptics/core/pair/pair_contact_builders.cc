@@ -6,7 +6,8 @@
 namespace drake_haptics {
 namespace {
 
-Feature SimplexFeature(const Polytope& polytope, const Simplex& simplex,
+Feature SimplexFeature(const Polytope& polytope,
+                       const SimplexVertexPairs& simplex,
                        int MinkowskiVertex::* side, const Vec3& n) {
   int vertices[4];
   for (int i = 0; i < simplex.size; ++i) {
@@ -38,16 +39,24 @@ bool AreBothWanted(const PosedPair& pair, const Separation& separation) {
   return separation.distance < share * pair.scale();
 }
 
+ClosestFeatures FeaturesOfSimplex(const PosedPair& pair,
+                                  const SimplexVertexPairs& simplex,
+                                  const Vec3& n) {
+  return {SimplexFeature(pair.A, simplex, &MinkowskiVertex::a, -n),
+          SimplexFeature(pair.B, simplex, &MinkowskiVertex::b,
+                         pair.X_AB.R.transpose() * n)};
+}
+
 PairContact ContactApart(const PosedPair& pair, const Separation& separation) {
-  const Vec3& n = separation.n;
-  const Vec3 n_B = pair.X_AB.R.transpose() * n;
+  const auto [feature_A, feature_B] =
+      FeaturesOfSimplex(pair, separation.simplex, separation.n);
   return {
       separation.distance,
-      n,
+      separation.n,
       separation.p_a,
       separation.p_b,
-      SimplexFeature(pair.A, separation.simplex, &MinkowskiVertex::a, -n),
-      SimplexFeature(pair.B, separation.simplex, &MinkowskiVertex::b, n_B),
+      feature_A,
+      feature_B,
       separation.is_bounded ? ContactStatus::kBounded : ContactStatus::kNear};
 }
 
@@ -68,13 +77,14 @@ PairContact ContactGrazing(const PosedPair& pair, const Separation& separation,
   Vec3 n = n_last - along * (along.dot(n_last) / along.squaredNorm());
   if (!(n.norm() > 1e-6)) n = along.unitOrthogonal();
   n.normalize();
+  const auto [feature_A, feature_B] =
+      FeaturesOfSimplex(pair, separation.simplex, n);
   return {0.0,
           n,
           separation.p_a,
           separation.p_a,
-          SimplexFeature(pair.A, separation.simplex, &MinkowskiVertex::a, -n),
-          SimplexFeature(pair.B, separation.simplex, &MinkowskiVertex::b,
-                         pair.X_AB.R.transpose() * n),
+          feature_A,
+          feature_B,
           ContactStatus::kPenetrating};
 }
 

@@ -14,6 +14,28 @@ namespace drake_haptics {
 [[nodiscard]] bool AreBothWanted(const PosedPair& pair,
                                  const Separation& separation);
 
+/// Features of both bodies.
+struct ClosestFeatures {
+  Feature feature_A;
+  Feature feature_B;
+
+  /// Whether their difference is a facet of A ⊖ B, and not a part of one's rim.
+  bool SpanFacet() const {
+    const auto is = [this](FeatureKind a, FeatureKind b) {
+      return feature_A.kind() == a && feature_B.kind() == b;
+    };
+    return is(FeatureKind::kFacet, FeatureKind::kVertex) ||
+           is(FeatureKind::kVertex, FeatureKind::kFacet) ||
+           is(FeatureKind::kEdge, FeatureKind::kEdge);
+  }
+};
+
+/// The features that hold a simplex's vertices.
+/// @param n from B into A, in A's frame, unit.
+ClosestFeatures FeaturesOfSimplex(const PosedPair& pair,
+                                  const SimplexVertexPairs& simplex,
+                                  const Vec3& n);
+
 /// The contact at the closest points of a pair that is apart.
 PairContact ContactApart(const PosedPair& pair, const Separation& separation);
 

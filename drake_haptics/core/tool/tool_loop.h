@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "base/rotation.h"
-#include "law/clustering.h"
 #include "law/penalty_force.h"
+#include "tool/contact_chain.h"
 #include "tool/rigid_tool.h"
 #include "tool/virtual_coupling.h"
 #include "tracker/contact_tracker.h"
@@ -32,14 +32,12 @@ class ToolLoop {
   void Step(const PoseVector& q_WH, const Vec6& V_WH, ToolState* state);
 
   /// Those of the last tick, at its beginning.
-  const ContactSet& contacts() const { return contacts_; }
+  const ContactSet& contacts() const { return chain_.contacts(); }
 
  private:
   ContactTracker tracker_;
   Settings settings_;
-  std::vector<MovingFrame> objects_;  // at rest
-  ContactSet contacts_;
-  ClusterSet clusters_;
+  ContactChain chain_;
 };
 
 }  // namespace drake_haptics

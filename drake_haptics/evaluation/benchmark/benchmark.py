@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -62,6 +63,7 @@ class Effort:
         repeats: Repeats of each of these; at least 3, so that interruptions fall out.
         large_scenes: Whether scenes of 1000 pieces and more are run.
         loop_s: Duration of the loops' motion, s.
+        loop_scenes: Shipped scenes in which loops are run.
     """
 
     sizes: tuple[int, ...] = SIZES
@@ -70,6 +72,7 @@ class Effort:
     repeats: int = 8
     large_scenes: bool = True
     loop_s: float = 4.0
+    loop_scenes: tuple[str, ...] = ("cup_spoon", "torus_peg")
 
 
 QUICK = Effort(
@@ -79,6 +82,7 @@ QUICK = Effort(
     repeats=3,
     large_scenes=False,
     loop_s=1.2,
+    loop_scenes=("cup_spoon",),
 )
 
 
@@ -211,21 +215,16 @@ def _run_loop(
     from drake_haptics.evaluation.benchmark.loop.problem import make_problem
     from drake_haptics.evaluation.benchmark.loop.runs import make_loops, run_loops
 
-    progress("loop: recording the hand", 0.0)
-    problem = make_problem(duration_s=effort.loop_s)
-    loops, missing = make_loops(problem, outside)
-    figures.missing.update(missing)
-    for library in ("Drake", "MuJoCo"):
-        if any(name.startswith(library) for name in loops):
-            figures.libraries[library] = version(library.lower())
-    figures.loop.extend(
-        run_loops(
-            problem,
-            loops,
-            effort.repeats,
-            lambda share: progress("loop: in turns", share),
-        )
-    )
+    for scene in effort.loop_scenes:
+        progress(f"loop: {scene}, recording the hand", 0.0)
+        problem = make_problem(scene, effort.loop_s)
+        loops, missing = make_loops(problem, outside)
+        figures.missing.update(missing)
+        for library in ("Drake", "MuJoCo"):
+            if any(name.startswith(library) for name in loops):
+                figures.libraries[library] = version(library.lower())
+        say = partial(progress, f"loop: {scene}, in turns")
+        figures.loop.extend(run_loops(problem, loops, effort.repeats, say))
 
 
 def _scene_peer(figures: BenchFigures, problem: SceneProblem) -> dict[str, SceneQuery]:

@@ -73,6 +73,43 @@ def test_answers_agree_with_the_enumerated_difference(kind: str) -> None:
     assert counts["globally deepest"] > 0.9 * counts["deep"]
 
 
+@pytest.mark.parametrize("kind", KINDS[:4])
+def test_bodies_that_come_in_are_as_deep_as_the_enumerated_difference(
+    kind: str,
+) -> None:
+    """The pair knows from the tick before which features were closest."""
+    rng = np.random.default_rng(40 + KINDS.index(kind))
+    entries = 0
+    for _ in range(40):
+        A, B = shapes(rng, kind)
+        pair = _core.ConvexPair(polytope(A), polytope(B))
+        X_WA, X_WB = random_pose(rng, 0.0), random_pose(rng, 0.0)
+        way = rng.normal(size=3)
+        way /= np.linalg.norm(way)
+        turn = Rotation.from_rotvec(0.02 * rng.normal(size=3)).as_matrix()
+        was_apart = False
+        for s in np.arange(6.0, -1.0, -0.03):
+            X_WA[:3, :3] = turn @ X_WA[:3, :3]
+            X_WA[:3, 3] = s * way
+            answer = pair.query(X_WA, X_WB)
+            a, b = place(A, X_WA), place(B, X_WB)
+            if answer.distance > 0.0:
+                was_apart = True
+                continue
+            if not was_apart:
+                break
+            entries += 1
+            assert locally_deepest(a, b, answer.nhat_BA_W)
+            assert answer.distance == pytest.approx(signed_distance(a, b), abs=1e-11)
+            np.testing.assert_allclose(
+                answer.p_WCa - answer.p_WCb,
+                answer.distance * answer.nhat_BA_W,
+                atol=1e-11,
+            )
+            break
+    assert entries > 15
+
+
 def test_a_warm_pair_stays_right_on_coherent_motion() -> None:
     rng = np.random.default_rng(7)
     A, B = rng.normal(size=(40, 3)), rng.normal(size=(40, 3))

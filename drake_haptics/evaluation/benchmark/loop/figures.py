@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 
@@ -10,7 +11,11 @@ import numpy as np
 from drake_haptics.evaluation.measuring.timing import TickTimes
 from drake_haptics.report.page import Table
 
-PACED = "drake_haptics, whole tick, paced"
+# What is added to the name of a loop each of whose ticks waits for the clock.
+PACED = ", paced"
+BACKEND = "drake_haptics, your own backend"
+PLANT = "drake_haptics, your own plant"
+SCENE = "drake_haptics, simulated device"
 OURS = "drake_haptics, whole tick"
 NATIVE = "drake_haptics, native part"
 # Bushing and point contact. Name -> contact solver of Drake.
@@ -19,6 +24,7 @@ STOCK = {
     "Drake, bushing, SAP": "similar",
 }
 MUJOCO = "MuJoCo, mj_step"
+EMPTY = "Drake, one empty Python system"
 # What each of them does in a tick.
 _COMPUTES = (
     "drake_haptics: every pair within the tolerance with its exact depth, stiffness "
@@ -69,7 +75,8 @@ class LoopFigures:
         deepest_m: Largest penetration of a pair of pieces, m.
         force_N: Median force of the spring between handle and tool, in contact, N.
         max_force_N: The largest, N.
-        apart_m: Median distance of the tool from this package's, m.
+        apart_m: Median distance of the tool from this package's, m. It and the three
+            before it are NaN where there is no tool.
     """
 
     scene: str
@@ -85,10 +92,12 @@ class LoopFigures:
 
 
 def loop_tables(figures: Sequence[LoopFigures]) -> list[Table]:
-    """Returns what the loops cost, and what they did for it."""
-    by_name = {f.loop: f for f in figures}
-    scene = figures[0].scene
-    return [_make_times(scene, by_name), _make_deeds(scene, by_name)]
+    """Returns what the loops cost, and what they did for it, scene by scene."""
+    tables = []
+    for scene in dict.fromkeys(f.scene for f in figures):
+        by_name = {f.loop: f for f in figures if f.scene == scene}
+        tables += [_make_times(scene, by_name), _make_deeds(scene, by_name)]
+    return tables
 
 
 def _make_times(scene: str, by_name: dict[str, LoopFigures]) -> Table:
@@ -146,6 +155,7 @@ def _make_deeds(scene: str, by_name: dict[str, LoopFigures]) -> Table:
                 f"{1e3 * f.apart_m:.2f} mm",
             )
             for name, f in by_name.items()
+            if not math.isnan(f.apart_m)
         ],
     )
 

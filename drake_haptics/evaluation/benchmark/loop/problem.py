@@ -93,8 +93,8 @@ class LoopCourse:
 class Loop(Protocol):
     """A loop, ready to be run."""
 
-    def observe(self) -> LoopCourse:
-        """Runs the motion from its start and tells what happened."""
+    def observe(self) -> LoopCourse | None:
+        """Runs the motion from its start; tells what happened, None without a tool."""
         ...
 
     def time(self) -> np.ndarray:

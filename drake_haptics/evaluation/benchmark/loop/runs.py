@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
+from drake_haptics.evaluation.benchmark.loop.empty_system import EmptyLoop
 from drake_haptics.evaluation.benchmark.loop.figures import (
+    BACKEND,
+    EMPTY,
     MUJOCO,
     NATIVE,
     OURS,
     PACED,
+    PLANT,
+    SCENE,
     STOCK,
     LoopFigures,
     LoopTimes,
@@ -21,11 +28,25 @@ from drake_haptics.evaluation.benchmark.loop.problem import (
     LoopProblem,
 )
 from drake_haptics.evaluation.benchmark.loop.stock_drake import StockLoop, has_solver
-from drake_haptics.evaluation.benchmark.loop.this_package import NativeLoop, ThisLoop
+from drake_haptics.evaluation.benchmark.loop.this_package import (
+    BackendLoop,
+    NativeLoop,
+    SceneLoop,
+    ThisLoop,
+)
 from drake_haptics.evaluation.benchmark.loop.with_outside import OutsideLoop
+from drake_haptics.evaluation.benchmark.loop.your_plant import PlantLoop
 from drake_haptics.evaluation.benchmark.outside_library import OutsideLibrary
 from drake_haptics.evaluation.measuring.native_build import NativeBuildError
 from drake_haptics.evaluation.measuring.timing import take_turns, typical
+
+# This package's: each is run as fast as it can, and paced.
+_OWN: dict[str, Callable[..., Loop]] = {
+    BACKEND: BackendLoop,
+    PLANT: PlantLoop,
+    SCENE: SceneLoop,
+    OURS: ThisLoop,
+}
 
 
 def make_loops(
@@ -38,13 +59,14 @@ def make_loops(
         outside: Libraries that were named for this run.
     """
     loops: dict[str, Loop] = {
-        PACED: ThisLoop(problem, paced=True),
-        OURS: ThisLoop(problem),
-        NATIVE: NativeLoop(problem),
+        f"{name}{PACED}": make(problem, paced=True) for name, make in _OWN.items()
     }
+    loops |= {name: make(problem) for name, make in _OWN.items()}
+    loops[NATIVE] = NativeLoop(problem)
     missing: dict[str, str] = {}
     for name, solver in STOCK.items():
         if has_solver(solver):
+            loops[f"{name}{PACED}"] = StockLoop(problem, solver, paced=True)
             loops[name] = StockLoop(problem, solver)
         else:
             missing[name] = f"this Drake has no contact solver '{solver}'"
@@ -56,6 +78,8 @@ def make_loops(
         missing["mujoco"] = str(error)
     for library in outside:
         loops[library.name] = OutsideLoop(problem, library)
+    loops[f"{EMPTY}{PACED}"] = EmptyLoop(problem, paced=True)
+    loops[EMPTY] = EmptyLoop(problem)
     return loops, missing
 
 
@@ -79,12 +103,16 @@ def run_loops(
     """
     names = list(loops)
     courses = {name: loops[name].observe() for name in names}
+    ours = courses[OURS]
+    assert ours is not None
     seconds: dict[str, list[np.ndarray]] = {name: [] for name in names}
     for done, name in enumerate(take_turns(names, repeats)):
         progress(done / (repeats * len(names)))
         # The first tick starts from nothing.
         seconds[name].append(loops[name].time()[1:])
-    touching = np.all([c.num_contacts[1:] > 0 for c in courses.values()], axis=0)
+    touching = np.all(
+        [c.num_contacts[1:] > 0 for c in courses.values() if c is not None], axis=0
+    )
     return [
         _make_figures(
             problem,
@@ -92,7 +120,7 @@ def run_loops(
             typical(np.array(seconds[name])),
             touching,
             courses[name],
-            courses[OURS],
+            ours,
         )
         for name in names
     ]
@@ -103,16 +131,30 @@ def _make_figures(
     name: str,
     seconds: np.ndarray,
     touching: np.ndarray,
-    course: LoopCourse,
+    course: LoopCourse | None,
     ours: LoopCourse,
 ) -> LoopFigures:
+    times: dict[str, Any] = {
+        "scene": problem.name,
+        "loop": name,
+        "in_contact": LoopTimes.of(seconds[touching]),
+        "all_ticks": LoopTimes.of(seconds),
+    }
+    if course is None:
+        none = math.nan
+        return LoopFigures(
+            **times,
+            median_contacts=0.0,
+            max_contacts=0,
+            deepest_m=none,
+            force_N=none,
+            max_force_N=none,
+            apart_m=none,
+        )
     count, force_N = course.num_contacts[1:], course.force_N[1:]
     apart_m = np.linalg.norm(course.X_WT[1:, 4:] - ours.X_WT[1:, 4:], axis=1)
     return LoopFigures(
-        scene=problem.name,
-        loop=name,
-        in_contact=LoopTimes.of(seconds[touching]),
-        all_ticks=LoopTimes.of(seconds),
+        **times,
         median_contacts=float(np.median(count[touching])) if touching.any() else 0.0,
         max_contacts=int(count.max()),
         deepest_m=float(-course.nearest_m.min(initial=0.0)),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 
 import numpy as np
@@ -19,19 +18,19 @@ from pydrake.multibody.tree import (
     SpatialInertia,
 )
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import Context, DiagramBuilder, EventStatus
+from pydrake.systems.framework import Context, DiagramBuilder
 
 from drake_haptics.evaluation.benchmark.loop.problem import (
     LoopCourse,
     LoopProblem,
     moments_and_products,
 )
+from drake_haptics.evaluation.benchmark.loop.simulated_ticks import time_ticks
 from drake_haptics.evaluation.measuring.pieces import (
     make_surface,
     quiet_streams,
     register_pieces,
 )
-from drake_haptics.evaluation.measuring.timing import steady_memory
 
 # So heavy that the bushing does not move the handle within a tick: 1 µm/s at 1 kN.
 _HANDLE_KG = 1e6
@@ -58,14 +57,16 @@ class StockLoop:
     beginning of the step, which diverges from 2 I / h on.
     """
 
-    def __init__(self, problem: LoopProblem, solver: str):
+    def __init__(self, problem: LoopProblem, solver: str, *, paced: bool = False):
         """Builds the diagram.
 
         Args:
             problem: What is asked.
             solver: One that `has_solver`.
+            paced: Whether ticks that are timed wait for the clock.
         """
         self._problem = problem
+        self._paced = paced
         builder = DiagramBuilder()
         config = MultibodyPlantConfig(
             time_step=problem.motion.period_s,
@@ -96,16 +97,16 @@ class StockLoop:
             ]
             contacts.append((len(depths), -max(depths, default=0.0)))
 
-        self._run(note)
+        self._run(note, paced=False)
         X_WT, (count, nearest_m) = np.array(poses), np.array(contacts).T
         force_N = problem.spring_force(X_WT[:, 4:])
         return LoopCourse(X_WT, count.astype(int), nearest_m, force_N)
 
     def time(self) -> np.ndarray:
         """See `Loop.time`."""
-        return self._run(lambda context: None)
+        return self._run(lambda context: None, paced=self._paced)
 
-    def _run(self, note: Callable[[Context], None]) -> np.ndarray:
+    def _run(self, note: Callable[[Context], None], *, paced: bool) -> np.ndarray:
         """Calls `note` before each tick; (n,) what each tick took, s."""
         plant, motion = self._plant, self._problem.motion
         simulator = Simulator(self._diagram)
@@ -116,29 +117,19 @@ class StockLoop:
         handle = np.hstack([motion.X_WH, motion.V_WH])
         state[handle_rows] = handle[0]
         plant.SetPositionsAndVelocities(context, state)
-        n, tick = len(motion), 0
-        clock, seconds = time.perf_counter, np.zeros(len(motion))
-        begin = 0.0
+        note(context)
+        n = len(motion)
 
-        def between(root: Context) -> EventStatus:
-            nonlocal tick, begin
-            seconds[tick] = clock() - begin
-            tick += 1
+        def move_handle(tick: int) -> None:
             if tick < n:
                 state = plant.GetPositionsAndVelocities(context)
                 state[handle_rows] = handle[tick]
                 plant.SetPositionsAndVelocities(context, state)
                 note(context)
-            begin = clock()
-            return EventStatus.Succeeded()
 
-        with steady_memory():
-            simulator.Initialize()
-            note(context)
-            simulator.set_monitor(between)
-            begin = clock()
-            simulator.AdvanceTo((n - 0.5) * motion.period_s)
-        return seconds
+        return time_ticks(
+            simulator, n, motion.period_s, paced=paced, between=move_handle
+        )
 
     def _add_bodies(self) -> None:
         problem, plant = self._problem, self._plant

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-import time
+import itertools
 import warnings
+from collections.abc import Iterator
 
 import numpy as np
+from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder, EventStatus
 from pydrake.systems.primitives import Demultiplexer, PassThrough, TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
 
 from drake_haptics import _core
+from drake_haptics._core import FrameChange
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.common.real_time import RealTimePacer
+from drake_haptics.device.backend import DeviceBackend, DeviceCommand, DeviceReading
 from drake_haptics.evaluation.benchmark.loop.problem import LoopCourse, LoopProblem
-from drake_haptics.evaluation.measuring.timing import clock_interval, steady_memory
+from drake_haptics.evaluation.benchmark.loop.simulated_ticks import time_ticks
+from drake_haptics.evaluation.measuring.timing import clock_interval
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.loop.device_placement import find_device_site
 from drake_haptics.scene.validation import SceneWarning
@@ -42,50 +46,88 @@ class ThisLoop:
         """
         self._problem = problem
         self._paced = paced
-        site = find_device_site(problem.scene)
-        device = HapticDevice(
-            _make_recording(problem),
-            period_s=problem.motion.period_s,
-            max_force_N=site.max_force_N,
-            max_torque_Nm=site.max_torque_Nm,
-        )
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SceneWarning)
-            self._haptic = BuildHapticDiagram(problem.scene, device=device)
+            self._haptic = self._build()
 
-    @property
-    def haptic(self) -> HapticDiagram:
-        """What is run."""
-        return self._haptic
+    def _build(self) -> HapticDiagram:
+        return BuildHapticDiagram(
+            self._problem.scene, device=make_recorded_device(self._problem)
+        )
+
+    def _rewind(self) -> None:
+        """Begins the motion again, where the simulator's time does not say where."""
 
     def observe(self) -> LoopCourse:
         """See `Loop.observe`."""
+        self._rewind()
         return _observe(self._problem, self._haptic)
 
     def time(self) -> np.ndarray:
         """See `Loop.time`."""
-        n = len(self._problem.motion)
-        simulator = make_simulator(self._haptic)
-        begins: list[float] = []
-        ends: list[float] = []
-        clock = time.perf_counter
-        pace = RealTimePacer(self._problem.motion.period_s) if self._paced else None
+        motion = self._problem.motion
+        return time_ticks(
+            self.make_simulator(), len(motion), motion.period_s, paced=self._paced
+        )
 
-        def note(context: Context) -> EventStatus:
-            ends.append(clock())
-            # Waiting belongs to no tick.
-            if pace is not None:
-                pace.wait()
-            begins.append(clock())
-            return EventStatus.Succeeded()
+    def make_simulator(self) -> Simulator:
+        """Returns a simulator at the beginning of the motion."""
+        self._rewind()
+        return make_simulator(self._haptic)
 
-        with steady_memory():
-            simulator.Initialize()
-            simulator.set_monitor(note)
-            begins.append(clock())
-            simulator.AdvanceTo((n - 0.5) * self._problem.motion.period_s)
-        # The last tick ends where the run does, not where a tick does.
-        return (np.array(ends) - begins[: len(ends)])[:n]
+
+class BackendLoop(ThisLoop):
+    """The same with a `DeviceBackend` that is written in Python, as yours may be."""
+
+    def _build(self) -> HapticDiagram:
+        self._backend = _RecordedBackend(self._problem)
+        return BuildHapticDiagram(self._problem.scene, device=self._backend)
+
+    def _rewind(self) -> None:
+        self._backend.rewind()
+
+
+class SceneLoop(ThisLoop):
+    """The scene as `drake-haptics run` has it: a simulated arm in a simulated hand."""
+
+    def _build(self) -> HapticDiagram:
+        return BuildHapticDiagram(self._problem.scene)
+
+
+class _RecordedBackend(DeviceBackend):
+    """A device whose handle is elsewhere at each reading, as recorded."""
+
+    def __init__(self, problem: LoopProblem):
+        motion = problem.motion
+        X_WB = find_device_site(problem.scene).X_WB
+        to_base = FrameChange(pose_to_vector(X_WB.inverse()))
+        self._readings: list[DeviceReading] = []
+        for tick, time_s in enumerate(motion.times_s.tolist()):
+            handle = to_base.change_motion(motion.X_WH[tick], motion.V_WH[tick])
+            self._readings.append(
+                DeviceReading(tick, time_s, handle[:7], handle[7:], np.zeros(6))
+            )
+        # Whoever builds a loop reads where the handle is; that moves nothing.
+        self._next: Iterator[DeviceReading] = itertools.repeat(self._readings[0])
+
+    @property
+    def is_placed(self) -> bool:
+        """Whether its base is where the scene has it: always."""
+        return True
+
+    def rewind(self) -> None:
+        """Reads the first one next."""
+        self._next = iter(self._readings)
+
+    def read(self) -> DeviceReading | None:
+        """Returns the next reading, and none after the last."""
+        return next(self._next, None)
+
+    def write(self, command: DeviceCommand) -> None:
+        """Shows nothing."""
+
+    def close(self) -> None:
+        """Has nothing to close."""
 
 
 class NativeLoop:
@@ -156,6 +198,17 @@ def _observe(problem: LoopProblem, haptic: HapticDiagram) -> LoopCourse:
     num_contacts, nearest_m = np.array(counts[:n]).T
     force_N = problem.spring_force(X_WT[:, 4:])
     return LoopCourse(X_WT, num_contacts.astype(int), nearest_m, force_N)
+
+
+def make_recorded_device(problem: LoopProblem) -> HapticDevice:
+    """Returns a device port with the scene's limits whose handle moves as recorded."""
+    site = find_device_site(problem.scene)
+    return HapticDevice(
+        _make_recording(problem),
+        period_s=problem.motion.period_s,
+        max_force_N=site.max_force_N,
+        max_torque_Nm=site.max_torque_Nm,
+    )
 
 
 def _make_recording(problem: LoopProblem) -> Diagram:

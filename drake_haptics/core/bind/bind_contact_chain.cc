@@ -1,0 +1,189 @@
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "bind/bind.h"
+#include "bind/bind_contact.h"
+#include "bind/bind_eigen.h"
+#include "bind/bind_joined_coupling.h"
+#include "bind/bind_objects.h"
+#include "bind/bind_real_array.h"
+#include "bind/bind_tracker.h"
+#include "tool/contact_chain.h"
+#include "tool/handle_model.h"
+
+namespace nb = nanobind;
+
+namespace drake_haptics {
+namespace {
+
+using StateVector = Eigen::Matrix<double, 13, 1>;
+using Models = std::vector<WrenchModelVector>;
+
+// A tracker that answers with forces. What is asked of it goes on from what
+// was asked last.
+class TrackedChain : public SceneTracker {
+ public:
+  explicit TrackedChain(const SceneTracker& tracker) : SceneTracker(tracker) {}
+  TrackedChain(const TrackedChain& other)
+      : SceneTracker(other), chain_(other.CopyChain()) {}
+
+  void SetLaw(double tolerance, std::optional<double> delta,
+              const ObjectFrames& objects, const ContactMaterials& materials) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    chain_.SetLaw({tolerance, delta, objects.frames, materials.materials});
+  }
+
+  // A pose that is no vector is asked for as of any tracker.
+  ContactSet Query(nb::handle X_WT, nb::handle tolerance_value) {
+    PoseVector q_WT;
+    if (!nb::try_cast(X_WT, q_WT)) {
+      return SceneTracker::Query(X_WT, tolerance_value);
+    }
+    std::optional<double> tolerance;
+    if (!tolerance_value.is_none()) {
+      tolerance = ToReal(tolerance_value, "tolerance");
+    }
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    Refresh();
+    return chain_.FindContacts(q_WT, tolerance.value_or(tracker_.tolerance()),
+                               &tracker_);
+  }
+
+  StateVector StepTool(const JoinedVector<double>& joined,
+                       const PoseVector& q_HT, const ToolInertia& inertia,
+                       double h, const Models& others) {
+    // The order of `RigidToolDynamics.step` of [coupling, contact, others].
+    WrenchModel sum;
+    sum += ComputeJoinedCoupling(joined, q_HT).tool;
+    const ToolState state = StateOf(joined);
+    sum += FindWrench(state);
+    for (const WrenchModelVector& other : others) sum += ToWrenchModel(other);
+    const ToolState next = drake_haptics::StepTool(inertia, state, sum, h);
+    StateVector out;
+    out << next.q_WT, next.V_WT;
+    return out;
+  }
+
+  // Contacts, clusters, the least distance and what the query took.
+  std::tuple<std::size_t, int, double, double> Summarize(
+      const StateVector& state) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    Refresh();
+    chain_.FindWrench({state.head<7>(), state.tail<6>()}, &tracker_);
+    const ContactSet& found = chain_.contacts();
+    double least = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : found.contacts) {
+      least = std::min(least, contact.distance);
+    }
+    return {found.contacts.size(), chain_.num_clusters(), least,
+            found.query_seconds};
+  }
+
+  Eigen::Matrix<double, 72, 1> FindHandleSlopes(
+      const JoinedVector<double>& joined, const PoseVector& q_HT,
+      const Models& others) {
+    const ToolState state = StateOf(joined);
+    WrenchModel contact;
+    contact += FindWrench(state);
+    for (const WrenchModelVector& other : others) {
+      contact += ToWrenchModel(other);
+    }
+    const HandleSlopes slopes =
+        ComputeHandleSlopes(state.q_WT.tail<3>() - joined.segment<3>(4),
+                            ComputeJoinedCoupling(joined, q_HT).tool, contact);
+    Eigen::Matrix<double, 72, 1> out;
+    using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+    Eigen::Map<Rows>(out.data()) = slopes.K;
+    Eigen::Map<Rows>(out.data() + 36) = slopes.B;
+    return out;
+  }
+
+ private:
+  static ToolState StateOf(const JoinedVector<double>& joined) {
+    return {joined.segment<7>(13), joined.segment<6>(20)};
+  }
+
+  ContactChain CopyChain() const {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    return chain_;
+  }
+
+  WrenchModel FindWrench(const ToolState& state) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    Refresh();
+    return chain_.FindWrench(state, &tracker_);
+  }
+
+  // Forgets the last answer after the tracker was changed or asked otherwise.
+  void Refresh() {
+    if (changes_ != seen_changes_) chain_.Forget();
+    seen_changes_ = changes_;
+  }
+
+  ContactChain chain_;
+  long seen_changes_ = 0;
+};
+
+}  // namespace
+
+void BindContactChain(nb::module_& m) {
+  nb::class_<TrackedChain, SceneTracker>(
+      m, "ContactChain",
+      "A `SceneTracker` that goes on from the contacts to what they do to a "
+      "tool that a coupling holds: query, clusters, penalty force, coupling "
+      "and "
+      "the tool's step in one call. What was asked last is kept, so that a "
+      "query of the same pose finds nothing again.")
+      .def(nb::init<const SceneTracker&>(), nb::arg("tracker"),
+           "Goes on from what a tracker knows; it stays as it is.")
+      .def("set_law", &TrackedChain::SetLaw, nb::arg("tolerance"),
+           nb::arg("delta").none(), nb::arg("objects"), nb::arg("materials"),
+           "Says how contacts push.\n\n"
+           "Args:\n"
+           "    tolerance: contacts below it push, m.\n"
+           "    delta: cell of the octree, m; None lets contacts share "
+           "stiffness.\n"
+           "    objects: where they rest.\n"
+           "    materials: one for each of them.")
+      .def("query", &TrackedChain::Query, nb::arg("X_WT").none(),
+           nb::arg("tolerance") = nb::none(),
+           nb::sig("def query(self, X_WT: "
+                   "drake_haptics.common.pose_like.PoseLike, "
+                   "tolerance: float | None = None) -> ContactSet"),
+           "As `SceneTracker.query`; what was asked last is not looked for "
+           "again where the pose is a vector (7,).")
+      .def("step_tool", &TrackedChain::StepTool, nb::arg("joined"),
+           nb::arg("q_HT"), nb::arg("dynamics"), nb::arg("h"),
+           nb::arg("others"),
+           "The tool's next state (13,): `RigidToolDynamics.step` under the "
+           "coupling, the contacts and other wrench models, in this order.\n\n"
+           "Args:\n"
+           "    joined, q_HT: as of `joined_coupling_wrench`.\n"
+           "    dynamics: of the tool.\n"
+           "    h: the step, s.\n"
+           "    others: (78,) wrench models.\n\n"
+           "Raises:\n    ValueError: a pose is not finite, or a gain is out of "
+           "range.")
+      .def(
+          "summarize", &TrackedChain::Summarize, nb::arg("state"),
+          "Numbers of contacts and of clusters, the least distance (m, "
+          "infinite without contacts) and what the query took (s), of the tool "
+          "in a state (13,).")
+      .def("handle_slopes", &TrackedChain::FindHandleSlopes, nb::arg("joined"),
+           nb::arg("q_HT"), nb::arg("others"),
+           "`handle_slopes` (72,) of the coupling, and the contacts with other "
+           "wrench models, of the arguments of `step_tool`.")
+      .def("__deepcopy__", [](const TrackedChain& self,
+                              nb::handle) { return TrackedChain(self); })
+      .def("__copy__",
+           [](const TrackedChain& self) { return TrackedChain(self); });
+}
+
+}  // namespace drake_haptics

@@ -1,0 +1,62 @@
+#include "tool/contact_chain.h"
+
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "law/shared_stiffness.h"
+
+namespace drake_haptics {
+namespace {
+
+// Bit for bit: a sign of zero or a NaN is another value.
+template <typename Vector>
+bool IsSame(const Vector& a, const Vector& b) {
+  return std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;
+}
+
+}  // namespace
+
+void ContactChain::SetLaw(ContactLaw law) {
+  law_ = std::move(law);
+  has_wrench_ = false;
+}
+
+void ContactChain::Forget() { has_contacts_ = has_wrench_ = false; }
+
+const ContactSet& ContactChain::FindContacts(const PoseVector& q_WT,
+                                             double tolerance,
+                                             ContactTracker* tracker) {
+  if (!has_contacts_ || tolerance != tolerance_ || !IsSame(q_WT, q_WT_)) {
+    Forget();
+    tracker->Query(PoseFromVector(q_WT, "X_WT"), tolerance, &contacts_);
+    q_WT_ = q_WT;
+    tolerance_ = tolerance;
+    has_contacts_ = true;
+  }
+  return contacts_;
+}
+
+const WrenchModel& ContactChain::FindWrench(const ToolState& tool,
+                                            ContactTracker* tracker) {
+  if (!law_.has_value()) {
+    throw std::logic_error("contacts push by a law, which was not set");
+  }
+  const ContactSet& found =
+      FindContacts(tool.q_WT, tracker->tolerance(), tracker);
+  if (has_wrench_ && IsSame(tool.V_WT, V_WT_)) return wrench_;
+  has_wrench_ = false;
+  if (law_->delta.has_value()) {
+    ClusterContacts(found.contacts, *law_->delta, law_->tolerance, &clusters_);
+  } else {
+    ShareStiffness(found.contacts, law_->tolerance, &clusters_);
+  }
+  wrench_ = ComputePenaltyWrench(clusters_, {tool.q_WT.tail<3>(), tool.V_WT},
+                                 law_->objects, law_->materials)
+                .tool;
+  V_WT_ = tool.V_WT;
+  has_wrench_ = true;
+  return wrench_;
+}
+
+}  // namespace drake_haptics
