@@ -1296,45 +1296,6 @@ class ConstraintStepper:
 
     def __repr__(self) -> str: ...
 
-class WrenchJacobian:
-    """
-    Derivatives of the contact wrench on the tool at To, [N·m; N], by displacements [rotation vector (rad); translation (m)] and velocities [rad/s; m/s] of the bodies about their origins, all in the world. Immutable.
-    """
-
-    @property
-    def by_X_WT(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
-        """(6, 6)."""
-
-    @property
-    def by_V_WT(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
-        """(6, 6)."""
-
-    @property
-    def by_X_WO(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
-        """(6 m, 6): (6, 6) for each object, one below the other."""
-
-    @property
-    def by_V_WO(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')]:
-        """(6 m, 6): (6, 6) for each object, one below the other."""
-
-def wrench_jacobian(contacts: ContactSet, clusters: ClusterSet, tolerance: float, tool: ConvexPieces, X_WT: Annotated[NDArray[numpy.float64], dict(shape=(7), order='C')], V_WT: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')], objects: Sequence[ConvexPieces], X_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C')], V_WO: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C')], stiffness: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')], damping: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C')]) -> WrenchJacobian:
-    """
-    Exact derivatives of `penalty_force` through the whole chain from the poses on: contacts, clusters, forces. Features stay as they are, and which contacts are together or push (wrench_jacobian.h).
-
-    Args:
-        contacts: as the query gave them at these poses.
-        clusters: of them, by `cluster_contacts` or `share_stiffness`.
-        tolerance: what the clusters were made with, m.
-        tool, objects: the bodies of the query.
-        X_WT, X_WO: (7,) and (m, 7) poses [qw qx qy qz x y z].
-        V_WT, V_WO: (6,) and (m, 6) spatial velocities [rad/s; m/s].
-        stiffness, damping: (m,) k and k_v of each object, N/m and N·s/m.
-
-    Raises:
-        ValueError: a pose is not one, or rows do not match.
-        IndexError: a contact names an object or a piece that is not given.
-    """
-
 class AutoDiffContactSet:
     """
     A `ContactSet` with derivatives by D variables. Its columns are `AutoDiffVector`, those of vectors flattened by rows. Immutable; copies are the object itself.
