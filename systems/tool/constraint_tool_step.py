@@ -26,11 +26,11 @@ from drake_haptics._core import (
     ConvexPieces,
     CouplingGains,
     RigidToolDynamics,
-    coupling_wrench,
 )
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.contact.contact_query import ContactObject
 from drake_haptics.systems.framework.differentiable_system import export_parts
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 
 # What is known before the first step. (A Value of Drake 1.58 cannot hold None.)
 _NOTHING = "nothing"

@@ -140,6 +140,30 @@ def _to_vector(gains: CouplingGains) -> np.ndarray:
     )
 
 
+def coupling_wrench(
+    q_WH: np.ndarray,
+    V_WH: np.ndarray,
+    q_HT: np.ndarray,
+    q_WT: np.ndarray,
+    V_WT: np.ndarray,
+    gains: CouplingGains,
+) -> np.ndarray:
+    """Returns the wrenches of the coupling between a handle and a tool.
+
+    Args:
+        q_WH, q_HT, q_WT: (7,) poses [qw qx qy qz x y z] of the handle, of the tool in
+            the handle where the spring rests, and of the tool.
+        V_WH, V_WT: (6,) spatial velocities [rad/s; m/s].
+        gains: Spring, damper, and their limits.
+
+    Returns:
+        (84,): the wrench model on the tool at To (78), then the reaction on the handle
+        at Ho in W (6), [torque; force].
+    """
+    joined = np.concatenate([q_WH, V_WH, q_WT, V_WT, _to_vector(gains)])
+    return joined_coupling_wrench(joined, q_HT)
+
+
 class _SpringAndDamper(DifferentiableSystem):
     """Both wrenches of a `VirtualCoupling` from one call of the core."""
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from coupling_wrench import coupling_wrench
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 
 H = 1e-3
 MASS = 0.1

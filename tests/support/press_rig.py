@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 
 import numpy as np
-from coupling_wrench import coupling_wrench
 from press_tools import PressTool
 from scipy.spatial.transform import Rotation
 
@@ -15,6 +14,7 @@ from drake_haptics import _core
 from drake_haptics.geometry.mesh.mesh import Mesh
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.scene.schema import CouplingParameters, DeviceParameters
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 
 PERIOD_S = 1e-3
 _DEVICE = load_device_preset(DeviceParameters().preset)

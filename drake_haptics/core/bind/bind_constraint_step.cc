@@ -112,7 +112,7 @@ void BindResult(nb::module_& m) {
           "F_Ho_W_commanded",
           [](const Result& r) { return r.F_Ho_W_commanded; },
           "(6,) [torque; force] of the coupling on the handle at Ho in W, at "
-          "the tick's beginning: that of `coupling_wrench`.")
+          "the tick's beginning: that of `joined_coupling_wrench`.")
       .def_prop_ro(
           "contacts",
           [](nb::handle self) {
@@ -180,7 +180,7 @@ void BindConstraintStep(nb::module_& m) {
       "back at 20 mm/s with at most 200 N; pieces that overlap are led out at "
       "that speed with 3 N together. No contact makes energy: a_iᵀ ξ <= 0 "
       "wherever a row that holds pushes. Without rows it is "
-      "`RigidToolDynamics.step` with `coupling_wrench`. A fast motion is "
+      "`RigidToolDynamics.step` with the coupling alone. A fast motion is "
       "divided, so that nothing is passed through.\n\n"
       "As in SAP (Castro et al., \"An Unconstrained Convex Formulation of "
       "Compliant Contact\", 2023), contact is a convex problem of one implicit "

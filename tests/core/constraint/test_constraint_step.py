@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from slide_scenes import TOP_M, fifty_pieces
 
 from drake_haptics import _core
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 
 LIMITED = _core.CouplingGains(800.0, 2.0, 1.0, 4e-3, 3.0, 0.05)
 BOX_HALF_M = np.array([4e-3, 4e-3, 3e-3])
@@ -57,7 +58,7 @@ def test_in_free_space_it_is_the_free_tools_step(box, plate, gains):
         q_WT, q_WH = random_pose(rng, far), random_pose(rng, far)
         V_WT, V_WH, F = rng.normal(size=(3, 6)) * [1, 1, 1, 0.1, 0.1, 0.1]
         result = loop.stepper.step(q_WT, V_WT, q_WH, V_WH, F)
-        coupling = _core.coupling_wrench(q_WH, V_WH, REST, q_WT, V_WT, gains)
+        coupling = coupling_wrench(q_WH, V_WH, REST, q_WT, V_WT, gains)
         K = coupling[6:42].reshape(6, 6)
         model = coupling[:78] + np.concatenate([F, np.zeros(72)])
         state = np.concatenate([q_WT, V_WT])
@@ -86,9 +87,7 @@ def test_contact_is_a_force_on_the_free_tools_step(box, plate):
         V_WH = 0.01 * rng.normal(size=6)
         state = np.concatenate([loop.q_WT, loop.V_WT])
         result = loop.tick(q_WH, V_WH)
-        coupling = _core.coupling_wrench(
-            q_WH, V_WH, REST, state[:7], state[7:], COUPLING
-        )
+        coupling = coupling_wrench(q_WH, V_WH, REST, state[:7], state[7:], COUPLING)
         model = coupling[:78].copy()
         model[:6] += wrench_of(result, state[4:7])
         expected = box.dynamics.step(state, model, PERIOD_S)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from coupling_wrench import coupling_wrench
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 
 REST = np.array([1.0, 0, 0, 0, 0, 0, 0])
 STILL = np.zeros(6)

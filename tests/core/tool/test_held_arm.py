@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from coupling_wrench import coupling_wrench
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.tree import JacobianWrtVariable
 
@@ -10,6 +9,7 @@ from drake_haptics._core import ArmDynamics, CouplingGains, PosePath
 from drake_haptics.common.pose_vector import pose_to_vector, vector_to_pose
 from drake_haptics.scene.device_preset import load_device_preset
 from drake_haptics.systems.arm.simulated_arm import make_arm_plant
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 
 X_WB = RigidTransform(RollPitchYaw(0.4, -0.7, 1.2), [0.3, -0.2, 0.9])
 X_PH = RigidTransform(RollPitchYaw(0.2, 0.1, -0.3), [0.01, 0.02, -0.03])

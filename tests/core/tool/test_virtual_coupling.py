@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from coupling_wrench import coupling_wrench
 from scipy.spatial.transform import Rotation
 
 from drake_haptics import _core
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 
 SPRING = _core.CouplingGains(900.0, 0.0, 1.5, 0.0)
 FULL = _core.CouplingGains(900.0, 2.0, 1.5, 0.004)

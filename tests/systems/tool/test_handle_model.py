@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from coupling_wrench import coupling_wrench
 from scipy.optimize import root
 from scipy.spatial.transform import Rotation
 
 from drake_haptics._core import CouplingGains, handle_slopes
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 
 GAINS = CouplingGains(900.0, 2.0, 1.5, 0.004)
 X_HT = np.array([0.8, 0.0, 0.6, 0.0, 0.04, -0.03, 0.02])

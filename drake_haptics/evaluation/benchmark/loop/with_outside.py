@@ -15,6 +15,7 @@ from drake_haptics.evaluation.benchmark.outside_library import (
     PiecePairs,
 )
 from drake_haptics.evaluation.measuring.timing import steady_memory
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 
 
 class OutsideLoop:
@@ -84,7 +85,7 @@ class OutsideLoop:
                 *self._rest,
                 *self._contact_gains,
             ).wrench_model
-            coupling = _core.coupling_wrench(
+            coupling = coupling_wrench(
                 motion.X_WH[k],
                 motion.V_WH[k],
                 self._X_HT,
