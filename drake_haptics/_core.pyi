@@ -1168,7 +1168,7 @@ class ConstraintStepResult:
     @property
     def F_Ho_W_commanded(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6), order='C')]:
         """
-        (6,) [torque; force] of the coupling on the handle at Ho in W, at the tick's beginning: that of `coupling_wrench`.
+        (6,) [torque; force] of the coupling on the handle at Ho in W, at the tick's beginning: that of `joined_coupling_wrench`.
         """
 
     @property
@@ -1234,7 +1234,7 @@ class ConstraintStepper:
         ½ ξᵀ H ξ − rᵀ ξ + Σ φ_i(b_i − a_iᵀ ξ),  H = M/h² + B/h + K,
         r = M V/h + B V + F − b_M,  a_i = [r_i × n_i; n_i],
 
-    with the inertia M and its velocity terms b_M, the model F, K, B of the coupling and applied wrench, and a row for each pair of convex pieces within reach and for each corner where they are flush: the distance d_i along n_i does not fall below the skin, φ_i(x) = ½ k max(0, x)² with k = 1e9 N/m and b_i = min(δ, d_i) − d_i. A row that has lost skin leads back at 20 mm/s with at most 200 N; pieces that overlap are led out at that speed with 3 N together. No contact makes energy: a_iᵀ ξ <= 0 wherever a row that holds pushes. Without rows it is `RigidToolDynamics.step` with `coupling_wrench`. A fast motion is divided, so that nothing is passed through.
+    with the inertia M and its velocity terms b_M, the model F, K, B of the coupling and applied wrench, and a row for each pair of convex pieces within reach and for each corner where they are flush: the distance d_i along n_i does not fall below the skin, φ_i(x) = ½ k max(0, x)² with k = 1e9 N/m and b_i = min(δ, d_i) − d_i. A row that has lost skin leads back at 20 mm/s with at most 200 N; pieces that overlap are led out at that speed with 3 N together. No contact makes energy: a_iᵀ ξ <= 0 wherever a row that holds pushes. Without rows it is `RigidToolDynamics.step` with the coupling alone. A fast motion is divided, so that nothing is passed through.
 
     As in SAP (Castro et al., "An Unconstrained Convex Formulation of Compliant Contact", 2023), contact is a convex problem of one implicit step. Threads that share a stepper take turns.
     """

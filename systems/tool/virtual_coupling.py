@@ -151,9 +151,11 @@ def coupling_wrench(
     """Returns the wrenches of the coupling between a handle and a tool.
 
     Args:
-        q_WH, q_HT, q_WT: (7,) poses [qw qx qy qz x y z] of the handle, of the tool in
-            the handle where the spring rests, and of the tool.
-        V_WH, V_WT: (6,) spatial velocities [rad/s; m/s].
+        q_WH: (7,) pose [qw qx qy qz x y z] of the handle.
+        V_WH: (6,) spatial velocity [rad/s; m/s] of the handle.
+        q_HT: (7,) pose of the tool in the handle at which the spring rests.
+        q_WT: (7,) pose of the tool.
+        V_WT: (6,) spatial velocity of the tool.
         gains: Spring, damper, and their limits.
 
     Returns:

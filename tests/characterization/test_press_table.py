@@ -58,6 +58,8 @@ def test_points_that_are_pressed_again_agree_with_the_page(
 def test_pages_tell_what_gets_through_with_the_gains_of_the_shipped_scenes() -> None:
     for name in list_scenes():
         contact = load_scene(find_scene(name)).contact
+        if contact.law == "constraint":
+            continue
         assert contact.stiffness_N_per_m == GAINS["soft"].stiffness_N_per_m
         assert contact.tolerance_m <= GAINS["soft"].tolerance_m
     soft = [r for r in read_rows() if r["gains"] == "soft"]
