@@ -168,13 +168,13 @@ def _view(result: Decomposition, show: bool, html: str | None) -> None:
         if html is not None:
             viewer.write_html(html)
         if show:
-            for line in describe_page(viewer.url):
-                click.echo(line, err=True)
-            click.echo(
-                "Left the pieces in their places; right the same moved apart, with"
-                " their virtual facets in gray.",
-                err=True,
-            )
-            click.echo("Ctrl-C ends.", err=True)
             with contextlib.suppress(KeyboardInterrupt):
+                for line in describe_page(viewer.url):
+                    click.echo(line, err=True)
+                click.echo(
+                    "Left the pieces in their places; right the same moved apart, with"
+                    " their virtual facets in gray.",
+                    err=True,
+                )
+                click.echo("Ctrl-C ends.", err=True)
                 signal.pause()

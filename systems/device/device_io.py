@@ -21,8 +21,8 @@ from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import DeviceBackend, DeviceCommand, DeviceReading
 from drake_haptics.systems.framework.differentiable_system import (
-    NO_WITNESS_FUNCTIONS,
     export_parts,
+    get_no_witness_functions,
 )
 
 
@@ -115,7 +115,7 @@ class _Frame:
 class _Exchange(LeafSystem):
     """The state of a `DeviceIo` and its events."""
 
-    DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
+    DoGetWitnessFunctions = get_no_witness_functions
 
     def __init__(
         self,

@@ -15,6 +15,7 @@ from pydrake.autodiffutils import (
 from pydrake.common.value import AbstractValue, Value
 from pydrake.systems.framework import (
     BasicVector_,
+    Context,
     Context_,
     DiagramBuilder,
     DiscreteValues_,
@@ -24,17 +25,23 @@ from pydrake.systems.framework import (
     LeafSystem_,
     OutputPort,
     PortDataType,
+    WitnessFunction,
 )
 from pydrake.systems.primitives import Demultiplexer, Multiplexer
 from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics._core import AutoDiffVector
 
-# A Python system without witness functions names this `DoGetWitnessFunctions`. After
-# each unrestricted update Drake looks in every Python system for that override, and not
-# to find the name takes as long as a port does. What the name holds is never called: it
-# only is not of Python.
-NO_WITNESS_FUNCTIONS = LeafSystem.get_name
+
+def get_no_witness_functions(
+    self: LeafSystem, context: Context
+) -> list[WitnessFunction]:
+    """Returns nothing: the override of a system without witness functions.
+
+    After each unrestricted update Drake asks every Python system for its witness
+    functions, and not to find the override takes longer than to call it.
+    """
+    return []
 
 
 class AutoDiffPoint:
@@ -161,7 +168,7 @@ class DifferentiableSystem(_Convertible):
     """
 
     undifferentiated: frozenset[str] = frozenset()
-    DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
+    DoGetWitnessFunctions = get_no_witness_functions
 
     def differentiate(self, port: str, at: AutoDiffPoint) -> Any:
         """Returns an output with its derivatives.

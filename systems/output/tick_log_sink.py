@@ -17,7 +17,9 @@ from pydrake.systems.primitives import Multiplexer
 from drake_haptics._core import ClusterSet, ContactSet
 from drake_haptics.common.value_checks import check_positive
 from drake_haptics.device.backend import DeviceReading
-from drake_haptics.systems.framework.differentiable_system import NO_WITNESS_FUNCTIONS
+from drake_haptics.systems.framework.differentiable_system import (
+    get_no_witness_functions,
+)
 from drake_haptics.tick_log.log_format import REALS, SIGNALS
 from drake_haptics.tick_log.tick_recorder import TickRecorder
 
@@ -86,7 +88,7 @@ class TickLogSink(Diagram):
 class _Notes(LeafSystem):
     """The event of a `TickLogSink`."""
 
-    DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
+    DoGetWitnessFunctions = get_no_witness_functions
 
     def __init__(
         self, recorder: TickRecorder, period_s: float, size: int, has_reading: bool

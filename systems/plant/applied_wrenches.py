@@ -14,7 +14,9 @@ from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import LeafSystem_
 from pydrake.systems.scalar_conversion import TemplateSystem
 
-from drake_haptics.systems.framework.differentiable_system import NO_WITNESS_FUNCTIONS
+from drake_haptics.systems.framework.differentiable_system import (
+    get_no_witness_functions,
+)
 
 
 @TemplateSystem.define("AppliedWrenches_", T_list=(float, AutoDiffXd))
@@ -55,7 +57,7 @@ def AppliedWrenches_(T: type) -> type:
         It has no state, and converts to AutoDiffXd.
         """
 
-        DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
+        DoGetWitnessFunctions = get_no_witness_functions
 
         def _construct(
             self,

@@ -19,8 +19,8 @@ from pydrake.systems.framework import (
 from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_haptics.systems.framework.differentiable_system import (
-    NO_WITNESS_FUNCTIONS,
     export_parts,
+    get_no_witness_functions,
 )
 
 
@@ -83,7 +83,7 @@ def _BodyMotionsVector_(T: type) -> type:
     class Impl(LeafSystem_[T]):
         """All outputs of a `BodyMotions`, one after another."""
 
-        DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
+        DoGetWitnessFunctions = get_no_witness_functions
 
         def _construct(
             self,

@@ -15,7 +15,9 @@ from pydrake.systems.framework import (
 
 from drake_haptics._core import handle_slopes
 from drake_haptics.common.pose_vector import pose_to_vector
-from drake_haptics.systems.framework.differentiable_system import NO_WITNESS_FUNCTIONS
+from drake_haptics.systems.framework.differentiable_system import (
+    get_no_witness_functions,
+)
 
 
 class HandleModel(LeafSystem):
@@ -49,7 +51,7 @@ class HandleModel(LeafSystem):
       moves by δ = [rotation vector; translation] and its velocity by ΔV.
     """
 
-    DoGetWitnessFunctions = NO_WITNESS_FUNCTIONS
+    DoGetWitnessFunctions = get_no_witness_functions
 
     def __init__(
         self,

@@ -30,7 +30,7 @@ LOOKED_AT = (
 WIDTHS = (390, 1440)
 LAPTOP_WIDTH = 1280
 WIDE_TABLES = (
-    "no-fall-through.html",
+    "verification/no-fall-through.html",
     "effects.html",
     "accuracy.html",
     "stability.html",

@@ -18,6 +18,8 @@ def make(folder, target=".venv/bin/python", **variables):
         ["make", "-f", ROOT / "Makefile", target, f"PYTHON={sys.executable}",
          *[f"{key}={value}" for key, value in variables.items()]],
         cwd=folder, capture_output=True, text=True, timeout=180,
+        # Not as a part of the make that runs the tests.
+        env={k: v for k, v in os.environ.items() if "MAKE" not in k and k != "MFLAGS"},
     )  # fmt: skip
 
 

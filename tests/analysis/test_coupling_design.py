@@ -235,9 +235,9 @@ def test_the_plot_shows_both_limits_and_the_choice():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"rate_hz": 0.0}, "rate_hz must be positive, is 0"),
-        ({"rate_hz": math.nan}, "rate_hz must be positive, is nan"),
-        ({"delay_s": -1.0}, "delay_s must be at least 0, is -1"),
+        ({"rate_hz": 0.0}, "rate_hz must be positive and finite, is 0"),
+        ({"rate_hz": math.nan}, "rate_hz must be positive and finite, is nan"),
+        ({"delay_s": -1.0}, "delay_s must be at least 0 and finite, is -1"),
         ({"margin": 1.0}, "margin must be above 1, is 1"),
         ({"hand": "iron"}, "hand: 'iron' is not one of none, light, nominal, firm"),
         ({"device": HeldHandle(0.0, 0.5, 5e-5, 1e-4)}, "mass must be positive"),

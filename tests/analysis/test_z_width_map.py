@@ -198,9 +198,9 @@ def test_nothing_is_passive_with_more_sampled_damping_than_there_is():
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ((1.0, 0.0), "period_s must be positive, is 0"),
-        ((-1.0, 1e-3), "held_damping must be at least 0, is -1"),
-        ((1.0, 1e-3, math.nan), "delay_s must be at least 0, is nan"),
+        ((1.0, 0.0), "period_s must be positive and finite, is 0"),
+        ((-1.0, 1e-3), "held_damping must be at least 0 and finite, is -1"),
+        ((1.0, 1e-3, math.nan), "delay_s must be at least 0 and finite, is nan"),
     ],
 )
 def test_bounds_that_cannot_be_are_refused(values, message):

@@ -10,7 +10,7 @@
 namespace drake_haptics {
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void NearPieces::Query(const Tick& tick, PairWorkspace* workspace,
     std::sort(watched_.begin(), watched_.end(),
               [](const auto& p, const auto& q) { return p.pieces < q.pieces; });
   }
-  mark_ = kForever;
+  mark_ = kNever;
   auto kept = watched_.begin();
   for (auto pair = watched_.begin(); pair != watched_.end(); ++pair) {
     PairContact contact;
@@ -63,7 +63,7 @@ bool NearPieces::Update(const Tick& tick, const BvttFront::Tick& front_tick,
   PairState& state = pair->state;
   const PosedPair posed = Posed(tick.tool, pair->pieces, tick.X_AB);
   // The last normal often still proves that the pair is out of reach.
-  double gap = -kForever;
+  double gap = -kNever;
   if (state.n.squaredNorm() > 0) {
     gap = SupportGap(posed, state.n, &state.vertex_pair);
   }

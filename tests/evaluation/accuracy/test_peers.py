@@ -48,7 +48,11 @@ def _scene(folder: Path, tool: trimesh.Trimesh) -> Scene:
     scene = Scene(
         tool=Tool(mesh=str(folder / "tool.obj"), scale=1.0),
         environment=[EnvironmentObject("block", str(folder / "block.obj"))],
-        contact=ContactParameters(_TOLERANCE_M, _STIFFNESS, 0.0),
+        contact=ContactParameters(
+            tolerance_m=_TOLERANCE_M,
+            stiffness_N_per_m=_STIFFNESS,
+            damping_Ns_per_m=0.0,
+        ),
     )
     scene.hand.path.waypoints = [Waypoint(0.0, [0.0, 0.0, 0.1])]
     return scene
