@@ -201,8 +201,8 @@ def test_a_copy_goes_on_alike_and_alone(box, plate):
         loop.q_WT, loop.V_WT = mine.q_WT, mine.V_WT
     loop.stepper.reset()
     fresh = ConstraintLoop(box, [plate], loop.q_WT).stepper
-    again, anew = loop.stepper.step(*arguments), fresh.step(*arguments)
-    np.testing.assert_array_equal(again.q_WT, anew.q_WT)
+    again, first = loop.stepper.step(*arguments), fresh.step(*arguments)
+    np.testing.assert_array_equal(again.q_WT, first.q_WT)
 
 
 def test_what_it_cannot_use_is_refused(box, plate):
