@@ -76,6 +76,7 @@ FIGURES = (
     _table(
         "verification/no-fall-through", "press", 150, "--points", "1000", "--jobs", "2"
     ),
+    _table("comparison", "thread", 3, timed=True),
     _table("decomposition", "decomposition", 10, timed=True),
     _table("troubleshooting", "load", 1, timed=True),
     Figures(

@@ -15,7 +15,14 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 from degenerate_scenes import Run
-from threads import AXIAL_PLAY_M, AXIAL_SHARE, PITCH_M, make_bolt, turn_bolt
+from threads import (
+    AXIAL_PLAY_M,
+    AXIAL_SHARE,
+    CONTACTS,
+    PITCH_M,
+    make_bolt,
+    turn_bolt,
+)
 
 from drake_haptics.scene.schema import ContactParameters
 
@@ -43,15 +50,13 @@ class Law:
 
 LAWS = {
     "penalty": Law(
-        ContactParameters(
-            tolerance_m=3e-5, stiffness_N_per_m=2e5, damping_Ns_per_m=5.0
-        ),
+        CONTACTS["penalty"],
         lambda contact: contact.tolerance_m,
         1.1,
         3.2e-5,
     ),
     "constraint": Law(
-        ContactParameters(law="constraint", skin_m=2e-5),
+        CONTACTS["constraint"],
         lambda contact: contact.skin_m,
         1.25,
         1e-9,

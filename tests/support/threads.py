@@ -30,6 +30,15 @@ AXIAL_PLAY_M = PLAY_M * (PITCH_M / 4) / DEPTH_M
 # Height of the profile at shares of the pitch: root, flank, crest, flank.
 _SHARES = np.array([0.0, 0.25, 0.5, 0.75])
 _HEIGHTS = np.array([0.0, 0.0, 1.0, 1.0])
+# Each law with values that fit the play.
+CONTACTS = {
+    "penalty": ContactParameters(
+        tolerance_m=3e-5, stiffness_N_per_m=2e5, damping_Ns_per_m=5.0
+    ),
+    "constraint": ContactParameters(law="constraint", skin_m=2e-5),
+}
+# How long a handle rests before it turns.
+TURNER_WAIT_S = 0.05
 
 
 def _make_rows(
@@ -83,10 +92,19 @@ def make_bolt(turns: int, segments: int = 36) -> trimesh.Trimesh:
     return mesh
 
 
-def make_nut(turns: int, play_m: float = PLAY_M, segments: int = 36) -> trimesh.Trimesh:
+def make_thread(
+    turns: int, offset_m: float, segments: int = 36
+) -> tuple[np.ndarray, np.ndarray]:
+    """A thread, farther out by an offset: vertices (n, 3), m, and triangles (m, 3)."""
+    points, _, triangles = _make_rows(turns, offset_m, segments)
+    used, index = np.unique(triangles, return_inverse=True)
+    return points[used], index.reshape(-1, 3)
+
+
+def make_nut(turns: int, play_m: float = PLAY_M) -> trimesh.Trimesh:
     """The inner surface of a nut, open: its thread, farther out by a radial play."""
-    points, _, triangles = _make_rows(turns, play_m, segments)
-    return trimesh.Trimesh(points, [t[::-1] for t in triangles], process=True)
+    points, triangles = make_thread(turns, play_m)
+    return trimesh.Trimesh(points, triangles[:, ::-1], process=True)
 
 
 class Turner(DeviceBackend):
@@ -116,7 +134,7 @@ class Turner(DeviceBackend):
 
     @property
     def _elapsed_s(self) -> float:
-        return max(0.0, (self._reads - 50) * PERIOD_S)
+        return max(0.0, self._reads * PERIOD_S - TURNER_WAIT_S)
 
     def write(self, command: object) -> None:
         """Shows nothing."""
@@ -125,15 +143,10 @@ class Turner(DeviceBackend):
         """Has nothing to close."""
 
 
-def turn_bolt(
-    contact: ContactParameters, turns: float, turns_per_s: float, folder: Path
-) -> Run:
-    """Turns a bolt of five turns by its handle, through a nut of two.
-
-    The handle does not go along: what the thread moves, the coupling pulls back.
-    """
+def make_thread_scene(contact: ContactParameters, folder: Path) -> Scene:
+    """A bolt of five turns in a nut of two, with its meshes in a folder."""
     start = [0.0, 0.0, -PITCH_M]
-    scene = Scene(
+    return Scene(
         tool=Tool(mesh=write(folder, "bolt", make_bolt(5)), mass_kg=MASS_KG),
         environment=[
             EnvironmentObject(name="nut", mesh=write(folder, "nut", make_nut(2)))
@@ -141,5 +154,15 @@ def turn_bolt(
         contact=contact,
         hand=HandParameters(path=HandPathParameters(waypoints=[Waypoint(0.0, start)])),
     )
-    duration_s = turns / turns_per_s + 0.15
+
+
+def turn_bolt(
+    contact: ContactParameters, turns: float, turns_per_s: float, folder: Path
+) -> Run:
+    """Turns the bolt by its handle through the nut.
+
+    The handle does not go along: what the thread moves, the coupling pulls back.
+    """
+    duration_s = turns / turns_per_s + TURNER_WAIT_S + 0.1
+    scene = make_thread_scene(contact, folder)
     return record(scene, Turner(turns, turns_per_s), duration_s)
