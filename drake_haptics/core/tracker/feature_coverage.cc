@@ -30,6 +30,17 @@ PressurePatch FindSurfacePatch(const PosedPair& pair, const Vec3& n, double h,
                            workspace);
 }
 
+void SpreadOver(const PressurePatch& patch, const MinkowskiVertex& vertex_pair,
+                PairContact* contact) {
+  if (patch.center) {
+    contact->p_a = *patch.center;
+    contact->p_b = *patch.center - contact->distance * contact->n;
+  }
+  contact->extent = patch.extent;
+  contact->flushness = patch.flushness;
+  contact->support = {vertex_pair.a, vertex_pair.b};
+}
+
 bool IsWithinSides(const PosedPair& pair, const PairContact& contact) {
   return LateralOffset(pair, contact.feature_A, contact.feature_B,
                        {contact.p_a, contact.p_b}) <=

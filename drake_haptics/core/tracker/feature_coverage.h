@@ -18,6 +18,11 @@ PressurePatch FindSurfacePatch(const PosedPair& pair, const Vec3& n, double h,
                                const Vec3& p_a, double tolerance,
                                PatchWorkspace* workspace);
 
+/// Moves a contact's witness points to the center of its patch.
+/// @param vertex_pair supports the pair along the contact's normal.
+void SpreadOver(const PressurePatch& patch, const MinkowskiVertex& vertex_pair,
+                PairContact* contact);
+
 /// Whether a contact lies no farther beyond its features' sides than a small
 /// share of the size.
 bool IsWithinSides(const PosedPair& pair, const PairContact& contact);

@@ -82,13 +82,7 @@ class Query {
     const PressurePatch patch = FindPatch(contact->n, contact->distance,
                                           state_.vertex_pair, contact->p_a);
     state_.is_settled = is_within || (is_pressed && patch.center);
-    if (patch.center) {
-      contact->p_a = *patch.center;
-      contact->p_b = *patch.center - contact->distance * contact->n;
-    }
-    contact->extent = patch.extent;
-    contact->flushness = patch.flushness;
-    contact->support = {state_.vertex_pair.a, state_.vertex_pair.b};
+    SpreadOver(patch, state_.vertex_pair, &*contact);
     return contact;
   }
 
