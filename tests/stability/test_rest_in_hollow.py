@@ -7,6 +7,7 @@ import pytest
 from hollow_block import decomposed, height, hollow_block, spike
 
 from drake_haptics import _core
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
 
 PRESS_M = 0.006  # the handle below the surface
 COMING, HELD, WATCHED = 800, 1800, 400  # ticks of 1 ms
@@ -38,7 +39,7 @@ def press(x, stiffness, tolerance):
         push = _core.penalty_wrench_model(
             clusters, state[:7].copy(), state[7:].copy(), rest, materials
         )
-        pull = _core.coupling_wrench(
+        pull = coupling_wrench(
             handle, np.zeros(6), AT_ORIGIN, state[:7].copy(), state[7:].copy(), COUPLING
         )
         state = tool.step(state, [push, pull[:78]], 1e-3)
