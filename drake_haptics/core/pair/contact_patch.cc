@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cassert>
 #include <optional>
+#include <span>
 
 #include "convex/flush_features.h"
+#include "convex/normal_cone_support.h"
 
 namespace drake_haptics {
 namespace {
@@ -35,6 +37,19 @@ struct Height {
   }
 };
 
+std::span<const int> SidesOf(const Polytope& P, int facet) {
+  return {&P.facet_loop_edge[P.facet_loop_start[facet]],
+          P.loop_of(facet).size()};
+}
+
+// Whether the surface beyond a side of a facet rises above it. The facet's
+// plane bounds free space there too: it goes on, and so does what presses on
+// it.
+bool IsConcave(const Polytope::Edge& side, const Polytope& P, int facet) {
+  const Vec3& beyond = side.wings[side.left == facet ? 1 : 0];
+  return beyond.dot(P.facets[facet].normal) > kSurfaceSlack;
+}
+
 // The part of a contact that one pair of flush features carries.
 struct Part {
   std::optional<Vec3> center;
@@ -54,6 +69,16 @@ class Patch {
 
   Part OfFacets(int facet_A, int facet_B) {
     workspace_.polygon.clear();
+    // The first one is cut off at all its sides, so one that goes on is second.
+    if (GoesOn(pair_.A, facet_A)) {
+      for (const int v : pair_.B.loop_of(facet_B)) {
+        workspace_.polygon.push_back(plane_.To(pair_.b(v)));
+      }
+      const Height of_B(
+          plane_.To(pair_.X_AB.R * pair_.B.facets[facet_B].normal),
+          workspace_.polygon[0]);
+      return Finish(CutByFacetOfA(facet_A), of_B, 1 / spread_);
+    }
     for (const int v : pair_.A.loop_of(facet_A)) {
       workspace_.polygon.push_back(plane_.To(pair_.a(v)));
     }
@@ -152,6 +177,12 @@ class Patch {
     return Height(across.cross(along), workspace_.polygon[0]);
   }
 
+  static bool GoesOn(const Polytope& P, int facet) {
+    return std::ranges::any_of(SidesOf(P, facet), [&](int edge) {
+      return IsConcave(P.edges[edge], P, facet);
+    });
+  }
+
   template <typename Position>
   Height Cut(const Polytope& P, int facet, const Position& position,
              const Vec3& normal_A) {
@@ -160,7 +191,9 @@ class Patch {
     const Vec3 first = plane_.To(position(loop[0]));
     // Seen along n, A's loops run clockwise and B's counter-clockwise.
     const double turn = normal.z() > 0 ? 1.0 : -1.0;
+    const auto sides = SidesOf(P, facet);
     for (std::size_t k = 0; k < loop.size(); ++k) {
+      if (IsConcave(P.edges[sides[k]], P, facet)) continue;
       const Vec3 p = plane_.To(position(loop[k]));
       const Vec3 along = plane_.To(position(loop[(k + 1) % loop.size()])) - p;
       ClipPolygon(
