@@ -90,6 +90,8 @@ class Walk {
 
   // All planes that count against one convex piece.
   void RunPiece(int q, std::span<const int> sources) {
+    q_ = q;
+    center_ = X_PQ_ * convex().centroid;
     ++workspace_.last_group;
     workspace_.planes.clear();
     for (const int source : sources) {
@@ -99,43 +101,39 @@ class Walk {
       MarkReached(piece, facet);
       workspace_.planes.push_back(PlaneOf(piece, facet));
     }
-    for (const int source : sources) RunSource(q, source);
+    for (const int source : sources) RunSource(source);
   }
 
-  void RunSource(int q, int source) {
+  void RunSource(int source) {
     const int piece = FacetPieceOf(contacts_[source]);
     const int facet = FacetOf(contacts_[source]).index();
     if (P_.neighbors.Of(piece, facet).empty()) return;
     const int vertex = VertexOf(contacts_[source]);
-    const Vec3 x = NearestOnFacet(piece, facet, At(q, vertex));
+    const Vec3 x = NearestOnFacet(piece, facet, At(vertex));
     auto& queue = workspace_.queue;
     queue.assign(1, {piece, facet, vertex});
     for (std::size_t i = 0; i < queue.size() && i < kMaxReached; ++i) {
       const Workspace::Reached from = queue[i];
       for (const FacetNeighbor& neighbor :
            P_.neighbors.Of(from.piece, from.facet)) {
-        Consider(q, from, neighbor, piece, facet, x);
+        Consider(from, neighbor, piece, facet, x);
       }
     }
   }
 
   // @param piece, facet of the contact from which the walk began, and x its
   // point.
-  void Consider(int q, const Workspace::Reached& from,
-                const FacetNeighbor& neighbor, int piece, int facet,
-                const Vec3& x) {
-    if (IsReached(neighbor.piece, neighbor.facet) ||
-        HasContact(q, neighbor.piece)) {
+  void Consider(const Workspace::Reached& from, const FacetNeighbor& neighbor,
+                int piece, int facet, const Vec3& x) {
+    const Workspace::Plane plane = PlaneOf(neighbor.piece, neighbor.facet);
+    if (plane.n.dot(center_) - plane.offset >= tolerance_ + convex().radius ||
+        IsReached(neighbor.piece, neighbor.facet) ||
+        HasContact(neighbor.piece)) {
       return;
     }
-    const Workspace::Plane plane = PlaneOf(neighbor.piece, neighbor.facet);
-    const Polytope& convex = Q_.decomposition.pieces[q];
-    const Vec3 center = X_PQ_ * convex.centroid;
-    if (plane.n.dot(center) - plane.offset - convex.radius >= tolerance_)
-      return;
     const int vertex =
-        SupportVertex(convex, X_PQ_.R.transpose() * -plane.n, from.vertex);
-    const Vec3 y = At(q, vertex);
+        SupportVertex(convex(), X_PQ_.R.transpose() * -plane.n, from.vertex);
+    const Vec3 y = At(vertex);
     if (!(plane.n.dot(y) - plane.offset < tolerance_)) return;
     if (!IsOver(neighbor, y)) return;
     if (!neighbor.is_flush) {
@@ -154,7 +152,7 @@ class Walk {
     workspace_.queue.push_back({neighbor.piece, neighbor.facet, vertex});
     if (IsKnown(plane, y)) return;
     workspace_.planes.push_back(plane);
-    Append(q, vertex, neighbor.piece, neighbor.facet);
+    Append(vertex, neighbor.piece, neighbor.facet);
   }
 
   // Whether a point is over a facet that was reached through one of its sides,
@@ -195,18 +193,16 @@ class Walk {
         });
   }
 
-  void Append(int q, int vertex, int piece, int facet) {
-    const Polytope& A = is_P_tool_ ? P_.decomposition.pieces[piece]
-                                   : Q_.decomposition.pieces[q];
-    const Polytope& B = is_P_tool_ ? Q_.decomposition.pieces[q]
-                                   : P_.decomposition.pieces[piece];
-    const PosedPair pair{A, B, X_AB_};
+  void Append(int vertex, int piece, int facet) {
+    const Polytope& P = P_.decomposition.pieces[piece];
+    const PosedPair pair = is_P_tool_ ? PosedPair{P, convex(), X_AB_}
+                                      : PosedPair{convex(), P, X_AB_};
     const Feature face(FeatureKind::kFacet, facet);
     const Feature corner(FeatureKind::kVertex, vertex);
+    const Vec3& normal = P.facets[facet].normal;
     DepthCandidate candidate;
     candidate.feature_A = is_P_tool_ ? face : corner;
     candidate.feature_B = is_P_tool_ ? corner : face;
-    const Vec3& normal = P_.decomposition.pieces[piece].facets[facet].normal;
     candidate.n = is_P_tool_ ? Vec3(-normal) : Vec3(X_AB_.R * normal);
     MinkowskiVertex vertex_pair = VertexPairOf(pair, candidate);
     candidate.h = SupportGap(pair, candidate.n, &vertex_pair);
@@ -218,8 +214,8 @@ class Walk {
                          contact.p_a, tolerance_, &workspace_.patch);
     SpreadOver(patch, vertex_pair, &contact);
     Contact in_world = InWorld(contact, X_WA_);
-    in_world.piece_A = is_P_tool_ ? piece : q;
-    in_world.piece_B = is_P_tool_ ? q : piece;
+    in_world.piece_A = is_P_tool_ ? piece : q_;
+    in_world.piece_B = is_P_tool_ ? q_ : piece;
     AddOrReplace(in_world);
   }
 
@@ -237,9 +233,9 @@ class Walk {
   }
 
   // Whether the query of the pair of pieces gave one.
-  bool HasContact(int q, int piece) const {
+  bool HasContact(int piece) const {
     const std::pair pieces =
-        is_P_tool_ ? std::pair(piece, q) : std::pair(q, piece);
+        is_P_tool_ ? std::pair(piece, q_) : std::pair(q_, piece);
     const auto found = std::lower_bound(
         contacts_.begin() + first_, contacts_.begin() + last_, pieces,
         [](const Contact& contact, const std::pair<int, int>& wanted) {
@@ -252,9 +248,8 @@ class Walk {
     return {contact.piece_A, contact.piece_B};
   }
 
-  Vec3 At(int q, int vertex) const {
-    return X_PQ_ * Q_.decomposition.pieces[q].vertices[vertex];
-  }
+  const Polytope& convex() const { return Q_.decomposition.pieces[q_]; }
+  Vec3 At(int vertex) const { return X_PQ_ * convex().vertices[vertex]; }
 
   Workspace::Plane PlaneOf(int piece, int facet) const {
     const Polytope::Facet& of = P_.decomposition.pieces[piece].facets[facet];
@@ -304,6 +299,8 @@ class Walk {
   const std::ptrdiff_t first_, last_;  // contacts that the queries gave
   Workspace& workspace_;
   std::vector<Contact>& contacts_;
+  int q_ = -1;   // the convex piece at hand
+  Vec3 center_;  // of the ball around it, m
 };
 
 }  // namespace

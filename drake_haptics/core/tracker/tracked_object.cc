@@ -82,11 +82,12 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
               });
   };
   sort();
+  const std::size_t num_found = out->size();
   AppendConcaveNeighbors({*tick.tool.decomposition, *tick.tool.neighbors},
                          {*shape_.decomposition, *shape_.neighbors}, tick.X_WA,
                          tick.X_AB, tick.tolerance, first, &workspace->concave,
                          out);
-  sort();
+  if (out->size() > num_found) sort();
   is_first_ = false;
   // Copied, so that each object keeps the memory that it has needed.
   pressed_.assign(workspace->pressed.begin(), workspace->pressed.end());
