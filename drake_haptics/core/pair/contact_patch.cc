@@ -42,9 +42,7 @@ std::span<const int> SidesOf(const Polytope& P, int facet) {
           P.loop_of(facet).size()};
 }
 
-// Whether the surface beyond a side of a facet rises above it. The facet's
-// plane bounds free space there too: it goes on, and so does what presses on
-// it.
+// Whether the surface beyond a side of a facet rises above it.
 bool IsConcave(const Polytope::Edge& side, const Polytope& P, int facet) {
   const Vec3& beyond = side.wings[side.left == facet ? 1 : 0];
   return beyond.dot(P.facets[facet].normal) > kSurfaceSlack;
@@ -59,13 +57,14 @@ struct Part {
 class Patch {
  public:
   Patch(const PosedPair& pair, const Vec3& n, double h, double spread,
-        double layer, PatchWorkspace* workspace)
+        double layer, PatchWorkspace* workspace, FacetEnd end)
       : pair_(pair),
         plane_(n),
         h_(h),
         spread_(spread),
         layer_(layer),
-        workspace_(*workspace) {}
+        workspace_(*workspace),
+        end_(end) {}
 
   Part OfFacets(int facet_A, int facet_B) {
     workspace_.polygon.clear();
@@ -177,10 +176,15 @@ class Patch {
     return Height(across.cross(along), workspace_.polygon[0]);
   }
 
-  static bool GoesOn(const Polytope& P, int facet) {
+  bool GoesOn(const Polytope& P, int facet) const {
     return std::ranges::any_of(SidesOf(P, facet), [&](int edge) {
-      return IsConcave(P.edges[edge], P, facet);
+      return GoesOnBeyond(P.edges[edge], P, facet);
     });
+  }
+
+  bool GoesOnBeyond(const Polytope::Edge& side, const Polytope& P,
+                    int facet) const {
+    return end_ != FacetEnd::kAllSides && IsConcave(side, P, facet);
   }
 
   template <typename Position>
@@ -193,7 +197,7 @@ class Patch {
     const double turn = normal.z() > 0 ? 1.0 : -1.0;
     const auto sides = SidesOf(P, facet);
     for (std::size_t k = 0; k < loop.size(); ++k) {
-      if (IsConcave(P.edges[sides[k]], P, facet)) continue;
+      if (GoesOnBeyond(P.edges[sides[k]], P, facet)) continue;
       const Vec3 p = plane_.To(position(loop[k]));
       const Vec3 along = plane_.To(position(loop[(k + 1) % loop.size()])) - p;
       ClipPolygon(
@@ -211,6 +215,7 @@ class Patch {
   const Plane plane_;
   const double h_, spread_, layer_;
   PatchWorkspace& workspace_;
+  const FacetEnd end_;
 };
 
 // Weighted mean over all features that share the contact. What has no overlap
@@ -255,7 +260,8 @@ bool MayHaveExtent(const PosedPair& pair, const Vec3& n,
 PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
                                 const MinkowskiVertex& vertex_pair,
                                 const Vec3& witness, double spread,
-                                double layer, PatchWorkspace* workspace) {
+                                double layer, PatchWorkspace* workspace,
+                                FacetEnd end) {
   assert(std::abs(n.squaredNorm() - 1) < 1e-6);
   assert(spread <= layer);
   const double point = layer * layer;
@@ -263,7 +269,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
   if (!(spread > 0)) return {std::nullopt, false, 0, point};
   const FlushFacets of_A(pair.A, vertex_pair.a, -n),
       of_B(pair.B, vertex_pair.b, n_B);
-  Patch patch(pair, n, h, spread, layer, workspace);
+  Patch patch(pair, n, h, spread, layer, workspace, end);
   Blend blend;
   for (const FlushFacets::Item& a : of_A) {
     for (const FlushFacets::Item& b : of_B) {

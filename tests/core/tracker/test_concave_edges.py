@@ -101,6 +101,36 @@ def test_the_force_does_not_jump_at_the_borders_of_a_hollow(shape, depth):
     assert seen == 4000
 
 
+def ridge(half_length=5e-3):
+    """A prism with an edge along y through the origin, and the rest above it."""
+    ends = [
+        [(0, y, 0), (4e-3, y, 0.01), (-4e-3, y, 0.01)]
+        for y in (-half_length, half_length)
+    ]
+    F = [(0, 1, 2), (3, 5, 4), (0, 3, 4), (0, 4, 1), (1, 4, 5), (1, 5, 2)]
+    return np.concatenate(ends), np.array([*F, (2, 5, 3), (2, 3, 0)])
+
+
+def test_a_ridge_that_rocks_is_pressed_along_it_by_planes_beside_it_too():
+    """Parallel to the borders: no contact goes from one end to the other at once."""
+    tolerance = 5e-4
+    tool, solid = decomposed(*ridge()), decomposed(*hollow_block())
+    x = 0.6 * EDGES_X[4] + 0.4 * EDGES_X[5]
+    p = np.array([x, 0, height(x) - 5e-4])
+    tracker = followed(tool, solid, tolerance, p)
+    along = {}
+    for angle in np.linspace(-0.02, 0.02, 2001):
+        q = np.array([np.cos(angle / 2), np.sin(angle / 2), 0, 0, *p])
+        contacts = tracker.query(q)
+        for n, y in zip(contacts.nhat_BA_W, contacts.p_WC[:, 1], strict=True):
+            along.setdefault(tuple(n.round(6)), []).append(y)
+    # Planes at the tolerance come and go, at zero force.
+    pressed = np.array([y for y in along.values() if len(y) == 2001])
+    assert len(pressed) == 4
+    assert np.all(np.ptp(pressed, axis=1) > 8e-3)
+    assert np.abs(np.diff(pressed, axis=1)).max() < 1e-4
+
+
 # A floor with a fence of 1 to 2 mm between two slopes, and a ledge: x and z, m.
 YARD = np.array(
     [
