@@ -123,20 +123,16 @@ def block_press(tool: str, stop_m: float) -> Press:
     )
 
 
-def test_docs_numerics_tells_of_a_contact_that_chatters_at_rest() -> None:
+def test_a_box_pressed_into_the_round_of_the_cup_comes_to_rest() -> None:
+    """On two facets at once, of which each was a contact in every other tick, once."""
     mesh, _, pieces = solid(MODELS / "cup.obj")
     [press] = sample_presses(mesh, tools()["box"], "press", [14], SEED)
     ticks = list(run_press(press, tools()["box"], pieces, GAINS["default"]))
-    held = [t for t in ticks if t.phase == "hold"]
-    counts = np.array([len(t.contacts) for t in held])
-    forces = np.array([np.linalg.norm(t.F_contact_W[3:]) for t in held])
-    hand_N = np.ptp([t.F_coupling_W[3:] for t in held], axis=0).max()
-    page = (Path(__file__).parents[2] / "docs" / "numerics.md").read_text("utf-8")
-    text = " ".join(page.split())
-    assert f"between {counts.min()} and {counts.max()} contacts" in text
-    assert f"on {np.count_nonzero(np.diff(counts))} of {len(held)} ticks" in text
-    assert f"between {forces.min():.1f} and {forces.max():.1f} N" in text
-    assert f"leave {hand_N:.2f} N" in text
+    rest = [t for t in ticks if t.phase == "hold"][-100:]
+    forces_N = np.array([t.F_contact_W[3:] for t in rest])
+    assert np.linalg.norm(forces_N[-1]) > 0.9 * LARGEST_FORCE_N
+    assert np.ptp(forces_N, axis=0).max() < 1e-3
+    assert {len(t.contacts) for t in rest} == {2}
 
 
 @pytest.mark.parametrize("gains", GAINS)

@@ -81,6 +81,17 @@ ShadedCornerOf<T> ShadedFacet::Interpolate(
     sum.normal += nearest.weights[k] * corner.normal.template cast<T>();
     sum.curvature += nearest.weights[k] * corner.curvature.template cast<T>();
   }
+  if (nearest.squared_distance > 0.0) {
+    // Off the facet, as where its plane goes on beyond a concave edge, the
+    // surface bends on as it does at the border.
+    Vec3Of<T> beyond = p;
+    for (int k = 0; k < 3; ++k) {
+      beyond -= nearest.weights[k] * best->points[k].template cast<T>();
+    }
+    const Vec3Of<T> normal = normal_.template cast<T>();
+    beyond -= normal * normal.dot(beyond);
+    sum.normal += sum.curvature * beyond;
+  }
   return sum;
 }
 

@@ -27,8 +27,8 @@ class ShadedFacet {
 
   const Vec3& normal() const { return normal_; }
 
-  /// Normal, not unit, and curvature at a point of the facet (m), or at the
-  /// nearest one of its triangles.
+  /// Normal, not unit, and curvature at a point of the facet's plane (m):
+  /// beyond the facet as the curvature at its nearest point tells.
   template <typename T>
   ShadedCornerOf<T> Interpolate(const Eigen::Matrix<T, 3, 1>& p) const;
 

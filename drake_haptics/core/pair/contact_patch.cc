@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cassert>
 #include <optional>
+#include <span>
 
 #include "convex/flush_features.h"
+#include "convex/normal_cone_support.h"
 
 namespace drake_haptics {
 namespace {
@@ -35,6 +37,17 @@ struct Height {
   }
 };
 
+std::span<const int> SidesOf(const Polytope& P, int facet) {
+  return {&P.facet_loop_edge[P.facet_loop_start[facet]],
+          P.loop_of(facet).size()};
+}
+
+// Whether the surface beyond a side of a facet rises above it.
+bool IsConcave(const Polytope::Edge& side, const Polytope& P, int facet) {
+  const Vec3& beyond = side.wings[side.left == facet ? 1 : 0];
+  return beyond.dot(P.facets[facet].normal) > kSurfaceSlack;
+}
+
 // The part of a contact that one pair of flush features carries.
 struct Part {
   std::optional<Vec3> center;
@@ -44,16 +57,27 @@ struct Part {
 class Patch {
  public:
   Patch(const PosedPair& pair, const Vec3& n, double h, double spread,
-        double layer, PatchWorkspace* workspace)
+        double layer, PatchWorkspace* workspace, FacetEnd end)
       : pair_(pair),
         plane_(n),
         h_(h),
         spread_(spread),
         layer_(layer),
-        workspace_(*workspace) {}
+        workspace_(*workspace),
+        end_(end) {}
 
   Part OfFacets(int facet_A, int facet_B) {
     workspace_.polygon.clear();
+    // The first one is cut off at all its sides, so one that goes on is second.
+    if (GoesOn(pair_.A, facet_A)) {
+      for (const int v : pair_.B.loop_of(facet_B)) {
+        workspace_.polygon.push_back(plane_.To(pair_.b(v)));
+      }
+      const Height of_B(
+          plane_.To(pair_.X_AB.R * pair_.B.facets[facet_B].normal),
+          workspace_.polygon[0]);
+      return Finish(CutByFacetOfA(facet_A), of_B, 1 / spread_);
+    }
     for (const int v : pair_.A.loop_of(facet_A)) {
       workspace_.polygon.push_back(plane_.To(pair_.a(v)));
     }
@@ -152,6 +176,17 @@ class Patch {
     return Height(across.cross(along), workspace_.polygon[0]);
   }
 
+  bool GoesOn(const Polytope& P, int facet) const {
+    return std::ranges::any_of(SidesOf(P, facet), [&](int edge) {
+      return GoesOnBeyond(P.edges[edge], P, facet);
+    });
+  }
+
+  bool GoesOnBeyond(const Polytope::Edge& side, const Polytope& P,
+                    int facet) const {
+    return end_ != FacetEnd::kAllSides && IsConcave(side, P, facet);
+  }
+
   template <typename Position>
   Height Cut(const Polytope& P, int facet, const Position& position,
              const Vec3& normal_A) {
@@ -160,7 +195,9 @@ class Patch {
     const Vec3 first = plane_.To(position(loop[0]));
     // Seen along n, A's loops run clockwise and B's counter-clockwise.
     const double turn = normal.z() > 0 ? 1.0 : -1.0;
+    const auto sides = SidesOf(P, facet);
     for (std::size_t k = 0; k < loop.size(); ++k) {
+      if (GoesOnBeyond(P.edges[sides[k]], P, facet)) continue;
       const Vec3 p = plane_.To(position(loop[k]));
       const Vec3 along = plane_.To(position(loop[(k + 1) % loop.size()])) - p;
       ClipPolygon(
@@ -178,6 +215,7 @@ class Patch {
   const Plane plane_;
   const double h_, spread_, layer_;
   PatchWorkspace& workspace_;
+  const FacetEnd end_;
 };
 
 // Weighted mean over all features that share the contact. What has no overlap
@@ -222,7 +260,8 @@ bool MayHaveExtent(const PosedPair& pair, const Vec3& n,
 PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
                                 const MinkowskiVertex& vertex_pair,
                                 const Vec3& witness, double spread,
-                                double layer, PatchWorkspace* workspace) {
+                                double layer, PatchWorkspace* workspace,
+                                FacetEnd end) {
   assert(std::abs(n.squaredNorm() - 1) < 1e-6);
   assert(spread <= layer);
   const double point = layer * layer;
@@ -230,7 +269,7 @@ PressurePatch FindPressurePatch(const PosedPair& pair, const Vec3& n, double h,
   if (!(spread > 0)) return {std::nullopt, false, 0, point};
   const FlushFacets of_A(pair.A, vertex_pair.a, -n),
       of_B(pair.B, vertex_pair.b, n_B);
-  Patch patch(pair, n, h, spread, layer, workspace);
+  Patch patch(pair, n, h, spread, layer, workspace, end);
   Blend blend;
   for (const FlushFacets::Item& a : of_A) {
     for (const FlushFacets::Item& b : of_B) {

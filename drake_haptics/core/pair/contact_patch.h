@@ -41,6 +41,11 @@ struct PressurePatch {
   double extent = 0;
 };
 
+/// Where a facet ends that is pressed on. Beside a concave edge free space is
+/// an intersection of half-spaces, so its plane, and what presses on it, go on
+/// there.
+enum class FacetEnd { kConvexAndFlushSides, kAllSides };
+
 /// The patch of a contact between faces, or a face and an edge, that lie
 /// nearly flush: one point of contact would jump from corner to corner as the
 /// faces rock, and the torque with it. The pressure is that of a layer of
@@ -60,6 +65,7 @@ struct PressurePatch {
 [[nodiscard]] PressurePatch FindPressurePatch(
     const PosedPair& pair, const Vec3& n, double h,
     const MinkowskiVertex& vertex_pair, const Vec3& witness, double spread,
-    double layer, PatchWorkspace* workspace);
+    double layer, PatchWorkspace* workspace,
+    FacetEnd end = FacetEnd::kConvexAndFlushSides);
 
 }  // namespace drake_haptics

@@ -129,7 +129,7 @@ class Search {
     if (LateralOffset(pair_, a, b, witness) > 0 &&
         !(surface_goes_on_flat_ &&
           FindSurfacePatch(pair_, n, h, vertex_pair, witness.p_a,
-                           request_.tolerance, &workspace_)
+                           request_.tolerance, &workspace_, FacetEnd::kAllSides)
               .has_faces)) {
       found_.ends_early = true;
       found_.is_beside_wall |=

@@ -38,6 +38,7 @@ ContactTracker::ContactTracker(
     TreedShape& shape = shapes[pieces.get()];
     if (shape.tree == nullptr) {
       shape.tree = std::make_shared<PieceBvh>(pieces->pieces);
+      shape.neighbors = std::make_shared<FacetNeighbors>(*pieces);
       shape.decomposition = std::move(pieces);
     }
     return shape;

@@ -23,11 +23,22 @@ MinkowskiVertex VertexPairOf(const PosedPair& pair,
 PressurePatch FindSurfacePatch(const PosedPair& pair, const Vec3& n, double h,
                                const MinkowskiVertex& vertex_pair,
                                const Vec3& p_a, double tolerance,
-                               PatchWorkspace* workspace) {
+                               PatchWorkspace* workspace, FacetEnd end) {
   const double layer = PressureLayer(tolerance);
   return FindPressurePatch(pair, n, h, vertex_pair, p_a,
                            std::clamp(tolerance - h, 0.0, layer), layer,
-                           workspace);
+                           workspace, end);
+}
+
+void SpreadOver(const PressurePatch& patch, const MinkowskiVertex& vertex_pair,
+                PairContact* contact) {
+  if (patch.center) {
+    contact->p_a = *patch.center;
+    contact->p_b = *patch.center - contact->distance * contact->n;
+  }
+  contact->extent = patch.extent;
+  contact->flushness = patch.flushness;
+  contact->support = {vertex_pair.a, vertex_pair.b};
 }
 
 bool IsWithinSides(const PosedPair& pair, const PairContact& contact) {
@@ -43,7 +54,7 @@ bool IsWithinFeatures(const PosedPair& pair, const DepthCandidate& facet,
   return IsWithinSides(pair, contact) ||
          FindSurfacePatch(pair, contact.n, contact.distance,
                           VertexPairOf(pair, facet), contact.p_a, tolerance,
-                          workspace)
+                          workspace, FacetEnd::kAllSides)
              .center;
 }
 

@@ -16,7 +16,13 @@ MinkowskiVertex VertexPairOf(const PosedPair& pair,
 PressurePatch FindSurfacePatch(const PosedPair& pair, const Vec3& n, double h,
                                const MinkowskiVertex& vertex_pair,
                                const Vec3& p_a, double tolerance,
-                               PatchWorkspace* workspace);
+                               PatchWorkspace* workspace,
+                               FacetEnd end = FacetEnd::kConvexAndFlushSides);
+
+/// Moves a contact's witness points to the center of its patch.
+/// @param vertex_pair supports the pair along the contact's normal.
+void SpreadOver(const PressurePatch& patch, const MinkowskiVertex& vertex_pair,
+                PairContact* contact);
 
 /// Whether a contact lies no farther beyond its features' sides than a small
 /// share of the size.

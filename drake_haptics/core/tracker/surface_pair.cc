@@ -81,14 +81,13 @@ class Query {
     }
     const PressurePatch patch = FindPatch(contact->n, contact->distance,
                                           state_.vertex_pair, contact->p_a);
-    state_.is_settled = is_within || (is_pressed && patch.center);
-    if (patch.center) {
-      contact->p_a = *patch.center;
-      contact->p_b = *patch.center - contact->distance * contact->n;
-    }
-    contact->extent = patch.extent;
-    contact->flushness = patch.flushness;
-    contact->support = {state_.vertex_pair.a, state_.vertex_pair.b};
+    state_.is_settled =
+        is_within ||
+        (is_pressed && patch.center &&
+         FindPatch(contact->n, contact->distance, state_.vertex_pair,
+                   contact->p_a, FacetEnd::kAllSides)
+             .center);
+    SpreadOver(patch, state_.vertex_pair, &*contact);
     return contact;
   }
 
@@ -428,9 +427,10 @@ class Query {
   }
 
   PressurePatch FindPatch(const Vec3& n, double h,
-                          const MinkowskiVertex& vertex_pair, const Vec3& p_a) {
+                          const MinkowskiVertex& vertex_pair, const Vec3& p_a,
+                          FacetEnd end = FacetEnd::kConvexAndFlushSides) {
     return FindSurfacePatch(pair_, n, h, vertex_pair, p_a, request_.tolerance,
-                            &workspace_.patch);
+                            &workspace_.patch, end);
   }
 
   void Remember(const std::optional<PairContact>& contact) {

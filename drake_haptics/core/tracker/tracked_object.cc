@@ -74,11 +74,20 @@ void TrackedObject::Query(const Tick& tick, TrackerWorkspace* workspace,
       AskForAnyWayOut(tick, workspace, out);
     }
   }
-  std::sort(out->begin() + static_cast<std::ptrdiff_t>(first), out->end(),
-            [](const Contact& p, const Contact& q) {
-              return std::tie(p.piece_A, p.piece_B) <
-                     std::tie(q.piece_A, q.piece_B);
-            });
+  const auto sort = [&] {
+    std::sort(out->begin() + static_cast<std::ptrdiff_t>(first), out->end(),
+              [](const Contact& p, const Contact& q) {
+                return std::tie(p.piece_A, p.piece_B) <
+                       std::tie(q.piece_A, q.piece_B);
+              });
+  };
+  sort();
+  const std::size_t num_found = out->size();
+  AppendConcaveNeighbors({*tick.tool.decomposition, *tick.tool.neighbors},
+                         {*shape_.decomposition, *shape_.neighbors}, tick.X_WA,
+                         tick.X_AB, tick.tolerance, first, &workspace->concave,
+                         out);
+  if (out->size() > num_found) sort();
   is_first_ = false;
   // Copied, so that each object keeps the memory that it has needed.
   pressed_.assign(workspace->pressed.begin(), workspace->pressed.end());

@@ -7,17 +7,21 @@
 #include "base/motion.h"
 #include "base/types.h"
 #include "mesh/decomposition.h"
+#include "mesh/facet_neighbors.h"
 #include "pair/contact.h"
 #include "tracker/bvtt_front.h"
+#include "tracker/concave_neighbors.h"
 #include "tracker/piece_bvh.h"
 #include "tracker/surface_pair.h"
 
 namespace drake_haptics {
 
-/// A decomposition with the tree over its pieces; shared by all that use it.
+/// A decomposition with the tree over its pieces and the facets that go on from
+/// piece to piece; shared by all that use it.
 struct TreedShape {
   std::shared_ptr<const Decomposition> decomposition;
   std::shared_ptr<const PieceBvh> tree;
+  std::shared_ptr<const FacetNeighbors> neighbors;
 };
 
 /// Which depth a pair of pieces in overlap has, and what it may cost.
@@ -35,6 +39,7 @@ struct TrackerWorkspace {
   std::vector<PenetratingContact> pressed;
   std::vector<Vec3>
       translation_vectors;  ///< of the pressed ones, see SurfaceRequest
+  ConcaveNeighborsWorkspace concave;
 };
 
 /// One object that the tool may touch: which pairs of pieces are within reach,

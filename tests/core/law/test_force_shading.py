@@ -130,7 +130,10 @@ def test_ball_on_ball_and_on_a_peg(sphere: _core.ConvexPieces, distance: float) 
 
 @pytest.mark.parametrize("distance", [1e-3, 1e-4])
 def test_a_ball_in_a_hollow_cylinder(distance: float) -> None:
-    """A vertex of the ball points where it may; its center tells where it is."""
+    """A vertex of the ball points where it may; its center tells where it is.
+
+    Beside concave edges the planes of all facets push: that alone comes near.
+    """
     cup = core_of(trimesh.creation.annulus(0.02, 0.03, 0.04, sections=32))
     ball = core_of(trimesh.creation.icosphere(2, 8e-3))
     turn = np.linspace(0, 0.3, 300)
@@ -139,7 +142,7 @@ def test_a_ball_in_a_hollow_cylinder(distance: float) -> None:
     poses = np.column_stack([np.tile([1.0, 0, 0, 0], (300, 1)), points])
     facet, shaded = directions(ball, cup, poses)
     assert angles(shaded, -out).max() < 0.3
-    assert angles(facet, -out).max() > 4.0
+    assert 0.3 < angles(facet, -out).max() < 1.5
 
 
 def test_the_tool_is_shaded_too(sphere: _core.ConvexPieces) -> None:
