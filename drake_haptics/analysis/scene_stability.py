@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from collections.abc import Callable
@@ -262,9 +263,12 @@ def _read_contact(loop: HeldLoop) -> tuple[int, float]:
     parts, root = loop.haptic.loop, loop.context
     diagram = loop.haptic.diagram
     contacts = diagram.GetOutputPort("contacts").Eval(root)
-    # The force begins at the tolerance.
-    clustering = parts.contact_clustering
-    rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
-    pushing = contacts.distance < rule.tolerance_m
+    # The force begins at the tolerance; by constraints all that are shown push.
+    tolerance_m = math.inf
+    if parts.penalty is not None:
+        clustering = parts.penalty.contact_clustering
+        rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
+        tolerance_m = rule.tolerance_m
+    pushing = contacts.distance < tolerance_m
     wrench = diagram.GetOutputPort("F_To_W").Eval(root)
     return int(pushing.sum()), float(np.linalg.norm(wrench[3:]))

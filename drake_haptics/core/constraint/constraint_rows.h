@@ -49,6 +49,8 @@ class ConstraintRows {
 
   int num_objects() const { return static_cast<int>(objects_.size()); }
   const Pose& X_WO(int i) const { return objects_[i].X_WO; }
+  const Decomposition& tool() const { return *tool_.decomposition; }
+  const Decomposition& object(int i) const { return objects_[i].near.shape(); }
 
   /// Poses object i.
   /// @param sweep bound on the motion of its points in the tick, m: it is
@@ -65,6 +67,8 @@ class ConstraintRows {
   void Query(const Pose& X_WT, double reach);
 
   const std::vector<SeparatingPlane>& planes() const { return planes_; }
+  /// The same as the query found them, before any was turned.
+  const std::vector<SeparatingPlane>& found() const { return found_; }
   const std::vector<ConstraintRow>& rows() const { return rows_; }
 
   /// Smallest distance of the pairs within reach, m; infinite if none is.

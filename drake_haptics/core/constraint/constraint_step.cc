@@ -10,6 +10,7 @@
 #include "base/positive_semidefinite.h"
 #include "base/require.h"
 #include "base/rotation.h"
+#include "constraint/row_limits.h"
 
 namespace drake_haptics {
 namespace {
@@ -17,11 +18,10 @@ namespace {
 // Stiffness of a row that holds the skin, N/m: hard, for a hand's force takes a
 // hundred-millionth of a meter off it.
 constexpr double kHard = 1e9;
-// Of one that leads back into the skin, N/m, and the speed at which, m/s. Its
-// force is limited to what it has at that speed in one tick: two walls that
-// leave less room than two skins share it.
+// Of one that leads back into the skin, N/m. Its force is limited to what it
+// has at its speed in one tick: two walls that leave less room than two skins
+// share it.
 constexpr double kBack = 1e7;
-constexpr double kBackSpeed = 0.02;
 // What all pieces in overlap push with together, N.
 constexpr double kMostOutward = 3;
 // The motion that rows look ahead, m: so much at least, so much at most, and in
@@ -48,15 +48,6 @@ void RequireFinite(const ToolState& state, const PoseVector& q_WH,
 Pose Moved(const Pose& X, const Vec6& motion) {
   return {RotationExp<double>(motion.head<3>()).toRotationMatrix() * X.R,
           X.p + motion.tail<3>()};
-}
-
-PoseVector Moved(const PoseVector& q_WT, const Vec6& motion) {
-  const Vec3 turn = motion.head<3>();
-  const Eigen::Quaterniond R =
-      (RotationExp<double>(turn) * QuaternionOf(q_WT)).normalized();
-  PoseVector moved;
-  moved << R.w(), R.vec(), q_WT.tail<3>() + motion.tail<3>();
-  return moved;
 }
 
 Pose PoseOfVector(const PoseVector& q) {
@@ -117,11 +108,6 @@ int ConstraintStepper::AddSpring(const Vec6& a, double b, double k,
   return static_cast<int>(problem_.springs.size()) - 1;
 }
 
-// Apart, a row does not come nearer than its skin, or than it is: the tick's
-// beginning meets that wherever the object does not come closer, so that a hard
-// row never pushes by itself. What is missing of the skin, and what an object
-// comes closer by, a second spring makes up for. In overlap there is that one
-// alone, and weak.
 void ConstraintStepper::WriteSprings() {
   constexpr double kNoLimit = std::numeric_limits<double>::infinity();
   const double back = kBackSpeed * settings_.period;
@@ -134,19 +120,17 @@ void ConstraintStepper::WriteSprings() {
     const SeparatingPlane& plane = rows_.planes()[row.plane];
     const double skin = settings_.skin[plane.object];
     const double closer = row.n.dot(ObjectMotionAt(plane.object, row.p_WCb));
-    // Of a plane that was turned the pieces are farther than it tells.
-    const double missing = skin - std::max(row.distance, plane.nearest);
-    const double wanted = std::min(missing, back) + closer;
+    const RowLimits<double> limits(row.distance, plane.nearest, closer, skin,
+                                   back);
     HeldRow held;
     if (row.distance > 0) {
-      const double kept =
-          std::min(skin - row.distance, 0.0) + std::min(closer, 0.0);
-      held.spring = AddSpring(row.a, kept, kHard, kNoLimit);
-      if (wanted > kept) {
-        held.back = AddSpring(row.a, wanted, kBack, kBack * back);
+      held.spring = AddSpring(row.a, limits.kept, kHard, kNoLimit);
+      if (limits.wanted > limits.kept) {
+        held.back = AddSpring(row.a, limits.wanted, kBack, kBack * back);
       }
     } else {
-      held.back = AddSpring(row.a, wanted, kBack, kMostOutward / num_overlaps);
+      held.back =
+          AddSpring(row.a, limits.wanted, kBack, kMostOutward / num_overlaps);
     }
     held_.push_back(held);
   }
@@ -250,9 +234,10 @@ void ConstraintStepper::Step(const ToolState& state, const PoseVector& q_WH,
   }
 }
 
-void ConstraintStepper::StepFrom(const ToolState& state, const PoseVector& q_WH,
-                                 const Vec6& V_WH, const Vec6& F_applied,
-                                 ConstraintStepResult* result) {
+void ConstraintStepper::StepFrom(
+    const ToolState& state, const PoseVector& q_WH, const Vec6& V_WH,
+    const Vec6& F_applied, ConstraintStepResult* result,
+    const std::function<void(const Vec6& motion, double share)>& follow) {
   const double h = settings_.period;
   const CouplingWrench coupling = ComputeCoupling(
       q_WH, V_WH, settings_.q_HT, state.q_WT, state.V_WT, settings_.gains);
@@ -283,8 +268,10 @@ void ConstraintStepper::StepFrom(const ToolState& state, const PoseVector& q_WH,
     const double distance = rows_.MotionOf(X_WT, motion);
     const double most = rows_.FreeMotion();
     const bool is_far = distance > most;
-    if (is_far) motion *= most / distance;
-    q = Moved(q, motion);
+    const double share = is_far ? most / distance : 1.0;
+    motion *= share;
+    if (follow) follow(solution.motion, share);
+    q = Displaced<double>(q, motion);
     whole += motion;
     if (!is_far || substep == kMaxSubsteps) {
       result->is_bounded |= is_far;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "base/types.h"
 #include "constraint/constraint_problem.h"
 #include "constraint/constraint_rows.h"
+#include "constraint/step_gradient.h"
 #include "mesh/decomposition.h"
 #include "pair/contact.h"
 #include "tool/rigid_tool.h"
@@ -103,13 +105,22 @@ class ConstraintStepper {
   void Step(const ToolState& state, const PoseVector& q_WH, const Vec6& V_WH,
             const Vec6& F_applied, ConstraintStepResult* result);
 
+  /// The same with derivatives, the objects posed as the tick says
+  /// (step_gradient.h).
+  ConstraintTickGradient Differentiate(const ConstraintTick& tick);
+
   /// Forgets everything learnt from earlier ticks; the objects stay.
   void Reset();
 
  private:
-  void StepFrom(const ToolState& state, const PoseVector& q_WH,
-                const Vec6& V_WH, const Vec6& F_applied,
-                ConstraintStepResult* result);
+  class Derivation;
+
+  // @param follow if given, told of each sub-step: the motion that was found
+  //     for it, and the share of it that is gone.
+  void StepFrom(
+      const ToolState& state, const PoseVector& q_WH, const Vec6& V_WH,
+      const Vec6& F_applied, ConstraintStepResult* result,
+      const std::function<void(const Vec6& motion, double share)>& follow = {});
   // A row and the springs that hold it, by their places.
   struct HeldRow {
     int spring = -1;  // that holds the skin

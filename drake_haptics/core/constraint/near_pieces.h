@@ -54,6 +54,8 @@ class NearPieces {
   /// other pair is nearer than this less the reading, m.
   double mark() const { return mark_; }
 
+  const Decomposition& shape() const { return *shape_.decomposition; }
+
   /// The object's box, in its frame.
   Box bounds() const { return shape_.tree->bounds(); }
 
