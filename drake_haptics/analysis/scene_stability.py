@@ -56,7 +56,7 @@ class SceneStability:
         scene: The scene, its hand stopped.
         time_s: When the hand stopped on its path, s.
         handle: Inertia and damping of device and hand where they are.
-        num_contacts: Number of contacts that push, nearer than the tolerance, at rest.
+        num_contacts: Number of contacts that push at rest.
         contact_force_N: Contact force on the tool, at rest, N.
         growth: Growth of the fastest growing motion in a tick; stable below 1.
         linearization: Linear map of one tick.
