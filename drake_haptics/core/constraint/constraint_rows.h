@@ -88,6 +88,10 @@ class ConstraintRows {
   /// @returns whether the plane changed.
   bool TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO, double least);
 
+  /// The contact of a plane's pieces where tool and object will be, in the
+  /// tool's frame.
+  PairContact ContactThen(int plane, const Pose& X_WT, const Pose& X_WO) const;
+
   /// The distance of a plane's pieces where tool and object will be, m; zero
   /// where they overlap.
   double DistanceThen(int plane, const Pose& X_WT, const Pose& X_WO) const;

@@ -168,7 +168,7 @@ bool ConstraintStepper::AreTurnedPiecesApart(const Pose& X_next) const {
 // it coasts, for what a plane wrongly forbids bends the motion that was found
 // with it; then by that. Returns whether any was turned.
 bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
-                                   const Vec6& motion) {
+                                   const Vec6& motion, Follower* follower) {
   const double distance = rows_.MotionOf(X_WT, motion);
   pushes_.assign(rows_.planes().size(), 0);
   for (std::size_t k = 0; k < held_.size(); ++k) {
@@ -187,9 +187,14 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
     }
     // No nearer than what is nearest: nothing of the skin is given up.
     const double least = std::min(plane.least, skin) - kRounding * skin;
-    is_any |= rows_.TurnPlane(static_cast<int>(k),
-                              is_turned_[k] != 0 ? X_next : X_coasted,
-                              NextPoseOf(plane.object), least);
+    const bool is_again = is_turned_[k] != 0;
+    if (rows_.TurnPlane(static_cast<int>(k), is_again ? X_next : X_coasted,
+                        NextPoseOf(plane.object), least)) {
+      is_any = true;
+      if (follower != nullptr) {
+        follower->Turn(static_cast<int>(k), is_again);
+      }
+    }
     is_turned_[k] = 1;
   }
   return is_any;
@@ -198,15 +203,17 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
 ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
                                                 const Vec6& coasting,
                                                 const Vec6& start,
-                                                ConstraintStepResult* result) {
+                                                ConstraintStepResult* result,
+                                                Follower* follower) {
   is_turned_.assign(rows_.planes().size(), 0);
   WriteSprings();
   const ConstraintSolution first =
       SolveConstraintProblem(problem_, start, &workspace_);
   result->num_iterations += first.num_iterations;
+  if (follower != nullptr) follower->Solve(first.motion);
   ConstraintSolution solution = first;
   for (int turns = 0; turns < kMaxTurns; ++turns) {
-    if (!TurnPlanes(X_WT, coasting, solution.motion)) break;
+    if (!TurnPlanes(X_WT, coasting, solution.motion, follower)) break;
     rows_.UpdateRows();
     WriteSprings();
     solution = SolveConstraintProblem(problem_, solution.motion, &workspace_);
@@ -215,8 +222,10 @@ ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
     if (!AreTurnedPiecesApart(Moved(X_WT, solution.motion))) {
       rows_.RestorePlanes();
       WriteSprings();
+      if (follower != nullptr) follower->Restore(first.motion);
       return first;
     }
+    if (follower != nullptr) follower->Solve(solution.motion);
   }
   return solution;
 }
@@ -234,10 +243,10 @@ void ConstraintStepper::Step(const ToolState& state, const PoseVector& q_WH,
   }
 }
 
-void ConstraintStepper::StepFrom(
-    const ToolState& state, const PoseVector& q_WH, const Vec6& V_WH,
-    const Vec6& F_applied, ConstraintStepResult* result,
-    const std::function<void(const Vec6& motion, double share)>& follow) {
+void ConstraintStepper::StepFrom(const ToolState& state, const PoseVector& q_WH,
+                                 const Vec6& V_WH, const Vec6& F_applied,
+                                 ConstraintStepResult* result,
+                                 Follower* follower) {
   const double h = settings_.period;
   const CouplingWrench coupling = ComputeCoupling(
       q_WH, V_WH, settings_.q_HT, state.q_WT, state.V_WT, settings_.gains);
@@ -262,7 +271,7 @@ void ConstraintStepper::StepFrom(
       result->is_apart = result->least_distance > 0;
     }
     const ConstraintSolution solution =
-        SolveHere(X_WT, h * state.V_WT - whole, free, result);
+        SolveHere(X_WT, h * state.V_WT - whole, free, result, follower);
     result->is_bounded |= solution.is_bounded;
     Vec6 motion = solution.motion;
     const double distance = rows_.MotionOf(X_WT, motion);
@@ -270,7 +279,7 @@ void ConstraintStepper::StepFrom(
     const bool is_far = distance > most;
     const double share = is_far ? most / distance : 1.0;
     motion *= share;
-    if (follow) follow(solution.motion, share);
+    if (follower != nullptr) follower->Go(share);
     q = Displaced<double>(q, motion);
     whole += motion;
     if (!is_far || substep == kMaxSubsteps) {

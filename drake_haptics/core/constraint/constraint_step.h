@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -113,14 +112,28 @@ class ConstraintStepper {
   void Reset();
 
  private:
+  // Is told what a tick does, step by step.
+  class Follower {
+   public:
+    // A problem was solved, with planes and springs as they are.
+    virtual void Solve(const Vec6& motion) = 0;
+    // A plane was turned: toward where the tool coasts, or, again, toward
+    // where the last solution leads.
+    virtual void Turn(int plane, bool is_again) = 0;
+    // The planes are as they were found, and this is the motion.
+    virtual void Restore(const Vec6& motion) = 0;
+    // The tool goes by a share of the last solution.
+    virtual void Go(double share) = 0;
+
+   protected:
+    ~Follower() = default;
+  };
   class Derivation;
 
-  // @param follow if given, told of each sub-step: the motion that was found
-  //     for it, and the share of it that is gone.
-  void StepFrom(
-      const ToolState& state, const PoseVector& q_WH, const Vec6& V_WH,
-      const Vec6& F_applied, ConstraintStepResult* result,
-      const std::function<void(const Vec6& motion, double share)>& follow = {});
+  // @param follower if given, follows the tick.
+  void StepFrom(const ToolState& state, const PoseVector& q_WH,
+                const Vec6& V_WH, const Vec6& F_applied,
+                ConstraintStepResult* result, Follower* follower = nullptr);
   // A row and the springs that hold it, by their places.
   struct HeldRow {
     int spring = -1;  // that holds the skin
@@ -132,9 +145,11 @@ class ConstraintStepper {
   int AddSpring(const Vec6& a, double b, double k, double limit);
   Pose NextPoseOf(int object) const;
   bool AreTurnedPiecesApart(const Pose& X_next) const;
-  bool TurnPlanes(const Pose& X_WT, const Vec6& coasting, const Vec6& motion);
+  bool TurnPlanes(const Pose& X_WT, const Vec6& coasting, const Vec6& motion,
+                  Follower* follower);
   ConstraintSolution SolveHere(const Pose& X_WT, const Vec6& coasting,
-                               const Vec6& start, ConstraintStepResult* result);
+                               const Vec6& start, ConstraintStepResult* result,
+                               Follower* follower);
   void WriteContacts(const Pose& X_WT, const Vec6& motion,
                      ConstraintStepResult* result) const;
   Vec3 ObjectMotionAt(int i, const Vec3& p_WC) const;

@@ -27,6 +27,7 @@ struct SeparatingPlane {
   /// Vertices that support the pair where the tool will be; of a plane that was
   /// not turned those that do now.
   MinkowskiVertex next_support;
+  double turned = 0;  ///< share of the way that it was turned last
 };
 
 /// The pairs of convex pieces of a tool (A) and an object (B) that are within

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <map>
 
 #include "base/rotation.h"
 #include "constraint/constraint_step.h"
@@ -14,6 +15,18 @@ namespace {
 
 PoseOf<AutoDiff> PoseOfVector(const PoseVectorOf<AutoDiff>& q) {
   return {QuaternionOf(q).toRotationMatrix(), q.tail<3>()};
+}
+
+// The pose after a motion of the origin, [θ; t].
+PoseOf<AutoDiff> Moved(const PoseOf<AutoDiff>& X,
+                       const Vec6Of<AutoDiff>& motion) {
+  const Vec3Of<AutoDiff> turn = motion.head<3>();
+  return {RotationExp<AutoDiff>(turn).toRotationMatrix() * X.R,
+          X.p + motion.tail<3>()};
+}
+
+Pose ValuesOf(const PoseOf<AutoDiff>& X) {
+  return {drake_haptics::ValuesOf(X.R), drake_haptics::ValuesOf(X.p)};
 }
 
 ToolState ValuesOf(const ToolStateOf<AutoDiff>& state) {
@@ -56,13 +69,15 @@ Vec6Of<AutoDiff> ImplicitMotion(const Vec6& motion, const Mat6& A,
 
 }  // namespace
 
-// Follows a tick, sub-step after sub-step.
-class ConstraintStepper::Derivation {
+class ConstraintStepper::Derivation final : public Follower {
  public:
   Derivation(const ConstraintStepper& stepper, const ConstraintTick& tick)
-      : stepper_(stepper), tick_(tick), q_WT_(tick.state.q_WT) {
+      : stepper_(stepper),
+        rows_(stepper.rows_),
+        h_(stepper.settings_.period),
+        tick_(tick),
+        q_WT_(tick.state.q_WT) {
     const Settings& settings = stepper.settings_;
-    const double h = settings.period;
     const CouplingWrenchOf<AutoDiff> coupling = ComputeCoupling<AutoDiff>(
         tick.q_WH, tick.V_WH, settings.q_HT, tick.state.q_WT, tick.state.V_WT,
         settings.gains);
@@ -72,35 +87,57 @@ class ConstraintStepper::Derivation {
     // Where it yields: of what StepFrom projects, the symmetric part.
     const Mat6Of<AutoDiff> K =
         0.5 * (coupling.tool.K + coupling.tool.K.transpose());
-    H_ = terms.M / (h * h) + B / h + K;
-    force_ = terms.M * tick.state.V_WT / h + B * tick.state.V_WT +
+    H_ = terms.M / (h_ * h_) + B / h_ + K;
+    force_ = terms.M * tick.state.V_WT / h_ + B * tick.state.V_WT +
              coupling.tool.F + tick.F_applied - terms.b;
     whole_.setZero();
-    for (std::size_t i = 0; i < tick.q_WO.size(); ++i) {
-      objects_.push_back({&stepper.rows_.object(static_cast<int>(i)),
-                          PoseOfVector(tick.q_WO[i])});
+    for (int i = 0; i < stepper.num_objects(); ++i) {
+      const PoseOf<AutoDiff> X_WO = PoseOfVector(tick.q_WO[i]);
+      const Vec6Of<AutoDiff> motion = h_ * tick.V_WO[i];
+      objects_.push_back({&rows_.object(i), X_WO});
+      next_objects_.push_back({&rows_.object(i), Moved(X_WO, motion)});
     }
   }
 
-  // @param motion of the sub-step, and the share of it that is gone.
-  void Follow(const Vec6& motion, double share) {
-    const ConstraintProblem& problem = stepper_.problem_;
-    const DisplacedShape tool{&stepper_.rows_.tool(), PoseOfVector(q_WT_)};
-    FindPushing(motion, tool);
-    Mat6 A = problem.H;
+  void Solve(const Vec6& motion) final {
+    FindPushing(motion);
+    Mat6 A = stepper_.problem_.H;
     Vec6Of<AutoDiff> gradient =
         H_ * (motion.cast<AutoDiff>() + whole_).eval() - force_;
     for (const Pushing& pushing : pushing_) {
       gradient -= pushing.Force(motion.cast<AutoDiff>()) * pushing.row.a;
-      const OneSidedSpring& spring = *pushing.spring;
-      if (!pushing.is_at_limit) A += spring.k * spring.a * spring.a.transpose();
+      const Vec6& a = pushing.spring.a;
+      if (!pushing.is_at_limit) A += pushing.spring.k * a * a.transpose();
     }
-    const Vec6Of<AutoDiff> moving =
-        ImplicitMotion(motion, A, gradient, tick_.num_derivatives);
-    const Vec6Of<AutoDiff> gone = AutoDiff(share) * moving;
+    motion_ = ImplicitMotion(motion, A, gradient, tick_.num_derivatives);
+  }
+
+  void Turn(int plane, bool is_again) final {
+    const SeparatingPlane& turned = rows_.planes()[plane];
+    const Vec6Of<AutoDiff> target =
+        is_again ? motion_ : Vec6Of<AutoDiff>(h_ * tick_.state.V_WT - whole_);
+    const DisplacedShape tool{&rows_.tool(), Moved(tool_pose(), target)};
+    const DisplacedShape& object = next_objects_[turned.object];
+    const PairContact then =
+        rows_.ContactThen(plane, ValuesOf(tool.X_WB), ValuesOf(object.X_WB));
+    const Vec3Of<AutoDiff> to =
+        DifferentiatePieces(then, turned.pieces, tool, object).nhat_BA_W;
+    normals_[plane] =
+        ((1 - turned.turned) * NormalOf(plane) + turned.turned * to)
+            .normalized();
+  }
+
+  void Restore(const Vec6& motion) final {
+    normals_.clear();
+    Solve(motion);
+  }
+
+  void Go(double share) final {
+    const Vec6Of<AutoDiff> gone = AutoDiff(share) * motion_;
+    SumForces();
     whole_ += gone;
     q_WT_ = Displaced<AutoDiff>(q_WT_, gone);
-    SumForces(moving);
+    normals_.clear();
   }
 
   ConstraintTickGradient Finish(const ConstraintStepResult& values) {
@@ -121,90 +158,107 @@ class ConstraintStepper::Derivation {
  private:
   // A spring that pushes, and how what it demands changes.
   struct Pushing {
-    const OneSidedSpring* spring = nullptr;
+    OneSidedSpring spring;
     int object = 0;
     bool is_at_limit = false;
     MovingRow row;
     AutoDiff b;
 
     AutoDiff Force(const Vec6Of<AutoDiff>& motion) const {
-      if (is_at_limit) return AutoDiff(spring->limit);
-      return spring->k * (b - row.a.dot(motion));
+      if (is_at_limit) return AutoDiff(spring.limit);
+      return spring.k * (b - row.a.dot(motion));
     }
   };
 
+  PoseOf<AutoDiff> tool_pose() const { return PoseOfVector(q_WT_); }
+
+  // The normal of a plane, in W.
+  Vec3Of<AutoDiff> NormalOf(int plane) const {
+    const auto turned = normals_.find(plane);
+    if (turned != normals_.end()) return turned->second;
+    return Found(plane).nhat_BA_W;
+  }
+
+  // A plane's contact as the query found it.
+  ContactOf<AutoDiff> Found(int plane) const {
+    const SeparatingPlane& found = rows_.found()[plane];
+    return DifferentiatePieces(found.contact, found.pieces,
+                               {&rows_.tool(), tool_pose()},
+                               objects_[found.object]);
+  }
+
   // Collects all springs that push; one that just begins to does.
-  void FindPushing(const Vec6& motion, const DisplacedShape& tool) {
-    const double at_rest =
-        Approach<double>::kAtRest * stepper_.settings_.period;
+  void FindPushing(const Vec6& motion) {
+    const double at_rest = Approach<double>::kAtRest * h_;
+    const DisplacedShape tool{&rows_.tool(), tool_pose()};
     pushing_.clear();
     for (std::size_t k = 0; k < stepper_.held_.size(); ++k) {
       const HeldRow& held = stepper_.held_[k];
-      const auto is_pushing = [&](int place) {
-        if (place < 0) return false;
+      const auto shortfall = [&](int place) {
         const OneSidedSpring& spring = stepper_.problem_.springs[place];
-        return spring.b - spring.a.dot(motion) > -at_rest;
+        return spring.b - spring.a.dot(motion);
+      };
+      const auto is_pushing = [&](int place) {
+        return place >= 0 && shortfall(place) > -at_rest;
       };
       if (!is_pushing(held.spring) && !is_pushing(held.back)) continue;
-      const ConstraintRow& row = stepper_.rows_.rows()[k];
-      const int object = stepper_.rows_.planes()[row.plane].object;
+      const ConstraintRow& row = rows_.rows()[k];
+      const SeparatingPlane& plane = rows_.planes()[row.plane];
       const MovingRow moving = DifferentiateRow(
-          row, stepper_.rows_.planes()[row.plane], tool, objects_[object]);
-      const RowLimits<AutoDiff> limits = LimitsOf(row, moving, tool);
+          row, plane.pieces, NormalOf(row.plane), tool, objects_[plane.object]);
+      const RowLimits<AutoDiff> limits = LimitsOf(row.plane, moving);
       const auto add = [&](int place, const AutoDiff& b) {
         if (!is_pushing(place)) return;
         const OneSidedSpring& spring = stepper_.problem_.springs[place];
-        const double x = spring.b - spring.a.dot(motion);
-        pushing_.push_back(
-            {&spring, object, spring.k * x >= spring.limit, moving, b});
+        pushing_.push_back({spring, plane.object,
+                            spring.k * shortfall(place) >= spring.limit, moving,
+                            b});
       };
       add(held.spring, limits.kept);
       add(held.back, limits.wanted);
     }
   }
 
-  RowLimits<AutoDiff> LimitsOf(const ConstraintRow& row,
-                               const MovingRow& moving,
-                               const DisplacedShape& tool) const {
-    const double h = stepper_.settings_.period;
-    const SeparatingPlane& found = stepper_.rows_.found()[row.plane];
-    const Vec6Of<AutoDiff>& V_WO = tick_.V_WO[found.object];
+  RowLimits<AutoDiff> LimitsOf(int plane, const MovingRow& row) const {
+    const int object = rows_.planes()[plane].object;
+    const Vec6Of<AutoDiff>& V_WO = tick_.V_WO[object];
     const Vec3Of<AutoDiff> w = V_WO.head<3>(), v = V_WO.tail<3>();
-    const Vec3Of<AutoDiff> arm = moving.p_WCb - objects_[found.object].X_WB.p;
-    const Vec3Of<AutoDiff> step = h * (v + w.cross(arm));
-    AutoDiff distance = moving.distance;
-    distance.value() = row.distance;
-    AutoDiff nearest =
-        DifferentiatePlane(found, tool, objects_[found.object]).distance;
-    nearest.value() = found.nearest;
-    return RowLimits<AutoDiff>(distance, nearest, moving.n.dot(step),
-                               stepper_.settings_.skin[found.object],
-                               kBackSpeed * h);
+    const Vec3Of<AutoDiff> arm = row.p_WCb - objects_[object].X_WB.p;
+    const Vec3Of<AutoDiff> step = h_ * (v + w.cross(arm));
+    return RowLimits<AutoDiff>(row.distance, Found(plane).distance,
+                               row.n.dot(step), stepper_.settings_.skin[object],
+                               kBackSpeed * h_);
   }
 
   // What the rows push with in the sub-step that ends the tick.
-  void SumForces(const Vec6Of<AutoDiff>& motion) {
+  void SumForces() {
     F_To_W_.setZero();
     F_Oo_W_.assign(objects_.size(), Vec6Of<AutoDiff>::Zero());
     for (const Pushing& pushing : pushing_) {
-      const Vec3Of<AutoDiff> f = pushing.Force(motion) * pushing.row.n;
-      const Vec3Of<AutoDiff> arm_T =
-          pushing.row.p_WCa - tick_.state.q_WT.tail<3>();
+      const MovingRow& row = pushing.row;
+      const Vec3Of<AutoDiff> f = pushing.Force(motion_) * row.n;
+      const Vec3Of<AutoDiff> arm_T = row.p_WCa - tick_.state.q_WT.tail<3>();
       F_To_W_.head<3>() += arm_T.cross(f);
       F_To_W_.tail<3>() += f;
+      Vec6Of<AutoDiff>& F_Oo_W = F_Oo_W_[pushing.object];
       const Vec3Of<AutoDiff> arm_O =
-          pushing.row.p_WCb - objects_[pushing.object].X_WB.p;
-      F_Oo_W_[pushing.object].head<3>() -= arm_O.cross(f);
-      F_Oo_W_[pushing.object].tail<3>() -= f;
+          row.p_WCb - objects_[pushing.object].X_WB.p;
+      F_Oo_W.head<3>() -= arm_O.cross(f);
+      F_Oo_W.tail<3>() -= f;
     }
   }
 
   const ConstraintStepper& stepper_;
+  const ConstraintRows& rows_;
+  const double h_;
   const ConstraintTick& tick_;
   PoseVectorOf<AutoDiff> q_WT_;  // where the sub-step begins
   Mat6Of<AutoDiff> H_;
-  Vec6Of<AutoDiff> force_, whole_;
-  std::vector<DisplacedShape> objects_;
+  Vec6Of<AutoDiff> force_;
+  Vec6Of<AutoDiff> whole_;   // motion of the sub-steps before
+  Vec6Of<AutoDiff> motion_;  // of the last solution
+  std::vector<DisplacedShape> objects_, next_objects_;
+  std::map<int, Vec3Of<AutoDiff>> normals_;  // of planes that were turned
   std::vector<Pushing> pushing_;
   Vec6Of<AutoDiff> F_To_W_;
   std::vector<Vec6Of<AutoDiff>> F_Oo_W_;
@@ -221,10 +275,7 @@ ConstraintTickGradient ConstraintStepper::Differentiate(
   ConstraintStepResult result;
   StepFrom(ValuesOf(tick.state), drake_haptics::ValuesOf(tick.q_WH),
            drake_haptics::ValuesOf(tick.V_WH),
-           drake_haptics::ValuesOf(tick.F_applied), &result,
-           [&](const Vec6& motion, double share) {
-             derivation.Follow(motion, share);
-           });
+           drake_haptics::ValuesOf(tick.F_applied), &result, &derivation);
   return derivation.Finish(result);
 }
 
