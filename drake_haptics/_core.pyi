@@ -1190,6 +1190,10 @@ class ConstraintStepResult:
         """
 
     @property
+    def contact_stiffness(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
+        """(6, 6) the part of it that is of the rows, Σ k a aᵀ."""
+
+    @property
     def num_rows(self) -> int:
         """Rows within reach, those that do not push among them."""
 
@@ -1260,6 +1264,9 @@ class ConstraintStepper:
     def num_objects(self) -> int:
         """How many objects there are."""
 
+    def set_gains(self, gains: CouplingGains) -> None:
+        """Changes the gains of the coupling, from the next tick on."""
+
     def set_object_pose(self, i: int, X_WO: drake_haptics.common.pose_like.PoseLike, V_WO: numpy.typing.ArrayLike = ...) -> None:
         """
         Poses object i at the next tick's beginning.
@@ -1285,6 +1292,23 @@ class ConstraintStepper:
 
         Raises:
             ValueError: a value is not finite; what was learnt stays.
+        """
+
+    def differentiate(self, state: AutoDiffVector, q_WH: AutoDiffVector, V_WH: AutoDiffVector, F_applied_To_W: AutoDiffVector, X_WO: Sequence[AutoDiffVector], V_WO: Sequence[AutoDiffVector]) -> AutoDiffVector:
+        """
+        Advances the tool by a tick with derivatives (step_gradient.h).
+
+        Args:
+            state: (13,) pose and spatial velocity of the tool.
+            q_WH, V_WH: (7,) and (6,), those of the handle.
+            F_applied_To_W: (6,) all other wrenches on the tool.
+            X_WO, V_WO: (7,) and (6,) for each object.
+
+        Returns:
+            (19 + 6 num_objects,): the state at the tick's end, the wrench of contact on the tool at its origin at the tick's beginning, and that on each object at its origin, in W.
+
+        Raises:
+            ValueError: a value is not finite, or numbers of objects or of variables differ.
         """
 
     def reset(self) -> None:

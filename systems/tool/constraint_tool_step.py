@@ -6,31 +6,36 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from pydrake.common.eigen_geometry import Quaternion
 from pydrake.common.value import AbstractValue, Value
-from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
     BasicVector,
     Context,
     Diagram,
     DiagramBuilder,
     DiscreteValues,
-    LeafSystem,
     ValueProducer,
 )
 
 from drake_haptics._core import (
+    AutoDiffVector,
     ConstraintStepper,
     ConstraintStepResult,
     ContactSet,
     ConvexPieces,
     CouplingGains,
     RigidToolDynamics,
+    joined_coupling_wrench,
 )
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.contact.contact_query import ContactObject
-from drake_haptics.systems.framework.differentiable_system import export_parts
-from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+    export_parts,
+)
+from drake_haptics.systems.tool.haptic_tool import STATE_NAMES
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench, gains_to_vector
 
 # What is known before the first step. (A Value of Drake 1.58 cannot hold None.)
 _NOTHING = "nothing"
@@ -116,7 +121,9 @@ class ConstraintToolStep(Diagram):
     changes an answer by more than round-off.
 
     The gains of the coupling are an abstract parameter of the Context; see
-    `set_gains`. There are no derivatives.
+    `set_gains`. Outputs have no derivatives by them. Under AutoDiffXd the features
+    that face each other stay, a row that just begins to push does push, and
+    `contacts`, `contact_wrench` and `wrench_model` have no value.
     """
 
     def __init__(
@@ -224,13 +231,10 @@ class ConstraintToolStep(Diagram):
             own.get_mutable_abstract_parameter(0).set_value(gains)
 
 
-class _ConstraintStep(LeafSystem):
+class _ConstraintStep(DifferentiableSystem):
     """The state of a `ConstraintToolStep`, and all of its outputs from one step."""
 
-    no_derivatives = (
-        "advances the tool under constraints (contact.law: constraint), which has no"
-        " derivatives here: take contact.law: penalty for a linearization"
-    )
+    undifferentiated = frozenset({"contacts", "contact_wrench", "wrench_model"})
 
     def __init__(
         self,
@@ -270,7 +274,7 @@ class _ConstraintStep(LeafSystem):
         state = self.DeclareDiscreteState(
             np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
         )
-        # The memory of a Context. It begins again where the gains change.
+        # The memory of a Context.
         self._stepper = self.DeclareCacheEntry(
             description="stepper",
             value_producer=ValueProducer(
@@ -303,7 +307,7 @@ class _ConstraintStep(LeafSystem):
             self.DeclareVectorOutputPort(
                 "F_O_W", 6 * len(self._motions), self._calc_F_O_W, from_result
             )
-        coupling = self.DeclareVectorOutputPort(
+        self.DeclareVectorOutputPort(
             "coupling",
             78,
             self._calc_coupling,
@@ -314,8 +318,6 @@ class _ConstraintStep(LeafSystem):
                 self.pa_ticket(),
             },
         )
-        self._eval_coupling = coupling.Eval
-        self._M_T = _find_inertia(dynamics)
         self.DeclareVectorOutputPort(
             "wrench_model",
             78,
@@ -340,9 +342,13 @@ class _ConstraintStep(LeafSystem):
         return stepper
 
     def _prepare_stepper(self, context: Context, value: AbstractValue) -> None:
-        value.set_value(
-            self._make_stepper(context.get_abstract_parameter(self._gains).get_value())
-        )
+        """Makes the stepper of a Context, or tells it of other gains."""
+        gains = context.get_abstract_parameter(self._gains).get_value()
+        stepper = value.get_value()
+        if isinstance(stepper, ConstraintStepper):
+            stepper.set_gains(gains)
+        else:
+            value.set_value(self._make_stepper(gains))
 
     def _calc_result(self, context: Context, value: AbstractValue) -> None:
         stepper: ConstraintStepper = self._stepper.Eval(context)
@@ -365,6 +371,72 @@ class _ConstraintStep(LeafSystem):
 
     def _eval_result(self, context: Context) -> ConstraintStepResult:
         return self._result.Eval(context)
+
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns a vector output with its derivatives."""
+        if port == "state":
+            return at.state
+        if port in ("coupling", "F_Ho_W_commanded"):
+            wrenches = self._differentiate_coupling(at)
+            return _take(wrenches, slice(78) if port == "coupling" else slice(78, 84))
+        step = self._differentiate_step(at)
+        if port == "F_To_W":
+            return _take(step, slice(13, 19))
+        rows = [19 + 6 * i + k for i in self._motions for k in range(6)]
+        return _take(step, rows)
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the next state with its derivatives."""
+        return _take(self._differentiate_step(at), slice(13))
+
+    def _differentiate_coupling(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the wrenches (84,) of `coupling_wrench`."""
+        gains = gains_to_vector(at.parameters[self._gains])
+        parts = [
+            at["X_WH"],
+            at["V_WH"],
+            at.state,
+            AutoDiffVector(gains, np.zeros((len(gains), at.num_derivatives))),
+        ]
+        joined = AutoDiffVector(
+            np.concatenate([part.value for part in parts]),
+            np.vstack([part.gradient for part in parts]),
+        )
+        return joined_coupling_wrench(joined, self._q_HT)
+
+    def _differentiate_step(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns next state, wrench on the tool and on each object."""
+
+        def hold(value: np.ndarray) -> AutoDiffVector:
+            return AutoDiffVector(value, np.zeros((len(value), at.num_derivatives)))
+
+        X_WO, V_WO = [], []
+        for item in self._objects:
+            if item.X_WO is None:
+                X_WO.append(at[f"X_WO_{item.name}"])
+                V_WO.append(at[f"V_WO_{item.name}"])
+            else:
+                X_WO.append(hold(pose_to_vector(item.X_WO)))
+                V_WO.append(hold(np.zeros(6)))
+        models = [
+            at[port.get_name()] for port in self._wrenches if port.get_name() in at
+        ]
+        F_To_W = AutoDiffVector(
+            sum((model.value[:6] for model in models), np.zeros(6)),
+            sum(
+                (model.gradient[:6] for model in models),
+                np.zeros((6, at.num_derivatives)),
+            ),
+        )
+        # A new one, so that the answer is a function of the Context alone.
+        stepper = self._make_stepper(at.parameters[self._gains])
+        return stepper.differentiate(
+            at.state, at["X_WH"], at["V_WH"], F_To_W, X_WO, V_WO
+        )
+
+    def list_state_names(self) -> list[str]:
+        """Returns a name for each number of the state."""
+        return list(STATE_NAMES)
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         result = self._eval_result(context)
@@ -401,23 +473,11 @@ class _ConstraintStep(LeafSystem):
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
         result = self._eval_result(context)
-        state = context.get_discrete_state_vector().value()
-        # What is left of the step's slope is that of the rows.
-        K = result.hessian - self._calc_free_hessian(context, state)
-        K = 0.5 * (K + K.T) if len(result.contacts) else np.zeros((6, 6))
+        K = result.contact_stiffness
         F = self._contact_wrench.Eval(context).F_To_W + K @ (
             self._period_s * result.V_WT
         )
         output.SetFromVector(np.concatenate([F, K.ravel(), np.zeros(36)]))
-
-    def _calc_free_hessian(self, context: Context, state: np.ndarray) -> np.ndarray:
-        """Returns (6, 6) M/h² + B/h + K of the tool on its coupling."""
-        R_WT = RotationMatrix(Quaternion(state[:4])).matrix()
-        both = np.kron(np.eye(2), R_WT)
-        M = both @ self._M_T @ both.T
-        K, B = self._eval_coupling(context)[6:].reshape(2, 6, 6)
-        h = self._period_s
-        return M / h**2 + B / h + K
 
     def _calc_coupling(self, context: Context, output: BasicVector) -> None:
         state = context.get_discrete_state_vector().value()
@@ -432,13 +492,6 @@ class _ConstraintStep(LeafSystem):
         output.SetFromVector(wrenches[:78])
 
 
-def _find_inertia(dynamics: RigidToolDynamics) -> np.ndarray:
-    """Returns the spatial inertia (6, 6) of a tool about its origin, in its frame.
-
-    From rest, without stiffness and damping, a step of a second gives it the velocity
-    M⁻¹ F.
-    """
-    at_rest = np.array([1.0, *np.zeros(12)])
-    models = np.hstack([np.eye(6), np.zeros((6, 72))])
-    inverse = [dynamics.step(at_rest, model, 1.0)[7:] for model in models]
-    return np.linalg.inv(np.array(inverse).T)
+def _take(vector: AutoDiffVector, rows: slice | list[int]) -> AutoDiffVector:
+    """Returns some entries of a vector."""
+    return AutoDiffVector(vector.value[rows], vector.gradient[rows])

@@ -1,3 +1,5 @@
+#include <nanobind/stl/vector.h>
+
 #include <chrono>
 #include <mutex>
 #include <stdexcept>
@@ -8,6 +10,7 @@
 #include "bind/bind.h"
 #include "bind/bind_array.h"
 #include "bind/bind_columns.h"
+#include "bind/bind_eigen.h"
 #include "bind/bind_pose.h"
 #include "bind/bind_real_array.h"
 #include "bind/bind_shapes.h"
@@ -35,6 +38,11 @@ class SharedStepper {
   // For what never changes.
   const ConstraintStepper& constants() const { return stepper_; }
 
+  void SetGains(const CouplingGains& gains) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    stepper_.SetGains(gains);
+  }
+
   void SetObjectPose(nb::handle place, nb::handle X_WO_value,
                      const Vec6& V_WO) {
     const Pose X_WO = ToPose(X_WO_value, "X_WO");
@@ -61,6 +69,40 @@ class SharedStepper {
     // The search and the step are one: all of it counts as the query.
     result.contacts.query_seconds = elapsed.count();
     return result;
+  }
+
+  AutoDiffVector Differentiate(const AutoDiffVector& state,
+                               const AutoDiffVector& q_WH,
+                               const AutoDiffVector& V_WH,
+                               const AutoDiffVector& F_applied,
+                               const std::vector<AutoDiffVector>& X_WO,
+                               const std::vector<AutoDiffVector>& V_WO) {
+    const std::size_t count = stepper_.num_objects();
+    if (X_WO.size() != count || V_WO.size() != count) {
+      throw std::invalid_argument(
+          "X_WO and V_WO must have one entry for each object");
+    }
+    const auto x = ToScalars<13>(state, "state");
+    ConstraintTick tick{{x.head<7>(), x.tail<6>()},
+                        ToScalars<7>(q_WH, "q_WH"),
+                        ToScalars<6>(V_WH, "V_WH"),
+                        ToScalars<6>(F_applied, "F_applied_To_W"),
+                        {},
+                        {},
+                        CommonNumDerivatives(state, q_WH, V_WH, F_applied)};
+    for (std::size_t i = 0; i < count; ++i) {
+      CommonNumDerivatives(state, X_WO[i], V_WO[i]);
+      tick.q_WO.push_back(ToScalars<7>(X_WO[i], "X_WO"));
+      tick.V_WO.push_back(ToScalars<6>(V_WO[i], "V_WO"));
+    }
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    const ConstraintTickGradient found = stepper_.Differentiate(tick);
+    VectorOf<AutoDiff> all(19 + 6 * count);
+    all.head<19>() << found.next.q_WT, found.next.V_WT, found.F_To_W;
+    for (std::size_t i = 0; i < count; ++i) {
+      all.segment<6>(19 + 6 * i) = found.F_Oo_W[i];
+    }
+    return ToAutoDiffVector(all, tick.num_derivatives);
   }
 
   void Reset() {
@@ -136,6 +178,10 @@ void BindResult(nb::module_& m) {
           "[N·m; N] by [rad; m]: A = M/h² + B/h + K + Σ k a aᵀ over rows "
           "that push. What adds dF to the wrench on the tool adds A⁻¹ dF to "
           "its motion, and A⁻¹ dF / h to V_WT.")
+      .def_prop_ro(
+          "contact_stiffness",
+          [](const Result& r) { return r.contact_stiffness; },
+          "(6, 6) the part of it that is of the rows, Σ k a aᵀ.")
       .def_ro("num_rows", &Result::num_rows,
               "Rows within reach, those that do not push among them.")
       .def_ro("num_substeps", &Result::num_substeps,
@@ -219,6 +265,8 @@ void BindConstraintStep(nb::module_& m) {
             return self.constants().num_objects();
           },
           "How many objects there are.")
+      .def("set_gains", &SharedStepper::SetGains, nb::arg("gains"),
+           "Changes the gains of the coupling, from the next tick on.")
       .def("set_object_pose", &SharedStepper::SetObjectPose, nb::arg("i"),
            nb::arg("X_WO").none(), nb::arg("V_WO") = Vec6(Vec6::Zero()),
            nb::sig("def set_object_pose(self, i: int, X_WO: "
@@ -251,6 +299,22 @@ void BindConstraintStep(nb::module_& m) {
           "force] at To in W, its weight among them. Defaults to zero.\n\n"
           "Raises:\n"
           "    ValueError: a value is not finite; what was learnt stays.")
+      .def("differentiate", &SharedStepper::Differentiate, nb::arg("state"),
+           nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("F_applied_To_W"),
+           nb::arg("X_WO"), nb::arg("V_WO"),
+           "Advances the tool by a tick with derivatives (step_gradient.h).\n\n"
+           "Args:\n"
+           "    state: (13,) pose and spatial velocity of the tool.\n"
+           "    q_WH, V_WH: (7,) and (6,), those of the handle.\n"
+           "    F_applied_To_W: (6,) all other wrenches on the tool.\n"
+           "    X_WO, V_WO: (7,) and (6,) for each object.\n\n"
+           "Returns:\n"
+           "    (19 + 6 num_objects,): the state at the tick's end, the wrench "
+           "of contact on the tool at its origin at the tick's beginning, and "
+           "that on each object at its origin, in W.\n\n"
+           "Raises:\n"
+           "    ValueError: a value is not finite, or numbers of objects or of "
+           "variables differ.")
       .def("reset", &SharedStepper::Reset,
            "Forgets what earlier ticks found; the objects stay.")
       .def("__deepcopy__", [](const SharedStepper& self,

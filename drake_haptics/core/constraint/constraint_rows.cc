@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "pair/pair_contact_builders.h"
 #include "pair/separation.h"
 
 namespace drake_haptics {
@@ -17,6 +18,8 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr int kHalvings = 5;
 // Directions that differ by no more are one.
 constexpr double kSameDirection = 1e-7;
+// Distances that differ by no more are one, m.
+constexpr double kSameDistance = 1e-13;
 
 double Largest(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
@@ -206,6 +209,19 @@ double ConstraintRows::DistanceThen(int plane, const Pose& X_WT,
       .distance;
 }
 
+PairContact ConstraintRows::ContactThen(int plane, const Pose& X_WT,
+                                        const Pose& X_WO) const {
+  const SeparatingPlane& moved = planes_[plane];
+  const PosedPair then = PosedThen(plane, X_WT, X_WO);
+  const Separation separation = ComputeSeparation(
+      then, objects_[moved.object].near.simplex(moved.watched), kForever);
+  PairContact contact = ContactApart(then, separation);
+  MinkowskiVertex support = separation.simplex.vertex_pairs[0];
+  SupportGap(then, separation.n, &support);
+  contact.support = {support.a, support.b};
+  return contact;
+}
+
 bool ConstraintRows::TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO,
                                double least) {
   SeparatingPlane& turned = planes_[plane];
@@ -240,6 +256,7 @@ bool ConstraintRows::TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO,
     share = (low + high) / 2;
   }
   if (low == 0) return false;
+  turned.turned = low;
   PairContact& contact = turned.contact;
   contact.n = best;
   contact.distance = best_gap;
@@ -278,6 +295,14 @@ void ConstraintRows::AppendRows(int k) {
     const double reach = reach_of(plane.object);
     AppendFlushCorners(pair, contact.n, support, reach, &workspace_.patch,
                        &corners_);
+    // Of flush features the nearest point is a corner, or between corners that
+    // are as near. As a row of its own it would take a share of the load with
+    // it from corner to corner, and the tool would rock by a nanometer.
+    if (std::any_of(corners_.begin() + 1, corners_.end(), [&](const auto& c) {
+          return c.distance < contact.distance + kSameDistance;
+        })) {
+      corners_.erase(corners_.begin());
+    }
     if (!(plane.next_support == support)) {
       const Vec3 p_a = pair.a(plane.next_support.a);
       const Vec3 p_b = pair.b(plane.next_support.b);

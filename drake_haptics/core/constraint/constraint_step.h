@@ -7,6 +7,7 @@
 #include "base/types.h"
 #include "constraint/constraint_problem.h"
 #include "constraint/constraint_rows.h"
+#include "constraint/step_gradient.h"
 #include "mesh/decomposition.h"
 #include "pair/contact.h"
 #include "tool/rigid_tool.h"
@@ -28,6 +29,8 @@ struct ConstraintStepResult {
   /// A = M/h² + B/h + K + Σ k a aᵀ over the rows that push. What adds dF to the
   /// wrench on the tool adds A⁻¹ dF to its motion, and A⁻¹ dF / h to V_WT.
   Mat6 hessian = Mat6::Zero();
+  /// The part of it that is of the rows, Σ k a aᵀ.
+  Mat6 contact_stiffness = Mat6::Zero();
   int num_rows = 0;        ///< of the last sub-step
   int num_substeps = 0;    ///< at least 1
   int num_iterations = 0;  ///< of Newton's method, all sub-steps together
@@ -90,6 +93,8 @@ class ConstraintStepper {
   int num_objects() const { return rows_.num_objects(); }
   const Settings& settings() const { return settings_; }
 
+  void SetGains(const CouplingGains& gains) { settings_.gains = gains; }
+
   /// Poses object i at the next tick's beginning, and tells how it moves in it.
   /// @param V_WO spatial velocity of its frame [rad/s; m/s].
   /// @throws std::out_of_range; std::invalid_argument for what is not finite.
@@ -103,13 +108,36 @@ class ConstraintStepper {
   void Step(const ToolState& state, const PoseVector& q_WH, const Vec6& V_WH,
             const Vec6& F_applied, ConstraintStepResult* result);
 
+  /// The same with derivatives, the objects posed as the tick says
+  /// (step_gradient.h).
+  ConstraintTickGradient Differentiate(const ConstraintTick& tick);
+
   /// Forgets everything learnt from earlier ticks; the objects stay.
   void Reset();
 
  private:
+  // Is told what a tick does, step by step.
+  class Follower {
+   public:
+    // A problem was solved, with planes and springs as they are.
+    virtual void Solve(const Vec6& motion) = 0;
+    // A plane was turned: toward where the tool coasts, or, again, toward
+    // where the last solution leads.
+    virtual void Turn(int plane, bool is_again) = 0;
+    // The planes are as they were found, and this is the motion.
+    virtual void Restore(const Vec6& motion) = 0;
+    // The tool goes by a share of the last solution.
+    virtual void Go(double share) = 0;
+
+   protected:
+    ~Follower() = default;
+  };
+  class Derivation;
+
+  // @param follower if given, follows the tick.
   void StepFrom(const ToolState& state, const PoseVector& q_WH,
                 const Vec6& V_WH, const Vec6& F_applied,
-                ConstraintStepResult* result);
+                ConstraintStepResult* result, Follower* follower = nullptr);
   // A row and the springs that hold it, by their places.
   struct HeldRow {
     int spring = -1;  // that holds the skin
@@ -121,9 +149,11 @@ class ConstraintStepper {
   int AddSpring(const Vec6& a, double b, double k, double limit);
   Pose NextPoseOf(int object) const;
   bool AreTurnedPiecesApart(const Pose& X_next) const;
-  bool TurnPlanes(const Pose& X_WT, const Vec6& coasting, const Vec6& motion);
+  bool TurnPlanes(const Pose& X_WT, const Vec6& coasting, const Vec6& motion,
+                  Follower* follower);
   ConstraintSolution SolveHere(const Pose& X_WT, const Vec6& coasting,
-                               const Vec6& start, ConstraintStepResult* result);
+                               const Vec6& start, ConstraintStepResult* result,
+                               Follower* follower);
   void WriteContacts(const Pose& X_WT, const Vec6& motion,
                      ConstraintStepResult* result) const;
   Vec3 ObjectMotionAt(int i, const Vec3& p_WC) const;
