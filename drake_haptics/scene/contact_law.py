@@ -9,7 +9,7 @@ from drake_haptics.scene.yaml_loading import make_hint
 
 _LAWS = ("penalty", "constraint")
 # Effects that act on the springs of the penalty law.
-_OF_PENALTY = ("shading", "friction", "braking")
+_OF_PENALTY = ("shading", "braking")
 
 
 def is_constraint(contact: ContactParameters) -> bool:

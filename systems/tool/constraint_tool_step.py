@@ -93,6 +93,8 @@ class ConstraintToolStep(Diagram):
         - F_O_W (with objects that move)
         - coupling
         - wrench_model
+        - friction_force (with friction)
+        - friction_model (with friction)
 
     Poses are [qw qx qy qz x y z] in the world, m; `V_WH`, `V_WT` and `V_WO_<name>` are
     spatial velocities [ω; v] of the frame's origin, rad/s and m/s. Each other input is
@@ -106,14 +108,22 @@ class ConstraintToolStep(Diagram):
       begins: a pair of pieces has several where it is flush.
     * `contact_wrench` is their `ConstraintWrench`.
     * `F_To_W` (6) is their wrench [τ; f] on the tool at its origin, mean of the tick.
-    * `F_O_W` (6 for each object that moves) are the wrenches on those objects.
+    * `F_O_W` (6 for each object that moves) are the wrenches on those objects, those of
+      friction among them.
     * `wrench_model` (78) is [F; K; B] of the contacts: what they push with as the tool
       moves by δ in the tick is F - K δ; B is zero. K is that of the rows that push.
     * `coupling` (78) is that of `VirtualCoupling`.
+    * `friction_force` is the `drake_haptics._core.FrictionStep` of `contacts`, and
+      `friction_model` (78) its [F; K; B] on the tool, as of `StickSlipFriction`.
 
-    The state is one discrete group (13), [X_WT; V_WT], updated every period from 0 s
-    on. What the search knows from the last tick is the memory of a Context, and never
-    changes an answer by more than round-off.
+    Friction takes part in the same step: where the tool sticks it hangs on an anchor,
+    and slides where the normal forces of this very tick do not hold it
+    (core/constraint/row_friction.h).
+
+    The state is a discrete group (13), [X_WT; V_WT], and with friction a second one
+    (8 for each object), the anchors, both updated every period from 0 s on. What the
+    search knows from the last tick is the memory of a Context, and never changes an
+    answer by more than round-off.
 
     The gains of the coupling are an abstract parameter of the Context; see
     `set_gains`. There are no derivatives.
@@ -130,6 +140,9 @@ class ConstraintToolStep(Diagram):
         X_WT: RigidTransform,
         period_s: float,
         wrench_names: Sequence[str] = (),
+        *,
+        coefficient: Sequence[float] = (),
+        break_away_m: float = 1e-4,
     ):
         """Constructs the system.
 
@@ -143,10 +156,13 @@ class ConstraintToolStep(Diagram):
             X_WT: Default pose; the tool starts at rest.
             period_s: The tick, s.
             wrench_names: A name for each input of another wrench.
+            coefficient: μ of friction with each object. Defaults to no friction.
+            break_away_m: How far the tool gives way before it slides, m.
 
         Raises:
-            ValueError: The period or a skin is not positive, there is not one for each
-                object, there is no object, or a name is used twice.
+            ValueError: The period, a skin or the break-away is not positive, a
+                coefficient is negative, there is not one for each object, there is no
+                object, or a name is used twice.
         """
         super().__init__()
         if not period_s > 0.0:
@@ -171,6 +187,8 @@ class ConstraintToolStep(Diagram):
                 X_WT,
                 period_s,
                 wrench_names,
+                coefficient,
+                break_away_m,
             ),
         )
         step = self._step
@@ -243,8 +261,12 @@ class _ConstraintStep(LeafSystem):
         X_WT: RigidTransform,
         period_s: float,
         wrench_names: Sequence[str],
+        coefficient: Sequence[float],
+        break_away_m: float,
     ):
         super().__init__()
+        self._coefficient = np.array(coefficient, dtype=float)
+        self._break_away_m = break_away_m
         self._q_HT = pose_to_vector(X_HT)
         self._tool = tool
         self._objects = tuple(objects)
@@ -252,7 +274,7 @@ class _ConstraintStep(LeafSystem):
         self._dynamics = dynamics
         self._period_s = period_s
         # Wrong arguments are refused here, and not at the first tick.
-        self._make_stepper(gains)
+        num_anchors = self._make_stepper(gains).num_anchors
         self._gains = self.DeclareAbstractParameter(Value[object](gains))
         self._X_WH = self.DeclareVectorInputPort("X_WH", 7)
         self._V_WH = self.DeclareVectorInputPort("V_WH", 6)
@@ -270,6 +292,8 @@ class _ConstraintStep(LeafSystem):
         state = self.DeclareDiscreteState(
             np.concatenate([pose_to_vector(X_WT), np.zeros(6)])
         )
+        if num_anchors > 0:
+            self.DeclareDiscreteState(num_anchors)
         # The memory of a Context. It begins again where the gains change.
         self._stepper = self.DeclareCacheEntry(
             description="stepper",
@@ -322,6 +346,16 @@ class _ConstraintStep(LeafSystem):
             self._calc_wrench_model,
             from_all,
         )
+        if num_anchors > 0:
+            self.DeclareAbstractOutputPort(
+                "friction_force",
+                Value[object],
+                self._calc_friction_force,
+                from_result,
+            )
+            self.DeclareVectorOutputPort(
+                "friction_model", 78, self._calc_friction_model, from_result
+            )
         self.DeclarePeriodicDiscreteUpdateEvent(period_s, 0.0, self._update)
 
     def _make_stepper(self, gains: CouplingGains) -> ConstraintStepper:
@@ -333,6 +367,8 @@ class _ConstraintStep(LeafSystem):
             gains,
             self._q_HT,
             self._period_s,
+            self._coefficient,
+            self._break_away_m,
         )
         for i, item in enumerate(self._objects):
             if item.X_WO is not None:
@@ -348,7 +384,7 @@ class _ConstraintStep(LeafSystem):
         stepper: ConstraintStepper = self._stepper.Eval(context)
         for i, (X_WO, V_WO) in self._motions.items():
             stepper.set_object_pose(i, X_WO.Eval(context), V_WO.Eval(context))
-        state = context.get_discrete_state_vector().value()
+        state = context.get_discrete_state(0).value()
         F_To_W = np.zeros(6)
         for port in self._wrenches:
             if port.HasValue(context):
@@ -360,15 +396,25 @@ class _ConstraintStep(LeafSystem):
                 self._X_WH.Eval(context),
                 self._V_WH.Eval(context),
                 F_To_W,
+                self._read_anchors(context),
             )
         )
+
+    def _read_anchors(self, context: Context) -> np.ndarray:
+        """Returns the anchors of friction at the tick's beginning."""
+        if len(self._coefficient) == 0:
+            return self._coefficient
+        anchors: np.ndarray = context.get_discrete_state(1).value()
+        return anchors
 
     def _eval_result(self, context: Context) -> ConstraintStepResult:
         return self._result.Eval(context)
 
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         result = self._eval_result(context)
-        next_state.set_value(np.concatenate([result.q_WT, result.V_WT]))
+        next_state.set_value(0, np.concatenate([result.q_WT, result.V_WT]))
+        if len(self._coefficient) > 0:
+            next_state.set_value(1, result.friction.next_state)
 
     def _calc_F_Ho_W_commanded(self, context: Context, output: BasicVector) -> None:
         output.set_value(self._eval_result(context).F_Ho_W_commanded)
@@ -380,7 +426,7 @@ class _ConstraintStep(LeafSystem):
         result = self._eval_result(context)
         contacts, lambda_N = result.contacts, result.lambda_N
         f_W = lambda_N[:, None] * contacts.nhat_BA_W
-        p_WTo = context.get_discrete_state_vector().value()[4:7]
+        p_WTo = context.get_discrete_state(0).value()[4:7]
         tau_W = np.cross(contacts.p_WCa - p_WTo, f_W)
         output.set_value(
             ConstraintWrench(
@@ -401,9 +447,10 @@ class _ConstraintStep(LeafSystem):
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
         result = self._eval_result(context)
-        state = context.get_discrete_state_vector().value()
+        state = context.get_discrete_state(0).value()
         # What is left of the step's slope is that of the rows.
-        K = result.hessian - self._calc_free_hessian(context, state)
+        friction = result.friction.wrench_model[6:42].reshape(6, 6)
+        K = result.hessian - self._calc_free_hessian(context, state) - friction
         K = 0.5 * (K + K.T) if len(result.contacts) else np.zeros((6, 6))
         F = self._contact_wrench.Eval(context).F_To_W + K @ (
             self._period_s * result.V_WT
@@ -419,8 +466,14 @@ class _ConstraintStep(LeafSystem):
         h = self._period_s
         return M / h**2 + B / h + K
 
+    def _calc_friction_force(self, context: Context, output: AbstractValue) -> None:
+        output.set_value(self._eval_result(context).friction)
+
+    def _calc_friction_model(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._eval_result(context).friction.wrench_model)
+
     def _calc_coupling(self, context: Context, output: BasicVector) -> None:
-        state = context.get_discrete_state_vector().value()
+        state = context.get_discrete_state(0).value()
         wrenches = coupling_wrench(
             self._X_WH.Eval(context),
             self._V_WH.Eval(context),

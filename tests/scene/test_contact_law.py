@@ -27,7 +27,6 @@ from drake_haptics.scene.validation import calc_skin_speed, check_rendering
 CONSTRAINT = ContactParameters(law="constraint", skin_m=2e-4)
 OF_PENALTY = {
     "shading": ShadingParameters(),
-    "friction": FrictionParameters(),
     "braking": BrakingParameters(),
 }
 
@@ -83,8 +82,12 @@ def test_all_that_does_nothing_is_named_at_once():
         check_constraint_law(slow, Effects(), sheds_load=False)
 
 
-def test_effects_beside_contact_are_kept():
-    effects = Effects(gravity=GravityParameters(), passivity=PassivityParameters())
+def test_effects_that_need_no_spring_are_kept():
+    effects = Effects(
+        friction=FrictionParameters(),
+        gravity=GravityParameters(),
+        passivity=PassivityParameters(),
+    )
     check_constraint_law(CONSTRAINT, effects, sheds_load=False)
 
 
