@@ -128,7 +128,12 @@ def AddHapticLoop(
         builder.AddNamedSystem("load_shedding", load_shedding)
     builder.AddNamedSystem("device", device)
     if is_constraint(contact):
-        check_constraint_law(contact, effects, sheds_load=sheds_load)
+        check_constraint_law(
+            contact,
+            effects,
+            sheds_load=sheds_load,
+            materials={f"materials[{i}]": item for i, item in enumerate(materials)},
+        )
         from drake_haptics.systems.tool.constraint_tool_step import ConstraintToolStep
 
         friction = effects.friction
