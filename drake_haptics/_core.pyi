@@ -1300,6 +1300,23 @@ class ConstraintStepper:
             ValueError: a value is not finite, or there are other anchors; what was learnt stays.
         """
 
+    def differentiate(self, state: AutoDiffVector, q_WH: AutoDiffVector, V_WH: AutoDiffVector, F_applied_To_W: AutoDiffVector, X_WO: Sequence[AutoDiffVector], V_WO: Sequence[AutoDiffVector]) -> AutoDiffVector:
+        """
+        Advances the tool by a tick with derivatives (step_gradient.h).
+
+        Args:
+            state: (13,) pose and spatial velocity of the tool.
+            q_WH, V_WH: (7,) and (6,), those of the handle.
+            F_applied_To_W: (6,) all other wrenches on the tool.
+            X_WO, V_WO: (7,) and (6,) for each object.
+
+        Returns:
+            (19 + 6 num_objects,): the state at the tick's end, the wrench of contact on the tool at its origin at the tick's beginning, and that on each object at its origin, in W.
+
+        Raises:
+            ValueError: a value is not finite, or numbers of objects or of variables differ.
+        """
+
     def reset(self) -> None:
         """Forgets what earlier ticks found; the objects stay."""
 

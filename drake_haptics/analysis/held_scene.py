@@ -220,7 +220,7 @@ def _settle(
         simulator.AdvanceTo(until_s)
     except FloatingPointError:
         return None
-    coupling = haptic.loop.virtual_coupling
+    coupling = haptic.loop.coupling_model
     context = simulator.get_context()
     velocity = haptic.diagram.GetOutputPort("V_WT").Eval(context)
     # NaN is not below either.
@@ -231,9 +231,7 @@ def _settle(
     except ValueError:
         return None
     pose = haptic.diagram.GetOutputPort("X_WT").Eval(context)
-    model = coupling.GetOutputPort("wrench_model").Eval(
-        coupling.GetMyContextFromRoot(context)
-    )
+    model = coupling.Eval(coupling.get_system().GetMyContextFromRoot(context))
     return context, vector_to_pose(pose), np.array(model[:6])
 
 

@@ -94,7 +94,7 @@ def check_return(
 _KNOWN_PARTS = re.compile(r"(?<![^/])(device/simulated_arm/arm|device|step|sample)/")
 # The state of one joint, angle or rate, and one of the tool, pose or velocity.
 _JOINT = re.compile(r"device/simulated_arm/arm/(\w+)_[qw]")
-_TOOL = re.compile(r"haptic_tool/step/([qvw]?)([wxyz])")
+_TOOL = re.compile(r"(?:haptic_tool|constraint_tool_step)/step/([qvw]?)([wxyz])")
 _TOOL_TURNING = "tool turning"
 
 

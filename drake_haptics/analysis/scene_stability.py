@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from collections.abc import Callable
@@ -55,7 +56,7 @@ class SceneStability:
         scene: The scene, its hand stopped.
         time_s: When the hand stopped on its path, s.
         handle: Inertia and damping of device and hand where they are.
-        num_contacts: Number of contacts that push, nearer than the tolerance, at rest.
+        num_contacts: Number of contacts that push at rest.
         contact_force_N: Contact force on the tool, at rest, N.
         growth: Growth of the fastest growing motion in a tick; stable below 1.
         linearization: Linear map of one tick.
@@ -262,9 +263,12 @@ def _read_contact(loop: HeldLoop) -> tuple[int, float]:
     parts, root = loop.haptic.loop, loop.context
     diagram = loop.haptic.diagram
     contacts = diagram.GetOutputPort("contacts").Eval(root)
-    # The force begins at the tolerance.
-    clustering = parts.contact_clustering
-    rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
-    pushing = contacts.distance < rule.tolerance_m
+    # The force begins at the tolerance; by constraints all that are shown push.
+    tolerance_m = math.inf
+    if parts.penalty is not None:
+        clustering = parts.penalty.contact_clustering
+        rule = clustering.get_rule(clustering.GetMyContextFromRoot(root))
+        tolerance_m = rule.tolerance_m
+    pushing = contacts.distance < tolerance_m
     wrench = diagram.GetOutputPort("F_To_W").Eval(root)
     return int(pushing.sum()), float(np.linalg.norm(wrench[3:]))

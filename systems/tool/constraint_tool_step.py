@@ -15,22 +15,28 @@ from pydrake.systems.framework import (
     Diagram,
     DiagramBuilder,
     DiscreteValues,
-    LeafSystem,
     ValueProducer,
 )
 
 from drake_haptics._core import (
+    AutoDiffVector,
     ConstraintStepper,
     ConstraintStepResult,
     ContactSet,
     ConvexPieces,
     CouplingGains,
     RigidToolDynamics,
+    joined_coupling_wrench,
 )
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.systems.contact.contact_query import ContactObject
-from drake_haptics.systems.framework.differentiable_system import export_parts
-from drake_haptics.systems.tool.virtual_coupling import coupling_wrench
+from drake_haptics.systems.framework.differentiable_system import (
+    AutoDiffPoint,
+    DifferentiableSystem,
+    export_parts,
+)
+from drake_haptics.systems.tool.haptic_tool import STATE_NAMES
+from drake_haptics.systems.tool.virtual_coupling import coupling_wrench, gains_to_vector
 
 # What is known before the first step. (A Value of Drake 1.58 cannot hold None.)
 _NOTHING = "nothing"
@@ -126,7 +132,9 @@ class ConstraintToolStep(Diagram):
     answer by more than round-off.
 
     The gains of the coupling are an abstract parameter of the Context; see
-    `set_gains`. There are no derivatives.
+    `set_gains`. Outputs have no derivatives by them, and none at all with friction.
+    Under AutoDiffXd the features that face each other stay, a row that just begins to
+    push does push, and `contacts`, `contact_wrench` and `wrench_model` have no value.
     """
 
     def __init__(
@@ -242,13 +250,10 @@ class ConstraintToolStep(Diagram):
             own.get_mutable_abstract_parameter(0).set_value(gains)
 
 
-class _ConstraintStep(LeafSystem):
+class _ConstraintStep(DifferentiableSystem):
     """The state of a `ConstraintToolStep`, and all of its outputs from one step."""
 
-    no_derivatives = (
-        "advances the tool under constraints (contact.law: constraint), which has no"
-        " derivatives here: take contact.law: penalty for a linearization"
-    )
+    undifferentiated = frozenset({"contacts", "contact_wrench", "wrench_model"})
 
     def __init__(
         self,
@@ -294,6 +299,10 @@ class _ConstraintStep(LeafSystem):
         )
         if num_anchors > 0:
             self.DeclareDiscreteState(num_anchors)
+            self.no_derivatives = (
+                "takes friction into its step: take effects.friction out, or take"
+                " contact.law: penalty"
+            )
         # The memory of a Context. It begins again where the gains change.
         self._stepper = self.DeclareCacheEntry(
             description="stepper",
@@ -410,6 +419,72 @@ class _ConstraintStep(LeafSystem):
     def _eval_result(self, context: Context) -> ConstraintStepResult:
         return self._result.Eval(context)
 
+    def differentiate(self, port: str, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns a vector output with its derivatives."""
+        if port == "state":
+            return at.state
+        if port in ("coupling", "F_Ho_W_commanded"):
+            wrenches = self._differentiate_coupling(at)
+            return _take(wrenches, slice(78) if port == "coupling" else slice(78, 84))
+        step = self._differentiate_step(at)
+        if port == "F_To_W":
+            return _take(step, slice(13, 19))
+        rows = [19 + 6 * i + k for i in self._motions for k in range(6)]
+        return _take(step, rows)
+
+    def differentiate_update(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the next state with its derivatives."""
+        return _take(self._differentiate_step(at), slice(13))
+
+    def _differentiate_coupling(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns the wrenches (84,) of `coupling_wrench`."""
+        gains = gains_to_vector(at.parameters[self._gains])
+        parts = [
+            at["X_WH"],
+            at["V_WH"],
+            at.state,
+            AutoDiffVector(gains, np.zeros((len(gains), at.num_derivatives))),
+        ]
+        joined = AutoDiffVector(
+            np.concatenate([part.value for part in parts]),
+            np.vstack([part.gradient for part in parts]),
+        )
+        return joined_coupling_wrench(joined, self._q_HT)
+
+    def _differentiate_step(self, at: AutoDiffPoint) -> AutoDiffVector:
+        """Returns next state, wrench on the tool and on each object."""
+
+        def hold(value: np.ndarray) -> AutoDiffVector:
+            return AutoDiffVector(value, np.zeros((len(value), at.num_derivatives)))
+
+        X_WO, V_WO = [], []
+        for item in self._objects:
+            if item.X_WO is None:
+                X_WO.append(at[f"X_WO_{item.name}"])
+                V_WO.append(at[f"V_WO_{item.name}"])
+            else:
+                X_WO.append(hold(pose_to_vector(item.X_WO)))
+                V_WO.append(hold(np.zeros(6)))
+        models = [
+            at[port.get_name()] for port in self._wrenches if port.get_name() in at
+        ]
+        F_To_W = AutoDiffVector(
+            sum((model.value[:6] for model in models), np.zeros(6)),
+            sum(
+                (model.gradient[:6] for model in models),
+                np.zeros((6, at.num_derivatives)),
+            ),
+        )
+        # A new one, so that the answer is a function of the Context alone.
+        stepper = self._make_stepper(at.parameters[self._gains])
+        return stepper.differentiate(
+            at.state, at["X_WH"], at["V_WH"], F_To_W, X_WO, V_WO
+        )
+
+    def list_state_names(self) -> list[str]:
+        """Returns a name for each number of the state."""
+        return list(STATE_NAMES)
+
     def _update(self, context: Context, next_state: DiscreteValues) -> None:
         result = self._eval_result(context)
         next_state.set_value(0, np.concatenate([result.q_WT, result.V_WT]))
@@ -483,6 +558,11 @@ class _ConstraintStep(LeafSystem):
             context.get_abstract_parameter(self._gains).get_value(),
         )
         output.SetFromVector(wrenches[:78])
+
+
+def _take(vector: AutoDiffVector, rows: slice | list[int]) -> AutoDiffVector:
+    """Returns some entries of a vector."""
+    return AutoDiffVector(vector.value[rows], vector.gradient[rows])
 
 
 def _find_inertia(dynamics: RigidToolDynamics) -> np.ndarray:

@@ -105,7 +105,7 @@ class HapticTool(Diagram):
         return self._period_s
 
 
-_STATE_NAMES = "qw qx qy qz x y z wx wy wz vx vy vz".split()
+STATE_NAMES = "qw qx qy qz x y z wx wy wz vx vy vz".split()
 
 
 class _ImplicitStep(DifferentiableSystem):
@@ -192,4 +192,4 @@ class _ImplicitStep(DifferentiableSystem):
 
     def list_state_names(self) -> list[str]:
         """Returns a name for each number of the state."""
-        return list(_STATE_NAMES)
+        return list(STATE_NAMES)

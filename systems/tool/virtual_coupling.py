@@ -75,7 +75,7 @@ class VirtualCoupling(Diagram):
         # Drake's own system has them among its parameters, and hands them on with
         # the motions: for Python to read a parameter takes longer than the law.
         self._gains = builder.AddNamedSystem(
-            "gains", ConstantVectorSource(_to_vector(gains))
+            "gains", ConstantVectorSource(gains_to_vector(gains))
         )
         import_parts(
             builder,
@@ -114,7 +114,7 @@ class VirtualCoupling(Diagram):
         if not isinstance(gains, CouplingGains):
             raise TypeError(f"gains must be CouplingGains, is {type(gains).__name__}")
         own = self.GetMutableSubsystemContext(self._gains, context)
-        self._gains.get_mutable_source_value(own).SetFromVector(_to_vector(gains))
+        self._gains.get_mutable_source_value(own).SetFromVector(gains_to_vector(gains))
 
     @property
     def X_HT(self) -> RigidTransform:
@@ -126,7 +126,7 @@ class VirtualCoupling(Diagram):
 _MOTIONS = {"X_WH": 7, "V_WH": 6, "X_WT": 7, "V_WT": 6}
 
 
-def _to_vector(gains: CouplingGains) -> np.ndarray:
+def gains_to_vector(gains: CouplingGains) -> np.ndarray:
     """Returns gains (6,) in the order in which they are constructed."""
     return np.array(
         [
@@ -162,7 +162,7 @@ def coupling_wrench(
         (84,): the wrench model on the tool at To (78), then the reaction on the handle
         at Ho in W (6), [torque; force].
     """
-    joined = np.concatenate([q_WH, V_WH, q_WT, V_WT, _to_vector(gains)])
+    joined = np.concatenate([q_WH, V_WH, q_WT, V_WT, gains_to_vector(gains)])
     return joined_coupling_wrench(joined, q_HT)
 
 

@@ -31,4 +31,16 @@ Eigen::Quaternion<T> QuaternionOf(const Eigen::Matrix<T, 7, 1>& q) {
   return Eigen::Quaternion<T>(q[0], q[1], q[2], q[3]).normalized();
 }
 
+/// The pose after a motion [θ; t] of the frame's origin, rad and m.
+template <typename T>
+Eigen::Matrix<T, 7, 1> Displaced(const Eigen::Matrix<T, 7, 1>& q,
+                                 const Eigen::Matrix<T, 6, 1>& motion) {
+  const Vec3Of<T> turn = motion.template head<3>();
+  const Eigen::Quaternion<T> R =
+      (RotationExp<T>(turn) * QuaternionOf(q)).normalized();
+  Eigen::Matrix<T, 7, 1> displaced;
+  displaced << R.w(), R.vec(), q.template tail<3>() + motion.template tail<3>();
+  return displaced;
+}
+
 }  // namespace drake_haptics

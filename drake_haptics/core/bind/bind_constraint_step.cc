@@ -1,3 +1,5 @@
+#include <nanobind/stl/vector.h>
+
 #include <chrono>
 #include <mutex>
 #include <stdexcept>
@@ -8,6 +10,7 @@
 #include "bind/bind.h"
 #include "bind/bind_array.h"
 #include "bind/bind_columns.h"
+#include "bind/bind_eigen.h"
 #include "bind/bind_pose.h"
 #include "bind/bind_real_array.h"
 #include "bind/bind_shapes.h"
@@ -66,6 +69,40 @@ class SharedStepper {
     // The search and the step are one: all of it counts as the query.
     result.contacts.query_seconds = elapsed.count();
     return result;
+  }
+
+  AutoDiffVector Differentiate(const AutoDiffVector& state,
+                               const AutoDiffVector& q_WH,
+                               const AutoDiffVector& V_WH,
+                               const AutoDiffVector& F_applied,
+                               const std::vector<AutoDiffVector>& X_WO,
+                               const std::vector<AutoDiffVector>& V_WO) {
+    const std::size_t count = stepper_.num_objects();
+    if (X_WO.size() != count || V_WO.size() != count) {
+      throw std::invalid_argument(
+          "X_WO and V_WO must have one entry for each object");
+    }
+    const auto x = ToScalars<13>(state, "state");
+    ConstraintTick tick{{x.head<7>(), x.tail<6>()},
+                        ToScalars<7>(q_WH, "q_WH"),
+                        ToScalars<6>(V_WH, "V_WH"),
+                        ToScalars<6>(F_applied, "F_applied_To_W"),
+                        {},
+                        {},
+                        CommonNumDerivatives(state, q_WH, V_WH, F_applied)};
+    for (std::size_t i = 0; i < count; ++i) {
+      CommonNumDerivatives(state, X_WO[i], V_WO[i]);
+      tick.q_WO.push_back(ToScalars<7>(X_WO[i], "X_WO"));
+      tick.V_WO.push_back(ToScalars<6>(V_WO[i], "V_WO"));
+    }
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    const ConstraintTickGradient found = stepper_.Differentiate(tick);
+    VectorOf<AutoDiff> all(19 + 6 * count);
+    all.head<19>() << found.next.q_WT, found.next.V_WT, found.F_To_W;
+    for (std::size_t i = 0; i < count; ++i) {
+      all.segment<6>(19 + 6 * i) = found.F_Oo_W[i];
+    }
+    return ToAutoDiffVector(all, tick.num_derivatives);
   }
 
   void Reset() {
@@ -286,6 +323,22 @@ void BindConstraintStep(nb::module_& m) {
           "Raises:\n"
           "    ValueError: a value is not finite, or there are other anchors; "
           "what was learnt stays.")
+      .def("differentiate", &SharedStepper::Differentiate, nb::arg("state"),
+           nb::arg("q_WH"), nb::arg("V_WH"), nb::arg("F_applied_To_W"),
+           nb::arg("X_WO"), nb::arg("V_WO"),
+           "Advances the tool by a tick with derivatives (step_gradient.h).\n\n"
+           "Args:\n"
+           "    state: (13,) pose and spatial velocity of the tool.\n"
+           "    q_WH, V_WH: (7,) and (6,), those of the handle.\n"
+           "    F_applied_To_W: (6,) all other wrenches on the tool.\n"
+           "    X_WO, V_WO: (7,) and (6,) for each object.\n\n"
+           "Returns:\n"
+           "    (19 + 6 num_objects,): the state at the tick's end, the wrench "
+           "of contact on the tool at its origin at the tick's beginning, and "
+           "that on each object at its origin, in W.\n\n"
+           "Raises:\n"
+           "    ValueError: a value is not finite, or numbers of objects or of "
+           "variables differ.")
       .def("reset", &SharedStepper::Reset,
            "Forgets what earlier ticks found; the objects stay.")
       .def("__deepcopy__", [](const SharedStepper& self,

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "pair/pair_contact_builders.h"
 #include "pair/separation.h"
 
 namespace drake_haptics {
@@ -206,6 +207,19 @@ double ConstraintRows::DistanceThen(int plane, const Pose& X_WT,
       .distance;
 }
 
+PairContact ConstraintRows::ContactThen(int plane, const Pose& X_WT,
+                                        const Pose& X_WO) const {
+  const SeparatingPlane& moved = planes_[plane];
+  const PosedPair then = PosedThen(plane, X_WT, X_WO);
+  const Separation separation = ComputeSeparation(
+      then, objects_[moved.object].near.simplex(moved.watched), kForever);
+  PairContact contact = ContactApart(then, separation);
+  MinkowskiVertex support = separation.simplex.vertex_pairs[0];
+  SupportGap(then, separation.n, &support);
+  contact.support = {support.a, support.b};
+  return contact;
+}
+
 bool ConstraintRows::TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO,
                                double least) {
   SeparatingPlane& turned = planes_[plane];
@@ -240,6 +254,7 @@ bool ConstraintRows::TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO,
     share = (low + high) / 2;
   }
   if (low == 0) return false;
+  turned.turned = low;
   PairContact& contact = turned.contact;
   contact.n = best;
   contact.distance = best_gap;

@@ -49,6 +49,8 @@ class ConstraintRows {
 
   int num_objects() const { return static_cast<int>(objects_.size()); }
   const Pose& X_WO(int i) const { return objects_[i].X_WO; }
+  const Decomposition& tool() const { return *tool_.decomposition; }
+  const Decomposition& object(int i) const { return objects_[i].near.shape(); }
 
   /// Poses object i.
   /// @param sweep bound on the motion of its points in the tick, m: it is
@@ -65,6 +67,8 @@ class ConstraintRows {
   void Query(const Pose& X_WT, double reach);
 
   const std::vector<SeparatingPlane>& planes() const { return planes_; }
+  /// The same as the query found them, before any was turned.
+  const std::vector<SeparatingPlane>& found() const { return found_; }
   const std::vector<ConstraintRow>& rows() const { return rows_; }
 
   /// Smallest distance of the pairs within reach, m; infinite if none is.
@@ -83,6 +87,10 @@ class ConstraintRows {
   /// @param X_WO where the object will be.
   /// @returns whether the plane changed.
   bool TurnPlane(int plane, const Pose& X_WT, const Pose& X_WO, double least);
+
+  /// The contact of a plane's pieces where tool and object will be, in the
+  /// tool's frame.
+  PairContact ContactThen(int plane, const Pose& X_WT, const Pose& X_WO) const;
 
   /// The distance of a plane's pieces where tool and object will be, m; zero
   /// where they overlap.

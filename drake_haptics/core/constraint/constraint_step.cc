@@ -10,6 +10,7 @@
 #include "base/positive_semidefinite.h"
 #include "base/require.h"
 #include "base/rotation.h"
+#include "constraint/row_limits.h"
 
 namespace drake_haptics {
 namespace {
@@ -17,11 +18,10 @@ namespace {
 // Stiffness of a row that holds the skin, N/m: hard, for a hand's force takes a
 // hundred-millionth of a meter off it.
 constexpr double kHard = 1e9;
-// Of one that leads back into the skin, N/m, and the speed at which, m/s. Its
-// force is limited to what it has at that speed in one tick: two walls that
-// leave less room than two skins share it.
+// Of one that leads back into the skin, N/m. Its force is limited to what it
+// has at its speed in one tick: two walls that leave less room than two skins
+// share it.
 constexpr double kBack = 1e7;
-constexpr double kBackSpeed = 0.02;
 // What all pieces in overlap push with together, N.
 constexpr double kMostOutward = 3;
 // The motion that rows look ahead, m: so much at least, so much at most, and in
@@ -52,15 +52,6 @@ void RequireFinite(const ToolState& state, const PoseVector& q_WH,
 Pose Moved(const Pose& X, const Vec6& motion) {
   return {RotationExp<double>(motion.head<3>()).toRotationMatrix() * X.R,
           X.p + motion.tail<3>()};
-}
-
-PoseVector Moved(const PoseVector& q_WT, const Vec6& motion) {
-  const Vec3 turn = motion.head<3>();
-  const Eigen::Quaterniond R =
-      (RotationExp<double>(turn) * QuaternionOf(q_WT)).normalized();
-  PoseVector moved;
-  moved << R.w(), R.vec(), q_WT.tail<3>() + motion.tail<3>();
-  return moved;
 }
 
 Pose PoseOfVector(const PoseVector& q) {
@@ -125,11 +116,6 @@ int ConstraintStepper::AddSpring(const Vec6& a, double b, double k,
   return static_cast<int>(problem_.springs.size()) - 1;
 }
 
-// Apart, a row does not come nearer than its skin, or than it is: the tick's
-// beginning meets that wherever the object does not come closer, so that a hard
-// row never pushes by itself. What is missing of the skin, and what an object
-// comes closer by, a second spring makes up for. In overlap there is that one
-// alone, and weak.
 void ConstraintStepper::WriteSprings() {
   constexpr double kNoLimit = std::numeric_limits<double>::infinity();
   const double back = kBackSpeed * settings_.period;
@@ -142,19 +128,17 @@ void ConstraintStepper::WriteSprings() {
     const SeparatingPlane& plane = rows_.planes()[row.plane];
     const double skin = settings_.skin[plane.object];
     const double closer = row.n.dot(ObjectMotionAt(plane.object, row.p_WCb));
-    // Of a plane that was turned the pieces are farther than it tells.
-    const double missing = skin - std::max(row.distance, plane.nearest);
-    const double wanted = std::min(missing, back) + closer;
+    const RowLimits<double> limits(row.distance, plane.nearest, closer, skin,
+                                   back);
     HeldRow held;
     if (row.distance > 0) {
-      const double kept =
-          std::min(skin - row.distance, 0.0) + std::min(closer, 0.0);
-      held.spring = AddSpring(row.a, kept, kHard, kNoLimit);
-      if (wanted > kept) {
-        held.back = AddSpring(row.a, wanted, kBack, kBack * back);
+      held.spring = AddSpring(row.a, limits.kept, kHard, kNoLimit);
+      if (limits.wanted > limits.kept) {
+        held.back = AddSpring(row.a, limits.wanted, kBack, kBack * back);
       }
     } else {
-      held.back = AddSpring(row.a, wanted, kBack, kMostOutward / num_overlaps);
+      held.back =
+          AddSpring(row.a, limits.wanted, kBack, kMostOutward / num_overlaps);
     }
     held_.push_back(held);
   }
@@ -192,7 +176,7 @@ bool ConstraintStepper::AreTurnedPiecesApart(const Pose& X_next) const {
 // it coasts, for what a plane wrongly forbids bends the motion that was found
 // with it; then by that. Returns whether any was turned.
 bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
-                                   const Vec6& motion) {
+                                   const Vec6& motion, Follower* follower) {
   const double distance = rows_.MotionOf(X_WT, motion);
   pushes_.assign(rows_.planes().size(), 0);
   for (std::size_t k = 0; k < held_.size(); ++k) {
@@ -211,9 +195,14 @@ bool ConstraintStepper::TurnPlanes(const Pose& X_WT, const Vec6& coasting,
     }
     // No nearer than what is nearest: nothing of the skin is given up.
     const double least = std::min(plane.least, skin) - kRounding * skin;
-    is_any |= rows_.TurnPlane(static_cast<int>(k),
-                              is_turned_[k] != 0 ? X_next : X_coasted,
-                              NextPoseOf(plane.object), least);
+    const bool is_again = is_turned_[k] != 0;
+    if (rows_.TurnPlane(static_cast<int>(k), is_again ? X_next : X_coasted,
+                        NextPoseOf(plane.object), least)) {
+      is_any = true;
+      if (follower != nullptr) {
+        follower->Turn(static_cast<int>(k), is_again);
+      }
+    }
     is_turned_[k] = 1;
   }
   return is_any;
@@ -267,13 +256,15 @@ ConstraintSolution ConstraintStepper::Solve(const Pose& X_WT, const Vec6& start,
 ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
                                                 const Vec6& coasting,
                                                 const Vec6& start,
-                                                ConstraintStepResult* result) {
+                                                ConstraintStepResult* result,
+                                                Follower* follower) {
   is_turned_.assign(rows_.planes().size(), 0);
   WriteSprings();
   const ConstraintSolution first = Solve(X_WT, start, result);
+  if (follower != nullptr) follower->Solve(first.motion);
   ConstraintSolution solution = first;
   for (int turns = 0; turns < kMaxTurns; ++turns) {
-    if (!TurnPlanes(X_WT, coasting, solution.motion)) break;
+    if (!TurnPlanes(X_WT, coasting, solution.motion, follower)) break;
     rows_.UpdateRows();
     WriteSprings();
     solution = Solve(X_WT, solution.motion, result);
@@ -281,8 +272,10 @@ ConstraintSolution ConstraintStepper::SolveHere(const Pose& X_WT,
     if (!AreTurnedPiecesApart(Moved(X_WT, solution.motion))) {
       rows_.RestorePlanes();
       WriteSprings();
+      if (follower != nullptr) follower->Restore(first.motion);
       return Solve(X_WT, first.motion, result);
     }
+    if (follower != nullptr) follower->Solve(solution.motion);
   }
   return solution;
 }
@@ -304,7 +297,8 @@ void ConstraintStepper::Step(const ToolState& state, const PoseVector& q_WH,
 
 void ConstraintStepper::StepFrom(const ToolState& state, const PoseVector& q_WH,
                                  const Vec6& V_WH, const Vec6& F_applied,
-                                 ConstraintStepResult* result) {
+                                 ConstraintStepResult* result,
+                                 Follower* follower) {
   const double h = settings_.period;
   const CouplingWrench coupling = ComputeCoupling(
       q_WH, V_WH, settings_.q_HT, state.q_WT, state.V_WT, settings_.gains);
@@ -329,14 +323,16 @@ void ConstraintStepper::StepFrom(const ToolState& state, const PoseVector& q_WH,
       result->is_apart = result->least_distance > 0;
     }
     const ConstraintSolution solution =
-        SolveHere(X_WT, h * state.V_WT - whole_, free, result);
+        SolveHere(X_WT, h * state.V_WT - whole_, free, result, follower);
     result->is_bounded |= solution.is_bounded;
     Vec6 motion = solution.motion;
     const double distance = rows_.MotionOf(X_WT, motion);
     const double most = rows_.FreeMotion();
     const bool is_far = distance > most;
-    if (is_far) motion *= most / distance;
-    q = Moved(q, motion);
+    const double share = is_far ? most / distance : 1.0;
+    motion *= share;
+    if (follower != nullptr) follower->Go(share);
+    q = Displaced<double>(q, motion);
     whole_ += motion;
     if (!is_far || substep == kMaxSubsteps) {
       result->is_bounded |= is_far;

@@ -8,6 +8,7 @@
 #include "constraint/constraint_problem.h"
 #include "constraint/constraint_rows.h"
 #include "constraint/row_friction.h"
+#include "constraint/step_gradient.h"
 #include "mesh/decomposition.h"
 #include "pair/contact.h"
 #include "tool/rigid_tool.h"
@@ -113,13 +114,36 @@ class ConstraintStepper {
 
   int num_anchors() const { return settings_.friction.state_size(); }
 
+  /// The same with derivatives, the objects posed as the tick says
+  /// (step_gradient.h).
+  ConstraintTickGradient Differentiate(const ConstraintTick& tick);
+
   /// Forgets everything learnt from earlier ticks; the objects stay.
   void Reset();
 
  private:
+  // Is told what a tick does, step by step.
+  class Follower {
+   public:
+    // A problem was solved, with planes and springs as they are.
+    virtual void Solve(const Vec6& motion) = 0;
+    // A plane was turned: toward where the tool coasts, or, again, toward
+    // where the last solution leads.
+    virtual void Turn(int plane, bool is_again) = 0;
+    // The planes are as they were found, and this is the motion.
+    virtual void Restore(const Vec6& motion) = 0;
+    // The tool goes by a share of the last solution.
+    virtual void Go(double share) = 0;
+
+   protected:
+    ~Follower() = default;
+  };
+  class Derivation;
+
+  // @param follower if given, follows the tick.
   void StepFrom(const ToolState& state, const PoseVector& q_WH,
                 const Vec6& V_WH, const Vec6& F_applied,
-                ConstraintStepResult* result);
+                ConstraintStepResult* result, Follower* follower = nullptr);
   // A row and the springs that hold it, by their places.
   struct HeldRow {
     int spring = -1;  // that holds the skin
@@ -131,12 +155,14 @@ class ConstraintStepper {
   int AddSpring(const Vec6& a, double b, double k, double limit);
   Pose NextPoseOf(int object) const;
   bool AreTurnedPiecesApart(const Pose& X_next) const;
-  bool TurnPlanes(const Pose& X_WT, const Vec6& coasting, const Vec6& motion);
+  bool TurnPlanes(const Pose& X_WT, const Vec6& coasting, const Vec6& motion,
+                  Follower* follower);
   ConstraintSolution Solve(const Pose& X_WT, const Vec6& start,
                            ConstraintStepResult* result);
   void WriteRubbing(const Pose& X_WT);
   ConstraintSolution SolveHere(const Pose& X_WT, const Vec6& coasting,
-                               const Vec6& start, ConstraintStepResult* result);
+                               const Vec6& start, ConstraintStepResult* result,
+                               Follower* follower);
   void WriteContacts(const Pose& X_WT, const Vec6& motion,
                      ConstraintStepResult* result) const;
   Vec3 ObjectMotionAt(int i, const Vec3& p_WC) const;

@@ -27,6 +27,7 @@ struct SeparatingPlane {
   /// Vertices that support the pair where the tool will be; of a plane that was
   /// not turned those that do now.
   MinkowskiVertex next_support;
+  double turned = 0;  ///< share of the way that it was turned last
 };
 
 /// The pairs of convex pieces of a tool (A) and an object (B) that are within
@@ -53,6 +54,8 @@ class NearPieces {
   /// The odometer's reading plus the distance of what is not within reach: no
   /// other pair is nearer than this less the reading, m.
   double mark() const { return mark_; }
+
+  const Decomposition& shape() const { return *shape_.decomposition; }
 
   /// The object's box, in its frame.
   Box bounds() const { return shape_.tree->bounds(); }

@@ -30,12 +30,12 @@ struct RubbingRow {
 /// however λ moves between them. A tool that slides is held by μ N.
 ///
 /// No time enters: at rest nothing creeps. The load L stays where it can
-/// between N and 2 N, so that a normal force that trembles makes no creep. Where
-/// the rows or their forces change, ζ shrinks until they store no more energy
-/// than those of the last tick did: nothing but motion puts energy in (a
+/// between N and 2 N, so that a normal force that trembles makes no creep.
+/// Where the rows or their forces change, ζ shrinks until they store no more
+/// energy than those of the last tick did: nothing but motion puts energy in (a
 /// stiffness that follows N both ways makes some: Elata and Berryman 1996). In
-/// StickSlipModel the clusters of the penalty law, which have a force each, hand
-/// it on from one to another. Static and sliding friction are one.
+/// StickSlipModel the clusters of the penalty law, which have a force each,
+/// hand it on from one to another. Static and sliding friction are one.
 class RowFriction {
  public:
   /// Numbers of an anchor: ζ, L and the energy stored, J.

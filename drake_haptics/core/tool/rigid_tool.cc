@@ -56,16 +56,14 @@ ToolStateOf<T> StepTool(const ToolInertia& inertia, const ToolStateOf<T>& state,
   const Vec6Of<T> right = h * (wrench.F - b - h * (wrench.K * state.V_WT));
   ToolStateOf<T> next;
   next.V_WT = state.V_WT + left.partialPivLu().solve(right);
-  const Vec3Of<T> turn = h * next.V_WT.template head<3>();
-  const Eigen::Quaternion<T> R_next =
-      (RotationExp(turn) * QuaternionOf(state.q_WT)).normalized();
-  next.q_WT << R_next.w(), R_next.vec(),
-      state.q_WT.template tail<3>() + h * next.V_WT.template tail<3>();
+  next.q_WT = Displaced<T>(state.q_WT, h * next.V_WT);
   return next;
 }
 
 template ToolMotionTermsOf<double> ComputeMotionTerms(const ToolInertia&,
                                                       const ToolState&);
+template ToolMotionTermsOf<AutoDiff> ComputeMotionTerms(
+    const ToolInertia&, const ToolStateOf<AutoDiff>&);
 template ToolState StepTool(const ToolInertia&, const ToolState&,
                             const WrenchModel&, double);
 template ToolStateOf<AutoDiff> StepTool(const ToolInertia&,

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "base/autodiff.h"
+#include "tool/rigid_tool.h"
+
+namespace drake_haptics {
+
+/// What a tick of a ConstraintStepper is a function of, with derivatives by D
+/// variables.
+struct ConstraintTick {
+  ToolStateOf<AutoDiff> state;
+  PoseVectorOf<AutoDiff> q_WH;
+  Vec6Of<AutoDiff> V_WH, F_applied;
+  std::vector<PoseVectorOf<AutoDiff>> q_WO;  ///< of each object
+  std::vector<Vec6Of<AutoDiff>> V_WO;
+  Eigen::Index num_derivatives = 0;
+};
+
+/// What comes of it.
+struct ConstraintTickGradient {
+  ToolStateOf<AutoDiff> next;            ///< of the tool, at the tick's end
+  Vec6Of<AutoDiff> F_To_W;               ///< of all rows on the tool at To
+  std::vector<Vec6Of<AutoDiff>> F_Oo_W;  ///< on each object at its origin
+};
+
+}  // namespace drake_haptics
