@@ -426,6 +426,7 @@ def test_a_start_in_a_shape_is_told_and_led_out(pressed):
     assert statistics.max_force_N < 3.0
 
 
-def test_stability_is_refused_by_name(pressed):
-    with pytest.raises(ValueError, match=r"no derivatives.*contact\.law: penalty"):
+def test_stability_with_friction_is_refused_by_name(pressed):
+    pressed.effects.friction = FrictionParameters()
+    with pytest.raises(ValueError, match=r"no derivatives.*effects\.friction"):
         analyze_scene(pressed, map_size=0)
