@@ -1194,6 +1194,10 @@ class ConstraintStepResult:
         """
 
     @property
+    def contact_stiffness(self) -> Annotated[NDArray[numpy.float64], dict(shape=(6, 6), order='F')]:
+        """(6, 6) the part of it that is of the rows, Σ k a aᵀ."""
+
+    @property
     def num_rows(self) -> int:
         """Rows within reach, those that do not push among them."""
 
@@ -1271,6 +1275,9 @@ class ConstraintStepper:
     @property
     def num_objects(self) -> int:
         """How many objects there are."""
+
+    def set_gains(self, gains: CouplingGains) -> None:
+        """Changes the gains of the coupling, from the next tick on."""
 
     def set_object_pose(self, i: int, X_WO: drake_haptics.common.pose_like.PoseLike, V_WO: numpy.typing.ArrayLike = ...) -> None:
         """

@@ -21,12 +21,14 @@ from drake_haptics.analysis.diagram_systems import walk_leaves
 PAGE = Path(__file__).parents[2] / "docs" / "gradients.md"
 MARK = "<!-- written by docs/generate/loop_gradient_table.py -->\n"
 SCENES = (
-    "can_box",
-    "cup_spoon",
-    "hammer_block",
-    "rubbed_sphere",
-    "sphere_pen",
-    "torus_peg",
+    ("can_box",),
+    ("cup_spoon",),
+    ("hammer_block",),
+    ("rubbed_sphere",),
+    ("sphere_pen",),
+    ("torus_peg",),
+    ("cup_spoon", "contact.law=constraint"),
+    ("peg_in_hole", "contact.law=constraint"),
 )
 NUM_STATES = 12
 UNTIL_S = 3.0
@@ -48,8 +50,8 @@ TITLES = (
 def rows() -> Iterator[tuple[str, ...]]:
     """A line for each scene, of all its states together."""
     yield TITLES
-    for name in SCENES:
-        loop = build_scene(name)
+    for name, *settings in SCENES:
+        loop = build_scene(name, *settings)
         found = [
             calc_gradients(loop, context)
             for context in contact_states(loop, NUM_STATES, UNTIL_S)
@@ -57,7 +59,7 @@ def rows() -> Iterator[tuple[str, ...]]:
         kinks = sum(int(gradients.is_kink.sum()) for gradients in found)
         columns = sum(int(gradients.is_varied.sum()) for gradients in found)
         yield (
-            name,
+            ", ".join([name, *settings]),
             f"{len(list(walk_leaves(loop.diagram)))}",
             f"{found[0].is_kink.size}",
             f"{columns - kinks}",

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from pydrake.common.eigen_geometry import Quaternion
 from pydrake.common.value import AbstractValue, Value
-from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.math import RigidTransform
 from pydrake.systems.framework import (
     BasicVector,
     Context,
@@ -303,7 +302,7 @@ class _ConstraintStep(DifferentiableSystem):
                 "takes friction into its step: take effects.friction out, or take"
                 " contact.law: penalty"
             )
-        # The memory of a Context. It begins again where the gains change.
+        # The memory of a Context.
         self._stepper = self.DeclareCacheEntry(
             description="stepper",
             value_producer=ValueProducer(
@@ -336,7 +335,7 @@ class _ConstraintStep(DifferentiableSystem):
             self.DeclareVectorOutputPort(
                 "F_O_W", 6 * len(self._motions), self._calc_F_O_W, from_result
             )
-        coupling = self.DeclareVectorOutputPort(
+        self.DeclareVectorOutputPort(
             "coupling",
             78,
             self._calc_coupling,
@@ -347,8 +346,6 @@ class _ConstraintStep(DifferentiableSystem):
                 self.pa_ticket(),
             },
         )
-        self._eval_coupling = coupling.Eval
-        self._M_T = _find_inertia(dynamics)
         self.DeclareVectorOutputPort(
             "wrench_model",
             78,
@@ -385,9 +382,13 @@ class _ConstraintStep(DifferentiableSystem):
         return stepper
 
     def _prepare_stepper(self, context: Context, value: AbstractValue) -> None:
-        value.set_value(
-            self._make_stepper(context.get_abstract_parameter(self._gains).get_value())
-        )
+        """Makes the stepper of a Context, or tells it of other gains."""
+        gains = context.get_abstract_parameter(self._gains).get_value()
+        stepper = value.get_value()
+        if isinstance(stepper, ConstraintStepper):
+            stepper.set_gains(gains)
+        else:
+            value.set_value(self._make_stepper(gains))
 
     def _calc_result(self, context: Context, value: AbstractValue) -> None:
         stepper: ConstraintStepper = self._stepper.Eval(context)
@@ -522,24 +523,11 @@ class _ConstraintStep(DifferentiableSystem):
 
     def _calc_wrench_model(self, context: Context, output: BasicVector) -> None:
         result = self._eval_result(context)
-        state = context.get_discrete_state(0).value()
-        # What is left of the step's slope is that of the rows.
-        friction = result.friction.wrench_model[6:42].reshape(6, 6)
-        K = result.hessian - self._calc_free_hessian(context, state) - friction
-        K = 0.5 * (K + K.T) if len(result.contacts) else np.zeros((6, 6))
+        K = result.contact_stiffness
         F = self._contact_wrench.Eval(context).F_To_W + K @ (
             self._period_s * result.V_WT
         )
         output.SetFromVector(np.concatenate([F, K.ravel(), np.zeros(36)]))
-
-    def _calc_free_hessian(self, context: Context, state: np.ndarray) -> np.ndarray:
-        """Returns (6, 6) M/h² + B/h + K of the tool on its coupling."""
-        R_WT = RotationMatrix(Quaternion(state[:4])).matrix()
-        both = np.kron(np.eye(2), R_WT)
-        M = both @ self._M_T @ both.T
-        K, B = self._eval_coupling(context)[6:].reshape(2, 6, 6)
-        h = self._period_s
-        return M / h**2 + B / h + K
 
     def _calc_friction_force(self, context: Context, output: AbstractValue) -> None:
         output.set_value(self._eval_result(context).friction)
@@ -563,15 +551,3 @@ class _ConstraintStep(DifferentiableSystem):
 def _take(vector: AutoDiffVector, rows: slice | list[int]) -> AutoDiffVector:
     """Returns some entries of a vector."""
     return AutoDiffVector(vector.value[rows], vector.gradient[rows])
-
-
-def _find_inertia(dynamics: RigidToolDynamics) -> np.ndarray:
-    """Returns the spatial inertia (6, 6) of a tool about its origin, in its frame.
-
-    From rest, without stiffness and damping, a step of a second gives it the velocity
-    M⁻¹ F.
-    """
-    at_rest = np.array([1.0, *np.zeros(12)])
-    models = np.hstack([np.eye(6), np.zeros((6, 72))])
-    inverse = [dynamics.step(at_rest, model, 1.0)[7:] for model in models]
-    return np.linalg.inv(np.array(inverse).T)

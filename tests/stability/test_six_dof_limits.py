@@ -10,13 +10,17 @@ CASES = [
     ("sphere_pen", "translation", "a rigid wall"),
     ("cup_spoon", "translation", "this contact"),
     ("cup_spoon", "rotation", "a rigid wall"),
+    ("cup_spoon", "translation", "this contact", "contact.law=constraint"),
+    ("peg_in_hole", "translation", "this contact"),
+    ("peg_in_hole", "rotation", "this contact"),
+    ("peg_in_hole", "translation", "a rigid wall"),
 ]
 
 
 @pytest.mark.parametrize("case", CASES, ids=" ".join)
 def test_eigenvalue_and_simulation_agree(case):
-    name, kind, against = case
-    limits = find_stiffness_limits(load_held(name), kind, against)
+    name, kind, against, *settings = case
+    limits = find_stiffness_limits(load_held(name, *settings), kind, against)
     assert limits.simulated == pytest.approx(limits.eigenvalue, rel=5e-3)
     if against == "a rigid wall":
         # One axis with the least inertia and damping is the worst direction.

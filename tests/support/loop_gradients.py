@@ -19,6 +19,7 @@ from drake_haptics.analysis.sampled_map import SampledMap, SampledValues, get_st
 from drake_haptics.loop.builder import BuildHapticDiagram, HapticDiagram
 from drake_haptics.scene.library import find_scene
 from drake_haptics.scene.scene_file import load_scene
+from drake_haptics.scene.settings import change_scene
 
 # Between looks for contact, s.
 _LOOK_S = 0.01
@@ -34,9 +35,9 @@ _SMOOTH = 1e-6
 _SMALLEST = 1e-2
 
 
-def build_scene(name: str) -> HapticDiagram:
-    """Returns a shipped scene, ready to run."""
-    return BuildHapticDiagram(load_scene(find_scene(name)))
+def build_scene(name: str, *settings: str) -> HapticDiagram:
+    """Returns a shipped scene, ready to run, with settings as of `--set`."""
+    return BuildHapticDiagram(change_scene(load_scene(find_scene(name)), settings))
 
 
 def contact_states(loop: HapticDiagram, count: int, until_s: float) -> list[Context]:
@@ -49,12 +50,11 @@ def contact_states(loop: HapticDiagram, count: int, until_s: float) -> list[Cont
 
 def _run(loop: HapticDiagram, until_s: float) -> Iterator[Context]:
     simulator = Simulator(loop.diagram)
-    contacts = loop.loop.contact_clustering.GetOutputPort("clusters")
+    F_To_W = loop.diagram.GetOutputPort("F_To_W")
     while simulator.get_context().get_time() < until_s:
         simulator.AdvanceTo(simulator.get_context().get_time() + _LOOK_S)
         context = simulator.get_context()
-        own = loop.loop.contact_clustering.GetMyContextFromRoot(context)
-        if (contacts.Eval(own).compression > 0.0).any():
+        if F_To_W.Eval(context).any():
             yield context.Clone()
 
 

@@ -41,6 +41,11 @@ class SharedStepper {
   // For what never changes.
   const ConstraintStepper& constants() const { return stepper_; }
 
+  void SetGains(const CouplingGains& gains) {
+    const Turn turn(&mutex_, Turn::Gil::kHold);
+    stepper_.SetGains(gains);
+  }
+
   void SetObjectPose(nb::handle place, nb::handle X_WO_value,
                      const Vec6& V_WO) {
     const Pose X_WO = ToPose(X_WO_value, "X_WO");
@@ -188,6 +193,10 @@ void BindResult(nb::module_& m) {
           "that push, and the slope of friction. What adds dF to the wrench on "
           "the tool adds A⁻¹ dF to "
           "its motion, and A⁻¹ dF / h to V_WT.")
+      .def_prop_ro(
+          "contact_stiffness",
+          [](const Result& r) { return r.contact_stiffness; },
+          "(6, 6) the part of it that is of the rows, Σ k a aᵀ.")
       .def_ro("num_rows", &Result::num_rows,
               "Rows within reach, those that do not push among them.")
       .def_ro("num_substeps", &Result::num_substeps,
@@ -286,6 +295,8 @@ void BindConstraintStep(nb::module_& m) {
             return self.constants().num_objects();
           },
           "How many objects there are.")
+      .def("set_gains", &SharedStepper::SetGains, nb::arg("gains"),
+           "Changes the gains of the coupling, from the next tick on.")
       .def("set_object_pose", &SharedStepper::SetObjectPose, nb::arg("i"),
            nb::arg("X_WO").none(), nb::arg("V_WO") = Vec6(Vec6::Zero()),
            nb::sig("def set_object_pose(self, i: int, X_WO: "

@@ -337,6 +337,9 @@ void ConstraintStepper::StepFrom(const ToolState& state, const PoseVector& q_WH,
     if (!is_far || substep == kMaxSubsteps) {
       result->is_bounded |= is_far;
       result->hessian = solution.hessian;
+      const Mat6 of_rows =
+          solution.hessian - problem_.H - result->friction.tool.K;
+      result->contact_stiffness = (of_rows + of_rows.transpose()) / 2;
       result->num_rows = static_cast<int>(rows_.rows().size());
       result->num_substeps = substep;
       WriteContacts(X_WT, solution.motion, result);

@@ -33,6 +33,8 @@ struct ConstraintStepResult {
   /// friction. What adds dF to the
   /// wrench on the tool adds A⁻¹ dF to its motion, and A⁻¹ dF / h to V_WT.
   Mat6 hessian = Mat6::Zero();
+  /// The part of it that is of the rows, Σ k a aᵀ.
+  Mat6 contact_stiffness = Mat6::Zero();
   int num_rows = 0;        ///< of the last sub-step
   int num_substeps = 0;    ///< at least 1
   int num_iterations = 0;  ///< of Newton's method, all sub-steps together
@@ -95,6 +97,8 @@ class ConstraintStepper {
 
   int num_objects() const { return rows_.num_objects(); }
   const Settings& settings() const { return settings_; }
+
+  void SetGains(const CouplingGains& gains) { settings_.gains = gains; }
 
   /// Poses object i at the next tick's beginning, and tells how it moves in it.
   /// @param V_WO spatial velocity of its frame [rad/s; m/s].

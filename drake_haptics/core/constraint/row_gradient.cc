@@ -16,17 +16,6 @@ constexpr double kOnFacet = 2e-6;
 // Directions that are nearly one do not fix a place.
 constexpr double kParallel = 1e-6;
 
-bool IsOn(const Polytope::Facet& facet, const Vec3& p, double near) {
-  return std::abs(facet.normal.dot(p) - facet.offset) < near;
-}
-
-bool LiesOnFacet(const Polytope& P, const Vec3& p) {
-  const double near = kOnFacet * P.radius;
-  return std::all_of(P.facets.begin(), P.facets.end(), [&](const auto& facet) {
-    return facet.normal.dot(p) - facet.offset < near;
-  });
-}
-
 // The directions in which a point may move on the smallest feature of a piece
 // that it lies on; none where it lies on a vertex, or on nothing.
 std::vector<Vec3> DirectionsAt(const Polytope& P, const Vec3& p) {
@@ -43,7 +32,7 @@ std::vector<Vec3> DirectionsAt(const Polytope& P, const Vec3& p) {
     }
   }
   for (const Polytope::Facet& facet : P.facets) {
-    if (IsOn(facet, p, kOnFacet * P.radius)) {
+    if (std::abs(facet.normal.dot(p) - facet.offset) < kOnFacet * P.radius) {
       const Vec3 u = facet.normal.unitOrthogonal();
       return {u, facet.normal.cross(u)};
     }
@@ -51,10 +40,15 @@ std::vector<Vec3> DirectionsAt(const Polytope& P, const Vec3& p) {
   return {};
 }
 
-// Where B supports a row: its point, or, where that is on no feature as beside
-// a plane that was turned, the vertex at its height.
+// Where B supports a row: at its point, or, where that is beside B, as of a
+// plane that was turned, at the vertex of the same height.
 Vec3 PointOfB(const Polytope& B, const Vec3& p, const Vec3& n) {
   const double near = kOnFeature * B.radius;
+  if (std::all_of(B.facets.begin(), B.facets.end(), [&](const auto& facet) {
+        return facet.normal.dot(p) < facet.offset + near;
+      })) {
+    return p;
+  }
   Vec3 nearest = p;
   double least = std::numeric_limits<double>::infinity();
   for (const Vec3& vertex : B.vertices) {
@@ -64,7 +58,7 @@ Vec3 PointOfB(const Polytope& B, const Vec3& p, const Vec3& n) {
       least = distance;
     }
   }
-  return LiesOnFacet(B, p) ? p : nearest;
+  return nearest;
 }
 
 template <typename Values, typename Vector>

@@ -8,7 +8,14 @@
 namespace drake_haptics {
 
 /// What a tick of a ConstraintStepper is a function of, with derivatives by D
-/// variables.
+/// variables y.
+///
+/// The motion ξ is where the gradient g(y, ξ) of a convex function is zero, so
+/// that A dξ = −∂g/∂y dy with the Hessian A = H + Σ k a aᵀ (implicit function
+/// theorem): one factor serves all variables. What stays is which features the
+/// pieces have next to each other (row_gradient.h), how a fast tick is divided,
+/// and which rows push. At a kink it is the side on which they do: a row that
+/// parts no faster than 1e-9 m/s pushes.
 struct ConstraintTick {
   ToolStateOf<AutoDiff> state;
   PoseVectorOf<AutoDiff> q_WH;

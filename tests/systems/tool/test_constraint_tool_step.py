@@ -3,11 +3,15 @@
 import numpy as np
 import pytest
 from mesh_samples import box
-from pydrake.math import RigidTransform
+from press_tools import hull_mesh, make_tool
+from pydrake.autodiffutils import ExtractGradient, InitializeAutoDiff
+from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
+from twin_check import differentiate
 
 from drake_haptics._core import CouplingGains, RigidToolDynamics
+from drake_haptics.analysis.equilibrium import find_equilibrium
 from drake_haptics.analysis.sampled_linearization import linearize_sampled
 from drake_haptics.common.pose_vector import pose_to_vector
 from drake_haptics.geometry.decomposition.decompose import decompose
@@ -23,6 +27,7 @@ DYNAMICS = RigidToolDynamics(MASS, np.array([0.0, 0.0, 0.002]), 2e-5 * np.eye(3)
 # So far below its rest on the plate's top, z = 0, the handle wants the tool.
 PRESS = 1e-3
 AT_REST = HALF + SKIN
+REST = pose_to_vector(RigidTransform())
 FREE = RigidTransform([0.0, 0.0, 0.05])
 PRESSED = RigidTransform([0.0, 0.0, AT_REST - PRESS])
 
@@ -237,6 +242,91 @@ def test_gains_change_in_one_context_alone():
     )
     with pytest.raises(TypeError, match="must be CouplingGains"):
         step.set_gains(simulator.get_mutable_context(), 3.0)
+
+
+def spike(length):
+    """A pyramid whose tip is that far below its origin."""
+    base = np.array([[0.01, 0, 0], [-0.005, 0.008, 0], [-0.005, -0.009, 0]])
+    return make_tool(hull_mesh([*base, [0, 0, -length]]), [[0, 0, -1]]).core
+
+
+def poles(mass, stiffness, damping, *, wall=0.0, tip=0.0):
+    """Those of a mass on a spring and damper by implicit steps of a tick, by hand.
+
+    m ξ/h² + c ξ/h + k ξ = m v/h - k e, x⁺ = e + ξ, v⁺ = ξ/h: `wall` holds ξ without
+    a memory of e, `tip` is stiffness that the step takes where it begins.
+    """
+    A = mass / PERIOD**2 + damping / PERIOD + stiffness + wall
+    inertia = mass / (PERIOD**2 * A)
+    return np.roots([1.0, -(1.0 - (stiffness + tip) / A + inertia), inertia])
+
+
+def test_a_spike_on_a_plane_has_the_poles_of_one_axis_each():
+    length, inertia, hold, back = 0.03, 2e-5, 1e9, 1e7
+    dynamics = RigidToolDynamics(MASS, np.zeros(3), inertia * np.eye(3))
+    at = np.array([0.013, 0.007, length + SKIN])
+    step = make_step(tool=spike(length), dynamics=dynamics, X_WT=RigidTransform(at))
+    handle = RigidTransform(at - [0.0, 0.0, PRESS])
+    context = simulate(step, handle).get_context()
+    context = find_equilibrium(step, context, settle_s=1.0).context
+    found = linearize_sampled(step, context)
+    # It rests where the hard spring begins: away from the plane nothing holds it.
+    assert found.kinks == ("step/z", "step/vz")
+    K, C = GAINS.stiffness_N_per_m, GAINS.damping_Ns_per_m
+    K_R = GAINS.rotational_stiffness_Nm_per_rad
+    C_R = GAINS.rotational_damping_Nms_per_rad
+    force = read(step, context, "F_To_W")[5]
+    expected = [
+        *poles(MASS, K + back, C, wall=hold),
+        *np.tile(poles(MASS, K, C), 2),
+        # Tilted, the tip that carries the force is beside the origin.
+        *np.tile(poles(inertia, K_R, C_R, tip=-force * length), 2),
+        *poles(inertia, K_R, C_R),
+        0.0,  # the quaternion's length
+    ]
+    np.testing.assert_allclose(
+        np.sort_complex(found.eigenvalues()), np.sort_complex(expected), atol=1e-7
+    )
+
+
+def test_all_outputs_have_the_derivatives_of_doubles():
+    rng = np.random.default_rng(3)
+    step = make_step(X_WO=None, wrench_names=["gravity"])
+    tilted = RigidTransform(RollPitchYaw(2e-3, -1e-3, 0.4), [0.0, 0.0, AT_REST])
+    inputs = {
+        "X_WH": pose_to_vector(PRESSED),
+        "V_WH": 0.01 * rng.normal(size=6),
+        "X_WO_plate": REST,
+        "V_WO_plate": 1e-3 * rng.normal(size=6),
+        "gravity": np.concatenate([0.1 * rng.normal(size=6), np.zeros(72)]),
+    }
+    state = np.concatenate([pose_to_vector(tilted), 1e-3 * rng.normal(size=6)])
+    sizes = [len(vector) for vector in inputs.values()]
+
+    def values_of(system):
+        context = system.CreateDefaultContext()
+
+        def values(z):
+            parts = np.split(z, np.cumsum(sizes))
+            for name, part in zip(inputs, parts, strict=False):
+                system.GetInputPort(name).FixValue(context, part)
+            context.SetDiscreteState(parts[-1])
+            leaf = system.GetSubsystemByName("step")
+            own = leaf.GetMyContextFromRoot(context)
+            update = leaf.EvalUniquePeriodicDiscreteUpdate(own)
+            names = ("F_Ho_W_commanded", "F_To_W", "F_O_W", "coupling")
+            outputs = [read(system, context, name) for name in names]
+            return np.concatenate([update.get_vector().CopyToVector(), *outputs])
+
+        return values
+
+    z = np.concatenate([*inputs.values(), state])
+    found = values_of(step.ToAutoDiffXd())(InitializeAutoDiff(z).ravel())
+    expected = differentiate(values_of(step), z, 1e-8)
+    assert np.abs(values_of(step)(z)[19:25]).max() > 0.1  # it pushes
+    gradient = ExtractGradient(found)
+    size = np.maximum(np.abs(expected).max(axis=1), 1.0)[:, np.newaxis]
+    np.testing.assert_allclose(gradient / size, expected / size, atol=1e-6)
 
 
 @pytest.mark.parametrize(
